@@ -102,7 +102,7 @@ std::string MeshAdapter::coarseness() const
 //------------------------------------------------------------------------------
 void MeshAdapter::mergeCoincidentPoints(int threads)
 {
-  this->Coincident = findCoincidentPoints(*this->TheMesh);
+  this->Coincident = findCoincidentPoints(*this->TheMesh, nullptr, threads);
   if (this->Coincident.overlapping > 0)
   {
     // Cells that list their points in the opposite order seem to be on the wrong side of a facet.
@@ -111,7 +111,7 @@ void MeshAdapter::mergeCoincidentPoints(int threads)
     const CellOrder order = consistentOrder(*this->TheMesh, validity.data());
     if (order.reversed > 0)
     {
-      this->Coincident = findCoincidentPoints(*this->TheMesh, order.reverse.data());
+      this->Coincident = findCoincidentPoints(*this->TheMesh, order.reverse.data(), threads);
     }
   }
   if (!this->Coincident.any())

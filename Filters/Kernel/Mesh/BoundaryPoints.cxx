@@ -2,6 +2,7 @@
 #include "BoundaryPoints.h"
 
 #include "tautline/Core/CountingSort.h"
+#include "tautline/Core/Random.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -10,15 +11,6 @@ namespace tautline
 {
 namespace
 {
-/// A well-mixed number for each id (the finaliser of SplitMix64).
-inline std::uint64_t mix(std::uint64_t z)
-{
-  z += 0x9e3779b97f4a7c15u;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
 /// What the facets leave at a point.
 struct Mark
 {
@@ -45,7 +37,7 @@ void addMarks(const CellTopology& t, const Index* node, std::vector<Mark>& marks
   std::uint64_t number[MaxNodes];
   for (int k = 0; k < t.nodes; ++k)
   {
-    number[k] = mix(static_cast<std::uint64_t>(node[k]));
+    number[k] = SplitMix::mixed(static_cast<std::uint64_t>(node[k]));
   }
   const int facets = t.dimension == 3 ? t.faces : t.edges;
   Mark own[MaxNodes] = {};
@@ -58,7 +50,7 @@ void addMarks(const CellTopology& t, const Index* node, std::vector<Mark>& marks
     {
       facet += number[member[k]];
     }
-    facet = mix(facet);
+    facet = SplitMix::mixed(facet);
     const std::uint64_t sense = signedNumber(number, member, size);
     for (int k = 0; k < size; ++k)
     {
@@ -97,7 +89,7 @@ void addTetrahedra(
     {
       for (std::uint64_t& number : of)
       {
-        number = mix(number);
+        number = SplitMix::mixed(number);
       }
     }
     for (int k = 0; k < 4; ++k)
@@ -105,7 +97,7 @@ void addTetrahedra(
       for (int l = 0; l < most; ++l)
       {
         const std::uint64_t x = a[round[k][0]][l], y = a[round[k][1]][l], z = a[round[k][2]][l];
-        face[k][l] = mix(x + y + z);
+        face[k][l] = SplitMix::mixed(x + y + z);
         sense[k][l] = (x - y) * (y - z) * (z - x);
       }
     }
@@ -128,16 +120,19 @@ int dimensionOf(const Mesh& mesh)
   return mesh.dimension() == Dimension::Volume ? 3 : 2;
 }
 
-/// Calls visit(cell, its type, its nodes) for the cells of the mesh's dimension.
+/// Calls visit(cell, its type, its nodes) for a part of the cells of the mesh's dimension, the
+/// `part`-th of `parts`.
 template <class Visit>
-void forEachElement(const Mesh& mesh, const Visit& visit)
+void forEachElementOfPart(const Mesh& mesh, Index part, Index parts, const Visit& visit)
 {
   const MeshView& view = mesh.view();
   for (const CellBlock& block : mesh.blocks())
   {
     const CellTopology& t = topology(block.type);
-    for (Index i = 0; t.dimension == dimensionOf(mesh) && i < block.count; ++i)
+    const Index begin = block.count * part / parts, end = block.count * (part + 1) / parts;
+    for (Index i = begin; t.dimension == dimensionOf(mesh) && i < end; ++i)
     {
+      pollInterruption(i);
       visit(block.cell(i), t, view.connectivity + view.offsets[block.cell(i)]);
     }
   }
@@ -202,8 +197,9 @@ struct KeyedCell
   Index cell;
 };
 
-/// Of some cells those that have the same points as another one with a smaller id.
-std::vector<DuplicateCell> duplicatesAmong(const Mesh& mesh, std::vector<KeyedCell>& cells)
+/// Adds those of some cells that have the same points as another one with a smaller id.
+void addDuplicates(
+  const Mesh& mesh, std::vector<KeyedCell>& cells, std::vector<DuplicateCell>& duplicates)
 {
   const MeshView& view = mesh.view();
   std::sort(cells.begin(), cells.end(),
@@ -217,7 +213,6 @@ std::vector<DuplicateCell> duplicatesAmong(const Mesh& mesh, std::vector<KeyedCe
     return type == cornerType(view.cellTypes[b]) &&
       std::is_permutation(first, first + topology(type).nodes, second);
   };
-  std::vector<DuplicateCell> duplicates;
   for (std::size_t i = 0; i < cells.size();)
   {
     std::size_t j = i + 1;
@@ -230,28 +225,51 @@ std::vector<DuplicateCell> duplicatesAmong(const Mesh& mesh, std::vector<KeyedCe
     }
     i = j;
   }
-  std::sort(duplicates.begin(), duplicates.end(),
-    [](const DuplicateCell& a, const DuplicateCell& b) { return a.cell < b.cell; });
-  return duplicates;
 }
 
 /// The duplicate cells among those of whose points `least` or more satisfy a condition.
 template <class Condition>
-std::vector<DuplicateCell> duplicatesWhere(const Mesh& mesh, int least, const Condition& condition)
+std::vector<DuplicateCell> duplicatesWhere(
+  const Mesh& mesh, int least, int threads, const Condition& condition)
 {
-  std::vector<KeyedCell> cells;
-  forEachElement(mesh,
-    [&](Index cell, const CellTopology& t, const Index* node)
+  // Cells with the same key are of one group, whichever part of the cells they are in.
+  const int parts = numberOfParts(mesh.view().numberOfCells, threads);
+  using Groups = std::vector<std::vector<KeyedCell>>;
+  std::vector<Groups> groups(parts, Groups(parts));
+  parallelFor(parts, 1, threads,
+    [&](Index part)
     {
-      if (std::count_if(node, node + t.nodes, condition) >= least)
-      {
-        std::uint64_t key = static_cast<std::uint64_t>(t.type);
-        std::for_each(node, node + t.nodes,
-          [&key](Index point) { key += mix(static_cast<std::uint64_t>(point)); });
-        cells.push_back({ key, cell });
-      }
+      forEachElementOfPart(mesh, part, parts,
+        [&](Index cell, const CellTopology& t, const Index* node)
+        {
+          if (std::count_if(node, node + t.nodes, condition) >= least)
+          {
+            std::uint64_t key = static_cast<std::uint64_t>(t.type);
+            std::for_each(node, node + t.nodes,
+              [&key](Index point) { key += SplitMix::mixed(static_cast<std::uint64_t>(point)); });
+            groups[part][key % parts].push_back({ key, cell });
+          }
+        });
     });
-  return duplicatesAmong(mesh, cells);
+  std::vector<std::vector<DuplicateCell>> found(parts);
+  parallelFor(parts, 1, threads,
+    [&](Index group)
+    {
+      std::vector<KeyedCell>& cells = groups[0][group];
+      for (int part = 1; part < parts; ++part)
+      {
+        cells.insert(cells.end(), groups[part][group].begin(), groups[part][group].end());
+      }
+      addDuplicates(mesh, cells, found[group]);
+    });
+  std::vector<DuplicateCell> duplicates;
+  for (const std::vector<DuplicateCell>& some : found)
+  {
+    duplicates.insert(duplicates.end(), some.begin(), some.end());
+  }
+  std::sort(duplicates.begin(), duplicates.end(),
+    [](const DuplicateCell& a, const DuplicateCell& b) { return a.cell < b.cell; });
+  return duplicates;
 }
 }
 
@@ -276,9 +294,9 @@ MeshSkin findSkin(const Mesh& mesh, int threads)
   const int ofFacet = dimensionOf(mesh);
   const auto marked = [&boundary](Index point) { return boundary[point] != 0; };
   const bool closed = std::find(boundary.begin(), boundary.end(), 1) == boundary.end();
-  if (!consistent || !duplicatesWhere(mesh, ofFacet, marked).empty())
+  if (!consistent || !duplicatesWhere(mesh, ofFacet, threads, marked).empty())
   {
-    skin.duplicates = duplicatesWhere(mesh, 0, [](Index) { return true; });
+    skin.duplicates = duplicatesWhere(mesh, 0, threads, [](Index) { return true; });
   }
   if (closed || !consistent || !skin.duplicates.empty() || mesh.dimension() == Dimension::Surface)
   {

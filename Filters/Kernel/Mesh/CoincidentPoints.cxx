@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoincidentPoints.h"
 
+#include "CornerPoints.h"
+#include "tautline/Core/CountingSort.h"
+#include "tautline/Core/Random.h"
 #include "tautline/Core/UnionFind.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -13,20 +17,12 @@ namespace tautline
 {
 namespace
 {
-/// Scrambles the bits (the finaliser of SplitMix64).
-std::uint64_t scramble(std::uint64_t z)
-{
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
 std::uint64_t hashOf(const std::array<std::uint64_t, 3>& key)
 {
-  std::uint64_t hash = 0x9e3779b97f4a7c15u;
+  std::uint64_t hash = SplitMix::Increment;
   for (std::uint64_t part : key)
   {
-    hash = scramble(hash + part);
+    hash = SplitMix::hash(hash + part);
   }
   return hash;
 }
@@ -107,19 +103,10 @@ bool isFinite(const MeshView& view, Index point)
 }
 
 /// One flag per point: a finite corner of a supported cell.
-std::vector<char> usedPoints(const Mesh& mesh)
+std::vector<char> usedPoints(const Mesh& mesh, int threads)
 {
   const MeshView& view = mesh.view();
-  std::vector<char> used(view.numberOfPoints, 0);
-  for (const CellBlock& block : mesh.blocks())
-  {
-    const int nodes = topology(block.type).nodes;
-    for (Index i = 0; i < block.count; ++i)
-    {
-      const Index* node = view.connectivity + view.offsets[block.cell(i)];
-      std::for_each(node, node + nodes, [&used](Index point) { used[point] = 1; });
-    }
-  }
+  std::vector<char> used = cornerPoints(mesh, 0, threads);
   for (Index p = 0; mesh.nonFinitePoints() > 0 && p < view.numberOfPoints; ++p)
   {
     used[p] = used[p] && isFinite(view, p);
@@ -135,12 +122,48 @@ struct Places
   bool any = false;
 };
 
-Places findPlaces(const Mesh& mesh)
+/// Whether several of the used points are at one place. Each part takes the points whose hashes
+/// fall to it: points at one place fall to the same part.
+bool anyAtOnePlace(const MeshView& view, const std::vector<char>& used, Index count, int threads)
+{
+  constexpr int PartBit = 32; // of the hash: the table uses those below and above
+  const Index parts = numberOfParts(count, threads);
+  const auto keyOf = [&view](Index point) { return placeOf(view, point); };
+  std::atomic<bool> found{ false };
+  parallelFor(parts, 1, threads,
+    [&](Index part)
+    {
+      IdTable table(count / parts);
+      for (Index p = 0; p < view.numberOfPoints && !found; ++p)
+      {
+        pollInterruption(p);
+        if (!used[p])
+        {
+          continue;
+        }
+        const auto key = keyOf(p);
+        const std::uint64_t hash = hashOf(key);
+        if (static_cast<Index>((hash >> PartBit) % parts) == part &&
+          table.insert(p, key, keyOf) != p)
+        {
+          found = true;
+        }
+      }
+    });
+  return found;
+}
+
+Places findPlaces(const Mesh& mesh, int threads)
 {
   const MeshView& view = mesh.view();
-  const std::vector<char> used = usedPoints(mesh);
+  const std::vector<char> used = usedPoints(mesh, threads);
   Places places;
-  IdTable table(std::count(used.begin(), used.end(), 1));
+  const Index count = std::count(used.begin(), used.end(), 1);
+  if (numberOfParts(count, threads) > 1 && !anyAtOnePlace(view, used, count, threads))
+  {
+    return places;
+  }
+  IdTable table(count);
   const auto keyOf = [&view](Index point) { return placeOf(view, point); };
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {
@@ -350,9 +373,9 @@ private:
 }
 
 //------------------------------------------------------------------------------
-CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* reversed)
+CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* reversed, int threads)
 {
-  const Places places = findPlaces(mesh);
+  const Places places = findPlaces(mesh, threads);
   if (!places.any)
   {
     return {};

@@ -43,9 +43,10 @@ struct CoincidentPoints
  * @param reversed one flag per cell: it lists its points in the opposite order; may be null. On
  * which side of a facet a cell is follows from the order of its points, so that inverted elements
  * are on the side of the valid ones.
+ * @param threads the most that are used; 0 means all
  */
 TAUTLINE_KERNEL_EXPORT CoincidentPoints findCoincidentPoints(
-  const Mesh& mesh, const unsigned char* reversed = nullptr);
+  const Mesh& mesh, const unsigned char* reversed = nullptr, int threads = 1);
 
 /**
  * @brief The number of points of the boundary that are near another one but not at its place:

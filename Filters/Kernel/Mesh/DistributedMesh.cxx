@@ -2,6 +2,7 @@
 #include "DistributedMesh.h"
 
 #include "TakenCells.h"
+#include "tautline/Core/Random.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +19,6 @@ namespace
 constexpr int samplesPerRank = 64;        ///< keys that the ranges of the numbering are chosen from
 constexpr int mortonBits = 21;            ///< per direction
 constexpr double mortonCells = 2097151.0; ///< 2 ^ mortonBits - 1
-
-/// A bijection of 64 bits without visible order (the finalizer of splitmix64).
-std::uint64_t mixed(std::uint64_t x)
-{
-  x += 0x9E3779B97F4A7C15u;
-  x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;
-  x = (x ^ (x >> 27)) * 0x94D049BB133111EBu;
-  return x ^ (x >> 31);
-}
 
 /// Spreads the lower 21 bits so that two zeros follow each.
 std::uint64_t spreadBits(std::uint64_t x)
@@ -45,14 +37,6 @@ bool takesPart(const MeshView& view, Index cell)
   return cornerType(view.cellTypes[cell]) != CellType::Unsupported;
 }
 
-/// A point as it is sent to the ranks that need it.
-struct SentPoint
-{
-  Index number;
-  double x[3];
-  Index owner;
-};
-
 struct IdAndPlace
 {
   Index id;
@@ -65,7 +49,7 @@ void checkIds(RankGroup& group, const std::vector<IdAndPlace>& own)
   std::vector<std::vector<IdAndPlace>> sent(group.size());
   for (const IdAndPlace& item : own)
   {
-    sent[mixed(static_cast<std::uint64_t>(item.id)) % sent.size()].push_back(item);
+    sent[SplitMix::mixed(static_cast<std::uint64_t>(item.id)) % sent.size()].push_back(item);
   }
   std::vector<IdAndPlace> all;
   for (const auto& list : group.exchangeItems(sent))
@@ -102,6 +86,14 @@ struct DistributedMesh::PointKey
   auto place() const { return std::tie(this->curve, this->x[0], this->x[1], this->x[2], this->id); }
   /// By the place alone: keys of one point are equal.
   bool operator<(const PointKey& other) const { return this->place() < other.place(); }
+};
+
+/// A point as it is sent to the ranks that need it.
+struct DistributedMesh::SentPoint
+{
+  Index number;
+  double x[3];
+  Index owner;
 };
 
 //------------------------------------------------------------------------------
@@ -278,12 +270,6 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
 }
 
 //------------------------------------------------------------------------------
-std::uint64_t DistributedMesh::ownerHash(Index number, int rank)
-{
-  return mixed(mixed(static_cast<std::uint64_t>(number)) + static_cast<std::uint64_t>(rank));
-}
-
-//------------------------------------------------------------------------------
 /// The numbers of the points, and the owners: of the ranks with a cell there one by a hash.
 void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<char>& used)
 {
@@ -351,7 +337,45 @@ std::vector<std::vector<Item>> exchangeOthers(RankGroup& group, std::vector<std:
 }
 
 //------------------------------------------------------------------------------
-void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>& used)
+/// The local points, and where each number is among them.
+void DistributedMesh::takePoints(
+  const MeshPiece& piece, const std::vector<char>& used, std::vector<SentPoint> points)
+{
+  std::sort(points.begin(), points.end(),
+    [](const SentPoint& a, const SentPoint& b) { return a.number < b.number; });
+  for (const SentPoint& point : points)
+  {
+    if (this->Numbers.empty() || this->Numbers.back() != point.number)
+    {
+      this->Numbers.push_back(point.number);
+      this->Owners.push_back(static_cast<int>(point.owner));
+      this->Points.insert(this->Points.end(), point.x, point.x + 3);
+    }
+  }
+  this->Group->together(
+    [this]
+    {
+      this->Intervals =
+        NumberIntervals(this->localPoints(), [this](Index p) { return this->Numbers[p]; });
+    });
+  this->LocalOfPiece.assign(piece.view.numberOfPoints, -1);
+  for (Index p = 0; p < piece.view.numberOfPoints; ++p)
+  {
+    this->LocalOfPiece[p] = used[p] ? this->local(this->PieceNumbers[p]) : -1;
+  }
+}
+
+//------------------------------------------------------------------------------
+Index DistributedMesh::local(Index number) const
+{
+  const Index at = this->Intervals.find(number, [this](Index p) { return this->Numbers[p]; });
+  return at < this->localPoints() && this->Numbers[at] == number ? at : -1;
+}
+
+//------------------------------------------------------------------------------
+/// The cells that have a point of this rank, from each rank: type, number of points, local points.
+std::vector<std::vector<Index>> DistributedMesh::exchangeCells(
+  const MeshPiece& piece, const std::vector<char>& used)
 {
   RankGroup& group = *this->Group;
   const MeshView& view = piece.view;
@@ -359,6 +383,10 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
   std::vector<std::vector<SentPoint>> sentPoints(group.size());
   std::vector<std::vector<Index>> needed(group.size()); // points of the piece, per rank
   std::vector<int> ranks;
+  if (view.numberOfCells > 0) // most cells stay
+  {
+    sentCells[group.rank()].reserve(2 * view.numberOfCells + view.offsets[view.numberOfCells]);
+  }
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     if ((piece.ghosts && piece.ghosts[cell]) || !takesPart(view, cell))
@@ -411,12 +439,30 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
     points.insert(points.end(), list.begin(), list.end());
   }
   std::vector<std::vector<Index>>().swap(needed);
-  auto lists = exchangeOthers(group, std::move(sentCells));
+  this->takePoints(piece, used, std::move(points));
+  std::vector<std::vector<Index>> lists = exchangeOthers(group, std::move(sentCells));
+  for (std::vector<Index>& list : lists)
+  {
+    for (auto cell = list.begin(); cell != list.end();)
+    {
+      const auto first = cell + 2, last = first + static_cast<std::ptrdiff_t>(cell[1]);
+      std::transform(first, last, first, [this](Index number) { return this->local(number); });
+      cell = last;
+    }
+  }
+  return lists;
+}
+
+//------------------------------------------------------------------------------
+void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>& used)
+{
+  RankGroup& group = *this->Group;
+  std::vector<std::vector<Index>> lists = this->exchangeCells(piece, used);
   std::unique_ptr<TakenCells> taken;
   group.together(
     [&]
     {
-      taken = std::make_unique<TakenCells>(std::move(lists));
+      taken = std::make_unique<TakenCells>(std::move(lists), this->localPoints());
       const std::vector<TakenCells::Cell>& cells = taken->cells();
       for (std::size_t i = 1; i < cells.size(); ++i)
       {
@@ -431,27 +477,6 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
       }
     });
 
-  std::sort(points.begin(), points.end(),
-    [](const SentPoint& a, const SentPoint& b) { return a.number < b.number; });
-  for (const SentPoint& point : points)
-  {
-    if (this->Numbers.empty() || this->Numbers.back() != point.number)
-    {
-      this->Numbers.push_back(point.number);
-      this->Owners.push_back(static_cast<int>(point.owner));
-      this->Points.insert(this->Points.end(), point.x, point.x + 3);
-    }
-  }
-  const auto local = [&](Index number)
-  {
-    return static_cast<Index>(
-      std::lower_bound(this->Numbers.begin(), this->Numbers.end(), number) - this->Numbers.begin());
-  };
-  this->LocalOfPiece.assign(view.numberOfPoints, -1);
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    this->LocalOfPiece[p] = used[p] ? local(this->PieceNumbers[p]) : -1;
-  }
   this->Offsets.assign(1, 0);
   Index own = 0;
   std::size_t nodes = 0;
@@ -466,10 +491,9 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
   for (const TakenCells::Cell& cell : taken->cells())
   {
     this->CellTypes.push_back(static_cast<unsigned char>(taken->type(cell)));
-    std::transform(
-      taken->begin(cell), taken->end(cell), std::back_inserter(this->Connectivity), local);
+    this->Connectivity.insert(this->Connectivity.end(), taken->begin(cell), taken->end(cell));
     this->Offsets.push_back(static_cast<Index>(this->Connectivity.size()));
-    this->OwnedCells.push_back(this->owned(local(cell.least)));
+    this->OwnedCells.push_back(this->owned(cell.least));
     own += this->OwnedCells.back();
   }
   this->GlobalCells = group.sum(own);
@@ -502,189 +526,12 @@ void DistributedMesh::connect()
     Subset::Neighbour neighbour = { rank, {}, std::move(received[rank]) };
     for (const Index number : asked[rank])
     {
-      neighbour.sent.push_back(static_cast<std::int32_t>(
-        std::lower_bound(this->Numbers.begin(), this->Numbers.end(), number) -
-        this->Numbers.begin()));
+      neighbour.sent.push_back(static_cast<std::int32_t>(this->local(number)));
     }
     if (!neighbour.sent.empty() || !neighbour.received.empty())
     {
       this->Halo.push_back(std::move(neighbour));
     }
   }
-}
-
-//------------------------------------------------------------------------------
-Index DistributedMesh::haloPoints() const
-{
-  Index count = 0;
-  for (const Subset::Neighbour& neighbour : this->Halo)
-  {
-    count += static_cast<Index>(neighbour.received.size());
-  }
-  return count;
-}
-
-namespace
-{
-template <class Value>
-void exchangeValues(RankGroup& group,
-  const std::vector<DistributedMesh::Subset::Neighbour>& neighbours, Value* values, int components,
-  bool toOwners)
-{
-  std::vector<RankMessage> sent, received;
-  const auto size = static_cast<std::size_t>(components) * sizeof(Value);
-  const auto listOf = [&](const DistributedMesh::Subset::Neighbour& n, bool sends) -> const auto&
-  {
-    return sends != toOwners ? n.sent : n.received;
-  };
-  for (const auto& neighbour : neighbours)
-  {
-    const auto& out = listOf(neighbour, true);
-    const auto& in = listOf(neighbour, false);
-    if (!out.empty())
-    {
-      sent.push_back({ neighbour.rank, Bytes(size * out.size()) });
-      for (std::size_t i = 0; i < out.size(); ++i)
-      {
-        std::memcpy(sent.back().bytes.data() + i * size,
-          values + static_cast<std::size_t>(components) * out[i], size);
-      }
-    }
-    if (!in.empty())
-    {
-      received.push_back({ neighbour.rank, Bytes(size * in.size()) });
-    }
-  }
-  group.start(sent, received);
-  group.finish();
-  auto message = received.begin();
-  std::vector<Value> got(components);
-  for (const auto& neighbour : neighbours)
-  {
-    const auto& in = listOf(neighbour, false);
-    for (std::size_t i = 0; i < in.size(); ++i)
-    {
-      Value* to = values + static_cast<std::size_t>(components) * in[i];
-      std::memcpy(got.data(), message->bytes.data() + i * size, size);
-      for (int c = 0; c < components; ++c)
-      {
-        to[c] = toOwners && !(got[c] != Value()) ? to[c] : got[c];
-      }
-    }
-    message += !in.empty();
-  }
-}
-}
-
-//------------------------------------------------------------------------------
-void DistributedMesh::exchange(double* values, int components) const
-{
-  exchangeValues(*this->Group, this->Halo, values, components, false);
-}
-
-void DistributedMesh::exchange(unsigned char* flags) const
-{
-  exchangeValues(*this->Group, this->Halo, flags, 1, false);
-}
-
-void DistributedMesh::exchange(const Subset& subset, double* values, int components) const
-{
-  exchangeValues(*this->Group, subset.neighbours, values, components, false);
-}
-
-void DistributedMesh::either(unsigned char* flags) const
-{
-  exchangeValues(*this->Group, this->Halo, flags, 1, true);
-  this->exchange(flags);
-}
-
-//------------------------------------------------------------------------------
-DistributedMesh::Subset DistributedMesh::subset(const std::vector<unsigned char>& flags) const
-{
-  std::vector<unsigned char> agreed = flags;
-  this->exchange(agreed.data());
-  Subset subset;
-  for (const Subset::Neighbour& neighbour : this->Halo)
-  {
-    Subset::Neighbour part = { neighbour.rank, {}, {} };
-    const auto flagged = [&](std::int32_t p) { return agreed[p] != 0; };
-    std::copy_if(
-      neighbour.sent.begin(), neighbour.sent.end(), std::back_inserter(part.sent), flagged);
-    std::copy_if(neighbour.received.begin(), neighbour.received.end(),
-      std::back_inserter(part.received), flagged);
-    if (!part.sent.empty() || !part.received.empty())
-    {
-      subset.neighbours.push_back(std::move(part));
-    }
-  }
-  return subset;
-}
-
-//------------------------------------------------------------------------------
-std::vector<int> DistributedMesh::independentSets(const std::vector<unsigned char>& wanted) const
-{
-  std::vector<unsigned char> agreed = wanted;
-  this->exchange(agreed.data());
-  const Index n = this->localPoints();
-  // Neighbours of the own points, with a hash above theirs: they choose first.
-  const auto hashOf = [&](Index p) { return mixed(static_cast<std::uint64_t>(this->Numbers[p])); };
-  std::vector<std::vector<std::int32_t>> before(n);
-  for (Index cell = 0; cell < this->View.numberOfCells; ++cell)
-  {
-    for (Index i = this->Offsets[cell]; i < this->Offsets[cell + 1]; ++i)
-    {
-      const Index p = this->Connectivity[i];
-      for (Index k = this->Offsets[cell]; k < this->Offsets[cell + 1]; ++k)
-      {
-        const Index q = this->Connectivity[k];
-        if (p != q && agreed[p] && agreed[q] && this->owned(p) && hashOf(q) > hashOf(p))
-        {
-          before[p].push_back(static_cast<std::int32_t>(q));
-        }
-      }
-    }
-  }
-  std::vector<Index> left;
-  for (Index p = 0; p < n; ++p)
-  {
-    if (agreed[p] && this->owned(p))
-    {
-      left.push_back(p);
-      std::sort(before[p].begin(), before[p].end());
-      before[p].erase(std::unique(before[p].begin(), before[p].end()), before[p].end());
-    }
-  }
-  std::sort(left.begin(), left.end(), [&](Index a, Index b) { return hashOf(a) > hashOf(b); });
-  constexpr double none = -1;
-  std::vector<double> set(n, none);
-  std::vector<char> taken;
-  while (this->Group->any(!left.empty()))
-  {
-    std::vector<Index> later;
-    for (const Index p : left)
-    {
-      taken.assign(before[p].size() + 1, 0);
-      bool ready = true;
-      for (const std::int32_t q : before[p])
-      {
-        ready = ready && set[q] >= 0;
-        if (set[q] >= 0 && set[q] < static_cast<double>(taken.size()))
-        {
-          taken[static_cast<std::size_t>(set[q])] = 1;
-        }
-      }
-      if (ready)
-      {
-        set[p] = static_cast<double>(std::find(taken.begin(), taken.end(), 0) - taken.begin());
-      }
-      else
-      {
-        later.push_back(p);
-      }
-    }
-    left.swap(later);
-    this->exchange(set.data(), 1);
-  }
-  return { set.begin(), set.end() };
 }
 }

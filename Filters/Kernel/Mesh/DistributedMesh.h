@@ -7,6 +7,7 @@
 #define tautline_DistributedMesh_h
 
 #include "Mesh.h"
+#include "tautline/Core/NumberIntervals.h"
 #include "tautline/Core/RankGroup.h"
 
 #include <vector>
@@ -63,6 +64,8 @@ public:
   Index localPoints() const { return static_cast<Index>(this->Numbers.size()); }
   /// Per local point, in increasing order.
   const std::vector<Index>& numbers() const { return this->Numbers; }
+  /// The local point of a global number, or -1.
+  Index local(Index number) const;
   /// Per local point: the rank that owns it.
   const std::vector<int>& owners() const { return this->Owners; }
   /// Of the ranks with a cell at a point, the one with the least of these numbers owns it; of equal
@@ -108,11 +111,16 @@ public:
 
 private:
   struct PointKey;
+  struct SentPoint;
   void findBounds(const MeshPiece& piece, const std::vector<char>& used);
   std::vector<PointKey> makeKeys(const MeshPiece& piece, const std::vector<char>& used);
   void numberPoints(const MeshPiece& piece, const std::vector<char>& used);
   std::vector<PointKey> distribute(const std::vector<PointKey>& keys) const;
   void takeCells(const MeshPiece& piece, const std::vector<char>& used);
+  void takePoints(
+    const MeshPiece& piece, const std::vector<char>& used, std::vector<SentPoint> points);
+  std::vector<std::vector<Index>> exchangeCells(
+    const MeshPiece& piece, const std::vector<char>& used);
   void connect();
 
   RankGroup* Group;
@@ -121,6 +129,7 @@ private:
   std::vector<Index> PieceNumbers; ///< per point of the piece, -1 without a cell
   std::vector<int> PieceOwners;
   std::vector<Index> Numbers, LocalOfPiece;
+  NumberIntervals Intervals; ///< of the numbers
   std::vector<int> Owners;
   std::vector<double> Points;
   std::vector<unsigned char> CellTypes, OwnedCells;

@@ -3,6 +3,7 @@
 
 #include "tautline/Core/CountingSort.h"
 #include "tautline/Mesh/BoundaryPoints.h"
+#include "tautline/Mesh/CornerPoints.h"
 
 #include <algorithm>
 #include <cmath>
@@ -68,30 +69,18 @@ std::uint64_t blockPair(std::int32_t a, std::int32_t b)
 /// Even permutations of a simplex that bring each vertex to the front.
 constexpr int toFront3[4][4] = { { 0, 1, 2, 3 }, { 1, 0, 3, 2 }, { 2, 3, 0, 1 }, { 3, 2, 1, 0 } };
 constexpr int toFront2[3][3] = { { 0, 1, 2 }, { 1, 2, 0 }, { 2, 0, 1 } };
-}
 
-//------------------------------------------------------------------------------
-std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed)
+/// The points that may move: see the constructor of SimplexMesh.
+/// @param corners one flag per point: of a cell of the mesh's dimension
+std::vector<char> freePoints(
+  const Mesh& mesh, const unsigned char* fixed, const std::vector<char>& corners, int threads)
 {
   const MeshView& view = mesh.view();
-  std::vector<char> free(view.numberOfPoints, 0);
+  std::vector<char> free = corners;
   Index elements = 0;
   for (const CellBlock& block : mesh.blocks())
   {
-    const CellTopology& t = topology(block.type);
-    if (t.dimension != dimensionOf(mesh))
-    {
-      continue;
-    }
-    elements += block.count;
-    for (Index i = 0; i < block.count; ++i)
-    {
-      const Index* node = view.connectivity + view.offsets[block.cell(i)];
-      for (int k = 0; k < t.nodes; ++k)
-      {
-        free[node[k]] = 1;
-      }
-    }
+    elements += topology(block.type).dimension == dimensionOf(mesh) ? block.count : 0;
   }
   if (fixed)
   {
@@ -102,7 +91,7 @@ std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed)
   }
   else
   {
-    const std::vector<char> boundary = boundaryPoints(mesh);
+    const std::vector<char> boundary = boundaryPoints(mesh, threads);
     for (Index p = 0; p < view.numberOfPoints; ++p)
     {
       free[p] &= !boundary[p];
@@ -136,6 +125,7 @@ std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed)
   }
   return free;
 }
+}
 
 //------------------------------------------------------------------------------
 SimplexMesh::SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Targets* targets,
@@ -154,8 +144,8 @@ SimplexMesh::SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Tar
   {
     this->Frame = { mesh.frame()[0], mesh.frame()[1], mesh.normal() };
   }
-  const std::vector<char> free = freePoints(mesh, fixed);
-  this->number(mesh, free, frame);
+  const std::vector<char> corners = cornerPoints(mesh, this->Dim, threads);
+  this->number(mesh, corners, freePoints(mesh, fixed, corners, threads), frame, threads);
   std::vector<std::int32_t> vertexOf(mesh.view().numberOfPoints, -1);
   for (std::int32_t v = 0; v < this->vertices(); ++v)
   {
@@ -168,30 +158,17 @@ SimplexMesh::SimplexMesh(const Mesh& mesh, const unsigned char* fixed, const Tar
 }
 
 //------------------------------------------------------------------------------
-void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free, const SimplexFrame* frame)
+void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& corners,
+  const std::vector<char>& free, const SimplexFrame* frame, int threads)
 {
   const MeshView& view = mesh.view();
-  std::vector<char> used(view.numberOfPoints, 0);
-  for (const CellBlock& block : mesh.blocks())
-  {
-    const CellTopology& t = topology(block.type);
-    for (Index i = 0; t.dimension == this->Dim && i < block.count; ++i)
-    {
-      pollInterruption(i);
-      const Index* node = view.connectivity + view.offsets[block.cell(i)];
-      for (int k = 0; k < t.nodes; ++k)
-      {
-        used[node[k]] = 1;
-      }
-    }
-  }
   Vec3 low, high;
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-std::numeric_limits<double>::infinity());
   Index count = 0, numberOfFree = 0;
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {
-    if (used[p] && isFinite(view, p))
+    if (corners[p] && isFinite(view, p))
     {
       ++count;
       numberOfFree += free[p];
@@ -223,16 +200,26 @@ void SimplexMesh::number(const Mesh& mesh, const std::vector<char>& free, const 
   Index nextFree = 0, nextFixed = 0;
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {
-    if (used[p] && isFinite(view, p))
+    if (corners[p] && isFinite(view, p))
     {
-      std::uint64_t key = 0;
-      for (int c = 0; c < 3; ++c)
-      {
-        key |= spread(static_cast<std::uint64_t>(perLength * (view.points[3 * p + c] - low[c])))
-          << c;
-      }
-      (free[p] ? order[nextFree++] : rest[nextFixed++]) = { key, static_cast<std::int32_t>(p) };
+      (free[p] ? order[nextFree++] : rest[nextFixed++]).second = static_cast<std::int32_t>(p);
     }
+  }
+  for (auto* some : { &order, &rest })
+  {
+    forEachChunk(static_cast<Index>(some->size()), threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          auto& [key, point] = (*some)[i];
+          const double* x = view.points + 3 * static_cast<Index>(point);
+          for (int c = 0; c < 3; ++c)
+          {
+            key |= spread(static_cast<std::uint64_t>(perLength * (x[c] - low[c]))) << c;
+          }
+        }
+      });
   }
   radixSort(order);
   radixSort(rest);

@@ -119,7 +119,9 @@ public:
   void store(const double* coordinates, double* points, int threads) const;
 
 private:
-  void number(const Mesh& mesh, const std::vector<char>& free, const SimplexFrame* frame);
+  /// @param corners one flag per point: of a cell of the mesh's dimension
+  void number(const Mesh& mesh, const std::vector<char>& corners, const std::vector<char>& free,
+    const SimplexFrame* frame, int threads);
   void cut(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf, const Targets* targets,
     const SimplexFrame* frame, int threads);
   template <int Dim>
@@ -152,7 +154,5 @@ private:
   VertexBlocks Blocks;
 };
 
-/// The points optimization may move: see the constructor of SimplexMesh.
-std::vector<char> freePoints(const Mesh& mesh, const unsigned char* fixed);
 }
 #endif

@@ -61,7 +61,6 @@ public:
   CornerSimplices(const Mesh& mesh, const std::vector<std::int32_t>& vertexOf)
     : View(mesh.view())
     , VertexOf(vertexOf)
-    , Finite(mesh.nonFinitePoints() == 0)
   {
     for (const CellBlock& block : mesh.blocks())
     {
@@ -124,32 +123,15 @@ public:
   }
 
   /// Of the first edge of each 16th simplex, which is enough for a scale; 1 if there is none.
-  double meanLength(const std::vector<std::int32_t>& points) const
+  double meanLength(const std::vector<std::int32_t>& points, int threads) const
   {
     constexpr Index every = 16;
-    Index count = 0, sampled = 0;
-    double lengths = 0;
-    for (const Part& part : this->Parts)
+    Lengths lengths = this->firstEdges(every, points, threads);
+    if (lengths.count == 0)
     {
-      const CellTopology& t = *part.topology;
-      const Index simplices = part.block->count * t.samples;
-      // Simplices with points that are not finite do not count.
-      for (Index i = this->Finite ? (every - count % every) % every : 0; i < simplices;
-           i += this->Finite ? every : 1)
-      {
-        std::int32_t v[Dim + 1];
-        const bool found = this->find(t, part.block->cell(i / t.samples), i % t.samples, v);
-        if (found && (this->Finite || count++ % every == 0))
-        {
-          const double length =
-            norm(pointOf(this->View, points[v[1]]) - pointOf(this->View, points[v[0]]));
-          lengths += std::isfinite(length) ? length : 0.0;
-          ++sampled;
-        }
-      }
-      count += this->Finite ? simplices : 0;
+      lengths = this->firstEdges(1, points, threads); // those have points that are not finite
     }
-    return sampled > 0 ? lengths / static_cast<double>(sampled) : 1.0;
+    return lengths.count > 0 ? lengths.sum / static_cast<double>(lengths.count) : 1.0;
   }
 
 private:
@@ -159,9 +141,56 @@ private:
     const CellTopology* topology;
   };
 
+  struct Lengths
+  {
+    double sum = 0;
+    Index count = 0;
+  };
+
+  /// Of the simplices of finite points among each `every`-th.
+  Lengths firstEdges(Index every, const std::vector<std::int32_t>& points, int threads) const
+  {
+    const Index samples = (this->Simplices + every - 1) / every;
+    std::vector<Lengths> ofChunk(numberOfChunks(samples));
+    forEachChunk(samples, threads,
+      [&](Index chunk, Index begin, Index end)
+      {
+        for (Index sample = begin; sample < end; ++sample)
+        {
+          this->addFirstEdge(sample * every, points, ofChunk[chunk]);
+        }
+      });
+    Lengths all;
+    for (const Lengths& lengths : ofChunk)
+    {
+      all.sum += lengths.sum;
+      all.count += lengths.count;
+    }
+    return all;
+  }
+
+  /// Adds the length of the first edge of a simplex, by its place; not of one with points that are
+  /// not finite.
+  void addFirstEdge(Index place, const std::vector<std::int32_t>& points, Lengths& lengths) const
+  {
+    auto part = this->Parts.begin();
+    for (; place >= part->block->count * part->topology->samples; ++part)
+    {
+      place -= part->block->count * part->topology->samples;
+    }
+    const Index samples = part->topology->samples;
+    std::int32_t v[Dim + 1];
+    if (this->find(*part->topology, part->block->cell(place / samples), place % samples, v))
+    {
+      const double length =
+        norm(pointOf(this->View, points[v[1]]) - pointOf(this->View, points[v[0]]));
+      lengths.sum += std::isfinite(length) ? length : 0.0;
+      ++lengths.count;
+    }
+  }
+
   const MeshView& View;
   const std::vector<std::int32_t>& VertexOf;
-  bool Finite; ///< every simplex counts
   std::vector<Part> Parts;
   std::array<const CellTopology*, NumberOfCellTypes> OfType = {};
   Index Cells = 0, Simplices = 0;
@@ -221,7 +250,7 @@ void SimplexMesh::cutInto(const Mesh& mesh, const std::vector<std::int32_t>& ver
     [&](Index cell, const auto& use)
     { source.visit(cell, [&](Index, int, const std::int32_t* v) { use(first(v)); }); });
   this->Simplices = places.starts().back();
-  this->Scale = frame ? frame->scale : powerOfTwo(source.meanLength(this->Point));
+  this->Scale = frame ? frame->scale : powerOfTwo(source.meanLength(this->Point, threads));
 
   // The shapes of ideal corners are few; one for all simplices needs no index.
   std::vector<int> firstShape(NumberOfCellTypes, 0);

@@ -4,8 +4,10 @@
 #include "Check.h"
 #include "Pieces.h"
 
+#include "tautline/Core/CountingSort.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoincidentPoints.h"
+#include "tautline/Mesh/CornerPoints.h"
 
 #include <limits>
 #include <set>
@@ -385,6 +387,55 @@ void testDuplicates()
   folded.addCell(CellType::Triangle, std::vector<Index>{ 5, 6, extra });
   checkDuplicates(folded, {});
 }
+
+/// What several threads find in meshes large enough for them is what one finds.
+void testThreads()
+{
+  constexpr int several = 3;
+  const MeshData whole = block(CellType::Quadrilateral, 360);
+  const Mesh wholeMesh(whole.view());
+  TAUTLINE_CHECK(numberOfParts(whole.numberOfPoints(), several) > 1);
+  TAUTLINE_CHECK(!findCoincidentPoints(wholeMesh, nullptr, several).any());
+  MeshData pieces = inQuarters(whole, 180.0).mesh;
+  const CoincidentPoints one = findCoincidentPoints(Mesh(pieces.view()), nullptr, 1);
+  const CoincidentPoints more = findCoincidentPoints(Mesh(pieces.view()), nullptr, several);
+  TAUTLINE_CHECK_EQUAL(one.merged, 2 * 361 + 1);
+  TAUTLINE_CHECK_EQUAL(more.merged, one.merged);
+  TAUTLINE_CHECK(more.representative == one.representative);
+
+  // One cell more at an edge: whatever the numbers of the points, both pairs are found.
+  for (Index at : { 0, 1 })
+  {
+    MeshData one = whole;
+    const double x = static_cast<double>(at);
+    const Index first = one.addPoint({ x, 0, 0 });
+    one.addPoint({ x + 1, 0, 0 });
+    one.addPoint({ x, -1, 0 });
+    one.addPoint({ x + 1, -1, 0 });
+    one.addCell(
+      CellType::Quadrilateral, std::vector<Index>{ first + 2, first + 3, first + 1, first });
+    const Mesh mesh(one.view());
+    TAUTLINE_CHECK_EQUAL(findCoincidentPoints(mesh, nullptr, several).merged, 2);
+  }
+
+  // The corners of cells of one dimension only, in several parts.
+  const Index free = pieces.addPoint({ -1, -1, -1 });
+  const Index top = pieces.addPoint({ 0, 0, 1 });
+  pieces.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 2, top });
+  const Mesh mesh(pieces.view());
+  for (int threads : { 1, several })
+  {
+    for (int dimension : { 0, 2, 3 })
+    {
+      const std::vector<char> corners = cornerPoints(mesh, dimension, threads);
+      const Index expected =
+        dimension == 3 ? 4 : pieces.numberOfPoints() - (dimension == 2 ? 2 : 1);
+      TAUTLINE_CHECK_EQUAL(std::count(corners.begin(), corners.end(), 1), expected);
+      TAUTLINE_CHECK_EQUAL(int(corners[free]), 0);
+      TAUTLINE_CHECK_EQUAL(int(corners[top]), int(dimension != 2));
+    }
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -395,5 +446,6 @@ int TestCoincidentPoints(int, char*[])
   testApart();
   testSurfaces();
   testDuplicates();
+  testThreads();
   return exitCode();
 }

@@ -295,6 +295,35 @@ void testSum()
   TAUTLINE_CHECK_EQUAL(single.orderlessSum({}), 0.0);
   TAUTLINE_CHECK_EQUAL(single.orderlessSum({ 0x1p-1000, 0x1p-1000 }), 0x1p-999);
 }
+
+/// Numbers that are dense, far apart, in two clusters, below zero, and none: as std::lower_bound.
+void testIntervals()
+{
+  Random random(8);
+  constexpr Index many = 1000, far = Index(1) << 40;
+  for (const Index range : { Index(0), Index(1), many, 7 * many, far })
+  {
+    std::set<Index> different;
+    for (Index i = 0; i < std::min(many, range); ++i)
+    {
+      different.insert(random.integer(range) - range / 3);
+      different.insert(far + i); // the second cluster
+    }
+    const std::vector<Index> numbers(different.begin(), different.end());
+    const auto numberOf = [&numbers](Index place) { return numbers[place]; };
+    const NumberIntervals intervals(static_cast<Index>(numbers.size()), numberOf);
+    std::vector<Index> sought = { -far, 0, 2 * far };
+    for (const Index number : numbers)
+    {
+      sought.insert(sought.end(), { number - 1, number, number + 1 });
+    }
+    for (const Index number : sought)
+    {
+      TAUTLINE_CHECK_EQUAL(intervals.find(number, numberOf),
+        Index(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin()));
+    }
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -302,6 +331,7 @@ int TestDistributedMesh(int, char*[])
 {
   testSum();
   testTranspose();
+  testIntervals();
   testLayout(CellType::Tetrahedron);
   testLayout(CellType::Hexahedron);
   testErrors();

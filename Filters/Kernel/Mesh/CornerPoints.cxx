@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "CornerPoints.h"
+
+#include "tautline/Core/CountingSort.h"
+
+namespace tautline
+{
+namespace
+{
+/// Marks the corners of a part of each block's cells, the `part`-th of `parts`.
+void markPart(const Mesh& mesh, int dimension, Index part, Index parts, std::vector<char>& marks)
+{
+  const MeshView& view = mesh.view();
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    if (dimension != 0 && t.dimension != dimension)
+    {
+      continue;
+    }
+    const Index end = block.count * (part + 1) / parts;
+    for (Index i = block.count * part / parts; i < end; ++i)
+    {
+      pollInterruption(i);
+      const Index* node = view.connectivity + view.offsets[block.cell(i)];
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        marks[node[k]] = 1;
+      }
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<char> cornerPoints(const Mesh& mesh, int dimension, int threads)
+{
+  const Index points = mesh.view().numberOfPoints;
+  // Each part has marks of its own: no thread writes what another one does.
+  std::vector<std::vector<char>> marks(numberOfParts(mesh.view().numberOfCells, threads));
+  const auto parts = static_cast<Index>(marks.size());
+  parallelFor(parts, 1, threads,
+    [&](Index part)
+    {
+      marks[part].assign(points, 0);
+      markPart(mesh, dimension, part, parts, marks[part]);
+    });
+  for (std::size_t part = 1; part < marks.size(); ++part)
+  {
+    std::transform(marks[0].begin(), marks[0].end(), marks[part].begin(), marks[0].begin(),
+      [](char a, char b) { return static_cast<char>(a | b); });
+  }
+  return std::move(marks[0]);
+}
+}
