@@ -13,6 +13,7 @@
 
 #include <sys/resource.h>
 #include <unistd.h>
+#include <utility>
 
 namespace tautline
 {
@@ -174,8 +175,25 @@ std::string memoryText(double bytes)
 }
 
 //------------------------------------------------------------------------------
+namespace
+{
+thread_local double allowedInTest = 0;
+}
+
+AllowedMemory::AllowedMemory(double bytes)
+  : Before(std::exchange(allowedInTest, bytes))
+{
+}
+
+AllowedMemory::~AllowedMemory()
+{
+  allowedInTest = this->Before;
+}
+
+//------------------------------------------------------------------------------
 void requireMemory(double bytes, const std::string& what, const std::string& remedy, double limit)
 {
+  limit = allowedInTest > 0 ? allowedInTest : limit;
   // So little that it is not worth looking up: without it, std::bad_alloc is thrown.
   constexpr double little = 16 * 1048576.0;
   if (bytes <= little && limit <= 0)

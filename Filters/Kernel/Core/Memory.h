@@ -46,6 +46,24 @@ public:
 TAUTLINE_KERNEL_EXPORT void requireMemory(
   double bytes, const std::string& what, const std::string& remedy, double limit = 0.0);
 
+/**
+ * @class tautline::AllowedMemory
+ * @brief While it exists, requireMemory() allows its thread so many bytes, whatever is available:
+ * for tests of what is done without memory.
+ */
+class TAUTLINE_KERNEL_EXPORT AllowedMemory
+{
+public:
+  /// @param bytes above 0
+  explicit AllowedMemory(double bytes);
+  ~AllowedMemory();
+  AllowedMemory(const AllowedMemory&) = delete;
+  AllowedMemory& operator=(const AllowedMemory&) = delete;
+
+private:
+  double Before; ///< 0: all that is available
+};
+
 /// Makes allocations of this process fail when it has taken so many more bytes.
 TAUTLINE_KERNEL_EXPORT void limitMemory(double more);
 
