@@ -71,17 +71,25 @@ Fault faultOf(const Objective& objective)
 }
 
 //------------------------------------------------------------------------------
-ObjectiveSumState::ObjectiveSumState(const Mesh& mesh, const Objective& given, int threads)
+void throwNoElements(const MetricInfo& info, bool defined)
+{
+  throw Error(defined ? "The weights of all elements are 0: nothing is left to minimize."
+                      : "The metric \"" + std::string(info.label) +
+        "\" is not defined on any cell of the mesh. Choose another metric, or convert the cells.");
+}
+
+//------------------------------------------------------------------------------
+ObjectiveSumState::ObjectiveSumState(
+  const Mesh& mesh, const Objective& given, int threads, bool part)
   : objective(resolved(given, threads))
   , elements(mesh, objective.metric, objective.evaluation)
 {
   const MetricInfo& info = metricInfo(this->objective.metric);
   checkTemplate(this->objective);
   requireDerivatives(info);
-  if (this->elements.empty())
+  if (this->elements.empty() && !part)
   {
-    throw Error("The metric \"" + std::string(info.label) +
-      "\" is not defined on any cell of the mesh. Choose another metric, or convert the cells.");
+    throwNoElements(info, false);
   }
   const double* weights = this->objective.elementWeights;
   double total = 0;
@@ -102,9 +110,9 @@ ObjectiveSumState::ObjectiveSumState(const Mesh& mesh, const Objective& given, i
     }
     total += sum;
   }
-  if (!(total > 0))
+  if (!(total > 0) && !part)
   {
-    throw Error("The weights of all elements are 0: nothing is left to minimize.");
+    throwNoElements(info, true);
   }
   this->function = { this->objective.objectiveTemplate, this->objective.power,
     info.direction == Direction::LargerIsBetter ? -1.0 : 1.0, faultOf(this->objective), weights,
@@ -224,8 +232,8 @@ void ObjectiveSumState::findTerms(double scale, OrderlessSums* gradient, double*
 }
 
 //------------------------------------------------------------------------------
-ObjectiveSum::ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads)
-  : Impl(std::make_unique<ObjectiveSumState>(mesh, objective, threads))
+ObjectiveSum::ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads, bool part)
+  : Impl(std::make_unique<ObjectiveSumState>(mesh, objective, threads, part))
 {
 }
 

@@ -30,8 +30,9 @@ public:
    * @param mesh must outlive the sum. The coordinates in its view's array may change between calls;
    * the dimension and the plane remain those found when the mesh was made.
    * @param threads 0: that of objective.evaluation
+   * @param part the mesh is a part of another, which has elements of weight; this one need not
    */
-  ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads = 0);
+  ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads = 0, bool part = false);
   ~ObjectiveSum();
   ObjectiveSum(ObjectiveSum&&) noexcept;
   ObjectiveSum& operator=(ObjectiveSum&&) noexcept;

@@ -13,6 +13,10 @@
 
 namespace tautline
 {
+/// Throws the Error of an objective without an element of weight. @param defined whether its metric
+/// is defined on any element
+[[noreturn]] void throwNoElements(const MetricInfo& info, bool defined);
+
 /// An objective, the elements it is summed over, and its function of one element.
 struct ObjectiveSumState
 {
@@ -20,7 +24,7 @@ struct ObjectiveSumState
   ElementSum elements;
   ElementFunction function;
 
-  ObjectiveSumState(const Mesh& mesh, const Objective& objective, int threads);
+  ObjectiveSumState(const Mesh& mesh, const Objective& objective, int threads, bool part);
   template <bool WithGradient>
   double run(double scale, double* gradient) const;
   /**

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Steps of all vertices of a mesh on several ranks at once, and when Automatic takes them; see
-// Optimize.cxx for the same on one process.
+// Steps of all vertices of a mesh on several ranks at once; see Optimize.cxx for the same on one
+// process, and AutomaticMethod.h for when they are taken.
 #include "GlobalFunctionOnRanks.h"
 #include "HarmonicStart.h"
 #include "OptimizationOnRanks.h"
-#include "tautline/Core/Memory.h"
 
 namespace tautline
 {
@@ -16,39 +15,6 @@ const RankRows& OptimizationOnRanks::rows()
     this->Rows = std::make_unique<RankRows>(this->TheMesh, this->Free);
   }
   return *this->Rows;
-}
-
-//------------------------------------------------------------------------------
-/// Moves the points to convergence, by the optimizer wanted.
-void OptimizationOnRanks::move(const IterationRecord& first, bool& repaired)
-{
-  const Optimizer optimizer = this->Options.optimizer;
-  if (isGlobal(optimizer))
-  {
-    this->Result.reason = this->minimizeAll(optimizer);
-    return;
-  }
-  const bool onlyLocal = isLocal(optimizer) || this->Group.any(this->Options.limits != nullptr);
-  const bool mayGoOver = !onlyLocal && mayUseNewton(this->Options);
-  const std::vector<double> start = mayGoOver ? this->Points : std::vector<double>();
-  Slowness slow = Slowness::None;
-  bool failed = false;
-  if (mayGoOver && this->startsWithNewton(first))
-  {
-    slow = Slowness::Costly;
-  }
-  else
-  {
-    this->Result.reason = this->sweep(mayGoOver ? &slow : nullptr, failed, repaired);
-  }
-  if (failed && !onlyLocal)
-  {
-    this->Result.reason = this->minimizeAll(Optimizer::LimitedMemoryBFGS);
-  }
-  else if (slow != Slowness::None)
-  {
-    this->useNewton(slow, start, failed, repaired);
-  }
 }
 
 //------------------------------------------------------------------------------
@@ -112,8 +78,7 @@ StopReason OptimizationOnRanks::minimizeAll(Optimizer method)
 }
 
 //------------------------------------------------------------------------------
-/// Whether Newton's method costs less than the sweeps that would tell how they converge.
-bool OptimizationOnRanks::startsWithNewton(const IterationRecord& first)
+bool OptimizationOnRanks::hasMostlyCorners() const
 {
   Index simplices = 0, others = 0;
   const MeshView& view = this->TheMesh.view();
@@ -125,79 +90,28 @@ bool OptimizationOnRanks::startsWithNewton(const IterationRecord& first)
       ++(t.samples > 1 ? others : simplices);
     }
   }
-  const bool most = this->Group.sum(others) > this->Group.sum(simplices);
+  return this->Group.sum(others) > this->Group.sum(simplices);
+}
+
+//------------------------------------------------------------------------------
+bool OptimizationOnRanks::hasConvexPart()
+{
   const bool convex = !this->Problem || HessianMatrix::hasConvexPart(this->Problem->resolved()[0]);
-  return most && first.inverted == 0 && !this->Group.any(!convex);
+  return !this->Group.any(!convex);
 }
 
 //------------------------------------------------------------------------------
-/// Starts at the harmonic map of the input where that helps; see Optimize.cxx.
-void OptimizationOnRanks::takeHarmonicStart(const std::vector<double>& start)
+bool OptimizationOnRanks::slidesOrHasTargets() const
 {
-  const IterationRecord& first = this->Result.history.front();
-  if (this->Group.any(this->Options.slidePlanes || this->Options.slideLines) ||
-    this->Options.objectives[0].metric != Metric::InverseMeanRatio || this->outOfTime() ||
-    first.mean[0] < enoughForHarmonicStart)
-  {
-    return;
-  }
-  std::vector<double> harmonic = start;
-  if (!harmonicPointsOnRanks(
-        this->TheMesh, this->rows(), this->Problem.get(), this->Options.threads, harmonic))
-  {
-    return;
-  }
-  this->load(harmonic);
-  const IterationRecord record = this->record(0);
-  if (record.inverted > 0 || !(record.objective < first.objective))
-  {
-    this->load(start);
-  }
+  const OptimizeOptions& options = this->Options;
+  return this->Group.any(
+    options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets);
 }
 
 //------------------------------------------------------------------------------
-/// Newton's method where sweeps cost too much or converge too slowly; see Optimize.cxx.
-void OptimizationOnRanks::useNewton(
-  Slowness slow, const std::vector<double>& start, bool& failed, bool& repaired)
+bool OptimizationOnRanks::findHarmonicPoints(std::vector<double>& points)
 {
-  this->store();
-  const std::vector<double> swept = this->Points;
-  const double reached = this->Result.history.back().objective;
-  bool fits = true;
-  try
-  {
-    if (slow != Slowness::Near)
-    {
-      this->load(start);
-      this->takeHarmonicStart(start);
-    }
-    this->Result.reason = this->minimizeAll(Optimizer::NewtonConjugateGradient);
-  }
-  catch (const MemoryError&) // on all ranks
-  {
-    fits = false;
-  }
-  if (!fits)
-  {
-    this->load(swept);
-    this->Result.reason = this->sweep(nullptr, failed, repaired);
-    return;
-  }
-  std::vector<IterationRecord>& history = this->Result.history;
-  const IterationRecord found = this->record(history.back().iteration);
-  if (found.objective < history.back().objective)
-  {
-    history.back() = found;
-  }
-  if (!(found.objective < reached))
-  {
-    this->load(swept);
-    history.back() = this->record(history.back().iteration);
-    const bool stuck = slow == Slowness::Costly && this->Result.reason == StopReason::NoProgress;
-    if (stuck || (slow == Slowness::Near && this->Result.reason != StopReason::Aborted))
-    {
-      this->Result.reason = this->sweep(nullptr, failed, repaired);
-    }
-  }
+  return harmonicPointsOnRanks(
+    this->TheMesh, this->rows(), this->Problem.get(), this->Options.threads, points);
 }
 }

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HarmonicStart.h"
 
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/VectorAlgebra.h"
 #include "tautline/Objectives/MultigridOnRanks.h"
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <utility>
 
 namespace tautline
@@ -193,15 +195,27 @@ bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
 {
   Laplacian a;
   Index count = 0;
+  bool fits = true;
   mesh.group().together(
     [&]
     {
-      if (problem)
+      try
       {
-        count = rows.rows();
-        a = assemble(*problem, rows.rowOfPoint(), count, points);
+        if (problem)
+        {
+          count = rows.rows();
+          a = assemble(*problem, rows.rowOfPoint(), count, points);
+        }
+      }
+      catch (const std::bad_alloc&)
+      {
+        fits = false;
       }
     });
+  if (mesh.group().any(!fits))
+  {
+    throw MemoryError("The harmonic map does not fit into memory.");
+  }
   std::vector<double> all(static_cast<std::size_t>(size * rows.rows())), found(all.size());
   for (Index row = 0; row < rows.rows(); ++row)
   {

@@ -6,9 +6,9 @@
 #ifndef tautline_OptimizationOnRanks_h
 #define tautline_OptimizationOnRanks_h
 
+#include "AutomaticMethod.h"
 #include "OptimizationProblem.h"
 #include "Optimize.h"
-#include "SweepControl.h"
 #include "tautline/Mesh/DistributedMesh.h"
 #include "tautline/Objectives/RankRows.h"
 
@@ -35,7 +35,7 @@ inline Mesh movedMesh(
  * @class tautline::OptimizationOnRanks
  * @brief The state of a run: the local problem, and sums over the whole mesh.
  */
-class OptimizationOnRanks
+class OptimizationOnRanks : private OptimizationSteps
 {
 public:
   OptimizationOnRanks(DistributedMesh& mesh, bool mirrored, const OptimizeOptions& options);
@@ -46,24 +46,26 @@ private:
   void untangle();
   bool stage();
   void makeProblem();
-  void move(const IterationRecord& first, bool& repaired);
-  StopReason sweep(Slowness* slow, bool& failed, bool& repaired);
+  StopReason sweep(Slowness* slow, bool& failed, bool& repaired) override;
   // All vertices at once: GlobalOnRanks.cxx.
   const RankRows& rows();
-  StopReason minimizeAll(Optimizer method);
-  bool startsWithNewton(const IterationRecord& first);
-  void takeHarmonicStart(const std::vector<double>& start);
-  void useNewton(Slowness slow, const std::vector<double>& start, bool& failed, bool& repaired);
-  IterationRecord record(int iteration);
+  StopReason minimizeAll(Optimizer method) override;
+  bool hasMostlyCorners() const override;
+  bool hasConvexPart() override;
+  bool slidesOrHasTargets() const override;
+  bool findHarmonicPoints(std::vector<double>& points) override;
+  IterationRecord record(int iteration) override;
   void addObjective(
     std::size_t i, const std::vector<signed char>& validity, IterationRecord& record);
   bool report(const IterationRecord& record);
-  bool outOfTime() const
+  bool outOfTime() const override
   {
     return this->Group.any(this->Clock.reached(this->Options.stopping.maximumSeconds));
   }
-  void store();
-  void load(const std::vector<double>& points);
+  void checkWeights(const std::vector<unsigned char>& closed);
+  const std::vector<double>& stored() const override { return this->Points; }
+  void store() override;
+  void restart(const std::vector<double>& points) override;
   Index restoreWorst();
   void keepInput(const IterationRecord& first);
   double judge(const std::vector<double>& points, std::vector<double>& values,

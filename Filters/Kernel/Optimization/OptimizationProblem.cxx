@@ -24,6 +24,7 @@ bool isElement(const Mesh& mesh, CellType type)
 OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options,
   std::vector<double>& points, const Stopwatch& clock, const SimplexFrame* frame)
   : TheMesh(mesh)
+  , Part(frame != nullptr)
   , Options(options)
   , Points(points)
   , Clock(clock)
@@ -351,7 +352,7 @@ const ObjectiveSum& OptimizationProblem::sum(std::size_t objective)
   if (!this->Sums[objective])
   {
     this->Sums[objective] = std::make_unique<ObjectiveSum>(
-      *this->Moving, this->Resolved[objective], this->Options.threads);
+      *this->Moving, this->Resolved[objective], this->Options.threads, this->Part);
   }
   return *this->Sums[objective];
 }

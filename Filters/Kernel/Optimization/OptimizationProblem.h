@@ -91,6 +91,7 @@ private:
   void summarizeCells(IterationRecord& record);
 
   const Mesh& TheMesh;
+  bool Part; ///< of a mesh on several ranks
   OptimizeOptions Options;
   std::vector<double>& Points;
   std::unique_ptr<Mesh> Moving;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Optimize.h"
 
+#include "AutomaticMethod.h"
 #include "GlobalFunction.h"
 #include "HarmonicStart.h"
 #include "tautline/Core/Memory.h"
@@ -9,12 +10,12 @@
 #include "Minimize.h"
 #include "OptionChecks.h"
 #include "QualityGuard.h"
-#include "SweepControl.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <type_traits>
 
 namespace tautline
 {
@@ -207,104 +208,83 @@ Index countInvalid(const std::vector<signed char>& validity)
 }
 
 //------------------------------------------------------------------------------
-/**
- * @brief Starts at the harmonic map of the input if elements are free of targets there, valid, and
- * the objective is smaller. It does not depend on how the input is stretched, and is often close to
- * the minimum.
- */
-void takeHarmonicStart(
-  OptimizationProblem& problem, const std::vector<double>& start, const OptimizeResult& result)
+/// The steps of a stage on one process.
+class StepsOfProblem : public OptimizationSteps
 {
-  const OptimizeOptions& options = problem.options();
-  if (options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets ||
-    options.objectives[0].metric != Metric::InverseMeanRatio || problem.outOfTime() ||
-    result.history.front().mean[0] < enoughForHarmonicStart)
+public:
+  StepsOfProblem(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result)
+    : Problem(problem)
+    , Watch(watch)
+    , Result(result)
   {
-    return;
   }
-  const std::vector<double> harmonic = harmonicPoints(problem, start);
-  if (harmonic.empty())
-  {
-    return;
-  }
-  problem.restart(harmonic);
-  const IterationRecord record = problem.record(0);
-  if (record.inverted > 0 || !(record.objective < result.history.front().objective))
-  {
-    problem.restart(start);
-  }
-}
 
-/**
- * @brief Whether Newton's method costs less than the sweeps that would tell how they converge: for
- * quadrilaterals, hexahedra and wedges, whose patches have no closed form.
- */
-bool startsWithNewton(OptimizationProblem& problem, const IterationRecord& first)
-{
-  const Mesh& mesh = problem.moving();
-  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
-  Index simplices = 0, others = 0;
-  for (const CellBlock& block : mesh.blocks())
+  StopReason sweep(Slowness* slow, bool& failed, bool& repaired) override
   {
-    const CellTopology& t = topology(block.type);
-    (t.samples > 1 ? others : simplices) += t.dimension == dimension ? block.count : 0;
+    return optimizeLocally(this->Problem, this->Watch, this->Result, failed, repaired, slow);
   }
-  return others > simplices && first.inverted == 0 && HessianMatrix::hasConvexPart(problem.sum(0));
-}
 
-/**
- * @brief Newton's method where sweeps cost too much or converge too slowly: from the start, or near
- * the minimum from where they are. If its matrix does not fit into memory the sweeps go on; if it
- * does not get as far as they did, their points are kept.
- */
-void useNewton(OptimizationProblem& problem, const StoppingTest& watch, Slowness slow,
-  const std::vector<double>& start, OptimizeResult& result, bool& failed, bool& repaired)
-{
-  // Sweeps smooth what is rough and leave a start that is often further for Newton's method.
-  problem.store();
-  const std::vector<double> swept = result.points;
-  const double reached = result.history.back().objective;
-  bool fits = true;
-  try
+  StopReason minimizeAll(Optimizer method) override
   {
-    if (slow != Slowness::Near)
+    return this->inMemory(
+      [&] { return optimizeGlobally(this->Problem, this->Watch, method, this->Result); });
+  }
+
+  bool hasMostlyCorners() const override
+  {
+    const Mesh& mesh = this->Problem.moving();
+    const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+    Index simplices = 0, others = 0;
+    for (const CellBlock& block : mesh.blocks())
     {
-      problem.restart(start);
-      takeHarmonicStart(problem, start, result);
+      const CellTopology& t = topology(block.type);
+      (t.samples > 1 ? others : simplices) += t.dimension == dimension ? block.count : 0;
     }
-    result.reason = optimizeGlobally(problem, watch, Optimizer::NewtonConjugateGradient, result);
+    return others > simplices;
   }
-  catch (const MemoryError&)
+
+  bool hasConvexPart() override { return HessianMatrix::hasConvexPart(this->Problem.sum(0)); }
+  bool slidesOrHasTargets() const override
   {
-    fits = false;
+    const OptimizeOptions& options = this->Problem.options();
+    return options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets;
   }
-  catch (const std::bad_alloc&)
+  bool outOfTime() const override { return this->Problem.outOfTime(); }
+
+  const std::vector<double>& stored() const override { return this->Result.points; }
+  void store() override { this->Problem.store(); }
+  void restart(const std::vector<double>& points) override { this->Problem.restart(points); }
+  bool findHarmonicPoints(std::vector<double>& points) override
   {
-    fits = false;
+    points = this->inMemory([&] { return harmonicPoints(this->Problem, points); });
+    return !points.empty();
   }
-  if (!fits)
+  IterationRecord record(int iteration) override { return this->Problem.record(iteration); }
+
+private:
+  /// What work() returns. @throws MemoryError if it does not fit, so that the sweeps go on, unless
+  /// the user has chosen a global optimizer
+  template <class Work>
+  std::invoke_result_t<Work> inMemory(const Work& work) const
   {
-    problem.restart(swept);
-    result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);
-    return;
-  }
-  // Where the harmonic map is the minimum, no iteration is recorded.
-  const IterationRecord found = problem.record(result.history.back().iteration);
-  if (found.objective < result.history.back().objective)
-  {
-    result.history.back() = found;
-  }
-  if (!(found.objective < reached))
-  {
-    problem.restart(swept);
-    result.history.back() = problem.record(result.history.back().iteration);
-    const bool stuck = slow == Slowness::Costly && result.reason == StopReason::NoProgress;
-    if (stuck || (slow == Slowness::Near && result.reason != StopReason::Aborted))
+    try
     {
-      result.reason = optimizeLocally(problem, watch, result, failed, repaired, nullptr);
+      return work();
+    }
+    catch (const std::bad_alloc&)
+    {
+      if (isGlobal(this->Problem.options().optimizer))
+      {
+        throw;
+      }
+      throw MemoryError("The matrix does not fit into memory.");
     }
   }
-}
+
+  OptimizationProblem& Problem;
+  const StoppingTest& Watch;
+  OptimizeResult& Result; ///< whose points are those of the problem
+};
 
 /// Improves the worst element as far as wanted, and at least to that of the input. Stores the
 /// points and measures the elements there.
@@ -405,36 +385,10 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
     result.reason = StopReason::NoFreeVertices;
     return false;
   }
-  bool failed = false, repaired = false;
-  if (isGlobal(options.optimizer))
-  {
-    result.reason = optimizeGlobally(problem, watch, options.optimizer, result);
-  }
-  else
-  {
-    const bool onlyLocal = isLocal(options.optimizer) || options.limits || options.slideSurface ||
-      options.model || mesh.dimension() == Dimension::Surface;
-    Slowness slow = Slowness::None;
-    const bool mayGoOver = !onlyLocal && mayUseNewton(options);
-    const std::vector<double> start = mayGoOver ? result.points : std::vector<double>();
-    if (mayGoOver && startsWithNewton(problem, first))
-    {
-      slow = Slowness::Costly;
-    }
-    else
-    {
-      result.reason =
-        optimizeLocally(problem, watch, result, failed, repaired, mayGoOver ? &slow : nullptr);
-    }
-    if (failed && !onlyLocal)
-    {
-      result.reason = optimizeGlobally(problem, watch, Optimizer::LimitedMemoryBFGS, result);
-    }
-    else if (slow != Slowness::None)
-    {
-      useNewton(problem, watch, slow, start, result, failed, repaired);
-    }
-  }
+  const bool onlyLocal = options.limits || options.slideSurface || options.model ||
+    mesh.dimension() == Dimension::Surface;
+  StepsOfProblem steps(problem, watch, result);
+  const bool repaired = movePoints(steps, options, onlyLocal, first, result.history, result.reason);
   QualityGuard::State state;
   if (repaired)
   {

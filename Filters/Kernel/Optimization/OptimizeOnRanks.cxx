@@ -7,9 +7,11 @@
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/JacobianBounds.h"
+#include "tautline/Objectives/ObjectiveSumState.h"
 #include "tautline/Untangling/UntangleOnRanks.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numeric>
 
@@ -167,6 +169,7 @@ void OptimizationOnRanks::makeProblem()
       free[this->Problem->simplices().point(v)] = 1;
     }
   }
+  this->checkWeights(agreed);
   this->Sets = this->TheMesh.independentSets(free);
   Index count = 0;
   for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
@@ -174,6 +177,35 @@ void OptimizationOnRanks::makeProblem()
     count += free[p] && this->TheMesh.owned(p);
   }
   this->Result.freeVertices = this->Group.sum(count);
+}
+
+//------------------------------------------------------------------------------
+/// Throws Error if an objective that is not in closed form has no element of weight on any rank.
+void OptimizationOnRanks::checkWeights(const std::vector<unsigned char>& closed)
+{
+  const MeshView& view = this->TheMesh.view();
+  for (std::size_t i = 0; i < this->Options.objectives.size(); ++i)
+  {
+    if (closed[i])
+    {
+      continue;
+    }
+    const MetricInfo& info = metricInfo(this->Options.objectives[i].metric);
+    const double* weights = this->Problem ? this->Resolved[i].elementWeights : nullptr;
+    bool defined = false, counts = false;
+    for (Index cell = 0; this->Problem && cell < view.numberOfCells && !counts; ++cell)
+    {
+      const CellType type = cornerType(view.cellTypes[cell]);
+      const bool has = type != CellType::Unsupported && info.definedOn(type);
+      defined = defined || has;
+      counts = has && (!weights || weights[cell] > 0);
+    }
+    defined = this->Group.any(defined);
+    if (!this->Group.any(counts))
+    {
+      throwNoElements(info, defined);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -290,7 +322,7 @@ void OptimizationOnRanks::store()
   this->TheMesh.exchange(this->Points.data(), 3);
 }
 
-void OptimizationOnRanks::load(const std::vector<double>& points)
+void OptimizationOnRanks::restart(const std::vector<double>& points)
 {
   this->Group.together(
     [&]
@@ -331,7 +363,7 @@ StopReason OptimizationOnRanks::sweep(Slowness* slow, bool& failed, bool& repair
     const double size = std::abs(now.objective);
     if (!(std::isfinite(size) && lowered >= -roundingOfSums * size))
     {
-      this->load(best);
+      this->restart(best);
       failed = true;
       return StopReason::NoProgress;
     }
@@ -410,8 +442,9 @@ bool OptimizationOnRanks::stage()
     this->Result.reason = StopReason::NoFreeVertices;
     return false;
   }
-  bool repaired = false;
-  this->move(first, repaired);
+  const bool onlyLocal = this->Group.any(this->Options.limits != nullptr);
+  const bool repaired =
+    movePoints(*this, this->Options, onlyLocal, first, this->Result.history, this->Result.reason);
   if (!repaired)
   {
     this->Result.restored = this->restoreWorst();
@@ -499,45 +532,46 @@ OptimizeResult OptimizationOnRanks::run()
   return this->Result;
 }
 
-namespace
-{
-constexpr const char* gatherFirst =
-  " need the whole mesh on one process: gather it, in ParaView by Aggregate Dataset, with "
-  "Reproducible Order off; or ";
-}
-
 //------------------------------------------------------------------------------
-void requireLocalOptions(const OptimizeOptions& options)
+NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& options)
 {
   if (options.model || options.slideSurface)
   {
-    throw Error("Points that slide on curved surfaces, features and geometries" +
-      std::string(gatherFirst) + "choose the Boundary Fixed, Sliding or Free.");
+    return { "points that slide on curved surfaces, features and geometries",
+      "choose the Boundary Fixed, Sliding or Free" };
   }
   if (options.improveWorst > 0)
   {
-    throw Error("Steps that improve the worst element" + std::string(gatherFirst) +
-      "set Improve Worst to 0, or choose the preset Best Shape.");
+    return { "steps that improve the worst element",
+      "set Improve Worst to 0, or choose the preset Best Shape" };
   }
   bool untangles = false;
   for (const Objective& objective : options.objectives)
   {
     untangles = untangles || objective.metric == Metric::UntangleBeta;
-    if (objective.evaluation.targets || objective.elementWeights)
-    {
-      throw Error(
-        "Targets and weights of elements" + std::string(gatherFirst) + "optimize without them.");
-    }
     if (objective.objectiveTemplate == ObjectiveTemplate::PowerMean ||
       objective.objectiveTemplate == ObjectiveTemplate::Maximum)
     {
-      throw Error("The templates p-Mean and Maximum" + std::string(gatherFirst) + "choose a sum.");
+      return { "the templates p-Mean and Maximum", "choose a sum" };
     }
   }
   if (untangles && options.objectives.size() > 1 && options.rescaleUntangling)
   {
-    throw Error("Rescaled untangling objectives" + std::string(gatherFirst) +
-      "switch Rescale Untangling off.");
+    return { "rescaled untangling objectives", "switch Rescale Untangling off" };
+  }
+  return {};
+}
+
+void requireLocalOptions(const OptimizeOptions& options)
+{
+  NeedOfWholeMesh need = needOfWholeMesh(options);
+  if (!need.what.empty())
+  {
+    need.what[0] = static_cast<char>(std::toupper(need.what[0]));
+    throw Error(need.what +
+      " need the whole mesh on one process: gather it, in ParaView by Aggregate Dataset, with "
+      "Reproducible Order off; or " +
+      need.remedy + ".");
   }
 }
 

@@ -12,10 +12,18 @@
 
 namespace tautline
 {
+/// Why options need the whole mesh in one place.
+struct NeedOfWholeMesh
+{
+  std::string what;   ///< in the plural, "steps that improve the worst element"; "": none
+  std::string remedy; ///< "set ... to 0"
+};
+TAUTLINE_KERNEL_EXPORT NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& options);
+
 /**
  * @brief Throws Error for options that need the whole mesh in one place, by name and with the
- * remedy: the templates p-mean and maximum, targets, element weights, points that slide on curved
- * surfaces, rescaling of untangling objectives, improvement of the worst element.
+ * remedy: the templates p-mean and maximum, points that slide on curved surfaces, rescaling of
+ * untangling objectives, improvement of the worst element.
  */
 TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
 
@@ -47,7 +55,9 @@ TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
  * dimension. Its points are where the optimization starts; not changed.
  * @param mirrored the mesh is reversed throughout, see Mesh::setMirrored(); the same on all ranks
  * @param options arrays per point are of local points of `mesh`, and count where a rank owns the
- * point; fixed must not be null (see rankBoundary()). The observer is called on every rank.
+ * point; fixed must not be null (see rankBoundary()). Targets and weights are of local cells, the
+ * same on all ranks that have a cell; an objective may have none of weight on some of them. The
+ * observer is called on every rank.
  * @return the points are those of the local points; all else is of the whole mesh
  */
 TAUTLINE_KERNEL_EXPORT OptimizeResult optimizeOnRanks(

@@ -80,7 +80,7 @@ Index OptimizationOnRanks::restoreWorst()
         std::copy_n(&this->TheMesh.points()[3 * p], 3, &points[3 * p]);
       }
     }
-    this->load(points);
+    this->restart(points);
   }
   Index count = 0;
   for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
@@ -99,7 +99,7 @@ void OptimizationOnRanks::keepInput(const IterationRecord& first)
   {
     return;
   }
-  this->load(this->TheMesh.points());
+  this->restart(this->TheMesh.points());
   now = this->record(now.iteration);
   now.objective = first.objective;
   this->Result.history.back() = now;
