@@ -56,26 +56,64 @@ bool isOnSeveralProcesses(vtkDataObject* input)
 }
 
 //------------------------------------------------------------------------------
-std::unique_ptr<RankMesh> takePieces(
-  std::unique_ptr<RankGroup>& group, vtkDataObject* input, int threads, bool mergePoints)
+std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataObject* input,
+  int threads, bool mergePoints, std::string* why)
 {
+  const auto gather = [why](const std::string& reason)
+  {
+    if (why)
+    {
+      *why = reason;
+    }
+    return std::unique_ptr<RankMesh>();
+  };
   auto* piece = vtkDataSet::SafeDownCast(input);
   std::unique_ptr<RankMesh> mesh;
   try
   {
     group = makeProcessGroup();
-    if (group->any(!piece) || !isOnSeveralProcesses(input))
-    {
-      return nullptr;
-    }
-    mesh = std::make_unique<RankMesh>(*group, piece, threads, mergePoints);
   }
   catch (const Error&) // on all processes
   {
-    return nullptr;
+    return gather("the processes do not communicate by MPI");
+  }
+  const bool elsewhere =
+    group->rank() > 0 && input && input->GetNumberOfElements(vtkDataObject::CELL) > 0;
+  if (!group->any(elsewhere))
+  {
+    return gather("");
+  }
+  if (group->any(!piece))
+  {
+    return gather("it has blocks");
+  }
+  try
+  {
+    mesh = std::make_unique<RankMesh>(*group, piece, threads, mergePoints);
+  }
+  catch (const OppositeOrders&)
+  {
+    return gather("neighbouring cells list their points in opposite orders");
+  }
+  catch (const Error& error) // the same on all processes; one process may refuse it, too
+  {
+    return gather(std::string("its pieces could not be joined. ") + error.what());
   }
   const bool framed = !CoordinateFrame(coordinateRange(mesh->mesh().view()), false).isIdentity();
-  return group->any(framed) || !mesh->inSpaceOrPlane() ? nullptr : std::move(mesh);
+  if (group->any(framed))
+  {
+    return gather("its coordinates are of extreme size");
+  }
+  return mesh->inSpaceOrPlane()
+    ? std::move(mesh)
+    : gather("it is a surface in space, or in a plane that is not at right angles to an axis");
+}
+
+//------------------------------------------------------------------------------
+std::string gatheredSentence(const std::string& why)
+{
+  const char* end = !why.empty() && why.back() == '.' ? "" : ".";
+  return why.empty() ? "" : "The mesh was put together on the first process: " + why + end;
 }
 
 //------------------------------------------------------------------------------
@@ -285,21 +323,24 @@ std::vector<double> RankMesh::leastOf(const std::vector<double>& ofPiece, double
     double value;
   };
   std::vector<std::vector<Value>> sent(this->Group.size());
+  std::vector<double> values(mesh.localPoints(), none);
   for (std::size_t p = 0; p < ofPiece.size(); ++p)
   {
     const Index local = mesh.localOfPiece()[p];
-    if (local >= 0)
+    if (local >= 0 && mesh.owned(local))
+    {
+      values[local] = std::min(values[local], ofPiece[p]);
+    }
+    else if (local >= 0)
     {
       sent[mesh.owners()[local]].push_back({ mesh.numbers()[local], ofPiece[p] });
     }
   }
-  std::vector<double> values(mesh.localPoints(), none);
   for (const auto& list : this->Group.exchangeItems(sent))
   {
     for (const Value& value : list)
     {
-      const auto at = std::lower_bound(mesh.numbers().begin(), mesh.numbers().end(), value.number);
-      double& to = values[at - mesh.numbers().begin()];
+      double& to = values[mesh.local(value.number)];
       to = std::min(to, value.value);
     }
   }

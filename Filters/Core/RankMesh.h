@@ -49,9 +49,15 @@ public:
  * process, surfaces in space, planes that are inclined, cells of extreme size, and what RankMesh
  * refuses; and processes that do not communicate by MPI. Collective.
  * @param group gets the processes, which outlive the mesh
+ * @param why if not null, gets the reason in words, "it has blocks", the same on all processes;
+ * with the message of the error where RankMesh refuses the mesh; "" where all is in one place
  */
-TAUTLINECORE_EXPORT std::unique_ptr<RankMesh> takePieces(
-  std::unique_ptr<RankGroup>& group, vtkDataObject* input, int threads, bool mergePoints);
+TAUTLINECORE_EXPORT std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group,
+  vtkDataObject* input, int threads, bool mergePoints, std::string* why = nullptr);
+
+/// "The mesh was put together on the first process: why.", or "" without a reason; a full stop at
+/// the end of the reason is not doubled.
+TAUTLINECORE_EXPORT std::string gatheredSentence(const std::string& why);
 
 /**
  * @class tautline::RankMesh
@@ -98,6 +104,13 @@ public:
   std::vector<unsigned char> anyOf(const std::vector<unsigned char>& ofPiece) const;
   /// Values per point of the piece as those of the local points: of points that are one the least.
   std::vector<double> leastOf(const std::vector<double>& ofPiece, double none) const;
+  /**
+   * @brief Values per cell of the piece, `components` each, as those of the local cells; those of
+   * cells that are skipped() do not count. Of cells with the same points the least. Throws Error on
+   * all processes if a process has cells but no values.
+   * @param ofPiece may be empty where the piece has no cells
+   */
+  std::vector<double> ofCells(const std::vector<double>& ofPiece, int components) const;
 
   /**
    * @brief One number per local point that identifies it however the mesh is cut: the global ids if

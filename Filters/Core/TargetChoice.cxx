@@ -134,6 +134,30 @@ Targets fromReference(const Mesh& mesh, vtkDataSet* reference, int threads)
 }
 
 //------------------------------------------------------------------------------
+std::vector<double> targetValues(const MeshView& view, const TargetChoice& choice)
+{
+  if (choice.type == TargetType::Tensor)
+  {
+    const auto tensors =
+      perCell(choice.tensor.array, choice.tensor.association, view, "a metric tensor");
+    return asMatrices(tensors, choice.tensor.array->GetNumberOfComponents());
+  }
+  std::vector<double> sizes = perCell(choice.size.array, choice.size.association, view, "a size");
+  if (choice.size.array->GetNumberOfComponents() != 1)
+  {
+    throw Error("A size array has one component: the target area or volume.");
+  }
+  return sizes;
+}
+
+//------------------------------------------------------------------------------
+Targets targetsOf(const Mesh& mesh, TargetType type, const std::vector<double>& values)
+{
+  return type == TargetType::Size ? sizeTargets(mesh, values.data())
+                                  : tensorTargets(mesh, values.data());
+}
+
+//------------------------------------------------------------------------------
 Targets makeTargets(const Mesh& mesh, const TargetChoice& choice, int threads)
 {
   switch (choice.type)
@@ -141,21 +165,8 @@ Targets makeTargets(const Mesh& mesh, const TargetChoice& choice, int threads)
     case TargetType::Reference:
       return fromReference(mesh, choice.reference, threads);
     case TargetType::Size:
-    {
-      const auto sizes = perCell(choice.size.array, choice.size.association, mesh.view(), "a size");
-      if (choice.size.array->GetNumberOfComponents() != 1)
-      {
-        throw Error("A size array has one component: the target area or volume.");
-      }
-      return sizeTargets(mesh, sizes.data());
-    }
     case TargetType::Tensor:
-    {
-      const auto tensors =
-        perCell(choice.tensor.array, choice.tensor.association, mesh.view(), "a metric tensor");
-      return tensorTargets(
-        mesh, asMatrices(tensors, choice.tensor.array->GetNumberOfComponents()).data());
-    }
+      return targetsOf(mesh, choice.type, targetValues(mesh.view(), choice));
     default:
       return {};
   }

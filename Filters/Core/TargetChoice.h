@@ -10,6 +10,8 @@
 
 #include "tautline/Quality/Targets.h"
 
+#include <vector>
+
 class vtkDataArray;
 class vtkDataSet;
 
@@ -37,5 +39,18 @@ struct TargetChoice
  * Error that names what is missing or does not fit.
  */
 TAUTLINECORE_EXPORT Targets makeTargets(const Mesh& mesh, const TargetChoice& choice, int threads);
+
+/// What the targets of TargetType::Size and Tensor are made from: one size, or a matrix of 3 x 3,
+/// per cell of the view. Throws Error as makeTargets().
+TAUTLINECORE_EXPORT std::vector<double> targetValues(
+  const MeshView& view, const TargetChoice& choice);
+/// So many per cell.
+constexpr int targetComponents(TargetType type)
+{
+  return type == TargetType::Size ? 1 : 9;
+}
+/// The targets of these types, from such values.
+TAUTLINECORE_EXPORT Targets targetsOf(
+  const Mesh& mesh, TargetType type, const std::vector<double>& values);
 }
 #endif

@@ -2,6 +2,7 @@
 #include "BeforeAfter.h"
 
 #include "RankStatistics.h"
+#include "tautline/Core/Parallel.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -150,11 +151,18 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
   for (const MeasuredMetric& what : metrics)
   {
     const bool first = &what == &metrics.front();
-    const Measurement before =
-      measure(mesh.mesh(), unit, what, first ? known.before : unknown, mesh.validity().data(),
-        mesh.skipped(), addCellArray(output, what.name + "_before")->GetPointer(0));
-    const Measurement after = measure(moved, unit, what, first ? known.after : unknown,
-      validity->GetPointer(0), mesh.skipped(), addCellArray(output, what.name)->GetPointer(0));
+    double* const valuesBefore = addCellArray(output, what.name + "_before")->GetPointer(0);
+    double* const valuesAfter = addCellArray(output, what.name)->GetPointer(0);
+    // At the same time: much of it is not cut into chunks.
+    Measurement before, after;
+    parallelFor(2, 1, threads,
+      [&](Index which)
+      {
+        which == 0 ? before = measure(mesh.mesh(), unit, what, first ? known.before : unknown,
+                       mesh.validity().data(), mesh.skipped(), valuesBefore)
+                   : after = measure(moved, unit, what, first ? known.after : unknown,
+                       validity->GetPointer(0), mesh.skipped(), valuesAfter);
+      });
     addRow(what, block, before, after, rows, text);
   }
   output->GetCellData()->AddArray(validity);

@@ -7,7 +7,9 @@
 #include "OptimizerSetup.h"
 #include "ProcessGroup.h"
 #include "ProgressStep.h"
+#include "GatheredExecution.h"
 #include "RankMesh.h"
+#include "TargetChoice.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
 
 #include "vtkDataSet.h"
@@ -16,6 +18,9 @@
 #include "vtkPointSet.h"
 #include "vtkSelection.h"
 
+#include <algorithm>
+#include <array>
+#include <cctype>
 #include <limits>
 
 namespace
@@ -23,66 +28,223 @@ namespace
 constexpr int SelectionPort = 2, GeometryPort = 3; // input
 constexpr const char* FilterName = "Optimize Mesh";
 
-[[noreturn]] void refuse(const std::string& what, const std::string& remedy)
+/// Whether an array of the input is chosen; also one that is missing, which others report.
+bool isChosen(const tautline::OptimizerSettings& settings, int index, vtkDataSet* input)
 {
-  throw tautline::Error(what +
-    " on one process only, in its own order: gather the mesh, in ParaView "
-    "by Aggregate Dataset, with Reproducible Order off; or " +
-    remedy + ".");
+  try
+  {
+    return input && input->GetNumberOfPoints() > 0 &&
+      tautline::chosenArray(settings.arrays, index, input, "");
+  }
+  catch (const tautline::Error&)
+  {
+    return true;
+  }
 }
 
-/// Throws Error for settings that need the whole mesh in one place.
-void requireLocalSettings(const tautline::OptimizerSettings& settings, bool animation)
+/// Whether the objectives have targets of a reference mesh.
+bool hasReference(const tautline::OptimizerSettings& settings)
+{
+  const auto& rows = settings.objectives;
+  return settings.preset == tautline::Preset::PreserveShape ||
+    (settings.preset == tautline::Preset::Custom &&
+      std::any_of(rows.begin(), rows.end(),
+        [](const tautline::ObjectiveRow& row)
+        { return row.target == tautline::TargetType::Reference; }));
+}
+
+/**
+ * @brief Why settings need the whole mesh in one place, if they do; `what` is a plural.
+ * @param features whether feature kinds or regions are chosen, on any process
+ */
+tautline::NeedOfWholeMesh needOf(const tautline::OptimizerSettings& settings, bool features)
 {
   using tautline::BoundaryMotion;
   if (settings.boundary == BoundaryMotion::OnSurface || settings.geometry)
   {
-    refuse("Points slide on curved surfaces and geometries",
-      "choose the Boundary Fixed, Sliding or Free, without a Geometry");
+    return { "points that slide on curved surfaces and geometries",
+      "choose the Boundary Fixed, Sliding or Free, without a Geometry" };
   }
-  if (settings.preset == tautline::Preset::PreserveShape ||
-    (settings.preset == tautline::Preset::UniformSize && settings.boundary == BoundaryMotion::Free))
+  if (features)
   {
-    refuse("The targets of this preset are made", "choose the preset Best Shape");
+    return { "regions and feature kinds", "choose None for these arrays" };
+  }
+  if (hasReference(settings))
+  {
+    return { "targets of a reference mesh", "choose another preset or target" };
   }
   if (settings.showFeatures)
   {
-    refuse("Features are found", "switch Show Features off");
+    return { "features that are shown", "switch Show Features off" };
   }
-  if (animation)
+  tautline::OptimizeOptions options = settings.options;
+  options.objectives = settings.preset == tautline::Preset::Custom
+    ? tautline::customObjectives(settings)
+    : options.objectives;
+  return tautline::needOfWholeMesh(options);
+}
+
+/// Throws Error for settings that need the whole mesh in one place, in its own order.
+void requireLocalSettings(
+  const tautline::OptimizerSettings& settings, bool features, bool animation)
+{
+  tautline::NeedOfWholeMesh need = animation
+    ? tautline::NeedOfWholeMesh{ "iterations that are kept as time steps", "switch Animation off" }
+    : needOf(settings, features);
+  if (!need.what.empty())
   {
-    refuse("Iterations are kept as time steps", "switch Animation off");
+    need.what[0] = static_cast<char>(std::toupper(need.what[0]));
+    throw tautline::Error(need.what +
+      " need one process and its own order: gather the mesh, in ParaView by Aggregate Dataset, "
+      "with Reproducible Order off; or " +
+      need.remedy + ".");
   }
 }
 
-/// The options of the kernel but for those per point.
-void setObjectives(const tautline::OptimizerSettings& settings, tautline::OptimizeOptions& options)
+/// Weights and targets of the local cells, and targets of the cells of the piece.
+struct ElementOptions
 {
+  using ByType = std::array<tautline::Targets, 4>;
+  std::vector<double> weights;
+  ByType targets, targetsOfPiece;
+};
+
+/// The local cells, or those of the piece, where they are in the input.
+tautline::Mesh inputOf(const tautline::RankMesh& mesh, const tautline::MeshView& view, int threads)
+{
+  tautline::Mesh input(view, threads);
+  input.setMirrored(mesh.mirrored());
+  return input;
+}
+
+/// What is measured on the cells of the piece, with their targets instead of those of local cells.
+std::vector<tautline::MeasuredMetric> metricsOfPiece(
+  const std::vector<tautline::Objective>& objectives, const ElementOptions& elements)
+{
+  std::vector<tautline::MeasuredMetric> metrics = tautline::measuredMetrics(objectives);
+  for (tautline::MeasuredMetric& metric : metrics)
+  {
+    const tautline::Targets*& targets = metric.options.targets;
+    targets = targets ? &elements.targetsOfPiece[targets - elements.targets.data()] : nullptr;
+  }
+  return metrics;
+}
+
+/// Compares the sizes of elements with their mean in the whole mesh.
+void keepTotalSize(tautline::RankGroup& group, const tautline::RankMesh& mesh,
+  ElementOptions& elements, tautline::OptimizeOptions& options)
+{
+  const tautline::DistributedMesh& local = mesh.mesh();
+  std::vector<double> own;
+  group.together(
+    [&]
+    {
+      std::vector<double> sizes(local.view().numberOfCells);
+      std::vector<signed char> validity(sizes.size());
+      if (!sizes.empty())
+      {
+        const tautline::Mesh whole = inputOf(mesh, local.view(), options.threads);
+        tautline::EvaluationOptions evaluation;
+        evaluation.threads = options.threads;
+        tautline::evaluateMetric(whole, tautline::Metric::Size, evaluation, sizes.data());
+        whole.classifyCells(validity.data(), options.threads);
+      }
+      for (std::size_t i = 0; i < sizes.size(); ++i)
+      {
+        if (local.ownedCells()[i] && validity[i] == tautline::Valid)
+        {
+          own.push_back(sizes[i]);
+        }
+      }
+    });
+  const double total = group.orderlessSum(own);
+  const auto valid = group.sum(static_cast<tautline::Index>(own.size()));
+  group.together(
+    [&]
+    {
+      constexpr auto size = static_cast<std::size_t>(tautline::TargetType::Size);
+      tautline::compareSizesWith(inputOf(mesh, mesh.piece(), options.threads), total, valid,
+        elements.targetsOfPiece[size], options);
+      tautline::compareSizesWith(inputOf(mesh, local.view(), options.threads), total, valid,
+        elements.targets[size], options);
+    });
+}
+
+/// Targets of a type, from the arrays of the pieces; null for the ideal one.
+const tautline::Targets* targetOf(const tautline::OptimizerSettings& settings,
+  tautline::RankGroup& group, vtkDataSet* input, const tautline::RankMesh& mesh,
+  tautline::TargetType type, ElementOptions& elements)
+{
+  using tautline::TargetType;
+  if (type == TargetType::Ideal)
+  {
+    return nullptr;
+  }
+  std::vector<double> ofPiece;
+  group.together(
+    [&]
+    {
+      tautline::TargetChoice choice;
+      choice.type = type;
+      if (input->GetNumberOfCells() > 0)
+      {
+        const bool size = type == TargetType::Size;
+        (size ? choice.size : choice.tensor) =
+          settings.targetArray(size ? tautline::SizeArray : tautline::TensorArray, input);
+        ofPiece = tautline::targetValues(mesh.piece(), choice);
+      }
+    });
+  const std::vector<double> values = mesh.ofCells(ofPiece, tautline::targetComponents(type));
+  const auto number = static_cast<std::size_t>(type);
+  group.together(
+    [&]
+    {
+      const int threads = settings.options.threads;
+      elements.targets[number] =
+        tautline::targetsOf(inputOf(mesh, mesh.mesh().view(), threads), type, values);
+      elements.targetsOfPiece[number] =
+        tautline::targetsOf(inputOf(mesh, mesh.piece(), threads), type, ofPiece);
+    });
+  return &elements.targets[number];
+}
+
+/// The objectives, with what they need of the local cells.
+void setObjectives(const tautline::OptimizerSettings& settings, tautline::RankGroup& group,
+  vtkDataSet* input, const tautline::RankMesh& mesh, ElementOptions& elements,
+  tautline::OptimizeOptions& options)
+{
+  if (settings.preset == tautline::Preset::UniformSize &&
+    settings.boundary == tautline::BoundaryMotion::Free)
+  {
+    keepTotalSize(group, mesh, elements, options);
+  }
   if (settings.preset == tautline::Preset::Custom)
   {
-    options.objectives.resize(std::max<std::size_t>(settings.objectives.size(), 1));
+    options.objectives = tautline::customObjectives(settings);
     for (std::size_t i = 0; i < settings.objectives.size(); ++i)
     {
-      const tautline::ObjectiveRow& row = settings.objectives[i];
-      if (row.target != tautline::TargetType::Ideal)
-      {
-        refuse("Targets other than the ideal element are made", "choose the target Ideal");
-      }
-      options.objectives[i].metric = static_cast<tautline::Metric>(row.metric);
-      options.objectives[i].objectiveTemplate =
-        static_cast<tautline::ObjectiveTemplate>(row.objectiveTemplate);
-      options.objectives[i].weight = row.weight;
-    }
-    for (tautline::Objective& objective : options.objectives)
-    {
-      objective.power = settings.power;
-      objective.evaluation.parameters.beta = settings.beta;
-      objective.evaluation.combination = settings.combination;
+      options.objectives[i].evaluation.targets =
+        targetOf(settings, group, input, mesh, settings.objectives[i].target, elements);
     }
   }
+  std::vector<double> weights;
+  group.together(
+    [&]
+    {
+      if (input->GetNumberOfCells() > 0)
+      {
+        weights = tautline::scalarsOf(tautline::chosenArray(settings.arrays, tautline::WeightArray,
+                                        input, "of element weights"),
+          "weights");
+      }
+    });
+  const bool weighted = group.any(!weights.empty());
+  elements.weights = weighted ? mesh.ofCells(weights, 1) : weights;
+  elements.weights.reserve(1); // not null, also without cells
   for (tautline::Objective& objective : options.objectives)
   {
     objective.evaluation.threads = options.threads;
+    objective.elementWeights = weighted ? elements.weights.data() : nullptr;
   }
 }
 
@@ -104,11 +266,6 @@ std::vector<double> readArrays(const tautline::OptimizerSettings& settings, vtkD
   }
   const auto chosen = [&](int index, const char* purpose)
   { return tautline::chosenArray(settings.arrays, index, input, purpose); };
-  if (chosen(tautline::WeightArray, "of element weights") ||
-    chosen(tautline::RegionArray, "of regions") || chosen(tautline::KindArray, "of feature kinds"))
-  {
-    refuse("Element Weights, Regions and Feature Kinds are used", "choose None for these arrays");
-  }
   mesh.fix(chosen(tautline::FixedArray, "of fixed points"), false);
   mesh.fixSelected(input, selection);
   std::vector<double> limits =
@@ -163,10 +320,58 @@ PointOptions pointOptions(const tautline::OptimizerSettings& settings, tautline:
 }
 
 //------------------------------------------------------------------------------
+tautline::GatheredResult vtkMeshOptimizer::GetGatheredResult() const
+{
+  return tautline::GatheredResult::SameMesh;
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
+{
+  this->Runs.clear();
+  this->Pieces.reset();
+  this->Group.reset();
+  this->PieceError.clear();
+  std::string why;
+  this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]),
+    this->Threads, this->MergeCoincidentPoints, &why);
+  if (this->Pieces)
+  {
+    tautline::OptimizerSettings settings = this->GetSettings();
+    settings.geometry = vtkDataObject::GetData(inputs[GeometryPort]);
+    auto* input = vtkDataSet::SafeDownCast(vtkDataObject::GetData(inputs[MeshPort]));
+    const bool features = this->Group->any(isChosen(settings, tautline::KindArray, input) ||
+      isChosen(settings, tautline::RegionArray, input));
+    const std::string what = needOf(settings, features).what;
+    why = what.empty() ? "" : what + " need the whole mesh";
+    if (!what.empty() && !this->Animation)
+    {
+      this->Pieces.reset();
+    }
+  }
+  else if (this->Animation && !why.empty())
+  {
+    this->PieceError = "Iterations are kept as time steps on one process only: gather the mesh, in "
+                       "ParaView by Aggregate Dataset, or switch Animation off.";
+  }
+  this->WhyGathered = tautline::gatheredSentence(why);
+  return this->Pieces || !this->PieceError.empty();
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshOptimizer::ExchangeResult(tautline::ResultStream& stream)
+{
+  this->Superclass::ExchangeResult(stream);
+  stream(this->Reason, this->StopReason, this->Iterations, this->FreePoints, this->InvertedBefore,
+    this->InvertedAfter, this->SurfaceError);
+}
+
+//------------------------------------------------------------------------------
 void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDataObject* output,
   tautline::TableRows& history, tautline::TableRows& statistics)
 {
-  const auto group = tautline::makeProcessGroup();
+  const std::unique_ptr<tautline::RankMesh> pieces = std::move(this->Pieces);
+  const auto group = pieces ? std::move(this->Group) : tautline::makeProcessGroup();
   this->Runs.clear();
   vtkDataSet* input = nullptr;
   tautline::OptimizerSettings settings = this->GetSettings();
@@ -176,12 +381,20 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
     [&]
     {
       input = tautline::requirePiece(vtkDataObject::GetData(inputVector[MeshPort]));
-      requireLocalSettings(settings, this->Animation);
-      setObjectives(settings, options);
-      tautline::requireLocalOptions(options);
+      const bool features = isChosen(settings, tautline::KindArray, input) ||
+        isChosen(settings, tautline::RegionArray, input);
+      requireLocalSettings(settings, features, this->Animation);
     });
-  tautline::RankMesh mesh(*group, input, this->Threads, this->MergeCoincidentPoints);
+  std::unique_ptr<tautline::RankMesh> alone;
+  if (!pieces)
+  {
+    alone = std::make_unique<tautline::RankMesh>(
+      *group, input, this->Threads, this->MergeCoincidentPoints);
+  }
+  tautline::RankMesh& mesh = pieces ? *pieces : *alone;
   output->ShallowCopy(input);
+  ElementOptions elements;
+  setObjectives(settings, *group, input, mesh, elements, options);
   const PointOptions points =
     pointOptions(settings, *group, input, vtkSelection::GetData(inputVector[SelectionPort]), mesh);
   options.fixed = points.fixed.data();
@@ -207,7 +420,7 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   const std::string note = mesh.move(vtkPointSet::SafeDownCast(output), run.result.points);
   tautline::TableRows rows;
   const std::string qualities = tautline::addBeforeAfterOnRanks(*group, mesh,
-    mesh.ofPiece(run.result.points), tautline::measuredMetrics(options.objectives), this->Threads,
+    mesh.ofPiece(run.result.points), metricsOfPiece(options.objectives, elements), this->Threads,
     vtkDataSet::SafeDownCast(output), rows);
   run.summary =
     tautline::summarize(run.result, mesh.mesh().globalPoints(), mesh.mesh().globalCells(), "") +

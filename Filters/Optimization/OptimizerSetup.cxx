@@ -148,20 +148,11 @@ void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const Inpu
   }
   else
   {
-    objectives.resize(std::max<std::size_t>(settings.objectives.size(), 1));
+    objectives = customObjectives(settings);
     for (std::size_t i = 0; i < settings.objectives.size(); ++i)
     {
-      const ObjectiveRow& row = settings.objectives[i];
-      objectives[i].metric = static_cast<Metric>(row.metric);
-      objectives[i].objectiveTemplate = static_cast<ObjectiveTemplate>(row.objectiveTemplate);
-      objectives[i].weight = row.weight;
-      objectives[i].evaluation.targets = this->target(settings, block, row.target);
-    }
-    for (Objective& objective : objectives)
-    {
-      objective.power = settings.power;
-      objective.evaluation.parameters.beta = settings.beta;
-      objective.evaluation.combination = settings.combination;
+      objectives[i].evaluation.targets =
+        this->target(settings, block, settings.objectives[i].target);
     }
   }
   for (Objective& objective : objectives)
@@ -187,19 +178,46 @@ void OptimizerSetup::keepTotalSize()
     total += this->TheMesh.validity()[i] == Valid ? sizes[i] : 0.0;
     valid += this->TheMesh.validity()[i] == Valid;
   }
+  compareSizesWith(mesh, total, valid,
+    this->MadeTargets[static_cast<std::size_t>(TargetType::Size)], this->Options);
+}
+
+//------------------------------------------------------------------------------
+void compareSizesWith(
+  const Mesh& mesh, double total, Index valid, Targets& mean, OptimizeOptions& options)
+{
   if (valid == 0)
   {
     throw Error("No element is valid, so that there is no mean size to aim at: untangle the mesh "
                 "first, or fix its boundary.");
   }
-  sizes.assign(sizes.size(), total / static_cast<double>(valid));
-  Targets& mean = this->MadeTargets[static_cast<std::size_t>(TargetType::Size)];
+  const std::vector<double> sizes(mesh.view().numberOfCells, total / static_cast<double>(valid));
   mean = sizeTargets(mesh, sizes.data());
-  Objective& size = this->Options.objectives[1];
+  Objective& size = options.objectives[1];
   size.metric = Metric::SizeBarrier;
   size.objectiveTemplate = ObjectiveTemplate::Sum;
   size.evaluation.targets = &mean;
-  this->Options.scalarization.method = Scalarization::WeightedSum;
+  options.scalarization.method = Scalarization::WeightedSum;
+}
+
+//------------------------------------------------------------------------------
+std::vector<Objective> customObjectives(const OptimizerSettings& settings)
+{
+  std::vector<Objective> objectives(std::max<std::size_t>(settings.objectives.size(), 1));
+  for (std::size_t i = 0; i < settings.objectives.size(); ++i)
+  {
+    const ObjectiveRow& row = settings.objectives[i];
+    objectives[i].metric = static_cast<Metric>(row.metric);
+    objectives[i].objectiveTemplate = static_cast<ObjectiveTemplate>(row.objectiveTemplate);
+    objectives[i].weight = row.weight;
+  }
+  for (Objective& objective : objectives)
+  {
+    objective.power = settings.power;
+    objective.evaluation.parameters.beta = settings.beta;
+    objective.evaluation.combination = settings.combination;
+  }
+  return objectives;
 }
 
 //------------------------------------------------------------------------------

@@ -113,8 +113,6 @@ private:
   void setLimits(const OptimizerSettings& settings, const InputBlock& block);
   void setObjectives(const OptimizerSettings& settings, const InputBlock& block);
   void setUnit(Objective& objective) const;
-  /// Of the preset UniformSize with a free boundary: sizes are compared with their mean, as the sum
-  /// of their squares would shrink the mesh to a point.
   void keepTotalSize();
   const Targets* target(
     const OptimizerSettings& settings, const InputBlock& block, TargetType type);
@@ -133,6 +131,14 @@ private:
   std::vector<unsigned char> Held; ///< points that are fixed for other reasons than features
   OptimizeOptions Options;
 };
+
+/// The objectives of CUSTOM, without targets; one at least.
+std::vector<Objective> customObjectives(const OptimizerSettings& settings);
+/// Of the preset UniformSize with a free boundary: sizes are compared with the mean size of the
+/// valid elements, as the sum of their squares would shrink the mesh to a point. Throws Error
+/// without a valid one.
+void compareSizesWith(
+  const Mesh& mesh, double total, Index valid, Targets& mean, OptimizeOptions& options);
 
 /// The values of an array of one component, or none without one; throws Error if it has more.
 std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose);

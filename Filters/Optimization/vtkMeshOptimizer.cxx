@@ -5,7 +5,7 @@
 #include "ContentStamp.h"
 #include "IterationHistory.h"
 #include "OptimizerSetup.h"
-#include "Processes.h"
+#include "ProcessGroup.h"
 #include "ProgressStep.h"
 #include "RankMesh.h"
 
@@ -409,8 +409,11 @@ int vtkMeshOptimizer::RequestData(
     this->Attempt(outputVector, "optimize the mesh in parts, or reduce Animation Memory",
       [&]
       {
-        vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
-        if (tautline::isOnSeveralProcesses(input) || this->ReproducibleOrder)
+        if (!this->PieceError.empty())
+        {
+          throw tautline::Error(this->PieceError);
+        }
+        if (this->Pieces || this->ReproducibleOrder)
         {
           this->OptimizeOnRanks(
             inputVector, vtkDataObject::GetData(outputVector, MeshPort), history, statistics);
@@ -418,7 +421,6 @@ int vtkMeshOptimizer::RequestData(
         }
         tautline::OptimizerSettings settings = this->GetSettings();
         settings.geometry = geometry;
-        tautline::requireFirstProcess(input, FilterName);
         this->ForEachBlock(inputVector, outputVector, reference, SelectionPort,
           this->Boundary != FIXED,
           [&](const tautline::InputBlock& block)
@@ -441,6 +443,7 @@ int vtkMeshOptimizer::RequestData(
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
   this->Report();
+  this->AddToSummary(this->WhyGathered);
   if (this->Animation)
   {
     this->RequestInformation(nullptr, inputVector, outputVector);

@@ -49,8 +49,12 @@
  *
  * @par Several processes:
  * Each may have pieces of the mesh. Volume meshes and planar ones are worked on where they are, in
- * the reproducible order; what that does not cover is gathered on the first process or refused by
- * name.
+ * the reproducible order, with weights and with targets by size and tensor. Gathered on the first
+ * process, with the result of one process in its own order and a sentence in the summary, are
+ * surfaces in space, inclined planes and blocks; boundaries that slide on curved surfaces or on a
+ * geometry; regions, feature kinds and features that are shown; targets of a reference mesh
+ * (PRESERVE_SHAPE); the templates P_MEAN and MAXIMUM; steps that improve the worst element
+ * (WORST_ELEMENT); rescaled untangling objectives. Animation is refused on several processes.
  *
  * @par Example:
  * @code
@@ -89,6 +93,8 @@ struct InputBlock;
 struct ObjectiveRow;
 struct OptimizerRun;
 struct OptimizerSettings;
+class RankGroup;
+class RankMesh;
 }
 
 class TAUTLINEOPTIMIZATION_EXPORT vtkMeshOptimizer : public vtkMeshMotionAlgorithm
@@ -588,6 +594,9 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void ClearResult() override;
+  tautline::GatheredResult GetGatheredResult() const override;
+  bool TakesPieces(vtkInformationVector** inputs) override;
+  void ExchangeResult(tautline::ResultStream& stream) override;
 
 private:
   vtkMeshOptimizer(const vtkMeshOptimizer&) = delete;
@@ -652,6 +661,11 @@ private:
   std::vector<std::unique_ptr<tautline::OptimizerRun>> Runs; ///< per data set of the last execution
   vtkTimeStamp RunTime;                                      ///< of Runs that can be shown again
   std::vector<vtkMTimeType> RunInputs;                       ///< the content of the inputs of Runs
+  // Of an execution on several processes:
+  std::unique_ptr<tautline::RankGroup> Group; ///< outlives Pieces
+  std::unique_ptr<tautline::RankMesh> Pieces; ///< null: gathered, or one process
+  std::string PieceError;                     ///< why there are no pieces, or ""
+  std::string WhyGathered;                    ///< a sentence, or ""
   std::string Reason;
   int StopReason = -1;
   int Iterations = 0;

@@ -74,7 +74,7 @@ bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
     this->PieceError = error.what();
     return true;
   }
-  this->WhyGathered = "The mesh was put together on the first process: " + why + ".";
+  this->WhyGathered = tautline::gatheredSentence(why);
   return false;
 }
 

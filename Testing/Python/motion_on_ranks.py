@@ -2,7 +2,8 @@
 """motion_on_ranks.py FILE: for pvbatch on any number of MPI ranks, see test_motion_on_ranks.py.
 
 Optimizes (by sweeps, and all points at once) and untangles a cube whose parts are on all ranks, cut in slabs or at
-random, and writes points, summaries and tables to FILE as JSON.
+random, and writes points, summaries and tables to FILE as JSON. So it does with cubes that are gathered on one rank,
+by their settings or their pieces, cut also by a k-d tree.
 """
 
 import json
@@ -12,20 +13,30 @@ import sys
 import numpy as np
 from paraview import servermanager, simple
 from parallel_tools import RANKS, parts
+from rank_meshes import CUTS
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 
 # Runs on every rank: a cube of N^3 cubes of six tetrahedra each, whose inner points are moved at random.
 CUBE = """
 import numpy as np
-from rank_meshes import RANK, RANKS, divided, piece, simplices
+from rank_meshes import RANK, RANKS, add_global_ids, divided, piece, simplices
 
 places, cells = simplices({n})
 inner = np.logical_and(places > 0, places < {n})
 points = places + inner * np.random.default_rng(4).uniform(-{amplitude}, {amplitude}, places.shape)
 own = divided(places[cells].mean(axis=1), "{cut}", RANKS) == RANK
-output.VTKObject.ShallowCopy(piece(points, cells, own))
+{change}
+grid = piece(points, cells, own)
+if {ids} and grid.GetNumberOfPoints():
+    add_global_ids(grid)
+output.VTKObject.ShallowCopy(grid)
 """
+TURN = """  # half of the cells list their points in the opposite order: with slabs, those of some ranks
+half = points[cells].mean(axis=1)[:, 2] < {n} / 2
+cells[half, :2] = cells[half, 1::-1]
+"""
+BREAK = "points[np.flatnonzero(inner.all(axis=1))[3]] = np.nan"
 SLIDING = 1  # of the enumeration Boundary
 CUSTOM = 0  # of the enumeration Preset
 GLOBAL = {"L-BFGS": 5, "Newton-CG": 6}  # of the enumeration Optimizer
@@ -33,7 +44,11 @@ results = {"ranks": RANKS}
 
 
 def cube(n: int, amplitude: float, scattered: bool):
-    script = CUBE.format(n=n, amplitude=amplitude, cut="random" if scattered else "slabs")
+    return cut_cube(n, amplitude, "random" if scattered else "slabs")
+
+
+def cut_cube(n: int, amplitude: float, cut: str, change: str = "", ids: bool = False):
+    script = CUBE.format(n=n, amplitude=amplitude, cut=cut, change=change.format(n=n), ids=ids)
     return simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=script)
 
 
@@ -44,7 +59,7 @@ def points_of(proxy) -> list:
     points = np.concatenate([one["points"] for one in found])
     whole = np.full((where.max() + 1, 3), np.nan)
     whole[where] = points
-    assert np.isfinite(whole).all() and np.array_equal(whole[where], points)
+    assert np.array_equal(whole[where], points, equal_nan=True)
     return whole.tolist()
 
 
@@ -59,6 +74,7 @@ def note(name: str, proxy) -> None:
     results[name] = {
         "points": points_of(proxy),
         "inverted": [int(proxy.GetPropertyValue(name)) for name in ("InvertedBefore", "InvertedAfter")],
+        "summary": proxy.GetPropertyValue("Summary"),
     }
 
 
@@ -75,6 +91,14 @@ for scattered in (0, 1):  # (scripts of sources import into this module: not "ra
         note(f"{name} {scattered}", together)
         results[f"{name} {scattered}"]["history"] = table(together, 1, "Objective")
     note(f"untangle {scattered}", UntangleMesh(Input=cube(5, 0.45, scattered), ReproducibleOrder=1))
+
+for cut in CUTS:
+    both = OptimizeMesh(Input=cut_cube(4, 0.42, cut, ids=True), Preset=CUSTOM, Beta=0.01)
+    both.NumberOfObjectives = 2
+    both.Metric1, both.Metric2 = "Untangling beta", "Inverse mean ratio"
+    note(f"rescaled {cut}", both)
+    note(f"turned {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, TURN, ids=True)))
+    note(f"broken {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, BREAK, ids=True)))
 
 with open(sys.argv[1], "w") as file:
     json.dump(results, file)

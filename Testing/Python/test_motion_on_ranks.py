@@ -6,11 +6,37 @@ from on_ranks import run
 
 CLOSE = 1e-10
 GLOBAL = ("L-BFGS", "Newton-CG")
+# What is gathered, and the reason that the summary states.
+GATHERED = {
+    "rescaled": "rescaled untangling objectives need the whole mesh.",
+    "turned": "neighbouring cells list their points in opposite orders.",
+    "broken": " has a coordinate that is not finite: remove its cells first, by Threshold or Clean to Grid.",
+}
+BROKEN = 3  # coordinates of the points that are not finite
+
+
+def check_gathered(ranks: int, found: dict, one: dict) -> None:
+    for name, why in GATHERED.items():
+        expected = one[f"{name} slabs"]
+        for cut in ("slabs", "tree", "random"):
+            case = found[f"{name} {cut}"]
+            points, others = np.array(case["points"]), np.array(expected["points"])
+            assert np.count_nonzero(np.isnan(others)) == (BROKEN if name == "broken" else 0), name
+            assert np.array_equal(np.isnan(points), np.isnan(others)), (ranks, name, cut)
+            far = np.nanmax(np.abs(points - others))
+            assert far <= CLOSE, (ranks, name, cut, far)
+            assert case["inverted"] == expected["inverted"], (ranks, name, cut, case["inverted"])
+            stated = "The mesh was put together on the first process: " in case["summary"]
+            assert stated == (ranks > 1), (ranks, name, cut, case["summary"])
+            assert not stated or case["summary"].endswith(why), (ranks, name, cut, case["summary"])
+            print(ranks, "ranks, gathered:", name, cut, "farthest", far)
+
 
 one = run("motion_on_ranks.py", 1)
 assert one["ranks"] == 1
 history = one["optimize 0"]["history"]
 assert len(history) > 3 and history[-1] < 0.9 * history[0], history
+assert one["rescaled slabs"]["inverted"][0] > one["rescaled slabs"]["inverted"][1]
 assert one["untangle 0"]["inverted"][0] > one["untangle 0"]["inverted"][1]
 for name in GLOBAL:
     found = one[f"{name} 0"]["history"]
@@ -18,6 +44,7 @@ for name in GLOBAL:
 for ranks in (1, 2, 3, 4):
     found = one if ranks == 1 else run("motion_on_ranks.py", ranks)
     assert found["ranks"] == ranks
+    check_gathered(ranks, found, one)
     for name in ("optimize", "slide", "untangle", *GLOBAL):
         expected = one[f"{name} 0"]
         for cut in (0, 1):

@@ -1,87 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh and Untangle Mesh on processes: points, tables and summaries are those of one
 // process, however the mesh is cut.
-#include "Check.h"
-#include "ThreadRanks.h"
-#include "VtkMeshes.h"
+#include "MotionRanks.h"
 
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshUntangler.h"
 
-#include "vtkCellData.h"
-#include "vtkDataArray.h"
-#include "vtkDoubleArray.h"
-#include "vtkMPIController.h"
 #include "vtkMultiBlockDataSet.h"
-#include "vtkPointData.h"
-#include "vtkPoints.h"
 #include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
-#include "vtkUnstructuredGrid.h"
 
 using namespace tautline;
 
 namespace
 {
-vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
-{
-  auto grid = toGrid(part.data);
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  for (const unsigned char ghost : part.ghosts)
-  {
-    ghosts->InsertNextValue(ghost ? vtkDataSetAttributes::DUPLICATECELL : 0);
-  }
-  grid->GetCellData()->AddArray(ghosts);
-  // Fixed points and limits, by the points of the whole mesh.
-  vtkNew<vtkDoubleArray> fixed, limits;
-  fixed->SetName("fixed");
-  limits->SetName("limits");
-  for (const Index p : part.pointOf)
-  {
-    fixed->InsertNextValue(p % 11 == 0);
-    limits->InsertNextValue(p % 3 == 0 ? 0.05 : -1);
-  }
-  grid->GetPointData()->AddArray(fixed);
-  grid->GetPointData()->AddArray(limits);
-  return grid;
-}
-
-/// What a filter gives: points by those of the whole mesh (0 elsewhere), and numbers.
-template <class Filter, class Set>
-std::vector<double> pointsOf(
-  const MeshData& whole, const RankPart& part, const Set& set, Filter* filter)
-{
-  const auto grid = gridOf(part);
-  filter->SetInputData(grid);
-  set(filter);
-  Messages messages(filter);
-  filter->Update();
-  TAUTLINE_CHECK(!messages.has("ERROR: "));
-  std::vector<double> points(whole.points.size(), HUGE_VAL);
-  auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
-  TAUTLINE_CHECK_EQUAL(output->GetNumberOfPoints(), grid->GetNumberOfPoints());
-  TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), grid->GetNumberOfCells());
-  for (vtkIdType p = 0; p < output->GetNumberOfPoints(); ++p)
-  {
-    output->GetPoint(p, &points[3 * part.pointOf[p]]);
-    double moved[3];
-    output->GetPointData()->GetArray("Displacement")->GetTuple(p, moved);
-    TAUTLINE_CHECK(std::abs(grid->GetPoint(p)[0] + moved[0] - output->GetPoint(p)[0]) <= 1e-14);
-  }
-  return points;
-}
-
-void checkSame(const std::vector<double>& here, const std::vector<double>& expected)
-{
-  double farthest = 0;
-  for (std::size_t i = 0; i < here.size(); ++i)
-  {
-    farthest = std::max(farthest, here[i] == HUGE_VAL ? 0.0 : std::abs(here[i] - expected[i]));
-  }
-  TAUTLINE_CHECK(farthest <= 1e-10);
-}
-
 /// On all processes with the mesh cut, and on the first alone with all of it.
 template <class Filter, class Set, class Check>
 void testFilter(const char* name, vtkMPIController* controller, const MeshData& whole,
@@ -162,6 +93,98 @@ void testOptimizer(vtkMPIController* controller)
     checkOptimizer);
 }
 
+/// Weights and targets are of cells: each process has those of its own.
+void testElementArrays(vtkMPIController* controller)
+{
+  const MeshData tets = jittered(CellType::Tetrahedron, 4, 0.25);
+  constexpr int weights = 4, sizes = 0, tensors = 1; // indices of the arrays
+  const auto choose = [](vtkMeshOptimizer* filter, int index, const char* name)
+  { filter->SetInputArrayToProcess(index, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, name); };
+  testFilter<vtkMeshOptimizer>(
+    "weights", controller, tets,
+    [&](vtkMeshOptimizer* filter) { choose(filter, weights, "weights"); }, checkOptimizer);
+  testFilter<vtkMeshOptimizer>(
+    "sizes", controller, tets,
+    [&](vtkMeshOptimizer* filter)
+    {
+      filter->AddObjective(
+        static_cast<int>(Metric::ShapeSizeBarrier), -1, 1.0, vtkMeshOptimizer::SIZE);
+      choose(filter, sizes, "sizes");
+    },
+    checkOptimizer);
+  testFilter<vtkMeshOptimizer>(
+    "tensors", controller, jittered(CellType::Hexahedron, 4, 0.2),
+    [&](vtkMeshOptimizer* filter)
+    {
+      filter->AddObjective(
+        static_cast<int>(Metric::ShapeCondition), -1, 1.0, vtkMeshOptimizer::TENSOR);
+      choose(filter, tensors, "tensors");
+    },
+    checkOptimizer);
+  testFilter<vtkMeshOptimizer>(
+    "mean size", controller, tets,
+    [&](vtkMeshOptimizer* filter)
+    {
+      filter->SetPreset(vtkMeshOptimizer::UNIFORM_SIZE);
+      filter->SetBoundary(vtkMeshOptimizer::FREE);
+    },
+    checkOptimizer);
+}
+
+/// What is gathered, with the result of one process.
+void testWholeMeshes(vtkMPIController* controller)
+{
+  const MeshData tets = jittered(CellType::Tetrahedron, 4, 0.25);
+  testGathered<vtkMeshOptimizer>("worst element", controller, tets,
+    "steps that improve the worst element need the whole mesh",
+    [](vtkMeshOptimizer* filter, const RankPart&)
+    { filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT); });
+  for (const int objectiveTemplate : { vtkMeshOptimizer::P_MEAN, vtkMeshOptimizer::MAXIMUM })
+  {
+    testGathered<vtkMeshOptimizer>("p-mean or maximum", controller, tets,
+      "the templates p-Mean and Maximum need the whole mesh",
+      [=](vtkMeshOptimizer* filter, const RankPart&)
+      { filter->AddObjectiveByName("imr", objectiveTemplate); });
+  }
+  MeshData ball = tets;
+  ball.transform(
+    [](const Vec3& p)
+    {
+      const Vec3 d = p - Vec3{ 2, 2, 2 };
+      const double longest = std::max({ std::abs(d[0]), std::abs(d[1]), std::abs(d[2]) });
+      return longest > 0 ? (longest / norm(d)) * d : d;
+    });
+  testGathered<vtkMeshOptimizer>("curved boundary", controller, ball,
+    "points that slide on curved surfaces and geometries need the whole mesh",
+    [](vtkMeshOptimizer* filter, const RankPart&)
+    { filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE); });
+  testGathered<vtkMeshOptimizer>("features", controller, tets,
+    "features that are shown need the whole mesh",
+    [](vtkMeshOptimizer* filter, const RankPart&) { filter->ShowFeaturesOn(); });
+  testGathered<vtkMeshOptimizer>("reference", controller, tets,
+    "targets of a reference mesh need the whole mesh",
+    [](vtkMeshOptimizer* filter, const RankPart& part)
+    {
+      RankPart reference = part;
+      reference.data.transform(
+        [](const Vec3& p) {
+          return Vec3{ p[0], p[1] + 0.3 * p[1] * p[1], p[2] };
+        });
+      filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE);
+      filter->SetInputDataObject(1, numberedGridOf(reference));
+    });
+  MeshData wave = jittered(CellType::Triangle, 8, 0.25);
+  wave.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.3 * std::sin(p[0]) }; });
+  const char* inSpace =
+    "it is a surface in space, or in a plane that is not at right angles to an axis";
+  testGathered<vtkMeshOptimizer>(
+    "surface", controller, wave, inSpace, [](vtkMeshOptimizer*, const RankPart&) {});
+  MeshData turned = jittered(CellType::Triangle, 8, 0.8);
+  turned.transform([](const Vec3& p) { return Vec3{ 0.6 * p[0], p[1], 0.8 * p[0] }; });
+  testGathered<vtkMeshUntangler>(
+    "inclined plane", controller, turned, inSpace, [](vtkMeshUntangler*, const RankPart&) {});
+}
+
 void testUntangler(vtkMPIController* controller)
 {
   testFilter<vtkMeshUntangler>(
@@ -177,21 +200,49 @@ void testUntangler(vtkMPIController* controller)
     });
 }
 
-/// Blocks may be on different processes: a mesh in these is refused on all.
-void testBlocks()
+/// Blocks are gathered: one with a part on each process, and one on the last process only.
+void testBlocks(vtkMPIController* controller)
 {
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
   const MeshData whole = jittered(CellType::Tetrahedron, 3, 0.2);
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, toGrid(whole));
-  vtkNew<vtkMeshOptimizer> optimizer;
-  vtkNew<vtkMeshUntangler> untangler;
-  for (vtkMeshMotionAlgorithm* filter : { static_cast<vtkMeshMotionAlgorithm*>(optimizer),
-         static_cast<vtkMeshMotionAlgorithm*>(untangler) })
+  const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Slabs, size));
+  const RankPart all = partOf(whole, 0, [](Index) { return 0; });
+  const auto blocksOf = [](const RankPart& first, const RankPart* second)
   {
-    filter->SetInputDataObject(0, blocks);
-    Messages messages(filter);
-    filter->Update();
-    TAUTLINE_CHECK(messages.has("does not support meshes on several processes"));
+    auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+    blocks->SetNumberOfBlocks(2);
+    blocks->SetBlock(0, numberedGridOf(first));
+    blocks->SetBlock(1, second ? numberedGridOf(*second).Get() : nullptr);
+    return blocks;
+  };
+  vtkNew<vtkMeshOptimizer> serial, optimizer;
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  serial->SetInputDataObject(0, blocksOf(all, &all));
+  serial->Update();
+  vtkMultiProcessController::SetGlobalController(controller);
+  optimizer->SetInputDataObject(0, blocksOf(part, rank == size - 1 ? &all : nullptr));
+  Messages messages(optimizer);
+  optimizer->Update();
+  TAUTLINE_CHECK(!messages.has("ERROR: "));
+  TAUTLINE_CHECK(std::string(optimizer->GetSummary())
+                   .find("put together on the first process: it has blocks.") != std::string::npos);
+  TAUTLINE_CHECK_EQUAL(optimizer->GetFreePoints(), serial->GetFreePoints());
+  TAUTLINE_CHECK_EQUAL(optimizer->GetIterations(), serial->GetIterations());
+  const auto block = [](vtkMeshOptimizer* filter, unsigned int i)
+  {
+    return vtkUnstructuredGrid::SafeDownCast(
+      vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetBlock(i));
+  };
+  std::vector<Vec3> expected(whole.numberOfPoints());
+  for (std::size_t p = 0; p < all.pointOf.size(); ++p)
+  {
+    block(serial, 0)->GetPoint(static_cast<vtkIdType>(p), expected[all.pointOf[p]].data());
+  }
+  for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+  {
+    Vec3 found;
+    block(optimizer, 0)->GetPoint(static_cast<vtkIdType>(p), found.data());
+    TAUTLINE_CHECK(norm(found - expected[part.pointOf[p]]) <= 1e-10);
   }
 }
 
@@ -217,29 +268,17 @@ void testRefusals(vtkMPIController* controller)
   };
   const auto none = [](auto&&) {};
   refused(
-    "Steps that improve the worst element",
-    [](vtkMeshOptimizer* filter) { filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT); }, none);
-  refused(
-    "Points slide on curved surfaces",
-    [](vtkMeshOptimizer* filter) { filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE); }, none);
-  refused(
     "switch Animation off", [](vtkMeshOptimizer* filter) { filter->AnimationOn(); }, none);
-  refused("not finite", none,
-    [&](RankPart& part)
-    {
-      if (rank == 1)
-      {
-        part.data.points[0] = HUGE_VAL;
-      }
-    });
-  refused("opposite orders", none,
-    [&](RankPart& part)
-    {
-      for (Index cell = 0; rank == 1 && cell < part.data.numberOfCells(); ++cell)
-      {
-        std::swap(part.data.connectivity[4 * cell], part.data.connectivity[4 * cell + 1]);
-      }
-    });
+  refused(
+    "'none'",
+    [](vtkMeshOptimizer* filter)
+    { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "none"); },
+    none);
+  refused(
+    "weights must be finite and at least 0",
+    [](vtkMeshOptimizer* filter)
+    { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "wrong"); },
+    none);
 }
 }
 
@@ -250,9 +289,11 @@ int TestMotionRanks(int argc, char* argv[])
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
   testOptimizer(controller);
+  testElementArrays(controller);
+  testWholeMeshes(controller);
   testUntangler(controller);
   testRefusals(controller);
-  testBlocks();
+  testBlocks(controller);
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
   return exitCode();

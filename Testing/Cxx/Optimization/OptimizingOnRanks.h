@@ -6,21 +6,32 @@
 #ifndef tautline_OptimizingOnRanks_h
 #define tautline_OptimizingOnRanks_h
 
+#include "MovingOnRanks.h"
 #include "Optimizing.h"
-#include "ThreadRanks.h"
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Quality/Targets.h"
 #include "tautline/Untangling/UntangleOnRanks.h"
+
+#include <functional>
 
 namespace tautline
 {
-/** Points of the whole mesh, and what is the same on all ranks. */
-struct Run
+/** What a rank has found: the result of optimizeOnRanks() or of untangleOnRanks(). */
+struct Found : OptimizeResult
 {
-  std::vector<double> points;
-  OptimizeResult result;
   std::size_t remaining = 0;
 };
+using Run = Moved<Found>;
+
+/** Weights and targets of the cells of a mesh or of a part. */
+struct ElementData
+{
+  std::vector<double> weights;
+  Targets targets;
+};
+/** Sets those of the options' objectives, for any part of the mesh alike. */
+using SetElements = std::function<void(const Mesh&, ElementData&, OptimizeOptions&)>;
 
 enum class Constraint
 {
@@ -30,21 +41,31 @@ enum class Constraint
   Untangle /**< untangleOnRanks() */
 };
 
-inline Run runOn(const MeshData& whole, Cut cut, int ranks, const OptimizeOptions& given,
-  Constraint constraint, double limit)
+inline void untangleInto(
+  DistributedMesh& mesh, const std::vector<unsigned char>& fixed, Found& result)
 {
-  const auto rankOf = cutBy(whole, cut, ranks);
-  Run run;
-  run.points = whole.points;
-  std::mutex mutex;
-  onRanks(ranks,
-    [&](RankGroup& group)
+  UntangleOptions options;
+  options.fixed = fixed.data();
+  RankUntangleResult untangled = untangleOnRanks(mesh, false, options);
+  result.points = untangled.result.points;
+  result.history = untangled.result.history;
+  result.reason = untangled.result.reason;
+  result.invertedBefore = untangled.result.invertedBefore;
+  result.invertedAfter = untangled.result.invertedAfter;
+  result.remaining = untangled.remaining.size();
+}
+
+inline Run runOn(const MeshData& whole, Cut cut, int ranks, const OptimizeOptions& given,
+  Constraint constraint = Constraint::FixedBoundary, double limit = 0,
+  const SetElements& set = nullptr)
+{
+  return moveOnRanks<Found>(whole, cut, ranks,
+    [&](DistributedMesh& mesh, Found& result)
     {
-      const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
-      DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
       OptimizeOptions options = given;
       std::vector<unsigned char> fixed = rankBoundary(mesh);
       BoundaryShape shape;
+      ElementData elements;
       std::vector<double> limits(mesh.localPoints(), limit);
       if (constraint == Constraint::Sliding && mesh.view().numberOfCells > 0)
       {
@@ -53,37 +74,20 @@ inline Run runOn(const MeshData& whole, Cut cut, int ranks, const OptimizeOption
         options.slidePlanes = shape.planes.data();
         options.slideLines = shape.lines.data();
       }
+      if (set && mesh.view().numberOfCells > 0)
+      {
+        set(Mesh(mesh.view()), elements, options);
+      }
       options.limits = constraint == Constraint::Limits ? limits.data() : nullptr;
       options.fixed = fixed.data();
-      options.threads = 1 + group.rank() % 2;
-      OptimizeResult result;
-      std::size_t remaining = 0;
+      options.threads = 1 + mesh.group().rank() % 2;
       if (constraint == Constraint::Untangle)
       {
-        UntangleOptions untangling;
-        untangling.fixed = fixed.data();
-        const RankUntangleResult untangled = untangleOnRanks(mesh, false, untangling);
-        result.points = untangled.result.points;
-        result.history = untangled.result.history;
-        result.reason = untangled.result.reason;
-        result.invertedBefore = untangled.result.invertedBefore;
-        result.invertedAfter = untangled.result.invertedAfter;
-        remaining = untangled.remaining.size();
+        untangleInto(mesh, fixed, result);
+        return;
       }
-      else
-      {
-        result = optimizeOnRanks(mesh, false, options);
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      for (std::size_t p = 0; p < part.pointOf.size(); ++p)
-      {
-        std::copy_n(
-          &result.points[3 * mesh.localOfPiece()[p]], 3, &run.points[3 * part.pointOf[p]]);
-      }
-      run.remaining = remaining;
-      run.result = result;
+      static_cast<OptimizeResult&>(result) = optimizeOnRanks(mesh, false, options);
     });
-  return run;
 }
 
 inline double farthest(const std::vector<double>& a, const std::vector<double>& b)

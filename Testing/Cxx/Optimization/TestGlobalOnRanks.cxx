@@ -3,6 +3,7 @@
 // cut, and is as good as that of one process in its own order.
 #include "OptimizingOnRanks.h"
 #include "StretchedMeshes.h"
+#include "tautline/Core/Memory.h"
 #include "tautline/Untangling/Untangle.h"
 
 using namespace tautline;
@@ -21,20 +22,17 @@ Run testCuts(const MeshData& whole, const OptimizeOptions& options,
   Constraint constraint = Constraint::FixedBoundary)
 {
   constexpr double close = 1e-10;
-  const Run one = runOn(whole, Cut::FirstOnly, 1, options, constraint, 0);
+  const Run one = runOn(whole, Cut::FirstOnly, 1, options, constraint);
   const std::vector<IterationRecord>& expected = one.result.history;
   TAUTLINE_CHECK(expected.back().objective <= expected.front().objective);
-  for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
-  {
-    for (const int ranks : { 2, 3, 4 })
+  forEachCut({ 2, 3, 4 },
+    [&](Cut cut, int ranks)
     {
       if (cut == Cut::FirstOnly && ranks != 3)
       {
-        continue;
+        return;
       }
-      const Context context(
-        "cut " + std::to_string(static_cast<int>(cut)) + ", " + std::to_string(ranks) + " ranks");
-      const Run run = runOn(whole, cut, ranks, options, constraint, 0);
+      const Run run = runOn(whole, cut, ranks, options, constraint);
       TAUTLINE_CHECK(farthest(run.points, one.points) <= close);
       TAUTLINE_CHECK_EQUAL(run.result.history.size(), expected.size());
       TAUTLINE_CHECK_RELATIVE(
@@ -44,8 +42,7 @@ Run testCuts(const MeshData& whole, const OptimizeOptions& options,
       TAUTLINE_CHECK_EQUAL(run.result.freeVertices, one.result.freeVertices);
       TAUTLINE_CHECK_EQUAL(run.result.invertedAfter, one.result.invertedAfter);
       TAUTLINE_CHECK_EQUAL(run.result.restored, one.result.restored);
-    }
-  }
+    });
   return one;
 }
 
@@ -191,6 +188,69 @@ void testStiff()
   TAUTLINE_CHECK(run.result.iterations <= 12);
 }
 
+/// One rank that has no memory for the matrix: all take other ways, or report it.
+void testMemory()
+{
+  constexpr int ranks = 3;
+  constexpr double tooFew = 1000; // bytes
+  const auto cubed = [](const Vec3& p) { return Vec3{ p[0], p[1] * p[1] * p[1], p[2] }; };
+  const MeshData data = stretched(CellType::Quadrilateral, 24, cubed);
+  OptimizeOptions options = with({ Metric::InverseMeanRatio });
+  options.stopping.maximumIterations = 40;
+  const auto run = [&](Optimizer optimizer, bool lacks)
+  {
+    return moveOnRanks<Found>(data, Cut::Slabs, ranks,
+      [&](DistributedMesh& mesh, Found& result)
+      {
+        std::unique_ptr<AllowedMemory> allowed;
+        if (lacks && mesh.group().rank() == 1)
+        {
+          allowed = std::make_unique<AllowedMemory>(tooFew);
+        }
+        OptimizeOptions own = options;
+        const std::vector<unsigned char> fixed = rankBoundary(mesh);
+        own.fixed = fixed.data();
+        own.optimizer = optimizer;
+        static_cast<OptimizeResult&>(result) = optimizeOnRanks(mesh, false, own);
+      });
+  };
+  const Run sweeps = run(Optimizer::LocalNewton, false);
+  const Run newton = run(Optimizer::Automatic, false);
+  const Run without = run(Optimizer::Automatic, true);
+  const double reached = newton.result.history.back().objective;
+  // Points are stored in between, and patches of quadrilaterals have Hessians by differences, which
+  // multiply the rounding.
+  TAUTLINE_CHECK(farthest(without.points, sweeps.points) <= 1e-5);
+  TAUTLINE_CHECK_EQUAL(without.result.iterations, sweeps.result.iterations);
+  TAUTLINE_CHECK(without.result.reason == sweeps.result.reason);
+  TAUTLINE_CHECK(farthest(newton.points, sweeps.points) > 1e-3);
+  TAUTLINE_CHECK(reached < without.result.history.back().objective);
+  int errors = 0;
+  std::mutex mutex;
+  const auto rankOf = cutBy(data, Cut::Random, ranks);
+  onRanks(ranks,
+    [&](RankGroup& group)
+    {
+      const RankPart part = partOf(data, group.rank(), rankOf);
+      DistributedMesh mesh(group, { part.data.view(), nullptr, nullptr });
+      const AllowedMemory allowed(group.rank() == 0 ? tooFew : HUGE_VAL);
+      const std::vector<unsigned char> fixed = rankBoundary(mesh);
+      OptimizeOptions own = options;
+      own.fixed = fixed.data();
+      own.optimizer = Optimizer::NewtonConjugateGradient;
+      try
+      {
+        optimizeOnRanks(mesh, false, own);
+      }
+      catch (const MemoryError& error)
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        errors += std::string(error.what()).find("choose another optimizer") != std::string::npos;
+      }
+    });
+  TAUTLINE_CHECK_EQUAL(errors, ranks);
+}
+
 /// More cells than a chunk has: parts then add to a point in different orders. Many iterations
 /// multiply what rounding makes of that.
 void testLarge()
@@ -203,10 +263,10 @@ void testLarge()
   {
     const Context context("large " + std::to_string(static_cast<int>(optimizer)));
     options.optimizer = optimizer;
-    const Run one = runOn(data, Cut::FirstOnly, 1, options, Constraint::FixedBoundary, 0);
+    const Run one = runOn(data, Cut::FirstOnly, 1, options);
     for (const auto& [cut, ranks] : { std::pair(Cut::Slabs, 2), std::pair(Cut::Random, 2) })
     {
-      const Run run = runOn(data, cut, ranks, options, Constraint::FixedBoundary, 0);
+      const Run run = runOn(data, cut, ranks, options);
       TAUTLINE_CHECK(farthest(run.points, one.points) <= 1e-10);
       TAUTLINE_CHECK_EQUAL(run.result.iterations, one.result.iterations);
     }
@@ -222,6 +282,7 @@ int TestGlobalOnRanks(int, char*[])
   testObjectives();
   testTangled();
   testStiff();
+  testMemory();
   testLarge();
   return exitCode();
 }

@@ -321,8 +321,10 @@ void testRosenbrock()
       TAUTLINE_CHECK(m.reason == StopReason::GradientNorm);
       TAUTLINE_CHECK(distance(x, Vector(n, 1.0)) < 1e-5);
       TAUTLINE_CHECK_EQUAL(m.value, last);
-      TAUTLINE_CHECK(m.iterations <= 250);
-      if (method == Optimizer::LimitedMemoryBFGS)
+      // L-BFGS on 100 variables: 142 to 284 from 200 starts that differ in the last digits.
+      const bool limitedMemory = method == Optimizer::LimitedMemoryBFGS;
+      TAUTLINE_CHECK(m.iterations <= (limitedMemory && n == 100 ? 400 : 250));
+      if (limitedMemory)
       {
         TAUTLINE_CHECK(m.evaluations <= 1.35 * m.iterations + 5);
       }

@@ -10,17 +10,15 @@ namespace
 {
 /// Runs on 1 to 4 ranks and compares; returns the run on one.
 Run testCuts(const char* name, const MeshData& whole, const OptimizeOptions& options,
-  Constraint constraint = Constraint::FixedBoundary, double limit = 0)
+  Constraint constraint = Constraint::FixedBoundary, double limit = 0,
+  const SetElements& set = nullptr)
 {
   const Context context(name);
-  const Run one = runOn(whole, Cut::FirstOnly, 1, options, constraint, limit);
-  for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
-  {
-    for (const int ranks : { 2, 3, 4 })
+  const Run one = runOn(whole, Cut::FirstOnly, 1, options, constraint, limit, set);
+  forEachCut({ 2, 3, 4 },
+    [&](Cut cut, int ranks)
     {
-      const Context inner(
-        "cut " + std::to_string(static_cast<int>(cut)) + ", " + std::to_string(ranks) + " ranks");
-      const Run run = runOn(whole, cut, ranks, options, constraint, limit);
+      const Run run = runOn(whole, cut, ranks, options, constraint, limit, set);
       TAUTLINE_CHECK(farthest(run.points, one.points) <= 1e-10);
       TAUTLINE_CHECK_EQUAL(run.result.history.size(), one.result.history.size());
       TAUTLINE_CHECK_EQUAL(
@@ -31,23 +29,27 @@ Run testCuts(const char* name, const MeshData& whole, const OptimizeOptions& opt
       TAUTLINE_CHECK_EQUAL(run.result.freeVertices, one.result.freeVertices);
       TAUTLINE_CHECK_EQUAL(run.result.invertedAfter, one.result.invertedAfter);
       TAUTLINE_CHECK_EQUAL(run.result.restored, one.result.restored);
-      TAUTLINE_CHECK_EQUAL(run.remaining, one.remaining);
-    }
-  }
+      TAUTLINE_CHECK_EQUAL(run.result.remaining, one.result.remaining);
+    });
   return one;
 }
 
 /// The same problem in the order of one process: the objective agrees to 1e-6, validity is equal.
-void testOrders(
-  const char* name, const MeshData& whole, OptimizeOptions options, bool slides = false)
+void testOrders(const char* name, const MeshData& whole, OptimizeOptions options,
+  bool slides = false, const SetElements& set = nullptr)
 {
   const Context context(name);
-  options.optimizer = Optimizer::LocalNewton;
+  options.optimizer = isGlobal(options.optimizer) ? options.optimizer : Optimizer::LocalNewton;
   options.stopping.relativeChange = 1e-9;
   options.stopping.maximumIterations = 1000;
-  const Run run =
-    testCuts(name, whole, options, slides ? Constraint::Sliding : Constraint::FixedBoundary);
+  const Run run = testCuts(
+    name, whole, options, slides ? Constraint::Sliding : Constraint::FixedBoundary, 0, set);
   const Mesh mesh(whole.view());
+  ElementData elements;
+  if (set)
+  {
+    set(mesh, elements, options);
+  }
   BoundaryShape shape;
   if (slides)
   {
@@ -67,6 +69,98 @@ void testOrders(
   std::cout << name << ": " << run.result.iterations << " and " << usual.iterations
             << " sweeps, objectives differ by " << now / then - 1 << ", points by "
             << farthest(run.points, usual.points) << "\n";
+}
+
+/// Where a cell is: the sum of its points, which does not depend on the rank.
+double placeOf(const Mesh& mesh, Index cell)
+{
+  const MeshView& view = mesh.view();
+  double sum = 0;
+  for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
+  {
+    sum += view.points[3 * view.connectivity[n]];
+  }
+  return sum / static_cast<double>(view.offsets[cell + 1] - view.offsets[cell]);
+}
+
+/// Weights that are 0 in a part of the mesh, so that some ranks may have no other.
+void setWeights(const Mesh& mesh, ElementData& elements, OptimizeOptions& options)
+{
+  constexpr double without = 2.5;
+  for (Index cell = 0; cell < mesh.view().numberOfCells; ++cell)
+  {
+    const double x = placeOf(mesh, cell);
+    elements.weights.push_back(x < without ? 0.0 : x);
+  }
+  options.objectives[0].elementWeights = elements.weights.data();
+}
+
+void setSizes(const Mesh& mesh, ElementData& elements, OptimizeOptions& options)
+{
+  std::vector<double> sizes;
+  for (Index cell = 0; cell < mesh.view().numberOfCells; ++cell)
+  {
+    sizes.push_back((1.0 + 0.3 * placeOf(mesh, cell)) / 6.0);
+  }
+  elements.targets = sizeTargets(mesh, sizes.data());
+  options.objectives[0].evaluation.targets = &elements.targets;
+}
+
+void setTensors(const Mesh& mesh, ElementData& elements, OptimizeOptions& options)
+{
+  std::vector<double> tensors;
+  for (Index cell = 0; cell < mesh.view().numberOfCells; ++cell)
+  {
+    const double stretch = 1.0 + 0.4 * placeOf(mesh, cell);
+    for (const double entry : { stretch, 0.1, 0.0, 0.1, 1.0, 0.0, 0.0, 0.0, 1.0 })
+    {
+      tensors.push_back(entry);
+    }
+  }
+  elements.targets = tensorTargets(mesh, tensors.data());
+  options.objectives[0].evaluation.targets = &elements.targets;
+}
+
+/// Weights and targets, which each rank has of its own cells.
+void testElementData()
+{
+  const MeshData tets = jittered(CellType::Tetrahedron, 5, 0.2);
+  const MeshData hexes = jittered(CellType::Hexahedron, 5, 0.2);
+  OptimizeOptions ratio = with({ Metric::InverseMeanRatio });
+  OptimizeOptions shapeSize = with({ Metric::ShapeSizeBarrier });
+  const Run weighted = testCuts("weights", tets, ratio, Constraint::FixedBoundary, 0, setWeights);
+  const Run plain = runOn(tets, Cut::FirstOnly, 1, ratio);
+  TAUTLINE_CHECK(farthest(weighted.points, plain.points) > 0.02);
+  testOrders("weights of one process", tets, ratio, false, setWeights);
+  testOrders("sizes", tets, shapeSize, false, setSizes);
+  testOrders("sizes of hexahedra", hexes, shapeSize, false, setSizes);
+  testOrders("tensors", tets, ratio, false, setTensors);
+  OptimizeOptions quick = ratio;
+  quick.optimizer = Optimizer::LimitedMemoryBFGS;
+  quick.stopping.gradientNorm = 1e-7;
+  const Run one = runOn(tets, Cut::FirstOnly, 1, quick, Constraint::FixedBoundary, 0, setWeights);
+  forEachCut({ 2, 3 },
+    [&](Cut cut, int ranks)
+    {
+      const Run run = runOn(tets, cut, ranks, quick, Constraint::FixedBoundary, 0, setWeights);
+      TAUTLINE_CHECK(farthest(run.points, one.points) <= 1e-10);
+    });
+  // All 0: an error on all ranks.
+  const auto nothing = [](const Mesh& mesh, ElementData& elements, OptimizeOptions& options)
+  {
+    elements.weights.assign(mesh.view().numberOfCells, 0.0);
+    options.objectives[0].elementWeights = elements.weights.data();
+  };
+  std::string message;
+  try
+  {
+    runOn(tets, Cut::Slabs, 3, ratio, Constraint::FixedBoundary, 0, nothing);
+  }
+  catch (const Error& error)
+  {
+    message = error.what();
+  }
+  TAUTLINE_CHECK(message.find("weights of all elements are 0") != std::string::npos);
 }
 
 /// See testConvergenceOfAll() of TestLocalSweep.
@@ -181,12 +275,13 @@ int TestOptimizeOnRanks(int, char*[])
   TAUTLINE_CHECK(untangled.result.invertedBefore > 0);
   const UntangleResult usual = untangle(Mesh(tangled.view()), {});
   TAUTLINE_CHECK_EQUAL(untangled.result.invertedAfter, usual.invertedAfter);
-  TAUTLINE_CHECK_EQUAL(static_cast<Index>(untangled.remaining), usual.invertedAfter);
+  TAUTLINE_CHECK_EQUAL(static_cast<Index>(untangled.result.remaining), usual.invertedAfter);
   const Run both = testCuts("untangle first", tangled, with({ Metric::InverseMeanRatio }));
   TAUTLINE_CHECK_EQUAL(both.result.invertedAfter, usual.invertedAfter);
   std::cout << "untangled " << untangled.result.invertedBefore << " elements, "
             << usual.invertedAfter << " remain\n";
   testConvergenceOfAll();
+  testElementData();
   testFailure();
   testRefusals();
   return exitCode();

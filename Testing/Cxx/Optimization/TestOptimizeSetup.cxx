@@ -115,6 +115,17 @@ void checkPatches(const SimplexMesh& s)
   TAUTLINE_CHECK(same);
 }
 
+/// The first cell once more, at the other end of the list: it is in another part.
+void checkDuplicateAmongMany(MeshData data)
+{
+  const Index cells = data.numberOfCells();
+  data.addCell(data.types[0],
+    std::vector<Index>(data.connectivity.begin(), data.connectivity.begin() + data.offsets[1]));
+  const std::vector<DuplicateCell> found = findSkin(Mesh(data.view()), Several).duplicates;
+  TAUTLINE_CHECK_EQUAL(found.size(), std::size_t(1));
+  TAUTLINE_CHECK(found.size() == 1 && found[0].cell == cells && found[0].original == 0);
+}
+
 /// Of meshes large enough for several parts, of one cell type and of two.
 void testSimplexMesh()
 {
@@ -133,6 +144,7 @@ void testSimplexMesh()
     checkPatches(one);
     TAUTLINE_CHECK(findSkin(mesh, 1).boundaryPoints == findSkin(mesh, Several).boundaryPoints);
     TAUTLINE_CHECK(findSkin(mesh, Several).boundaryPoints == mesh.boundary().isBoundaryPoint);
+    checkDuplicateAmongMany(data);
   }
 }
 

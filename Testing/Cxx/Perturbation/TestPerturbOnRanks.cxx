@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Perturbation on ranks: bitwise the points of one process, however the mesh is cut.
-#include "Blocks.h"
-#include "Check.h"
-#include "ThreadRanks.h"
+#include "MovingOnRanks.h"
 #include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Perturbation/PerturbOnRanks.h"
 
@@ -12,12 +10,7 @@ using namespace tautline;
 
 namespace
 {
-/// Points of the whole mesh, and the report.
-struct Run
-{
-  std::vector<double> points;
-  Perturbation report;
-};
+using Run = Moved<Perturbation>;
 
 MeshData distorted(CellType type, Index n)
 {
@@ -36,15 +29,9 @@ MeshData distorted(CellType type, Index n)
 Run runOn(const MeshData& whole, Cut cut, int ranks, const PerturbOptions& given,
   const std::vector<Index>& idOf)
 {
-  const auto rankOf = cutBy(whole, cut, ranks);
-  Run run;
-  run.points = whole.points;
-  std::mutex mutex;
-  onRanks(ranks,
-    [&](RankGroup& group)
+  return moveOnRanks<Perturbation>(whole, cut, ranks,
+    [&](DistributedMesh& mesh, Perturbation& result)
     {
-      const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
-      DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
       // Ids by way of the owners, which may have a point from another piece.
       std::vector<Index> ids = coordinateOrder(mesh);
       if (!idOf.empty())
@@ -61,17 +48,9 @@ Run runOn(const MeshData& whole, Cut cut, int ranks, const PerturbOptions& given
       }
       PerturbOptions options = given;
       options.ids = ids.data();
-      options.threads = 1 + group.rank() % 2;
-      const Perturbation result = perturbOnRanks(mesh, false, fixed.data(), options);
-      const std::lock_guard<std::mutex> lock(mutex);
-      for (std::size_t p = 0; p < part.pointOf.size(); ++p)
-      {
-        std::copy_n(
-          &result.points[3 * mesh.localOfPiece()[p]], 3, &run.points[3 * part.pointOf[p]]);
-      }
-      run.report = result;
+      options.threads = 1 + mesh.group().rank() % 2;
+      result = perturbOnRanks(mesh, false, fixed.data(), options);
     });
-  return run;
 }
 
 /// The points of a mesh by x, then y, then z.
@@ -111,22 +90,18 @@ void testCuts(const char* name, const MeshData& whole, const PerturbOptions& giv
   const Perturbation one = perturb(Mesh(whole.view()), fixed.data(), options);
   TAUTLINE_CHECK(one.moved > 0 && one.moved < one.movable + 1);
   TAUTLINE_CHECK(one.points != whole.points);
-  for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
-  {
-    for (const int ranks : { 1, 2, 3, 4 })
+  forEachCut({ 1, 2, 3, 4 },
+    [&](Cut cut, int ranks)
     {
-      const Context inner(
-        "cut " + std::to_string(static_cast<int>(cut)) + ", " + std::to_string(ranks) + " ranks");
-      const Run run = runOn(whole, cut, ranks, given, idOf);
-      TAUTLINE_CHECK(run.points == one.points); // bitwise
-      TAUTLINE_CHECK_EQUAL(run.report.movable, one.movable);
-      TAUTLINE_CHECK_EQUAL(run.report.moved, one.moved);
-      TAUTLINE_CHECK_EQUAL(run.report.elements, one.elements);
-      TAUTLINE_CHECK_EQUAL(run.report.invertedBefore, one.invertedBefore);
-      TAUTLINE_CHECK_EQUAL(run.report.invertedAfter, one.invertedAfter);
-      TAUTLINE_CHECK_EQUAL(run.report.largestDisplacement, one.largestDisplacement);
-    }
-  }
+      const auto [points, report] = runOn(whole, cut, ranks, given, idOf);
+      TAUTLINE_CHECK(points == one.points); // bitwise
+      TAUTLINE_CHECK_EQUAL(report.movable, one.movable);
+      TAUTLINE_CHECK_EQUAL(report.moved, one.moved);
+      TAUTLINE_CHECK_EQUAL(report.elements, one.elements);
+      TAUTLINE_CHECK_EQUAL(report.invertedBefore, one.invertedBefore);
+      TAUTLINE_CHECK_EQUAL(report.invertedAfter, one.invertedAfter);
+      TAUTLINE_CHECK_EQUAL(report.largestDisplacement, one.largestDisplacement);
+    });
 }
 
 void testOrder()
@@ -175,7 +150,7 @@ void testRefusals()
   // An interruption on one rank is one on all.
   stopped.progress = [](double) { return false; };
   const Run run = runOn(whole, Cut::Slabs, 2, stopped, {});
-  TAUTLINE_CHECK(run.report.stopped);
+  TAUTLINE_CHECK(run.result.stopped);
 }
 }
 

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What Optimize Mesh gathers on the first process: the points are those of one process, the summary
+// states the reason on all processes, and what one process refuses all refuse.
+#include "MotionRanks.h"
+#include "Surfaces.h"
+
+#include "vtkMeshOptimizer.h"
+
+#include "vtkImageData.h"
+
+#include <limits>
+
+using namespace tautline;
+
+namespace
+{
+constexpr int SizeOfBlock = 4;               // cubes along each edge
+constexpr int FeatureKinds = 5, Regions = 6; // indices of arrays
+constexpr double NaN = std::numeric_limits<double>::quiet_NaN();
+
+MeshData block()
+{
+  return jittered(CellType::Tetrahedron, SizeOfBlock, 0.25);
+}
+
+/// Every cell with its first point below the middle lists its points in the opposite order: the cut
+/// in two slabs has them in one piece.
+MeshData halfTurned()
+{
+  MeshData data = block();
+  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+  {
+    const auto begin = data.connectivity.begin() + data.offsets[cell];
+    if (data.point(*begin)[0] < 0.5 * SizeOfBlock)
+    {
+      std::swap(begin[2], begin[3]);
+    }
+  }
+  return data;
+}
+
+/// Geometries, arrays of the features, and objectives that need the whole mesh.
+void testSettings(vtkMPIController* controller)
+{
+  // A cube made round, and the surface it is to lie on, a little larger.
+  const Vec3 middle = { 2, 2, 2 };
+  MeshData ball = block();
+  ball.transform(
+    [&](const Vec3& p)
+    {
+      const Vec3 d = p - middle;
+      const double longest = std::max({ std::abs(d[0]), std::abs(d[1]), std::abs(d[2]) });
+      return longest > 0 ? middle + (longest / norm(d)) * d : p;
+    });
+  MeshData sphere = sphereSurface(CellType::Quadrilateral, 8);
+  sphere.transform([&](const Vec3& p) { return middle + 2.05 * p; });
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  testGathered<vtkMeshOptimizer>("geometry", controller, ball,
+    "points that slide on curved surfaces and geometries need the whole mesh",
+    [&](vtkMeshOptimizer* filter, const RankPart&)
+    {
+      // The geometry is in pieces, too.
+      const bool alone = !vtkMultiProcessController::GetGlobalController();
+      const RankPart here = partOf(sphere, rank,
+        alone ? std::function<int(Index)>([=](Index) { return rank; })
+              : cutBy(sphere, Cut::Slabs, size));
+      filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
+      filter->SetInputDataObject(3, numberedGridOf(here));
+    });
+  testGathered<vtkMeshOptimizer>("regions", controller, block(),
+    "regions and feature kinds need the whole mesh",
+    [](vtkMeshOptimizer* filter, const RankPart&)
+    {
+      filter->SetInputArrayToProcess(
+        Regions, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "regions");
+    });
+  testGathered<vtkMeshOptimizer>("feature kinds", controller, block(),
+    "regions and feature kinds need the whole mesh",
+    [](vtkMeshOptimizer* filter, const RankPart&)
+    {
+      filter->SetInputArrayToProcess(
+        FeatureKinds, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "kinds");
+    });
+  testGathered<vtkMeshOptimizer>("rescaled untangling", controller,
+    jittered(CellType::Tetrahedron, SizeOfBlock, 0.42),
+    "rescaled untangling objectives need the whole mesh",
+    [](vtkMeshOptimizer* filter, const RankPart&)
+    {
+      filter->AddObjectiveByName("untangle_beta");
+      filter->AddObjectiveByName("imr");
+      filter->SetBeta(0.01);
+    });
+}
+
+/// Pieces that do not fit, and what one process can do.
+void testPieces(vtkMPIController* controller)
+{
+  const auto none = [](vtkMeshOptimizer*, const RankPart&) {};
+  testGathered<vtkMeshOptimizer>("opposite orders", controller, halfTurned(),
+    "neighbouring cells list their points in opposite orders", none);
+  MeshData huge = block();
+  huge.transform([](const Vec3& p) { return 1e200 * p; });
+  testGathered<vtkMeshOptimizer>(
+    "size", controller, huge, "its coordinates are of extreme size", none);
+}
+
+/// What a part is changed to before it becomes an input.
+using Change = std::function<vtkSmartPointer<vtkDataObject>(const RankPart&)>;
+
+/// What a run of the filter has: its error, or the summary.
+struct Outcome
+{
+  bool refused = false, named = false; ///< there is an error, with the text
+  bool image = false;
+  vtkIdType cells = 0;
+  std::string summary;
+};
+
+Outcome outcomeOf(const char* text, const RankPart& part, const Change& change, bool merge)
+{
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetMergeCoincidentPoints(merge);
+  filter->SetInputDataObject(0, change(part));
+  Messages messages(filter);
+  filter->Update();
+  Outcome outcome;
+  outcome.refused = messages.has("ERROR: ");
+  outcome.named = messages.has(text);
+  outcome.image = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
+  outcome.cells = filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL);
+  outcome.summary = filter->GetSummary() ? filter->GetSummary() : "";
+  return outcome;
+}
+
+/// The same error on each process, also on those that have nothing wrong.
+void testRefused(const char* text, vtkMPIController* controller, const Change& change, bool merge)
+{
+  const Context context(text);
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const MeshData whole = block();
+  for (const Cut cut : { Cut::Slabs, Cut::Random })
+  {
+    const RankPart part = partOf(whole, rank, cutBy(whole, cut, size));
+    const Outcome outcome = outcomeOf(text, part, change, merge);
+    TAUTLINE_CHECK(outcome.refused && outcome.named);
+    TAUTLINE_CHECK(outcome.cells == 0 || outcome.image); // which keeps its extent
+    TAUTLINE_CHECK_EQUAL(outcome.summary, std::string());
+  }
+}
+
+/// The same text in the summaries of all processes.
+bool isShared(vtkMPIController* controller, const std::string& text)
+{
+  int length = static_cast<int>(text.size());
+  controller->Broadcast(&length, 1, 0);
+  std::string first = text;
+  first.resize(length);
+  controller->Broadcast(first.data(), length, 0);
+  return first == text;
+}
+
+/// A message of the pieces that does not keep the filter from its work in one place; the summary
+/// has it on all processes.
+void testStated(const char* text, vtkMPIController* controller, const Change& change, bool merge)
+{
+  const Context context(text);
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const MeshData whole = block();
+  for (const Cut cut : { Cut::Slabs, Cut::Random })
+  {
+    const RankPart part = partOf(whole, rank, cutBy(whole, cut, size));
+    const Outcome outcome = outcomeOf(text, part, change, merge);
+    TAUTLINE_CHECK(!outcome.refused);
+    TAUTLINE_CHECK_EQUAL(outcome.cells, static_cast<vtkIdType>(part.cellOf.size()));
+    const std::string sentence =
+      "\nThe mesh was put together on the first process: its pieces could not be joined. ";
+    const std::size_t at = outcome.summary.find(sentence);
+    TAUTLINE_CHECK(at != std::string::npos && outcome.summary.find(text, at) != std::string::npos);
+    TAUTLINE_CHECK(outcome.summary.find("..") == std::string::npos);
+    TAUTLINE_CHECK(isShared(controller, outcome.summary));
+  }
+}
+
+/// A point inside that is not finite: its cells are left out, as on one process.
+void testNotFinite(vtkMPIController* controller)
+{
+  const Context context("not finite");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  constexpr Index inside = 62; // the middle of 5 x 5 x 5 points
+  const Change change = [](const RankPart& part)
+  {
+    auto grid = numberedGridOf(part);
+    for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+    {
+      if (part.pointOf[p] == inside)
+      {
+        grid->GetPoints()->SetPoint(static_cast<vtkIdType>(p), NaN, 0, 0);
+      }
+    }
+    return grid;
+  };
+  testStated("has a coordinate that is not finite", controller, change, true);
+  const MeshData whole = block();
+  const auto pointsOf = [&](const RankPart& part)
+  {
+    vtkNew<vtkMeshOptimizer> filter;
+    filter->SetInputDataObject(0, change(part));
+    filter->Update();
+    TAUTLINE_CHECK(
+      std::string(filter->GetSummary()).find("1 points have a NaN") != std::string::npos);
+    TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 26); // of 3 x 3 x 3
+    std::vector<double> points(whole.points.size(), HUGE_VAL);
+    auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+    for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+    {
+      double* x = &points[3 * part.pointOf[p]];
+      output->GetPoint(static_cast<vtkIdType>(p), x);
+      if (part.pointOf[p] == inside)
+      {
+        TAUTLINE_CHECK(std::isnan(x[0]));
+        x[0] = 0;
+      }
+    }
+    return points;
+  };
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  const std::vector<double> expected = pointsOf(partOf(whole, 0, [](Index) { return 0; }));
+  vtkMultiProcessController::SetGlobalController(controller);
+  for (const Cut cut : { Cut::Slabs, Cut::Random })
+  {
+    checkSame(pointsOf(partOf(whole, rank, cutBy(whole, cut, size))), expected);
+  }
+}
+
+/// A tetrahedron with a point on each edge.
+MeshData quadratic()
+{
+  constexpr int edges[6][2] = { { 0, 1 }, { 1, 2 }, { 0, 2 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
+  const Vec3 corners[4] = { { 9, 9, 9 }, { 10, 9, 9 }, { 9, 10, 9 }, { 9, 9, 10 } };
+  MeshData data;
+  for (const Vec3& corner : corners)
+  {
+    data.addPoint(corner);
+  }
+  for (const auto& edge : edges)
+  {
+    data.addPoint(0.5 * (corners[edge[0]] + corners[edge[1]]));
+  }
+  data.addCell(VTK_QUADRATIC_TETRA, { 0, 1, 2, 3, 4, 5, 6, 7, 8, 9 });
+  return data;
+}
+
+/// What the last process only has wrong.
+void testErrors(vtkMPIController* controller)
+{
+  const bool last = controller->GetLocalProcessId() == controller->GetNumberOfProcesses() - 1;
+  testStated(
+    "there are none: run Generate Global Ids first.", controller,
+    [=](const RankPart& part)
+    {
+      auto grid = numberedGridOf(part);
+      last ? static_cast<void>(grid->GetPointData()->SetGlobalIds(nullptr)) : void();
+      return grid;
+    },
+    false);
+  testRefused(
+    "Points at different places have the global id", controller,
+    [=](const RankPart& part)
+    {
+      auto grid = numberedGridOf(part);
+      vtkDataArray* ids = grid->GetPointData()->GetGlobalIds();
+      ids->SetComponent(0, 0, ids->GetComponent(last ? 1 : 0, 0));
+      return grid;
+    },
+    false);
+  testRefused(
+    "cells of quadratic or higher order", controller,
+    [=](const RankPart& part) { return last ? toGrid(quadratic()) : numberedGridOf(part); }, true);
+  testRefused(
+    "are implicit and cannot move", controller,
+    [=](const RankPart& part) -> vtkSmartPointer<vtkDataObject>
+    {
+      if (!last)
+      {
+        return numberedGridOf(part);
+      }
+      auto image = vtkSmartPointer<vtkImageData>::New();
+      image->SetDimensions(3, 3, 3);
+      return image;
+    },
+    true);
+}
+}
+
+//------------------------------------------------------------------------------
+int TestGatheredMotion(int argc, char* argv[])
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  testSettings(controller);
+  testPieces(controller);
+  testNotFinite(controller);
+  testErrors(controller);
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  controller->Finalize();
+  return exitCode();
+}

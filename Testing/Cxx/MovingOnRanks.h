@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file MovingOnRanks.h
+ * @brief What moves the points of a mesh on ranks that are threads, for tests.
+ */
+#ifndef tautline_MovingOnRanks_h
+#define tautline_MovingOnRanks_h
+
+#include "Check.h"
+#include "ThreadRanks.h"
+#include "tautline/Mesh/DistributedMesh.h"
+
+#include <initializer_list>
+
+namespace tautline
+{
+/** Points of the whole mesh, and what a rank has found besides. */
+template <class Result>
+struct Moved
+{
+  std::vector<double> points;
+  Result result;
+};
+
+/** Calls work(mesh, result) on each rank with its part of a mesh, with ghost cells if cut in slabs,
+    and puts the points of the results, of local points, back to the whole mesh. */
+template <class Result, class Work>
+Moved<Result> moveOnRanks(const MeshData& whole, Cut cut, int ranks, const Work& work)
+{
+  const auto rankOf = cutBy(whole, cut, ranks);
+  Moved<Result> moved;
+  moved.points = whole.points;
+  std::mutex mutex;
+  onRanks(ranks,
+    [&](RankGroup& group)
+    {
+      const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
+      DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
+      Result result;
+      work(mesh, result);
+      const std::lock_guard<std::mutex> lock(mutex);
+      for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+      {
+        std::copy_n(
+          &result.points[3 * mesh.localOfPiece()[p]], 3, &moved.points[3 * part.pointOf[p]]);
+      }
+      moved.result = result;
+    });
+  return moved;
+}
+
+/** Calls test(cut, ranks) with all cuts. */
+template <class Test>
+void forEachCut(std::initializer_list<int> numbers, const Test& test)
+{
+  for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
+  {
+    for (const int ranks : numbers)
+    {
+      const Context context(
+        "cut " + std::to_string(static_cast<int>(cut)) + ", " + std::to_string(ranks) + " ranks");
+      test(cut, ranks);
+    }
+  }
+}
+}
+#endif
