@@ -2,10 +2,10 @@
 #include "vtkMeshUntangler.h"
 
 #include "Blocks.h"
+#include "GatheredExecution.h"
 #include "IterationHistory.h"
 #include "MovableMesh.h"
 #include "ProcessGroup.h"
-#include "Processes.h"
 #include "ProgressStep.h"
 #include "RankMesh.h"
 #include "tautline/Untangling/Untangle.h"
@@ -153,18 +153,17 @@ int vtkMeshUntangler::RequestData(
   return this->Attempt(outputVector, "untangle the mesh in parts",
     [&]
     {
-      vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
       tautline::TableRows history;
-      if (tautline::isOnSeveralProcesses(input) || this->ReproducibleOrder)
+      if (this->Pieces || this->ReproducibleOrder)
       {
         this->UntangleOnRanks(inputVector, vtkDataObject::GetData(outputVector, MeshPort), history);
         history.fill(vtkTable::GetData(outputVector, HistoryPort));
         return;
       }
-      tautline::requireFirstProcess(input, FilterName);
       this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, !this->FixBoundary,
         [&](const tautline::InputBlock& block) { this->Untangle(block, history); });
       this->AddToSummary(this->GetBlockNotice());
+      this->AddToSummary(this->WhyGathered);
       history.fill(vtkTable::GetData(outputVector, HistoryPort));
       if (this->NotValid > 0)
       {
@@ -245,13 +244,43 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
 }
 
 //------------------------------------------------------------------------------
+tautline::GatheredResult vtkMeshUntangler::GetGatheredResult() const
+{
+  return tautline::GatheredResult::SameMesh;
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshUntangler::TakesPieces(vtkInformationVector** inputs)
+{
+  this->Pieces.reset();
+  this->Group.reset();
+  std::string why;
+  this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]),
+    this->Threads, this->MergeCoincidentPoints, &why);
+  this->WhyGathered = tautline::gatheredSentence(why);
+  return this->Pieces != nullptr;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshUntangler::ExchangeResult(tautline::ResultStream& stream)
+{
+  this->Superclass::ExchangeResult(stream);
+  stream(this->Reason, this->InvertedBefore, this->InvertedAfter, this->Impossible, this->NotValid);
+}
+
+//------------------------------------------------------------------------------
 void vtkMeshUntangler::UntangleOnRanks(
   vtkInformationVector** inputVector, vtkDataObject* output, tautline::TableRows& history)
 {
-  const auto group = tautline::makeProcessGroup();
+  std::unique_ptr<tautline::RankMesh> pieces = std::move(this->Pieces);
+  const auto group = pieces ? std::move(this->Group) : tautline::makeProcessGroup();
   vtkDataObject* data = vtkDataObject::GetData(inputVector[MeshPort]);
-  tautline::RankMesh mesh(
-    *group, tautline::requirePiece(data), this->Threads, this->MergeCoincidentPoints);
+  if (!pieces)
+  {
+    pieces = std::make_unique<tautline::RankMesh>(
+      *group, tautline::requirePiece(data), this->Threads, this->MergeCoincidentPoints);
+  }
+  tautline::RankMesh& mesh = *pieces;
   output->ShallowCopy(data);
   auto* input = vtkDataSet::SafeDownCast(data);
   group->together(

@@ -31,8 +31,8 @@
  *
  * @par Several processes:
  * Each may have pieces of the mesh. Volume meshes and planar ones are worked on where they are, in
- * the reproducible order; what that does not cover is gathered on the first process or refused by
- * name.
+ * the reproducible order. Surfaces in space, inclined planes, blocks and what is left inverted are
+ * gathered on the first process; the summary names what was gathered and why.
  *
  * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see
  * tautline/Untangling/Untangle.h.
@@ -47,10 +47,13 @@
 #include "vtkMeshMotionAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
+#include <memory> // for Pieces
 #include <string> // for Reason
 
 namespace tautline
 {
+class RankGroup;
+class RankMesh;
 class TableRows;
 struct InputBlock;
 }
@@ -133,6 +136,9 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void ClearResult() override;
+  tautline::GatheredResult GetGatheredResult() const override;
+  bool TakesPieces(vtkInformationVector** inputs) override;
+  void ExchangeResult(tautline::ResultStream& stream) override;
 
 private:
   vtkMeshUntangler(const vtkMeshUntangler&) = delete;
@@ -147,6 +153,10 @@ private:
   int Effort = NORMAL;
   bool FixBoundary = true;
   bool ReproducibleOrder = false;
+  // Of an execution on several processes:
+  std::unique_ptr<tautline::RankGroup> Group; ///< outlives Pieces
+  std::unique_ptr<tautline::RankMesh> Pieces; ///< null: gathered, or one process
+  std::string WhyGathered;                    ///< a sentence, or ""
   std::string Reason;
   vtkIdType InvertedBefore = 0;
   vtkIdType InvertedAfter = 0;
