@@ -11,8 +11,9 @@ from on_ranks import OUT, run_with_output
 CUTS = ("slabs", "tree", "random")
 ROUNDING = 1e-13
 CLOSE, DIGITS = 1e-9, 1e-3
-# Of a result in parts against that of one process; parts of 250 cells with fixed points have few ways.
-ANGLE_LOSS, RATIO_LOSS = {"plain": 2.0, "kept": 6.0}, 1.1
+# Of a result in parts against that of one process; parts of 250 cells with fixed points have few ways. On Debian 12 the
+# loss is below 0.1 degrees; with other compilers rounding takes other ways.
+ANGLE_LOSS, RATIO_LOSS = {"plain": 2.0, "kept": 1.0}, 1.1
 FACES = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]
 GATHERED = {
     "small": "fewer than", "on surface": "a boundary on the surface", "metric": "a metric as objective",
@@ -97,7 +98,7 @@ def check_data(whole: Whole, given: dict, case: str) -> None:
     # New points are where their data say, unless a later round has moved them: these stay in the block.
     is_given = (given["points"][whole.of_points["place"]] == whole.of_points["given"]).all(axis=1)
     far = np.abs(whole.of_points["given"] - whole.positions)[~is_given]
-    assert far.size or case == "late", case
+    assert far.size or case == "late", case  # without an inserted point
     assert is_given.mean() > 0.5 and far.max(initial=0) < (CLOSE if case == "once" else 1.0), (case, far.max(initial=0))
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshBlocks.h"
 
+#include "CuttingFrames.h"
 #include "tautline/Core/Parallel.h"
 
 #include <limits>
@@ -13,23 +14,6 @@ namespace
 /// Of so many tetrahedra one decides where the planes are.
 constexpr TetId SampleStep = 16;
 
-Vec3 normalized(const Vec3& v)
-{
-  return (1.0 / norm(v)) * v;
-}
-
-/// Three orthogonal directions; no two of different frames are parallel.
-std::array<Vec3, 3> directionsOf(int frame)
-{
-  if (frame == 0)
-  {
-    return { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
-  }
-  const Vec3 a = normalized(frame == 1 ? Vec3{ 1, 1, 1 } : Vec3{ -1, 1, 0.5 });
-  const Vec3 b = normalized(cross(a, frame == 1 ? Vec3{ 0, 0, 1 } : Vec3{ 0, 1, 1 }));
-  return { a, b, cross(a, b) };
-}
-
 Vec3 sumOfVertices(const TetrahedronMesh& mesh, TetId t)
 {
   const TetVertices& v = mesh.tet(t).vertices;
@@ -41,7 +25,7 @@ class PlaneTree
 {
 public:
   PlaneTree(const TetrahedronMesh& mesh, int frame, int levels)
-    : Directions(directionsOf(frame))
+    : Frame(frame)
     , Nodes((std::size_t(1) << levels) - 1)
     , Levels(levels)
   {
@@ -62,7 +46,7 @@ public:
     for (int level = 0; level < this->Levels; ++level)
     {
       const Node& n = this->Nodes[node];
-      node = 2 * node + (dot(this->Directions[n.direction], x) < n.position ? 1 : 2);
+      node = 2 * node + (this->Frame.along(n.direction, x) < n.position ? 1 : 2);
     }
     return static_cast<std::uint8_t>(node - this->Nodes.size());
   }
@@ -73,7 +57,7 @@ private:
     int direction = 0;
     double position = 0;
   };
-  using Iterator = std::vector<Vec3>::iterator;
+  using Iterator = CuttingFrame::Iterator;
 
   void split(std::size_t node, Iterator begin, Iterator end)
   {
@@ -82,29 +66,14 @@ private:
       return;
     }
     Node& n = this->Nodes[node];
-    double longest = -1.0;
-    for (int k = 0; k < 3; ++k)
-    {
-      const auto less = [&](const Vec3& a, const Vec3& b)
-      { return dot(this->Directions[k], a) < dot(this->Directions[k], b); };
-      const auto ends = std::minmax_element(begin, end, less);
-      const double extent = dot(this->Directions[k], *ends.second - *ends.first);
-      if (extent > longest)
-      {
-        longest = extent;
-        n.direction = k;
-      }
-    }
-    const Vec3 direction = this->Directions[n.direction];
+    n.direction = this->Frame.longest(begin, end);
     const Iterator middle = begin + (end - begin) / 2;
-    std::nth_element(begin, middle, end,
-      [&](const Vec3& a, const Vec3& b) { return dot(direction, a) < dot(direction, b); });
-    n.position = dot(direction, *middle);
+    n.position = this->Frame.cut(n.direction, begin, middle, end);
     this->split(2 * node + 1, begin, middle);
     this->split(2 * node + 2, middle, end);
   }
 
-  std::array<Vec3, 3> Directions;
+  CuttingFrame Frame;
   std::vector<Node> Nodes;
   int Levels;
 };

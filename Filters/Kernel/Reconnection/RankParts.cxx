@@ -1,36 +1,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RankParts.h"
 
+#include "CuttingFrames.h"
 #include "tautline/Core/Interruption.h"
 
 #include <algorithm>
+#include <iterator>
+#include <numeric>
 
 namespace tautline
 {
 namespace
 {
 using Facet = std::array<Index, 3>;
-constexpr int OppositeFacet[4][3] = { { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0, 1, 2 } };
 /// So many centroids for each rank decide where the planes are.
 constexpr Index SamplesOfRank = 2000;
-/// The three frames of directions are used in turn; each time after that the planes are moved by
-/// so much more of the cells, to the one side and to the other, in so many steps.
-constexpr int Frames = 3, Shifts = 7;
+/// The frames of directions are used in turn, and the planes are moved by so much more of the
+/// cells, to the one side and to the other, in so many steps.
+constexpr int Shifts = 7;
 constexpr double Shift = 0.08;
+/// So many centroids are sorted at most to find the planes of a round.
+constexpr std::size_t MostSorted = 1000000;
 
-/// By which part of the cells the planes of a round are moved.
-double shiftOf(int round)
+/// By which part of the cells planes are moved in a step.
+double shiftOf(int step)
 {
-  const int turn = (round / Frames) % Shifts;
-  return (turn % 2 == 1 ? Shift : -Shift) * ((turn + 1) / 2);
-}
-
-Facet facetOf(const PartCell& cell, int i)
-{
-  const int* f = OppositeFacet[i];
-  Facet facet = { cell.points[f[0]], cell.points[f[1]], cell.points[f[2]] };
-  std::sort(facet.begin(), facet.end());
-  return facet;
+  return (step % 2 == 1 ? Shift : -Shift) * ((step + 1) / 2);
 }
 
 bool byNumber(const PartPoint& a, const PartPoint& b)
@@ -55,22 +50,50 @@ std::vector<Item> joined(std::vector<std::vector<Item>>&& lists)
   return all;
 }
 
-/// The points of cells.
-std::vector<PartPoint> pointsOf(const MeshPart& part, const std::vector<PartCell>& cells)
+/// The points of cells. @param places those of the points of the part
+std::vector<PartPoint> pointsOf(
+  const MeshPart& part, const PointPlaces& places, const std::vector<PartCell>& cells)
 {
-  std::vector<Index> numbers;
+  std::vector<Index> used;
+  used.reserve(4 * cells.size());
   for (const PartCell& cell : cells)
   {
-    numbers.insert(numbers.end(), cell.points.begin(), cell.points.end());
+    std::transform(cell.points.begin(), cell.points.end(), std::back_inserter(used), places);
   }
-  std::sort(numbers.begin(), numbers.end());
-  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
   std::vector<PartPoint> points;
-  for (const Index number : numbers)
+  points.reserve(used.size());
+  for (const Index p : used)
   {
-    points.push_back(part.points[placeOf(part.points, number)]);
+    points.push_back(part.points[p]);
   }
   return points;
+}
+
+/// Sorts cells by the numbers of their points.
+void sortCells(std::vector<PartCell>& cells)
+{
+  struct Key
+  {
+    std::array<Index, 4> points;
+    std::size_t cell;
+  };
+  std::vector<Key> keys;
+  keys.reserve(cells.size());
+  for (const PartCell& cell : cells)
+  {
+    keys.push_back({ sorted(cell.points), keys.size() });
+  }
+  std::sort(
+    keys.begin(), keys.end(), [](const Key& a, const Key& b) { return a.points < b.points; });
+  std::vector<PartCell> inOrder;
+  inOrder.reserve(cells.size());
+  for (const Key& key : keys)
+  {
+    inOrder.push_back(cells[key.cell]);
+  }
+  cells = std::move(inOrder);
 }
 
 std::uint64_t hashOf(const PartCell& cell)
@@ -85,30 +108,13 @@ std::uint64_t hashOf(const PartCell& cell)
   return hash;
 }
 
-Vec3 normalized(const Vec3& v)
-{
-  return (1.0 / norm(v)) * v;
-}
-
-/// Three orthogonal directions; no two of different frames are parallel.
-std::array<Vec3, 3> directionsOf(int frame)
-{
-  if (frame == 0)
-  {
-    return { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
-  }
-  const Vec3 a = normalized(frame == 1 ? Vec3{ 1, 1, 1 } : Vec3{ -1, 1, 0.5 });
-  const Vec3 b = normalized(cross(a, frame == 1 ? Vec3{ 0, 0, 1 } : Vec3{ 0, 1, 1 }));
-  return { a, b, cross(a, b) };
-}
-
 /// Planes that divide a sample among ranks: a node has the ranks from first to end.
 class RankTree
 {
 public:
-  RankTree(std::vector<Vec3> sample, int ranks, int round)
-    : Directions(directionsOf(round % Frames))
-    , Moved(shiftOf(round))
+  RankTree(std::vector<Vec3>& sample, int ranks, int frame, double moved)
+    : Frame(frame)
+    , Moved(moved)
   {
     this->split(0, ranks, sample.begin(), sample.end());
   }
@@ -119,9 +125,24 @@ public:
     while (this->Nodes[node].below > 0)
     {
       const Node& n = this->Nodes[node];
-      node = dot(this->Directions[n.direction], x) < n.position ? n.below : n.above;
+      node = this->Frame.along(n.direction, x) < n.position ? n.below : n.above;
     }
     return this->Nodes[node].rank;
+  }
+
+  /// How near planes come to the centre of a ball: 0 at the radius or farther, the weight at it.
+  double cost(const Ball& ball) const
+  {
+    std::size_t node = 0;
+    double nearest = ball.radius;
+    while (this->Nodes[node].below > 0)
+    {
+      const Node& n = this->Nodes[node];
+      const double distance = this->Frame.along(n.direction, ball.center) - n.position;
+      nearest = std::min(nearest, std::abs(distance));
+      node = distance < 0.0 ? n.below : n.above;
+    }
+    return ball.weight * (1.0 - nearest / ball.radius);
   }
 
 private:
@@ -131,7 +152,7 @@ private:
     double position = 0;
     std::size_t below = 0, above = 0; ///< 0: a leaf
   };
-  using Iterator = std::vector<Vec3>::iterator;
+  using Iterator = CuttingFrame::Iterator;
 
   std::size_t split(int first, int end, Iterator from, Iterator to)
   {
@@ -142,26 +163,13 @@ private:
     {
       return node;
     }
-    double longest = -1.0;
-    int direction = 0;
-    for (int k = 0; k < 3; ++k)
-    {
-      const auto less = [&](const Vec3& a, const Vec3& b)
-      { return dot(this->Directions[k], a) < dot(this->Directions[k], b); };
-      const auto ends = std::minmax_element(from, to, less);
-      const double extent = dot(this->Directions[k], *ends.second - *ends.first);
-      direction = extent > longest ? k : direction;
-      longest = std::max(extent, longest);
-    }
     const int middle = first + (end - first) / 2;
     const double share = static_cast<double>(middle - first) / (end - first) + this->Moved;
     const Iterator at = from +
       std::min(static_cast<std::ptrdiff_t>(share * static_cast<double>(to - from)), to - from - 1);
-    const Vec3 d = this->Directions[direction];
-    std::nth_element(
-      from, at, to, [&](const Vec3& a, const Vec3& b) { return dot(d, a) < dot(d, b); });
+    const int direction = this->Frame.longest(from, to);
     this->Nodes[node].direction = direction;
-    this->Nodes[node].position = dot(d, *at);
+    this->Nodes[node].position = this->Frame.cut(direction, from, at, to);
     const std::size_t below = this->split(first, middle, from, at);
     const std::size_t above = this->split(middle, end, at, to);
     this->Nodes[node].below = below;
@@ -169,10 +177,54 @@ private:
     return node;
   }
 
-  std::array<Vec3, 3> Directions;
+  CuttingFrame Frame;
   double Moved;
   std::vector<Node> Nodes;
 };
+
+/// The planes of a round: of those in all directions but the last ones and at all places the ones
+/// that cost least. @param frame of the last round, -1 before the first one; gets that of this one
+RankTree chooseTree(
+  std::vector<Vec3> sample, int ranks, const std::vector<Ball>& inside, int& frame)
+{
+  const auto treeOf = [&](int step, int direction)
+  { return RankTree(sample, ranks, direction, shiftOf(step)); };
+  const auto costOf = [&](const RankTree& tree)
+  {
+    return std::accumulate(inside.begin(), inside.end(), 0.0,
+      [&](double sum, const Ball& ball) { return sum + tree.cost(ball); });
+  };
+  const int last = frame;
+  frame = (last + 1) % CuttingFrame::count;
+  RankTree best = treeOf(0, frame);
+  double least = costOf(best);
+  const std::size_t affordable = MostSorted / std::max<std::size_t>(sample.size(), 1);
+  std::size_t choices = 1;
+  for (int step = 0; step < Shifts; ++step)
+  {
+    for (int k = 1; k < CuttingFrame::count; ++k)
+    {
+      const int direction = (last + k) % CuttingFrame::count;
+      if (step == 0 && k == 1)
+      {
+        continue; // the first one
+      }
+      if (least == 0.0 || ++choices > affordable)
+      {
+        return best;
+      }
+      RankTree tree = treeOf(step, direction);
+      const double cost = costOf(tree);
+      if (cost < least)
+      {
+        least = cost;
+        best = std::move(tree);
+        frame = direction;
+      }
+    }
+  }
+  return best;
+}
 
 /// Keeps the directory entry of what has a first number.
 int directoryOf(Index number, int ranks)
@@ -206,6 +258,42 @@ void throwIfAny(RankGroup& group, Index facets)
     throw Error(std::to_string(all) +
       " faces are used by three or more tetrahedra: remove duplicate or overlapping cells first");
   }
+}
+
+/// All facets of the cells of a part, in increasing order.
+std::vector<OuterFacet> sortedFacets(const MeshPart& part, Index rank)
+{
+  // Those with the same first point together, then in order among themselves.
+  const PointPlaces places(part.points);
+  std::vector<std::size_t> begins(part.points.size() + 1, 0);
+  std::vector<std::array<Index, 4>> numbers;
+  numbers.reserve(part.cells.size());
+  constexpr std::size_t withFirst = 3; // facets that have the first of four points; one has not
+  for (const PartCell& cell : part.cells)
+  {
+    numbers.push_back(sorted(cell.points));
+    begins[places(numbers.back()[0]) + 1] += withFirst;
+    begins[places(numbers.back()[1]) + 1] += 1;
+  }
+  std::partial_sum(begins.begin(), begins.end(), begins.begin());
+  std::vector<std::size_t> next(begins.begin(), begins.end() - 1);
+  std::vector<OuterFacet> facets(4 * part.cells.size());
+  for (std::size_t c = 0; c < numbers.size(); ++c)
+  {
+    const auto cell = static_cast<Index>(c);
+    const std::array<Index, 4>& v = numbers[c];
+    std::size_t& first = next[places(v[0])];
+    facets[first++] = { { v[0], v[1], v[2] }, cell, rank };
+    facets[first++] = { { v[0], v[1], v[3] }, cell, rank };
+    facets[first++] = { { v[0], v[2], v[3] }, cell, rank };
+    facets[next[places(v[1])]++] = { { v[1], v[2], v[3] }, cell, rank };
+  }
+  for (std::size_t p = 0; p + 1 < begins.size(); ++p)
+  {
+    std::sort(facets.begin() + static_cast<std::ptrdiff_t>(begins[p]),
+      facets.begin() + static_cast<std::ptrdiff_t>(begins[p + 1]));
+  }
+  return facets;
 }
 
 /// Pairs the outer facets of all ranks. @param paired gets those of this rank that have a cell on
@@ -310,12 +398,12 @@ Index placeOf(const std::vector<PartPoint>& points, Index number)
   return std::lower_bound(points.begin(), points.end(), wanted, byNumber) - points.begin();
 }
 
-Vec3 centroidOf(const MeshPart& part, const PartCell& cell)
+Vec3 centroidOf(const MeshPart& part, const PointPlaces& places, const PartCell& cell)
 {
   Vec3 sum = { 0, 0, 0 };
   for (const Index number : sorted(cell.points)) // the same sum wherever the cell is
   {
-    sum += part.points[placeOf(part.points, number)].x;
+    sum += part.points[places(number)].x;
   }
   return 0.25 * sum;
 }
@@ -333,9 +421,10 @@ void redistribute(RankGroup& group, const std::vector<int>& targets, MeshPart& p
       {
         cells[targets[c]].push_back(part.cells[c]);
       }
+      const PointPlaces places(part.points);
       for (std::size_t r = 0; r < cells.size(); ++r)
       {
-        points[r] = pointsOf(part, cells[r]);
+        points[r] = pointsOf(part, places, cells[r]);
         auto share = part.shares.begin();
         for (const PartPoint& point : points[r])
         {
@@ -354,8 +443,7 @@ void redistribute(RankGroup& group, const std::vector<int>& targets, MeshPart& p
   group.together(
     [&]
     {
-      std::sort(part.cells.begin(), part.cells.end(),
-        [](const PartCell& a, const PartCell& b) { return sorted(a.points) < sorted(b.points); });
+      sortCells(part.cells);
       unitePoints(part.points);
       const auto key = [](const PartShare& share)
       { return std::make_pair(share.point, share.number); };
@@ -368,46 +456,54 @@ void redistribute(RankGroup& group, const std::vector<int>& targets, MeshPart& p
 }
 
 //------------------------------------------------------------------------------
-std::vector<int> divideAmongRanks(RankGroup& group, const MeshPart& part, int round)
+std::vector<int> divideAmongRanks(
+  RankGroup& group, const MeshPart& part, const std::vector<Ball>& inside, int& frame)
 {
   const Index all = group.sum(static_cast<Index>(part.cells.size()));
   const Index step = std::max<Index>(1, all / (SamplesOfRank * group.size()));
-  std::vector<Vec3> own;
-  for (const PartCell& cell : part.cells)
-  {
-    // Chosen by its points: the same cells wherever they are.
-    if (hashOf(cell) % static_cast<std::uint64_t>(step) == 0)
+  std::vector<Vec3> centroids, own;
+  group.together(
+    [&]
     {
-      own.push_back(centroidOf(part, cell));
-    }
-  }
-  const RankTree tree(joined(group.gatherItems(own)), group.size(), round);
+      const PointPlaces places(part.points);
+      centroids.reserve(part.cells.size());
+      for (const PartCell& cell : part.cells)
+      {
+        centroids.push_back(centroidOf(part, places, cell));
+        // Chosen by its points: the same cells wherever they are.
+        if (hashOf(cell) % static_cast<std::uint64_t>(step) == 0)
+        {
+          own.push_back(centroids.back());
+        }
+      }
+    });
+  std::vector<Vec3> sample = joined(group.gatherItems(own));
+  const std::vector<Ball> balls = joined(group.gatherItems(inside));
   std::vector<int> targets;
-  for (const PartCell& cell : part.cells)
-  {
-    targets.push_back(tree.find(centroidOf(part, cell)));
-  }
+  group.together(
+    [&]
+    {
+      const RankTree tree = chooseTree(std::move(sample), group.size(), balls, frame);
+      targets.reserve(centroids.size());
+      std::transform(centroids.begin(), centroids.end(), std::back_inserter(targets),
+        [&tree](const Vec3& x) { return tree.find(x); });
+    });
   return targets;
 }
 
 //------------------------------------------------------------------------------
-PartSurroundings surroundingsOf(RankGroup& group, const MeshPart& part)
+PartSurroundings surroundingsOf(
+  RankGroup& group, const MeshPart& part, const std::vector<std::array<Index, 3>>& marked)
 {
+  const auto isMarked = [&marked](const Facet& facet)
+  { return std::binary_search(marked.begin(), marked.end(), facet); };
   PartSurroundings around;
   std::vector<OuterFacet> outer;
   Index tooMany = 0;
   group.together(
     [&]
     {
-      std::vector<OuterFacet> all;
-      for (std::size_t c = 0; c < part.cells.size(); ++c)
-      {
-        for (int i = 0; i < 4; ++i)
-        {
-          all.push_back({ facetOf(part.cells[c], i), static_cast<Index>(c), Index(group.rank()) });
-        }
-      }
-      std::sort(all.begin(), all.end());
+      const std::vector<OuterFacet> all = sortedFacets(part, Index(group.rank()));
       for (std::size_t i = 0, end = 0; i < all.size(); i = end)
       {
         for (end = i; end < all.size() && all[end].facet == all[i].facet; ++end)
@@ -418,21 +514,23 @@ PartSurroundings surroundingsOf(RankGroup& group, const MeshPart& part)
         {
           outer.push_back(all[i]);
         }
-        else
+        else if (isMarked(all[i].facet))
         {
-          around.inner.insert(around.inner.end(), 2, all[i].facet);
+          around.markedSides += 2;
         }
       }
     });
   throwIfAny(group, tooMany);
-  const std::vector<Neighbour> neighbours = findNeighbours(group, outer, around.inner);
+  std::vector<Facet> paired;
+  const std::vector<Neighbour> neighbours = findNeighbours(group, outer, paired);
+  around.markedSides += std::count_if(paired.begin(), paired.end(), isMarked);
   around.shared = findShared(group, outer);
   std::vector<std::vector<PartCell>> cells(group.size());
   std::vector<std::vector<PartPoint>> points(group.size());
   group.together(
     [&]
     {
-      std::sort(around.inner.begin(), around.inner.end());
+      const PointPlaces places(part.points);
       std::vector<std::vector<Index>> ids(group.size());
       for (const Neighbour& neighbour : neighbours)
       {
@@ -446,13 +544,12 @@ PartSurroundings surroundingsOf(RankGroup& group, const MeshPart& part)
         {
           cells[r].push_back(part.cells[cell]);
         }
-        points[r] = pointsOf(part, cells[r]);
+        points[r] = pointsOf(part, places, cells[r]);
       }
     });
   around.cells = joined(group.exchangeItems(cells));
   around.points = joined(group.exchangeItems(points));
-  std::sort(around.cells.begin(), around.cells.end(),
-    [](const PartCell& a, const PartCell& b) { return sorted(a.points) < sorted(b.points); });
+  sortCells(around.cells);
   unitePoints(around.points);
   return around;
 }

@@ -6,6 +6,7 @@
 #ifndef tautline_RankParts_h
 #define tautline_RankParts_h
 
+#include "tautline/Core/NumberIntervals.h"
 #include "tautline/Core/RankGroup.h"
 #include "tautline/Core/VectorAlgebra.h"
 
@@ -20,7 +21,8 @@ struct PartPoint
   Index number = 0;
   Vec3 x = { 0, 0, 0 };
   unsigned char fixed = 0;
-  unsigned char onAllSeams = 0; ///< was on a seam in every round so far
+  /// Was near a seam in every round so far, or where a rank had no more cells to add.
+  unsigned char onAllSeams = 0;
 };
 
 /// A tetrahedron, as it is sent.
@@ -40,6 +42,14 @@ struct PartShare
   double weight = 0;
 };
 
+/// A place that planes are to be away from by a radius, above 0; the weight is what it costs to
+/// have a plane there.
+struct Ball
+{
+  Vec3 center;
+  double radius, weight;
+};
+
 /// What a rank works on.
 struct MeshPart
 {
@@ -54,16 +64,45 @@ void unitePoints(std::vector<PartPoint>& points);
 /// The place of a point in a sorted list; it must be there.
 Index placeOf(const std::vector<PartPoint>& points, Index number);
 
-/// The centroid of a cell.
-Vec3 centroidOf(const MeshPart& part, const PartCell& cell);
+/**
+ * @class tautline::PointPlaces
+ * @brief placeOf() for many numbers: a table of intervals tells where.
+ */
+class PointPlaces
+{
+public:
+  /// @param points must outlive this, and not change
+  explicit PointPlaces(const std::vector<PartPoint>& points)
+    : Points(points)
+    , Intervals(static_cast<Index>(points.size()), [&](Index p) { return points[p].number; })
+  {
+  }
+  /// As placeOf().
+  Index operator()(Index number) const
+  {
+    return this->Intervals.find(number, [this](Index p) { return this->Points[p].number; });
+  }
+
+private:
+  const std::vector<PartPoint>& Points;
+  NumberIntervals Intervals;
+};
+
+/// The centroid of a cell. @param places those of the points of the part
+Vec3 centroidOf(const MeshPart& part, const PointPlaces& places, const PartCell& cell);
 
 /// Sends each cell to a rank, with its points and their shares. The order of what a rank has then
 /// does not depend on where it was. Collective.
 void redistribute(RankGroup& group, const std::vector<int>& targets, MeshPart& part);
 
-/// The rank that each cell goes to in a round: planes across the longest extents, in directions
-/// that change from round to round, such that all ranks get about as many. Collective.
-std::vector<int> divideAmongRanks(RankGroup& group, const MeshPart& part, int round);
+/**
+ * @brief The rank that each cell goes to in a round: planes across the longest extents, in
+ * directions that change from round to round, such that all ranks get about as many. Collective.
+ * @param inside where planes are not to be. They are moved, and turned, to where this costs least.
+ * @param frame the CuttingFrame of the last round, -1 before the first one; gets another one
+ */
+std::vector<int> divideAmongRanks(
+  RankGroup& group, const MeshPart& part, const std::vector<Ball>& inside, int& frame);
 
 /// What is around a part.
 struct PartSurroundings
@@ -72,12 +111,16 @@ struct PartSurroundings
   std::vector<PartPoint> points; ///< theirs, in increasing order of the numbers
   /// Points that other ranks have, in increasing order.
   std::vector<Index> shared;
-  /// The facets of the part that have a cell on both sides, there or on another rank, as sorted
-  /// numbers of points: those within it twice. In increasing order.
-  std::vector<std::array<Index, 3>> inner;
+  /// Of the marked facets, the sides that have a cell of the part, if there is a cell on the other
+  /// side, too, here or on another rank.
+  Index markedSides = 0;
 };
 
-/// Finds them; throws Error on all ranks for facets of three or more cells. Collective.
-PartSurroundings surroundingsOf(RankGroup& group, const MeshPart& part);
+/**
+ * @brief Finds them; throws Error on all ranks for facets of three or more cells. Collective.
+ * @param marked sorted numbers of points, in increasing order
+ */
+PartSurroundings surroundingsOf(
+  RankGroup& group, const MeshPart& part, const std::vector<std::array<Index, 3>>& marked);
 }
 #endif

@@ -13,6 +13,20 @@ namespace tautline
 namespace
 {
 constexpr int Corners = 4;
+/// Cells with a point at a seam, and so many rings around these, are near it; about the same in
+/// lengths of their edges.
+constexpr int Reach = 2;
+constexpr double NearSeam = 2.0;
+/// In so many rounds at first, when there is much beside the seams that later rounds do better, the
+/// number of cells may grow by this part of what it may still grow by.
+constexpr int FirstRounds = 3;
+constexpr double FirstShare = 0.25;
+/// An operation adds so many cells as a rule, or fewer.
+constexpr double LargestGrowth = 4.0;
+/// So many places of a rank decide where planes are not to be.
+constexpr std::size_t MostPlaces = 2000;
+/// A cell this close to the bound of its quality is at it.
+constexpr double AtBound = 1e-3;
 
 /// The least of the values of all ranks.
 double minimum(RankGroup& group, double value)
@@ -25,7 +39,7 @@ struct LocalMesh
 {
   std::vector<PartPoint> points; ///< of the part and around it
   std::vector<double> coordinates;
-  std::vector<unsigned char> types, fixed, outside, starts;
+  std::vector<unsigned char> types, fixed, outside, starts, onSeam, nearSeam;
   std::vector<Index> offsets = { 0 }, connectivity, regions;
 
   MeshView view() const
@@ -44,6 +58,9 @@ public:
     : Group(group)
     , Options(options)
     , Mirrored(mesh.mirrored)
+    , Target(options.objective == ReconnectionObjective::Sum
+          ? 1.0
+          : std::sin(options.targetAngle * (Pi / 180.0)))
   {
     this->take(mesh);
   }
@@ -55,20 +72,27 @@ private:
   bool runRound(int round, int rounds);
   LocalMesh localMesh(const PartSurroundings& around, int round) const;
   void setOptions(const LocalMesh& local, int round, int rounds, ReconnectionOptions& options);
-  void setBounds(const LocalMesh& local, ReconnectionOptions& options) const;
-  void takeResult(
-    const LocalMesh& local, const PartSurroundings& around, const ReconnectionResult& result);
+  void shareOut(int round, int rounds);
+  void setBounds(const LocalMesh& local, ReconnectionOptions& options);
+  void takeResult(const LocalMesh& local, const ReconnectionResult& result);
   void addShares(const LocalMesh& local, const ReconnectionResult& result, Index first,
     const std::vector<Index>& numbers);
   void record(const ReconnectionResult& result, bool any);
   void shareRecord(ReconnectionRecord& record) const;
-  bool anyOnAllSeams();
-  void countMarked(const PartSurroundings& around);
+  bool isLeft(const PartCell& cell) const;
+  bool neverInside(const PartCell& cell, const PointPlaces& places) const;
+  bool anyNeverInside();
+  std::vector<Ball> placesToKeep() const;
   RankReconnection finish();
 
   RankGroup& Group;
   const ReconnectionOptions& Options;
   bool Mirrored;
+  int Frame = -1;     ///< of the planes of the last round
+  double Target;      ///< quality that cells are improved to
+  double Share = 1;   ///< of this rank in what the number of cells may change by
+  double Spent = 1;   ///< part of what it may grow by that is for this round
+  double Largest = 0; ///< number of cells of this rank, at most
   MeshPart Part;
   std::vector<std::array<Index, 3>> Marked; ///< of the whole mesh, sorted
   Index FirstInserted = 0, NextPoint = 0, FirstSize = 0;
@@ -134,12 +158,14 @@ LocalMesh RankRounds::localMesh(const PartSurroundings& around, int round) const
     around.points.end(), std::back_inserter(local.points),
     [](const PartPoint& a, const PartPoint& b) { return a.number < b.number; });
   const std::vector<PartPoint>& points = local.points;
+  const PointPlaces places(points);
   for (const PartPoint& point : points)
   {
     local.coordinates.insert(local.coordinates.end(), point.x.begin(), point.x.end());
     local.fixed.push_back(point.fixed);
   }
-  std::vector<unsigned char> isAround(points.size(), 0);
+  std::vector<unsigned char>& isAround = local.onSeam;
+  isAround.assign(points.size(), 0);
   local.starts.assign(points.size(), round == 0);
   for (const std::vector<PartCell>* cells : { &this->Part.cells, &around.cells })
   {
@@ -148,7 +174,7 @@ LocalMesh RankRounds::localMesh(const PartSurroundings& around, int round) const
     {
       std::array<Index, Corners> v;
       std::transform(cell.points.begin(), cell.points.end(), v.begin(),
-        [&](Index number) { return placeOf(points, number); });
+        [&](Index number) { return places(number); });
       const bool onAllSeams =
         std::any_of(v.begin(), v.end(), [&](Index p) { return points[p].onAllSeams != 0; });
       for (const Index p : v)
@@ -168,14 +194,45 @@ LocalMesh RankRounds::localMesh(const PartSurroundings& around, int round) const
   {
     const Index p = placeOf(points, number);
     local.fixed[p] |= !isAround[p];
+    isAround[p] = 1;
+  }
+  local.nearSeam = local.onSeam;
+  for (int ring = 0; ring < Reach; ++ring)
+  {
+    const std::vector<unsigned char> inner = local.nearSeam;
+    for (auto v = local.connectivity.begin(); v != local.connectivity.end(); v += Corners)
+    {
+      if (std::any_of(v, v + Corners, [&](Index p) { return inner[p] != 0; }))
+      {
+        std::for_each(v, v + Corners, [&](Index p) { local.nearSeam[p] = 1; });
+      }
+    }
   }
   return local;
 }
 
 //------------------------------------------------------------------------------
-/// Shares what the number of cells may still grow and shrink by among the ranks.
-void RankRounds::setBounds(const LocalMesh& local, ReconnectionOptions& options) const
+/// Ranks share as they have cells that are left; at first, when these are not known, as they have
+/// cells. Collective.
+void RankRounds::shareOut(int round, int rounds)
 {
+  const std::vector<PartCell>& cells = this->Part.cells;
+  const Index left = round == 0 ? 0
+                                : std::count_if(cells.begin(), cells.end(),
+                                    [this](const PartCell& cell) { return this->isLeft(cell); });
+  const auto size = static_cast<Index>(cells.size());
+  const Index allLeft = this->Group.sum(left), all = this->Group.sum(size);
+  const bool early = this->Group.size() > 1 && round < std::min(FirstRounds, rounds - 1);
+  this->Spent = early ? FirstShare : 1.0;
+  this->Share = allLeft > 0 ? static_cast<double>(left) / static_cast<double>(allLeft)
+                            : static_cast<double>(size) / std::max(1.0, static_cast<double>(all));
+}
+
+//------------------------------------------------------------------------------
+/// Shares what the number of cells may still grow and shrink by among the ranks.
+void RankRounds::setBounds(const LocalMesh& local, ReconnectionOptions& options)
+{
+  this->Largest = std::numeric_limits<double>::infinity();
   if (options.smallestCount == 1.0 && options.largestCount == 1.0)
   {
     return;
@@ -184,12 +241,12 @@ void RankRounds::setBounds(const LocalMesh& local, ReconnectionOptions& options)
   const double now = this->Result.history.empty()
     ? first
     : static_cast<double>(this->Result.history.back().tetrahedra);
-  const auto own = static_cast<double>(this->Part.cells.size());
   const auto all = static_cast<double>(local.types.size());
-  const auto sharedOut = [&](double cells)
-  { return std::floor(std::max(cells, 0.0) * own / std::max(now, 1.0)); };
-  const double most = sharedOut(options.largestCount * first - now);
+  const auto sharedOut = [this](double cells)
+  { return std::floor(std::max(cells, 0.0) * this->Share); };
+  const double most = std::floor(this->Spent * sharedOut(options.largestCount * first - now));
   const double least = sharedOut(now - options.smallestCount * first);
+  this->Largest = static_cast<double>(this->Part.cells.size()) + most;
   options.largestCount = (all + most) / std::max(all, 1.0);
   options.smallestCount = (all - least) / std::max(all, 1.0);
   if (options.largestCount == 1.0 && options.smallestCount == 1.0)
@@ -207,6 +264,9 @@ void RankRounds::setOptions(
   options.regions = local.regions.data();
   options.outside = local.outside.data();
   options.starts = round == 0 ? nullptr : local.starts.data();
+  // At seams, what changes the number of points is left to rounds whose seams are elsewhere: with
+  // facets that stay, it would take many insertions, and the number of cells is bounded.
+  options.postponed = round + 1 < rounds ? local.onSeam.data() : nullptr;
   options.markedFacets.clear();
   for (const std::array<Index, 3>& facet : this->Marked)
   {
@@ -333,26 +393,16 @@ void RankRounds::addShares(const LocalMesh& local, const ReconnectionResult& res
 
 //------------------------------------------------------------------------------
 /// The part as the result has it, without what is around it.
-void RankRounds::takeResult(
-  const LocalMesh& local, const PartSurroundings& around, const ReconnectionResult& result)
+void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& result)
 {
   MeshPart& part = this->Part;
   const auto own = static_cast<Index>(part.cells.size());
-  std::vector<char> onSeam(local.points.size(), 0);
   std::vector<char> used(result.originalPoints.size(), 0);
   std::vector<Index> numbers(used.size(), -1);
   Index inserted = 0;
   this->Group.together(
     [&]
     {
-      for (const PartPoint& point : around.points)
-      {
-        onSeam[placeOf(local.points, point.number)] = 1;
-      }
-      for (const Index number : around.shared)
-      {
-        onSeam[placeOf(local.points, number)] = 1;
-      }
       for (std::size_t c = 0; c < result.originalCells.size(); ++c)
       {
         for (int k = 0; k < Corners && result.originalCells[c] < own; ++k)
@@ -365,6 +415,12 @@ void RankRounds::takeResult(
         inserted += used[p] && result.originalPoints[p] < 0;
       }
     });
+  // What the number of cells did not allow is tried again when it may be larger.
+  const bool retries = this->Spent < 1.0 &&
+    std::count_if(result.originalCells.begin(), result.originalCells.end(),
+      [own](Index cell) { return cell < own; }) +
+        LargestGrowth >
+      this->Largest;
   Index first = this->NextPoint;
   const std::vector<std::vector<Index>> counts =
     this->Group.gatherItems(std::vector<Index>{ inserted });
@@ -392,7 +448,7 @@ void RankRounds::takeResult(
           const PartPoint& before = local.points[original];
           point.number = before.number;
           point.fixed = before.fixed;
-          point.onAllSeams = onSeam[original] && local.starts[original];
+          point.onAllSeams = before.onAllSeams && (local.nearSeam[original] || retries);
         }
         else
         {
@@ -425,33 +481,83 @@ void RankRounds::takeResult(
 }
 
 //------------------------------------------------------------------------------
-/// The number of marked facets that have a cell on both sides.
-void RankRounds::countMarked(const PartSurroundings& around)
+/// Whether a cell is below the target, and may be better.
+bool RankRounds::isLeft(const PartCell& cell) const
 {
-  const Index sides = std::count_if(around.inner.begin(), around.inner.end(),
-    [this](const std::array<Index, 3>& facet)
-    { return std::binary_search(this->Marked.begin(), this->Marked.end(), facet); });
-  this->Result.markedFacets = this->Group.sum(sides) / 2;
+  return cell.quality < this->Target && cell.bound > (1.0 + AtBound) * cell.quality;
 }
 
 //------------------------------------------------------------------------------
-/// Whether there are points that were on a seam in every round.
-bool RankRounds::anyOnAllSeams()
+/// Whether a cell that is left was near a seam in every round.
+bool RankRounds::neverInside(const PartCell& cell, const PointPlaces& places) const
 {
-  return this->Group.any(std::any_of(this->Part.points.begin(), this->Part.points.end(),
-    [](const PartPoint& point) { return point.onAllSeams != 0; }));
+  return this->isLeft(cell) &&
+    std::any_of(cell.points.begin(), cell.points.end(),
+      [&](Index number) { return this->Part.points[places(number)].onAllSeams != 0; });
+}
+
+//------------------------------------------------------------------------------
+bool RankRounds::anyNeverInside()
+{
+  bool found = false;
+  this->Group.together(
+    [&]
+    {
+      const PointPlaces places(this->Part.points);
+      found = std::any_of(this->Part.cells.begin(), this->Part.cells.end(),
+        [&](const PartCell& cell) { return this->neverInside(cell, places); });
+    });
+  return this->Group.any(found);
+}
+
+//------------------------------------------------------------------------------
+/// Where the planes of the next round are not to be: the worst cells count most.
+std::vector<Ball> RankRounds::placesToKeep() const
+{
+  std::vector<Ball> balls;
+  const std::vector<PartPoint>& points = this->Part.points;
+  const PointPlaces places(points);
+  for (const PartCell& cell : this->Part.cells)
+  {
+    if (!this->neverInside(cell, places))
+    {
+      continue;
+    }
+    double longest = 0.0;
+    for (int i = 0; i < Corners; ++i)
+    {
+      const Vec3& x = points[places(cell.points[i])].x;
+      for (int j = 0; j < i; ++j)
+      {
+        longest = std::max(longest, norm(x - points[places(cell.points[j])].x));
+      }
+    }
+    const double lacking = 1.0 - cell.quality / this->Target;
+    balls.push_back(
+      { centroidOf(this->Part, places, cell), NearSeam * longest, lacking * lacking });
+  }
+  std::stable_sort(
+    balls.begin(), balls.end(), [](const Ball& a, const Ball& b) { return a.weight > b.weight; });
+  balls.resize(std::min(balls.size(), MostPlaces));
+  return balls;
 }
 
 //------------------------------------------------------------------------------
 /// @return whether to go on
 bool RankRounds::runRound(int round, int rounds)
 {
-  redistribute(this->Group, divideAmongRanks(this->Group, this->Part, round), this->Part);
-  const PartSurroundings around = surroundingsOf(this->Group, this->Part);
+  std::vector<Ball> inside;
+  this->Group.together([&] { inside = round == 0 ? std::vector<Ball>() : this->placesToKeep(); });
+  redistribute(
+    this->Group, divideAmongRanks(this->Group, this->Part, inside, this->Frame), this->Part);
+  const std::vector<std::array<Index, 3>> none;
+  const PartSurroundings around =
+    surroundingsOf(this->Group, this->Part, round == 0 ? this->Marked : none);
   if (round == 0)
   {
-    this->countMarked(around);
+    this->Result.markedFacets = this->Group.sum(around.markedSides) / 2;
   }
+  this->shareOut(round, rounds);
   LocalMesh local;
   ReconnectionResult result;
   const bool any = !this->Part.cells.empty();
@@ -468,7 +574,7 @@ bool RankRounds::runRound(int round, int rounds)
         result = improveConnectivity(mesh, options);
       }
     });
-  this->takeResult(local, around, result);
+  this->takeResult(local, result);
   this->record(result, any);
   const ReconnectionRecord& last = this->Result.history.back();
   StopReason& reason = this->Result.reason;
@@ -492,7 +598,7 @@ bool RankRounds::runRound(int round, int rounds)
     reason = StopReason::Reduction;
     return false;
   }
-  return this->anyOnAllSeams();
+  return this->anyNeverInside();
 }
 
 //------------------------------------------------------------------------------
@@ -509,8 +615,12 @@ RankReconnection RankRounds::finish()
   this->Group.together(
     [&]
     {
-      std::stable_sort(this->Part.cells.begin(), this->Part.cells.end(),
-        [](const PartCell& a, const PartCell& b) { return a.originCell < b.originCell; });
+      std::vector<std::pair<Index, std::size_t>> order; // of cells, by their original ones
+      for (const PartCell& cell : this->Part.cells)
+      {
+        order.emplace_back(cell.originCell, order.size());
+      }
+      std::sort(order.begin(), order.end());
       result.firstInserted = this->FirstInserted;
       result.shareOffsets = { 0 };
       auto share = this->Part.shares.begin();
@@ -524,13 +634,15 @@ RankReconnection RankRounds::finish()
         }
         result.shareOffsets.push_back(static_cast<Index>(result.shares.size()));
       }
-      for (const PartCell& cell : this->Part.cells)
+      const PointPlaces places(this->Part.points);
+      for (const auto& [origin, c] : order)
       {
+        const PartCell& cell = this->Part.cells[c];
         for (const Index number : cell.points)
         {
-          result.tetrahedra.push_back(placeOf(this->Part.points, number));
+          result.tetrahedra.push_back(places(number));
         }
-        result.originalCells.push_back(cell.originCell);
+        result.originalCells.push_back(origin);
         result.obstacles.push_back(cell.obstacle);
         result.qualities.push_back(cell.quality);
         result.bounds.push_back(cell.bound);

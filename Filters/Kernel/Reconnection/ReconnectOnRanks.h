@@ -11,8 +11,11 @@
  *                        |                            /                         rank 1
  *
  * The planes of a round cross those of the round before, and work starts at the seams of that one
- * (ReconnectionOptions::starts). So no facet stays because it was on a seam, but for the few where
- * the seams of all rounds meet.
+ * (ReconnectionOptions::starts). From the second round on they are away from the worst of the
+ * tetrahedra that are below the target and have been near a seam in all rounds; there are rounds as
+ * long as there are such. At seams, what changes the number of points is left to later
+ * rounds (ReconnectionOptions::postponed), and of the number of tetrahedra that may come or go the
+ * first rounds use a part only: beside facets that stay it would be used up with little gain.
  */
 #ifndef tautline_ReconnectOnRanks_h
 #define tautline_ReconnectOnRanks_h

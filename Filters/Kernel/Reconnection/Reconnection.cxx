@@ -235,7 +235,7 @@ private:
   void setBounds();
   bool runPasses(std::vector<PassOptions> passes);
   bool runInBlocks(const std::vector<PassOptions>& passes, int levels, std::vector<char> starts);
-  std::vector<char> startsOfOptions() const;
+  std::vector<char> flagsOf(const unsigned char* flags) const;
   bool paysInBlocks(const std::vector<char>& starts) const;
   bool runBlocks(
     MeshBlockList& blocks, const std::vector<PassOptions>& passes, const std::vector<char>& starts);
@@ -334,7 +334,8 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   this->Passes.proceed = [this]() { return this->proceed(); };
   std::vector<PassOptions> passes = planPasses(this->Options, this->Mesh.size());
   this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
-  const std::vector<char> starts = this->startsOfOptions();
+  const std::vector<char> starts = this->flagsOf(this->Options.starts);
+  this->Passes.postponed = this->flagsOf(this->Options.postponed);
   this->Passes.starts = starts;
   const int levels = levelsOf(this->Mesh.size(), this->Options.blockSize);
   const bool goesOn = started && (levels == 0 || this->runInBlocks(passes, levels, starts));
@@ -350,10 +351,9 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   }
 }
 
-/// One flag per point, or empty: all.
-std::vector<char> Run::startsOfOptions() const
+/// One flag per point of the input, or empty.
+std::vector<char> Run::flagsOf(const unsigned char* flags) const
 {
-  const unsigned char* flags = this->Options.starts;
   return flags ? std::vector<char>(flags, flags + this->Mesh.inputPoints()) : std::vector<char>();
 }
 
@@ -462,15 +462,23 @@ bool Run::runBlocks(
     }
     return goesOn;
   };
+  const std::vector<char>& later = this->Passes.postponed;
+  const auto postponed = [&later](PointId v)
+  { return v < static_cast<PointId>(later.size()) && later[v]; };
   const auto runBlock = [&](Index b)
   {
     MeshBlock& block = *blocks[b];
     Schedule& schedule = block.schedule();
     schedule.proceed = proceed;
     schedule.postponed = block.shared();
-    for (PointId v : starts.empty() ? std::vector<PointId>() : block.points())
+    for (std::size_t i = 0; i < block.points().size(); ++i)
     {
-      schedule.starts.push_back(starts[v]);
+      const PointId v = block.points()[i];
+      schedule.postponed[i] |= postponed(v);
+      if (!starts.empty())
+      {
+        schedule.starts.push_back(starts[v]);
+      }
     }
     try
     {

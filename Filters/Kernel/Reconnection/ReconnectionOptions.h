@@ -154,6 +154,9 @@ struct ReconnectionOptions
   /// One flag per point: passes start with the tetrahedra that have one that is nonzero, and reach
   /// others from there. Null: with all.
   const unsigned char* starts = nullptr;
+  /// One flag per point: tetrahedra with one that is nonzero are swapped, and their points move,
+  /// but contractions, insertions and compound operations are not tried on them. Null: on all.
+  const unsigned char* postponed = nullptr;
   /**
    * @brief The number of tetrahedra stays within these multiples of the input's, at most 1 and at
    * least 1. Both 1: no point is inserted or removed, and the number is what the removal of edges

@@ -14,6 +14,8 @@ constexpr double SufficientFraction = 0.1;
 constexpr double FirstWeight = 2.0, LastWeight = 200.0, Tighten = 4.0, Relax = 0.5;
 /// Exchanges of weight in the dual problem, and the gap at which it is solved.
 constexpr int DualSteps = 24;
+/// Exchanges before a step without the least gain counts as convergence.
+constexpr int LastDualSteps = 60;
 constexpr double DualGap = 5e-4;
 }
 
@@ -156,17 +158,20 @@ void StarSmoothing::linearize(const Vec3& p, double below)
 }
 
 /// The step D that maximizes min(F + G . D) - weight / 2 |D|^2, by its dual: the convex combination
-/// of the functions that is smallest at its own best step. Returns min(F + G . D).
-double StarSmoothing::solve(double weight, Vec3& step)
+/// of the functions that is smallest at its own best step. Returns min(F + G . D). More exchanges
+/// are made while this is below `wanted`: a few may find no gain where there is one.
+double StarSmoothing::solve(double weight, double wanted, Vec3& step)
 {
   const int n = this->Functions;
   Vec3 sum = { 0, 0, 0 };
+  double mean = 0.0; // of F
   for (int i = 0; i < n; ++i)
   {
     sum += this->Lambda[i] * this->G[i];
+    mean += this->Lambda[i] * this->F[i];
   }
   double predicted = 0.0;
-  for (int k = 0; k < DualSteps; ++k)
+  for (int k = 0; k < DualSteps || (predicted < wanted && k < LastDualSteps); ++k)
   {
     step = (1.0 / weight) * sum;
     int low = 0, high = -1;
@@ -186,7 +191,8 @@ double StarSmoothing::solve(double weight, Vec3& step)
       }
     }
     predicted = lowest;
-    if (high < 0 || highest - lowest < DualGap)
+    const bool hopeless = k >= DualSteps && mean + dot(sum, step) < wanted;
+    if (high < 0 || highest - lowest < DualGap || hopeless)
     {
       break;
     }
@@ -198,6 +204,7 @@ double StarSmoothing::solve(double weight, Vec3& step)
     this->Lambda[high] -= moved;
     this->Lambda[low] += moved;
     sum += moved * difference;
+    mean += moved * (this->F[low] - this->F[high]);
   }
   return predicted;
 }
@@ -228,7 +235,7 @@ double StarSmoothing::maximize(
     while (!moved && weight <= LastWeight)
     {
       Vec3 step;
-      const double gain = this->solve(weight, step) - smallest;
+      const double gain = this->solve(weight, smallest + this->leastGain, step) - smallest;
       if (gain < this->leastGain)
       {
         weight = 2.0 * LastWeight; // converged

@@ -82,7 +82,7 @@ private:
   static constexpr int MaxFunctions = 48;
 
   void linearize(const Vec3& p, double below);
-  double solve(double weight, Vec3& step);
+  double solve(double weight, double wanted, Vec3& step);
 
   int Size = 0;
   // Per face: corners, normal, its square, squares of the edges.

@@ -36,9 +36,11 @@ inline double volumeOf(const MeshData& data)
 /**
  * @brief Moves inner points at random, as far as the cells around them stay good.
  * @param good whether a cell is, by its number
+ * @param stays whether a point inside is not moved, by its coordinates
  */
-template <class Good>
-void moveInside(MeshData& data, unsigned seed, double amplitude, const Good& good)
+template <class Good, class Stays>
+void moveInside(
+  MeshData& data, unsigned seed, double amplitude, const Good& good, const Stays& stays)
 {
   const Mesh before(data.view());
   const bool planar = before.dimension() == Dimension::Planar;
@@ -50,7 +52,7 @@ void moveInside(MeshData& data, unsigned seed, double amplitude, const Good& goo
     Vec3 d = random.vector(-amplitude, amplitude);
     d[2] = planar ? 0.0 : d[2];
     const Vec3 start = data.point(i);
-    bool valid = boundary[i] != 0;
+    bool valid = boundary[i] != 0 || stays(start);
     while (!valid)
     {
       data.setPoint(i, start + d);
@@ -59,6 +61,12 @@ void moveInside(MeshData& data, unsigned seed, double amplitude, const Good& goo
       d = 0.7 * d;
     }
   }
+}
+
+template <class Good>
+void moveInside(MeshData& data, unsigned seed, double amplitude, const Good& good)
+{
+  moveInside(data, seed, amplitude, good, [](const Vec3&) { return false; });
 }
 
 /// A block of n x n x n cubes of tetrahedra; inner points moved at random as far as all cells stay

@@ -272,6 +272,109 @@ void testKept()
   }
 }
 
+/// A cube of n x n x n cubes of six tetrahedra each.
+MeshData sixPerCube(Index n)
+{
+  MeshData data = blockMesh(CellType::Hexahedron, n, n, n);
+  const MeshData cubes = data;
+  data.types.clear();
+  data.offsets = { 0 };
+  data.connectivity.clear();
+  for (Index cube = 0; cube < cubes.numberOfCells(); ++cube)
+  {
+    const Index first = cubes.connectivity[cubes.offsets[cube]];
+    const std::array<Index, 3> steps = { 1, n + 1, (n + 1) * (n + 1) };
+    std::array<int, 3> order = { 0, 1, 2 };
+    do
+    {
+      std::vector<Index> nodes = { first };
+      for (const int axis : order)
+      {
+        nodes.push_back(nodes.back() + steps[axis]);
+      }
+      if ((order[1] - order[0] + 3) % 3 == 2) // an odd permutation
+      {
+        std::swap(nodes[1], nodes[2]);
+      }
+      data.addCell(CellType::Tetrahedron, nodes);
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
+  return data;
+}
+
+/// Slivers with fixed points, and with a plane that is marked and between regions.
+struct HeldMesh
+{
+  static constexpr Index Size = 5, Wall = 3;
+  MeshData data;
+  Given given{ data, {}, {}, {} };
+
+  explicit HeldMesh(unsigned seed)
+    : data(sixPerCube(Size))
+  {
+    const MeshData plain = this->data;
+    moveInside(
+      this->data, seed, 0.45, [this](Index cell) { return volumeOf(this->data, cell) > 2e-3; },
+      [](const Vec3& x) { return x[0] == Wall; });
+    constexpr int faces[4][3] = { { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0, 1, 2 } };
+    std::set<std::array<Index, 3>> marked;
+    for (Index c = 0; c < plain.numberOfCells(); ++c)
+    {
+      const Index* v = &plain.connectivity[4 * c];
+      this->given.regions.push_back(
+        std::all_of(v, v + 4, [&](Index p) { return plain.point(p)[0] <= Wall; }));
+      for (const auto& face : faces)
+      {
+        std::array<Index, 3> f = { v[face[0]], v[face[1]], v[face[2]] };
+        std::sort(f.begin(), f.end());
+        if (std::all_of(f.begin(), f.end(), [&](Index p) { return plain.point(p)[0] == Wall; }))
+        {
+          marked.insert(f);
+        }
+      }
+    }
+    this->given.marked.assign(marked.begin(), marked.end());
+    for (Index p = 0; p < plain.numberOfPoints(); ++p)
+    {
+      this->given.fixed.push_back(p % 11 == 0);
+    }
+  }
+  HeldMesh(const HeldMesh&) = delete;
+};
+
+/**
+ * @brief Where fixed points and a wall leave few ways, ranks find one, too: insertions at
+ * seams do not use up the number of tetrahedra.
+ *
+ * The target is 33.4 degrees, and with GCC 12 all twelve cases reach it, with parts of 190 to 380
+ * tetrahedra. When insertions at seams used up their number, six ended below 33, the worst at 25.9.
+ */
+void testHeldQuality()
+{
+  int reached = 0;
+  for (const unsigned seed : { 3, 4, 5, 6 })
+  {
+    const HeldMesh held(seed);
+    ReconnectionRecord serial;
+    for (const int ranks : { 1, 2, 3, 4 })
+    {
+      const Context context("seed " + std::to_string(seed) + ", " + std::to_string(ranks));
+      const Joined joined = reconnectOnRanks(held.given, ranks, Cut::Random, {});
+      checkResult(held.data, asResult(joined));
+      const ReconnectionRecord& last = joined.first.history.back();
+      serial = ranks == 1 ? last : serial;
+      std::cout << "held, seed " << seed << ", " << ranks << " ranks, "
+                << joined.first.history.size() - 1 << " rounds: " << last.smallestAngle << " / "
+                << last.worstInverseMeanRatio << ", " << last.tetrahedra << " tetrahedra\n";
+      // Rounding takes other ways with other compilers: GCC 14 had one of 12 with 19.5 degrees.
+      TAUTLINE_CHECK(last.smallestAngle > 0.5 * serial.smallestAngle);
+      reached += ranks > 1 && last.smallestAngle > serial.smallestAngle - 0.15;
+    }
+  }
+  constexpr int least = 10; // of 12
+  TAUTLINE_CHECK(reached >= least);
+}
+
 /// On a sliding boundary the shape stays; the number of cells stays within its bounds.
 void testBounds()
 {
@@ -355,6 +458,7 @@ int TestReconnectOnRanks(int, char*[])
   testRounds();
   testSeams();
   testKept();
+  testHeldQuality();
   testBounds();
   testStops();
   return exitCode();

@@ -224,6 +224,26 @@ void testRecords()
   }
   TAUTLINE_CHECK(*chunks.rbegin() > 0); // else a later chunk need not be looked at
 }
+
+/// Nothing is inserted or contracted at postponed points.
+void testPostponed()
+{
+  const MeshData data = sliverBlock(9, 11, 0.9);
+  ReconnectionOptions options = optionsOf(ReconnectionPreset::Aggressive);
+  std::vector<unsigned char> postponed(data.numberOfPoints(), 1);
+  options.postponed = postponed.data();
+  for (const Index block : { data.numberOfCells(), data.numberOfCells() / 5 })
+  {
+    options.blockSize = block;
+    const ReconnectionResult result = reconnect(data, options);
+    checkResult(data, result);
+    const ReconnectionRecord& last = result.history.back();
+    TAUTLINE_CHECK_EQUAL(last.insertions, Index(0));
+    TAUTLINE_CHECK_EQUAL(last.contractions, Index(0));
+    TAUTLINE_CHECK(last.edgeRemovals > 0 && last.moves > 0);
+    TAUTLINE_CHECK_EQUAL(result.points.size(), data.points.size());
+  }
+}
 }
 
 int TestReconnectionBounds(int, char*[])
@@ -233,5 +253,6 @@ int TestReconnectionBounds(int, char*[])
   testBounds();
   testRecords();
   testMemory();
+  testPostponed();
   return exitCode();
 }

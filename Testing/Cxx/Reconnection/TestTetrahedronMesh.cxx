@@ -196,13 +196,14 @@ void testSmoothing()
       const double best = star.maximize(p, 100, { kind, d });
       const Vec3 moved = p - start;
       const double along = dot(moved, d);
+      // Rounding of up to 100 steps: at most 1.12e-14, with GCC 16.
       TAUTLINE_CHECK_NEAR(
-        kind == PointFreedom::InPlane ? along : norm(moved - along * d), 0.0, 1e-14);
+        kind == PointFreedom::InPlane ? along : norm(moved - along * d), 0.0, 5e-14);
       for (int k = 0; k < 20; ++k)
       {
         const PointFreedom freedom = { kind, d };
         TAUTLINE_CHECK(
-          star.evaluate(start + freedom.project(random.vector(-0.3, 0.3))) < best + 1e-2);
+          star.evaluate(start + freedom.project(random.vector(-0.3, 0.3))) < best + 5e-3);
       }
     }
   }

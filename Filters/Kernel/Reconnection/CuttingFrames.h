@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file CuttingFrames.h
+ * @brief Directions of the planes that cut a mesh into blocks, and where a plane is. Internal: not
+ * installed.
+ */
+#ifndef tautline_CuttingFrames_h
+#define tautline_CuttingFrames_h
+
+#include "tautline/Core/VectorAlgebra.h"
+
+#include <algorithm>
+#include <array>
+#include <vector>
+
+namespace tautline
+{
+/**
+ * @class tautline::CuttingFrame
+ * @brief Three orthogonal directions; no two of different frames are parallel. Planes of the next
+ * frame cross what those of the last one have left as walls.
+ */
+class CuttingFrame
+{
+private:
+  auto before(int k) const
+  {
+    return [this, k](const Vec3& a, const Vec3& b)
+    { return this->along(k, a) < this->along(k, b); };
+  }
+
+public:
+  /// How many frames there are.
+  static constexpr int count = 3;
+  using Iterator = std::vector<Vec3>::iterator;
+
+  /// @param frame 0 to count - 1; 0 is that of the axes
+  explicit CuttingFrame(int frame)
+  {
+    if (frame == 0)
+    {
+      return;
+    }
+    const Vec3 a = unit(frame == 1 ? Vec3{ 1, 1, 1 } : Vec3{ -1, 1, 0.5 });
+    const Vec3 b = unit(cross(a, frame == 1 ? Vec3{ 0, 0, 1 } : Vec3{ 0, 1, 1 }));
+    this->Directions = { a, b, cross(a, b) };
+  }
+
+  /// Where a place is along a direction.
+  double along(int direction, const Vec3& x) const { return dot(this->Directions[direction], x); }
+
+  /// The direction in which places extend the farthest. There must be some.
+  int longest(Iterator from, Iterator to) const
+  {
+    double farthest = -1.0;
+    int direction = 0;
+    for (int k = 0; k < 3; ++k)
+    {
+      const auto ends = std::minmax_element(from, to, this->before(k));
+      const double extent = this->along(k, *ends.second - *ends.first);
+      direction = extent > farthest ? k : direction;
+      farthest = std::max(extent, farthest);
+    }
+    return direction;
+  }
+
+  /// Puts the places that are nearer along a direction than that at `middle` before it, and returns
+  /// where that is.
+  double cut(int direction, Iterator from, Iterator middle, Iterator to) const
+  {
+    std::nth_element(from, middle, to, this->before(direction));
+    return this->along(direction, *middle);
+  }
+
+private:
+  static Vec3 unit(const Vec3& v) { return (1.0 / norm(v)) * v; }
+
+  std::array<Vec3, 3> Directions = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
+};
+}
+#endif
