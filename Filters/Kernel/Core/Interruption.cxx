@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Interruption.h"
 
+#include "LoopInterruption.h"
+
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -239,6 +241,10 @@ void PollScope::call() const
 //------------------------------------------------------------------------------
 void throwIfInterrupted()
 {
+  if (callerIsInterrupted() && std::uncaught_exceptions() == 0)
+  {
+    throw Interrupted(); // this worker's chunk; the loop ends with what its caller has thrown
+  }
   if (!interruptible() || state.Polling)
   {
     return;

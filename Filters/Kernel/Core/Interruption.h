@@ -5,8 +5,9 @@
  *
  * Long computations call throwIfInterrupted() at least every tenth of a second where they can. The
  * loops of Parallel.h, the iterations and factorizations of the linear solvers and everything that
- * waits for a watchdog do. It has an effect only on a thread with an InterruptScope or a PollScope,
- * which is a thread that calls the kernel, never a worker; elsewhere it costs one comparison.
+ * waits for a watchdog do. It has an effect on a thread with an InterruptScope or a PollScope,
+ * which is a thread that calls the kernel, and on the workers of its loops once it is interrupted;
+ * elsewhere it costs two comparisons.
  *
  * An interruption is not an error: the result is of no interest, and what would turn an Error into
  * a message, a warning or a partial result does not see it.

@@ -13,8 +13,9 @@ namespace tautline
 /**
  * @brief Whether the caller of the loop that this worker helps with is interrupted.
  *
- * A worker cannot call throwIfInterrupted(). Chunks that take longer than a tenth of a second ask
- * this, and end soon. False on threads that are no workers.
+ * Chunks that take longer than a tenth of a second call throwIfInterrupted() or pollInterruption(),
+ * which throw on workers where this is true, or ask this and end soon. False on threads that are no
+ * workers.
  */
 TAUTLINE_KERNEL_EXPORT bool callerIsInterrupted();
 }

@@ -253,6 +253,11 @@ private:
     {
       this->Work(chunk);
     }
+    catch (const tautline::Interrupted&)
+    {
+      this->Interrupted = true; // chunks of workers end, too
+      this->fail(chunk, std::current_exception());
+    }
     catch (...)
     {
       this->fail(chunk, std::current_exception());

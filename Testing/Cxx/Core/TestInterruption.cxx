@@ -379,7 +379,7 @@ bool interruptsWaitingCaller()
   const InterruptScope scope;
   const std::thread::id caller = std::this_thread::get_id();
   constexpr double glance = 1e-3, patience = 0.2;
-  std::atomic<bool> begun{ false }, seen{ false };
+  std::atomic<bool> begun{ false }, seen{ false }, thrown{ false };
   const Stopwatch time;
   bool interrupted = false;
   const auto sleepWhile = [&](double longest, const auto& condition)
@@ -410,6 +410,15 @@ bool interruptsWaitingCaller()
         std::raise(SIGINT);
         sleepWhile(2 * Soon, [] { return !callerIsInterrupted(); });
         seen = callerIsInterrupted();
+        try
+        {
+          pollInterruption(0);
+        }
+        catch (const Interrupted&)
+        {
+          thrown = true;
+          throw; // as the chunks of workers do
+        }
       });
   }
   catch (const Interrupted&)
@@ -417,6 +426,7 @@ bool interruptsWaitingCaller()
     interrupted = true;
   }
   TAUTLINE_CHECK_EQUAL(seen.load(), begun.load());
+  TAUTLINE_CHECK_EQUAL(thrown.load(), begun.load());
   TAUTLINE_CHECK_EQUAL(interrupted, begun.load());
   TAUTLINE_CHECK(time.seconds() < Soon);
   return begun;
