@@ -588,6 +588,11 @@ int GatheredExecution::run(const std::function<int()>& execute)
   {
     this->execute(execute);
   }
+  else if (this->Rules.assist)
+  {
+    // What fails here fails on the first process, too, which reports it.
+    this->attempt(this->Rules.assist);
+  }
   if (!this->shareOutcome())
   {
     return this->fail(this->Failure);
@@ -637,7 +642,8 @@ int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits, Gath
   problem = firstProblem(problem);
   if (problem.empty())
   {
-    return executeGathered(algorithm, request, inputs, outputs, { result, 0, nullptr }, execute);
+    return executeGathered(
+      algorithm, request, inputs, outputs, { result, 0, nullptr, nullptr }, execute);
   }
   vtkErrorWithObjectMacro(algorithm, << problem);
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)

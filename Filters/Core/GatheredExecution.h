@@ -78,6 +78,9 @@ struct GatheredRules
   int base = 0; ///< the input port whose mesh the output has, with the arrays of its pieces
   /// Exchanges what the properties of the filter return; may be empty.
   std::function<void(ResultStream&)> exchange;
+  /// What the other processes do while the first one executes, in step with it, by a RankGroup that
+  /// was made before; empty: they wait.
+  std::function<void()> assist;
 };
 
 /**

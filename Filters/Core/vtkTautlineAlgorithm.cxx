@@ -200,6 +200,7 @@ int vtkTautlineAlgorithm::ExecuteGathered(
   rules.result = this->GetGatheredResult();
   rules.base = this->GetGatheredBase();
   rules.exchange = [this](tautline::ResultStream& stream) { this->ExchangeResult(stream); };
+  rules.assist = [this] { this->Assist(); };
   // On the first process, which is alone meanwhile.
   const auto execute = [&]
   {

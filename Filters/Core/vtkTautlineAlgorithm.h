@@ -136,6 +136,12 @@ protected:
    */
   virtual bool TakesPieces(vtkInformationVector** inputs);
 
+  /**
+   * What the other processes do while the first one is in RequestData() with the whole mesh, in
+   * step with it. They communicate by a RankGroup that TakesPieces() has made. Default: nothing.
+   */
+  virtual void Assist() {}
+
   /// The input port whose mesh the output has. Default: 0.
   virtual int GetGatheredBase() const { return 0; }
 

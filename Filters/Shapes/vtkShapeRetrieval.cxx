@@ -2,6 +2,7 @@
 #include "vtkShapeRetrieval.h"
 
 #include "GatheredExecution.h"
+#include "ProcessGroup.h"
 #include "RetrievalSheet.h"
 #include "ShapeAdapter.h"
 #include "tautline/Shapes/ShapeRetrieval.h"
@@ -27,6 +28,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <utility>
 
 vtkStandardNewMacro(vtkShapeRetrieval);
 
@@ -176,6 +178,43 @@ void fillTables(const ShapeSet& set, const tautline::Retrieval& result, vtkTable
   }
 }
 
+/// The processes that wait for shapes in Assist(): they get them, or are told that there are none.
+class Helpers
+{
+public:
+  explicit Helpers(tautline::RankGroup* group)
+    : Group(group)
+  {
+  }
+  ~Helpers()
+  {
+    try
+    {
+      this->call({});
+    }
+    catch (const std::exception&)
+    {
+      // they have it, too
+    }
+  }
+  Helpers(const Helpers&) = delete;
+  Helpers& operator=(const Helpers&) = delete;
+
+  /// Sends the shapes, once. @return whether there are such processes
+  bool call(const std::vector<tautline::Silhouette>& shapes)
+  {
+    tautline::RankGroup* const group = std::exchange(this->Group, nullptr);
+    if (group)
+    {
+      tautline::shapesOfFirst(*group, shapes);
+    }
+    return group != nullptr;
+  }
+
+private:
+  tautline::RankGroup* Group;
+};
+
 void drawSheet(
   const ShapeSet& set, const tautline::Retrieval& result, int size, vtkImageData* sheet)
 {
@@ -199,6 +238,9 @@ vtkShapeRetrieval::vtkShapeRetrieval()
 {
   this->SetNumberOfOutputPorts(SheetPort + 1);
 }
+
+//------------------------------------------------------------------------------
+vtkShapeRetrieval::~vtkShapeRetrieval() = default;
 
 //------------------------------------------------------------------------------
 int vtkShapeRetrieval::FillInputPortInformation(int, vtkInformation* info)
@@ -233,6 +275,8 @@ int vtkShapeRetrieval::RequestData(
 {
   vtkMultiBlockDataSet* input = vtkMultiBlockDataSet::GetData(inputVector[0]);
   this->ClearResult();
+  const std::unique_ptr<tautline::RankGroup> several = std::move(this->Group);
+  Helpers helpers(several.get());
   if (!input)
   {
     return this->Fail(outputVector,
@@ -247,25 +291,12 @@ int vtkShapeRetrieval::RequestData(
     [&]
     {
       const ShapeSet set = takeShapes(input, static_cast<tautline::Foreground>(this->Foreground));
-      tautline::RetrievalOptions options;
-      this->GetOptions(options.locations, options.match);
-      options.spacing = this->Spacing;
-      options.symmetric = this->Symmetric;
-      if (this->Setting != CUSTOM)
-      {
-        const auto progress = options.match.progress;
-        options = this->Setting == FELZENSZWALB ? tautline::RetrievalOptions::felzenszwalb()
-          : this->Setting == DISSERTATION       ? tautline::RetrievalOptions::dissertation()
-                                                : tautline::RetrievalOptions::highest();
-        options.match.progress = progress;
-        options.match.threads = this->Threads;
-        options.match.timeLimit = this->GetRemainingSeconds();
-      }
-      options.best = this->BestMatches;
-      options.shortlist = this->Shortlist;
-      options.neighbours = this->Neighbors;
+      const tautline::RetrievalOptions options = this->GetOptionsOfRun();
       this->Matching = true;
-      const tautline::Retrieval result = tautline::retrieveShapes(set.shapes, set.numbers, options);
+      tautline::SingleRank alone;
+      tautline::RankGroup& group = helpers.call(set.shapes) ? *several : alone;
+      const tautline::Retrieval result =
+        tautline::retrieveShapes(group, set.shapes, set.numbers, options);
       fillTables(set, result, vtkTable::GetData(outputVector, 0),
         vtkTable::GetData(outputVector, 1), vtkTable::GetData(outputVector, 2),
         vtkTable::GetData(outputVector, 3));
@@ -287,6 +318,62 @@ int vtkShapeRetrieval::RequestData(
       }
       this->Summary = text.str();
     });
+}
+
+//------------------------------------------------------------------------------
+tautline::RetrievalOptions vtkShapeRetrieval::GetOptionsOfRun()
+{
+  tautline::RetrievalOptions options;
+  this->GetOptions(options.locations, options.match);
+  options.spacing = this->Spacing;
+  options.symmetric = this->Symmetric;
+  if (this->Setting != CUSTOM)
+  {
+    const auto progress = options.match.progress;
+    options = this->Setting == FELZENSZWALB ? tautline::RetrievalOptions::felzenszwalb()
+      : this->Setting == DISSERTATION       ? tautline::RetrievalOptions::dissertation()
+                                            : tautline::RetrievalOptions::highest();
+    options.match.progress = progress;
+    options.match.threads = this->Threads;
+    options.match.timeLimit = this->GetRemainingSeconds();
+  }
+  options.best = this->BestMatches;
+  options.shortlist = this->Shortlist;
+  options.neighbours = this->Neighbors;
+  return options;
+}
+
+//------------------------------------------------------------------------------
+bool vtkShapeRetrieval::TakesPieces(vtkInformationVector**)
+{
+  this->Group.reset();
+  try
+  {
+    this->Group = tautline::makeProcessGroup();
+  }
+  catch (const tautline::Error&)
+  {
+    // on all processes: the first one works alone
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+void vtkShapeRetrieval::Assist()
+{
+  const std::unique_ptr<tautline::RankGroup> several = std::move(this->Group);
+  if (!several)
+  {
+    return;
+  }
+  const std::vector<tautline::Silhouette> shapes = tautline::shapesOfFirst(*several, {});
+  if (!shapes.empty())
+  {
+    tautline::RetrievalOptions options = this->GetOptionsOfRun();
+    options.match.progress = nullptr;                            // the first process reports
+    const std::vector<tautline::Index> labels(shapes.size(), 0); // evaluated there only
+    tautline::retrieveShapes(*several, shapes, labels, options);
+  }
 }
 
 //------------------------------------------------------------------------------

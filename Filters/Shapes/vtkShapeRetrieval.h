@@ -36,6 +36,14 @@
 #include "vtkShapeAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
+#include <memory> // for the group
+
+namespace tautline
+{
+class RankGroup;
+struct RetrievalOptions;
+}
+
 class TAUTLINESHAPES_EXPORT vtkShapeRetrieval : public vtkShapeAlgorithm
 {
 public:
@@ -129,13 +137,15 @@ public:
 
 protected:
   vtkShapeRetrieval();
-  ~vtkShapeRetrieval() override = default;
+  ~vtkShapeRetrieval() override;
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   tautline::GatheredResult GetGatheredResult() const override;
+  bool TakesPieces(vtkInformationVector** inputs) override;
+  void Assist() override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
 
@@ -143,6 +153,9 @@ private:
   vtkShapeRetrieval(const vtkShapeRetrieval&) = delete;
   void operator=(const vtkShapeRetrieval&) = delete;
 
+  tautline::RetrievalOptions GetOptionsOfRun();
+
+  std::unique_ptr<tautline::RankGroup> Group; ///< of several processes, in an execution
   int Setting = HIGHEST;
   double Spacing = 25.0;
   bool Symmetric = false;

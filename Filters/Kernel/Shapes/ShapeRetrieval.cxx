@@ -103,12 +103,17 @@ constexpr double FarApart = 1e6;
 constexpr int DiffusionSteps = 10;
 constexpr double DiffusionIdentity = 1e-3;
 
-/// Compares each shape with each other one, on several threads.
+/// Seconds after which ranks ask whether one of them is to stop.
+constexpr double RoundSeconds = 0.5;
+
+/// Compares each shape with each other one, on several threads and ranks.
 class Comparison
 {
 public:
-  Comparison(const std::vector<Silhouette>& shapes, const RetrievalOptions& options)
-    : Shapes(shapes)
+  Comparison(
+    RankGroup& group, const std::vector<Silhouette>& shapes, const RetrievalOptions& options)
+    : Group(group)
+    , Shapes(shapes)
     , Options(options)
     , Match(options.match)
     , Count(static_cast<Index>(shapes.size()))
@@ -132,32 +137,24 @@ public:
   std::vector<double> run()
   {
     std::vector<double> energies(static_cast<std::size_t>(this->Count * this->Count), -1.0);
-    std::vector<char> done(energies.size(), 0);
-    const int threads = this->Options.match.threads;
-    runChunks(
-      this->Count, threads, [&](Index s) { this->named(s, [&] { this->prepare(s); }); },
-      [this](double fraction) { return this->proceed(0, this->Count, fraction); });
+    this->together(
+      [&]
+      {
+        runChunks(
+          this->Count, this->Options.match.threads,
+          [&](Index s) { this->named(s, [&] { this->prepareInTime(s); }); },
+          [this](double fraction) { return this->proceed(0, this->Count, fraction); });
+      });
+    this->shareStop();
     if (this->Stop == MatchStop::Complete)
     {
+      for (Index s = 0; s < this->Count; ++s)
+      {
+        energies[s * this->Count + s] = 0.0;
+      }
       const std::vector<char> chosen = this->shortlisted();
       this->Matches = std::count(chosen.begin(), chosen.end(), 1);
-      runChunks(
-        this->Count * this->Count, threads,
-        [&](Index pair)
-        {
-          const Index s = pair / this->Count, t = pair % this->Count;
-          const bool matched = chosen[pair] != 0;
-          this->named(
-            s, [&] { energies[pair] = s == t ? 0.0
-                       : matched             ? this->energy(s, t)
-                                             : -1.0; });
-          done[pair] = s == t || !matched || energies[pair] >= 0.0;
-        },
-        [this](double fraction)
-        { return this->proceed(this->Count, this->Count * this->Count, fraction); });
-      // Pairs that the limit stopped may have been the last ones.
-      const bool whole = std::all_of(done.begin(), done.end(), [](char each) { return each != 0; });
-      this->Stop = whole || this->Stop != MatchStop::Complete ? this->Stop : MatchStop::TimeLimit;
+      this->matchPairs(this->ownPairs(chosen), energies);
     }
     return energies;
   }
@@ -181,6 +178,133 @@ public:
 
 private:
   bool outlines() const { return this->Options.method == RetrievalMethod::Outline; }
+
+  /// Errors of one rank are those of all; one rank alone keeps their types.
+  template <class Work>
+  void together(const Work& work)
+  {
+    if (this->Group.size() == 1)
+    {
+      work();
+    }
+    else
+    {
+      this->Group.together(work);
+    }
+  }
+
+  /// What stops one rank stops all.
+  void shareStop()
+  {
+    this->Stop =
+      static_cast<MatchStop>(this->Group.maximum(static_cast<Index>(static_cast<int>(this->Stop))));
+  }
+
+  /// Of the pairs that are matched, every n-th on n ranks.
+  std::vector<Index> ownPairs(const std::vector<char>& chosen) const
+  {
+    std::vector<Index> own;
+    Index number = 0;
+    for (std::size_t pair = 0; pair < chosen.size(); ++pair)
+    {
+      if (!chosen[pair])
+      {
+        continue;
+      }
+      if (number++ % this->Group.size() == this->Group.rank())
+      {
+        own.push_back(static_cast<Index>(pair));
+      }
+    }
+    return own;
+  }
+
+  /// Matches pairs in rounds, and exchanges their energies.
+  void matchPairs(std::vector<Index> left, std::vector<double>& energies)
+  {
+    const auto all = static_cast<Index>(left.size());
+    struct Found
+    {
+      Index pair;
+      double energy;
+    };
+    std::vector<Found> found;
+    bool going = true;
+    while (going)
+    {
+      const auto before = static_cast<Index>(left.size());
+      this->together([&] { this->matchRound(left, all, energies); });
+      const auto rest = std::stable_partition(
+        left.begin(), left.end(), [&](Index pair) { return energies[pair] < 0.0; });
+      for (auto pair = rest; pair != left.end(); ++pair)
+      {
+        found.push_back({ *pair, energies[*pair] });
+      }
+      left.erase(rest, left.end());
+      this->shareStop();
+      const bool advances = this->Group.any(static_cast<Index>(left.size()) < before);
+      going = this->Group.any(!left.empty()) && advances && this->Stop == MatchStop::Complete;
+    }
+    // Pairs that the limit stopped may have been the last ones.
+    if (this->Group.any(!left.empty()) && this->Stop == MatchStop::Complete)
+    {
+      this->Stop = MatchStop::TimeLimit;
+    }
+    for (const std::vector<Found>& list : this->Group.gatherItems(found))
+    {
+      for (const Found& each : list)
+      {
+        energies[each.pair] = each.energy;
+      }
+    }
+  }
+
+  /// On several ranks for some time, else all that are left.
+  void matchRound(const std::vector<Index>& left, Index all, std::vector<double>& energies)
+  {
+    const Stopwatch time;
+    const auto count = static_cast<Index>(left.size());
+    runChunks(
+      count, this->Options.match.threads,
+      [&](Index i)
+      {
+        const Index s = left[i] / this->Count, t = left[i] % this->Count;
+        this->named(s, [&] { energies[left[i]] = this->energy(s, t); });
+      },
+      [&](double fraction)
+      {
+        const double done = all > 0
+          ? 1.0 - (1.0 - fraction) * static_cast<double>(count) / static_cast<double>(all)
+          : 1.0;
+        return this->proceed(this->Count, this->Count * this->Count, done) &&
+          (this->Group.size() == 1 || !time.reached(RoundSeconds));
+      });
+  }
+
+  /// Leaves a shape unprepared once the time is over: that of the dissertation's setting takes a
+  /// third of a second.
+  void prepareInTime(Index s)
+  {
+    struct OutOfTime
+    {
+    };
+    const PollScope scope(
+      [this]
+      {
+        if (this->Time.reached(this->Options.match.timeLimit))
+        {
+          throw OutOfTime();
+        }
+      });
+    try
+    {
+      this->prepare(s);
+    }
+    catch (const OutOfTime&)
+    {
+      // proceed() ends the run
+    }
+  }
 
   void prepare(Index s)
   {
@@ -275,6 +399,7 @@ private:
     }
   }
 
+  RankGroup& Group;
   const std::vector<Silhouette>& Shapes;
   const RetrievalOptions& Options;
   MatchOptions Match; ///< of a single pair: on one thread, without limits
@@ -398,7 +523,9 @@ std::vector<double> rerank(const std::vector<double>& distances, Index count, In
   return result;
 }
 
-Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vector<Index>& labels,
+namespace
+{
+void checkInput(const std::vector<Silhouette>& shapes, const std::vector<Index>& labels,
   const RetrievalOptions& options)
 {
   const Index count = static_cast<Index>(shapes.size());
@@ -419,9 +546,95 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
   constexpr double bytesPerPair = 3 * sizeof(double) + sizeof(Index);
   requireMemory(bytesPerPair * static_cast<double>(count) * static_cast<double>(count),
     "The table of all pairs of " + std::to_string(count) + " shapes", "use fewer shapes.");
+}
+
+/// A silhouette without what is per point or pixel, as it is sent.
+struct SentShape
+{
+  Index points, pixels, components, holes, width, height;
+  Vec2 centre;
+  double maxDistance, area, perimeter, threshold;
+  char touchesBorder, dark;
+};
+}
+
+//------------------------------------------------------------------------------
+std::vector<Silhouette> shapesOfFirst(RankGroup& group, const std::vector<Silhouette>& own)
+{
+  std::vector<SentShape> sent;
+  std::vector<Vec2> outlines;
+  std::vector<float> masks;
+  const bool isFirst = group.rank() == 0;
+  group.together(
+    [&]
+    {
+      for (std::size_t i = 0; isFirst && i < own.size(); ++i)
+      {
+        const Silhouette& s = own[i];
+        sent.push_back({ static_cast<Index>(s.outline.size()), static_cast<Index>(s.mask.size()),
+          s.components, s.holes, s.width, s.height, s.centre, s.maxDistance, s.area, s.perimeter,
+          s.threshold, static_cast<char>(s.touchesBorder), static_cast<char>(s.dark) });
+        outlines.insert(outlines.end(), s.outline.begin(), s.outline.end());
+        masks.insert(masks.end(), s.mask.begin(), s.mask.end());
+      }
+    });
+  sent = group.gatherItems(sent)[0];
+  outlines = group.gatherItems(outlines)[0];
+  masks = group.gatherItems(masks)[0];
+  std::vector<Silhouette> shapes;
+  group.together(
+    [&]
+    {
+      auto point = outlines.begin();
+      auto pixel = masks.begin();
+      for (const SentShape& from : sent)
+      {
+        Silhouette s;
+        s.outline.assign(point, point + from.points);
+        s.mask.assign(pixel, pixel + from.pixels);
+        point += from.points;
+        pixel += from.pixels;
+        s.components = from.components;
+        s.holes = from.holes;
+        s.width = from.width;
+        s.height = from.height;
+        s.centre = from.centre;
+        s.maxDistance = from.maxDistance;
+        s.area = from.area;
+        s.perimeter = from.perimeter;
+        s.threshold = from.threshold;
+        s.touchesBorder = from.touchesBorder != 0;
+        s.dark = from.dark != 0;
+        shapes.push_back(std::move(s));
+      }
+    });
+  return shapes;
+}
+
+//------------------------------------------------------------------------------
+Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vector<Index>& labels,
+  const RetrievalOptions& options)
+{
+  SingleRank alone;
+  return retrieveShapes(alone, shapes, labels, options);
+}
+
+//------------------------------------------------------------------------------
+Retrieval retrieveShapes(RankGroup& group, const std::vector<Silhouette>& shapes,
+  const std::vector<Index>& labels, const RetrievalOptions& options)
+{
+  if (group.size() == 1)
+  {
+    checkInput(shapes, labels, options);
+  }
+  else
+  {
+    group.together([&] { checkInput(shapes, labels, options); });
+  }
+  const Index count = static_cast<Index>(shapes.size());
   Retrieval result;
   result.count = count;
-  Comparison comparison(shapes, options);
+  Comparison comparison(group, shapes, options);
   result.distances = comparison.run();
   result.stop = comparison.stop();
   result.vertices = comparison.vertices();

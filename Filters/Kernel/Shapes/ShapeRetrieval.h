@@ -14,6 +14,8 @@
 #include "OutlineMatch.h"
 #include "ShapeMatch.h"
 
+#include "tautline/Core/RankGroup.h"
+
 namespace tautline
 {
 /// What is matched with what.
@@ -91,6 +93,23 @@ struct Retrieval
  */
 TAUTLINE_KERNEL_EXPORT Retrieval retrieveShapes(const std::vector<Silhouette>& shapes,
   const std::vector<Index>& labels, const RetrievalOptions& options);
+
+/**
+ * @brief The same on ranks: of the pairs that are matched, each rank takes every n-th. Collective;
+ * all ranks get the result, which is that of one rank.
+ *
+ * A time limit, a callback that returns false and an error of one rank end it on all, within
+ * seconds.
+ * @param shapes, labels, options the same on all ranks, but for threads, time limit and progress
+ */
+TAUTLINE_KERNEL_EXPORT Retrieval retrieveShapes(RankGroup& group,
+  const std::vector<Silhouette>& shapes, const std::vector<Index>& labels,
+  const RetrievalOptions& options);
+
+/// The shapes that the first rank has, on all ranks. Collective. @param own of the first rank;
+/// those of others do not count
+TAUTLINE_KERNEL_EXPORT std::vector<Silhouette> shapesOfFirst(
+  RankGroup& group, const std::vector<Silhouette>& own);
 
 /**
  * @brief Distances after diffusion over the graphs of nearest neighbours (Yang, Koknar-Tezel,

@@ -5,6 +5,8 @@
 #include "Check.h"
 #include "VtkMeshes.h"
 
+#include "tautline/Shapes/ShapeRetrieval.h"
+
 #include "vtkHorizonNeighbors.h"
 #include "vtkInteractionLayer.h"
 #include "vtkMeshComparison.h"
@@ -31,6 +33,7 @@
 #include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPartitionedDataSet.h"
+#include "vtkPointData.h"
 #include "vtkPolyData.h"
 #include "vtkRegularPolygonSource.h"
 #include "vtkSelection.h"
@@ -350,8 +353,8 @@ void testUpstream()
   TAUTLINE_CHECK_EQUAL(cellsOf(filter), 72);
 }
 
-/// A white disc on black.
-vtkSmartPointer<vtkImageData> disc(double radius)
+/// A white ellipse on black, a disc by default.
+vtkSmartPointer<vtkImageData> disc(double radius, double stretch = 1.0)
 {
   constexpr int side = 24;
   vtkNew<vtkImageData> image;
@@ -361,7 +364,7 @@ vtkSmartPointer<vtkImageData> disc(double radius)
   {
     for (int x = 0; x < side; ++x)
     {
-      const double distance = std::hypot(x - 0.5 * side, y - 0.4 * side);
+      const double distance = std::hypot(x - 0.5 * side, stretch * (y - 0.4 * side));
       image->SetScalarComponentFromDouble(x, y, 0, 0, distance < radius ? 255 : 0);
     }
   }
@@ -431,6 +434,63 @@ void testShapes()
     });
 }
 
+/// Shape Retrieval divides the pairs among the processes: the distances are those of one, bitwise;
+/// an image without a shape is an error on all.
+void testRetrieval()
+{
+  const Context context("pairs of Shape Retrieval");
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  std::vector<Silhouette> shapes;
+  constexpr unsigned int count = 5;
+  for (unsigned int i = 0; i < count; ++i)
+  {
+    const auto image = disc(7, 1.0 + 0.4 * i);
+    std::vector<float> values;
+    for (vtkIdType p = 0; p < image->GetNumberOfPoints(); ++p)
+    {
+      values.push_back(static_cast<float>(image->GetPointData()->GetScalars()->GetComponent(p, 0)));
+    }
+    const int* size = image->GetDimensions();
+    shapes.push_back(traceSilhouette({ values.data(), size[0], size[1] }));
+    if (rank() == 0)
+    {
+      blocks->SetBlock(i, image);
+    }
+  }
+  RetrievalOptions options = RetrievalOptions::highest();
+  const Retrieval one = retrieveShapes(shapes, std::vector<Index>(count, 0), options);
+  vtkNew<vtkShapeRetrieval> filter;
+  filter->SetInputDataObject(0, blocks);
+  for (int run = 0; run < 2; ++run)
+  {
+    filter->Modified();
+    filter->Update();
+    TAUTLINE_CHECK_EQUAL(filter->GetRecognitionRate(), 100.0); // all are of one class
+    TAUTLINE_CHECK(std::string(filter->GetSummary()).find("5 shapes of 1 classes") == 0);
+    auto* distances = vtkTable::SafeDownCast(filter->GetOutputDataObject(0));
+    for (unsigned int s = 0; rank() == 0 && s < count; ++s)
+    {
+      for (unsigned int t = 0; t < count; ++t)
+      {
+        constexpr int first = 2; // after the name and the label
+        TAUTLINE_CHECK_EQUAL(
+          distances->GetValue(s, first + t).ToDouble(), one.distances[s * count + t]);
+      }
+    }
+  }
+  TAUTLINE_CHECK(one.distances[count - 1] > 0.0);
+
+  Messages messages(filter);
+  if (rank() == 0)
+  {
+    blocks->SetBlock(count, disc(0));
+  }
+  blocks->Modified();
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("shape 5"));
+  TAUTLINE_CHECK_EQUAL(filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::ROW), 0);
+}
+
 #ifdef TAUTLINE_MESHING
 void testMeshers()
 {
@@ -488,6 +548,7 @@ int TestGatheredRanks(int argc, char* argv[])
     testSelection();
     testUpstream();
     testShapes();
+    testRetrieval();
 #ifdef TAUTLINE_MESHING
     testMeshers();
 #endif

@@ -3,6 +3,7 @@
 
 #include "Check.h"
 #include "Shapes.h"
+#include "ThreadRanks.h"
 
 #include "tautline/Shapes/ShapeRetrieval.h"
 
@@ -209,6 +210,76 @@ void testArticulation()
   }
   TAUTLINE_CHECK(recognize(passed.ranking, wrong, options.best).rate < 0.4);
 }
+
+/// On ranks that are threads: the distances of one rank, bitwise; what ends one ends all.
+void testRanks()
+{
+  std::vector<Silhouette> shapes;
+  std::vector<Index> labels;
+  for (int kind = 0; kind < static_cast<int>(Kinds.size()); ++kind)
+  {
+    shapes.push_back(animal(kind, 0));
+    shapes.push_back(animal(kind, 1));
+    labels.insert(labels.end(), 2, kind);
+  }
+  RetrievalOptions image;
+  image.spacing = 20.0;
+  image.locations.kind = Locations::Contour;
+  image.locations.contour = 24;
+  RetrievalOptions shortlist = RetrievalOptions::highest();
+  shortlist.shortlist = 3;
+  for (RetrievalOptions options : { RetrievalOptions::highest(), shortlist, image })
+  {
+    options.match.threads = 1;
+    const Retrieval one = retrieveShapes(shapes, labels, options);
+    for (const int size : { 2, 3, 5 })
+    {
+      const Context context(std::to_string(size) + " ranks");
+      std::vector<Retrieval> all(size);
+      onRanks(size,
+        [&](RankGroup& group)
+        {
+          const bool first = group.rank() == 0;
+          const std::vector<Silhouette> here =
+            shapesOfFirst(group, first ? shapes : std::vector<Silhouette>());
+          all[group.rank()] = retrieveShapes(group, here, labels, options);
+        });
+      for (const Retrieval& result : all)
+      {
+        TAUTLINE_CHECK(result.distances == one.distances);
+        TAUTLINE_CHECK(result.ranking == one.ranking);
+        TAUTLINE_CHECK_EQUAL(result.matches, one.matches);
+        TAUTLINE_CHECK(result.stop == MatchStop::Complete);
+      }
+    }
+  }
+  // One rank is stopped, one has no time, one has a shape without area.
+  std::vector<MatchStop> stops(3);
+  const auto runOn = [&](int rank, const auto& change)
+  {
+    onRanks(3,
+      [&](RankGroup& group)
+      {
+        RetrievalOptions options = RetrievalOptions::highest();
+        options.match.threads = 1;
+        std::vector<Silhouette> here = shapes;
+        if (group.rank() == rank)
+        {
+          change(options, here);
+        }
+        stops[group.rank()] = retrieveShapes(group, here, labels, options).stop;
+      });
+  };
+  using Shapes = std::vector<Silhouette>;
+  runOn(2,
+    [](RetrievalOptions& options, Shapes&)
+    { options.match.progress = [](double part) { return part < 0.2; }; });
+  TAUTLINE_CHECK(stops == std::vector<MatchStop>(3, MatchStop::Stopped));
+  runOn(1, [](RetrievalOptions& options, Shapes&) { options.match.timeLimit = 1e-9; });
+  TAUTLINE_CHECK(stops == std::vector<MatchStop>(3, MatchStop::TimeLimit));
+  TAUTLINE_CHECK_THROWS(runOn(1, [](RetrievalOptions&, Shapes& here) { here[3].outline.clear(); }),
+    "In process 1: Shape 3: ");
+}
 }
 
 int TestShapeRetrieval(int, char*[])
@@ -216,5 +287,6 @@ int TestShapeRetrieval(int, char*[])
   testCounting();
   testFamilies();
   testArticulation();
+  testRanks();
   return exitCode();
 }
