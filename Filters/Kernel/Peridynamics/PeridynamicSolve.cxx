@@ -5,11 +5,13 @@
 #include "MassSmoother.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Solvers/InnerSolver.h"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace tautline
 {
@@ -260,6 +262,11 @@ SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
 {
   using Row = std::vector<std::pair<std::int32_t, double>>;
   const Index rows = c * map.coarse;
+  // P^T A has fewer entries than A: 0.7 times as many with a horizon of two elements, fewer with a
+  // larger one. They are there twice while the rows are joined.
+  constexpr double bytesPerEntry = 2 * (sizeof(double) + sizeof(std::int32_t)) + sizeof(double);
+  requireMemory(bytesPerEntry * static_cast<double>(matrix.values.size()),
+    "the coarse grid of the preconditioner", "choose Jacobi or AMG of the local limit");
   std::vector<Row> half(rows), made(rows);
   struct Scratch
   {
@@ -293,6 +300,10 @@ SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
     });
   SparseMatrix coarse;
   coarse.size = rows;
+  const std::size_t entries = std::accumulate(half.begin(), half.end(), std::size_t(0),
+    [](std::size_t sum, const Row& row) { return sum + row.size(); });
+  coarseRows.columns.reserve(entries);
+  coarseRows.values.reserve(entries);
   for (Index row = 0; row < rows; ++row)
   {
     for (auto& [column, value] : made[row])
@@ -301,6 +312,7 @@ SparseMatrix galerkin(const SparseMatrix& matrix, const Prolongation& map,
     }
     append(made[row], coarse);
     append(half[row], coarseRows);
+    Row().swap(half[row]);
   }
   symmetrize(coarse, threads); // rounding
   return coarse;
