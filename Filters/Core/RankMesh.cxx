@@ -4,7 +4,6 @@
 #include "Blocks.h"
 #include "MovableMesh.h"
 #include "ProcessGroup.h"
-#include "Processes.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
@@ -40,19 +39,6 @@ struct Elements
   std::vector<unsigned char> types, ghosts;
   std::vector<Index> offsets = { 0 }, connectivity;
 };
-}
-
-//------------------------------------------------------------------------------
-bool isOnSeveralProcesses(vtkDataObject* input)
-{
-  if (vtkCompositeDataSet::SafeDownCast(input))
-  {
-    return false;
-  }
-  const Processes processes;
-  const bool elsewhere =
-    processes.rank() > 0 && input && input->GetNumberOfElements(vtkDataObject::CELL) > 0;
-  return processes.maximum(static_cast<Index>(elsewhere)) > 0;
 }
 
 //------------------------------------------------------------------------------

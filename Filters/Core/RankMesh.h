@@ -23,13 +23,6 @@ class vtkSelection;
 
 namespace tautline
 {
-/**
- * @brief Whether a filter is to take the mesh as one of several processes: any but the first has
- * cells, and it is not composite data, whose blocks may be on different processes. Collective, but
- * for composite data.
- */
-TAUTLINECORE_EXPORT bool isOnSeveralProcesses(vtkDataObject* input);
-
 /// The data set of a mesh on several processes, or in the reproducible order. Throws Error for
 /// composite data, with the remedy.
 TAUTLINECORE_EXPORT vtkDataSet* requirePiece(vtkDataObject* input);

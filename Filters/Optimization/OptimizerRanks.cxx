@@ -6,15 +6,18 @@
 #include "IterationHistory.h"
 #include "OptimizerSetup.h"
 #include "ProcessGroup.h"
+#include "Processes.h"
 #include "ProgressStep.h"
 #include "GatheredExecution.h"
 #include "RankMesh.h"
 #include "TargetChoice.h"
+#include "tautline/Objectives/ObjectiveSum.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
 
 #include "vtkDataSet.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPointSet.h"
 #include "vtkSelection.h"
 
@@ -40,6 +43,12 @@ bool isChosen(const tautline::OptimizerSettings& settings, int index, vtkDataSet
   {
     return true;
   }
+}
+
+/// Whether something is true on any process. Collective.
+bool onAny(bool here)
+{
+  return tautline::minimumOverProcesses(here ? 0 : 1) == 0;
 }
 
 /// Whether the objectives have targets of a reference mesh.
@@ -180,6 +189,8 @@ const tautline::Targets* targetOf(const tautline::OptimizerSettings& settings,
   {
     return nullptr;
   }
+  const auto number = static_cast<std::size_t>(type);
+  const int threads = settings.options.threads;
   std::vector<double> ofPiece;
   group.together(
     [&]
@@ -193,17 +204,16 @@ const tautline::Targets* targetOf(const tautline::OptimizerSettings& settings,
           settings.targetArray(size ? tautline::SizeArray : tautline::TensorArray, input);
         ofPiece = tautline::targetValues(mesh.piece(), choice);
       }
+      // First, so that errors have the numbers of the input's cells.
+      elements.targetsOfPiece[number] =
+        tautline::targetsOf(inputOf(mesh, mesh.piece(), threads), type, ofPiece);
     });
   const std::vector<double> values = mesh.ofCells(ofPiece, tautline::targetComponents(type));
-  const auto number = static_cast<std::size_t>(type);
   group.together(
     [&]
     {
-      const int threads = settings.options.threads;
       elements.targets[number] =
         tautline::targetsOf(inputOf(mesh, mesh.mesh().view(), threads), type, values);
-      elements.targetsOfPiece[number] =
-        tautline::targetsOf(inputOf(mesh, mesh.piece(), threads), type, ofPiece);
     });
   return &elements.targets[number];
 }
@@ -236,6 +246,13 @@ void setObjectives(const tautline::OptimizerSettings& settings, tautline::RankGr
         weights = tautline::scalarsOf(tautline::chosenArray(settings.arrays, tautline::WeightArray,
                                         input, "of element weights"),
           "weights");
+      }
+      for (std::size_t cell = 0; cell < weights.size(); ++cell)
+      {
+        if (!mesh.skipped()[cell])
+        {
+          tautline::requireElementWeight(static_cast<tautline::Index>(cell), weights[cell]);
+        }
       }
     });
   const bool weighted = group.any(!weights.empty());
@@ -332,30 +349,33 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
   this->Pieces.reset();
   this->Group.reset();
   this->PieceError.clear();
-  std::string why;
-  this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]),
-    this->Threads, this->MergeCoincidentPoints, &why);
-  if (this->Pieces)
+  if (this->Animation)
   {
-    tautline::OptimizerSettings settings = this->GetSettings();
-    settings.geometry = vtkDataObject::GetData(inputs[GeometryPort]);
-    auto* input = vtkDataSet::SafeDownCast(vtkDataObject::GetData(inputs[MeshPort]));
-    const bool features = this->Group->any(isChosen(settings, tautline::KindArray, input) ||
-      isChosen(settings, tautline::RegionArray, input));
-    const std::string what = needOf(settings, features).what;
-    why = what.empty() ? "" : what + " need the whole mesh";
-    if (!what.empty() && !this->Animation)
-    {
-      this->Pieces.reset();
-    }
+    this->PieceError = "Iterations are kept as time steps on one process only: switch Animation "
+                       "off, or use a server with one process.";
+    return true;
   }
-  else if (this->Animation && !why.empty())
+  // What needs the whole mesh is not divided first.
+  tautline::OptimizerSettings settings = this->GetSettings();
+  settings.geometry = vtkDataObject::GetData(inputs[GeometryPort]);
+  vtkDataObject* data = vtkDataObject::GetData(inputs[MeshPort]);
+  auto* input = vtkDataSet::SafeDownCast(data);
+  const bool features = onAny(isChosen(settings, tautline::KindArray, input) ||
+    isChosen(settings, tautline::RegionArray, input));
+  const std::string what = needOf(settings, features).what;
+  std::string why = what.empty() ? "" : what + " need the whole mesh";
+  if (what.empty())
   {
-    this->PieceError = "Iterations are kept as time steps on one process only: gather the mesh, in "
-                       "ParaView by Aggregate Dataset, or switch Animation off.";
+    this->Pieces =
+      tautline::takePieces(this->Group, data, this->Threads, this->MergeCoincidentPoints, &why);
+  }
+  else if (!onAny(vtkMultiProcessController::GetGlobalController()->GetLocalProcessId() > 0 &&
+             data->GetNumberOfElements(vtkDataObject::CELL) > 0))
+  {
+    why.clear(); // it is in one place
   }
   this->WhyGathered = tautline::gatheredSentence(why);
-  return this->Pieces || !this->PieceError.empty();
+  return this->Pieces != nullptr;
 }
 
 //------------------------------------------------------------------------------

@@ -157,6 +157,7 @@ int vtkMeshUntangler::RequestData(
       if (this->Pieces || this->ReproducibleOrder)
       {
         this->UntangleOnRanks(inputVector, vtkDataObject::GetData(outputVector, MeshPort), history);
+        this->AddToSummary(this->WhyGathered);
         history.fill(vtkTable::GetData(outputVector, HistoryPort));
         return;
       }

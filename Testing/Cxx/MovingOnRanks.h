@@ -19,7 +19,8 @@ template <class Result>
 struct Moved
 {
   std::vector<double> points;
-  Result result;
+  Result result;               ///< of the first rank
+  std::vector<Result> results; ///< of all ranks
 };
 
 /** Calls work(mesh, result) on each rank with its part of a mesh, with ghost cells if cut in slabs,
@@ -30,6 +31,7 @@ Moved<Result> moveOnRanks(const MeshData& whole, Cut cut, int ranks, const Work&
   const auto rankOf = cutBy(whole, cut, ranks);
   Moved<Result> moved;
   moved.points = whole.points;
+  moved.results.resize(ranks);
   std::mutex mutex;
   onRanks(ranks,
     [&](RankGroup& group)
@@ -44,8 +46,9 @@ Moved<Result> moveOnRanks(const MeshData& whole, Cut cut, int ranks, const Work&
         std::copy_n(
           &result.points[3 * mesh.localOfPiece()[p]], 3, &moved.points[3 * part.pointOf[p]]);
       }
-      moved.result = result;
+      moved.results[group.rank()] = result;
     });
+  moved.result = moved.results.front();
   return moved;
 }
 

@@ -6,10 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <memory>
-#include <numeric>
 #include <tuple>
 
 namespace tautline

@@ -79,6 +79,16 @@ void throwNoElements(const MetricInfo& info, bool defined)
 }
 
 //------------------------------------------------------------------------------
+void requireElementWeight(Index cell, double weight)
+{
+  if (!(weight >= 0) || !std::isfinite(weight))
+  {
+    throw Error("The weight of cell " + std::to_string(cell) + " is " + std::to_string(weight) +
+      "; weights must be finite and at least 0.");
+  }
+}
+
+//------------------------------------------------------------------------------
 ObjectiveSumState::ObjectiveSumState(
   const Mesh& mesh, const Objective& given, int threads, bool part)
   : objective(resolved(given, threads))
@@ -101,11 +111,7 @@ ObjectiveSumState::ObjectiveSumState(
     {
       const Index cell = block.cell(i);
       const double w = weights ? weights[cell] : 1.0;
-      if (!(w >= 0) || !std::isfinite(w))
-      {
-        throw Error("The weight of cell " + std::to_string(cell) + " is " + std::to_string(w) +
-          "; weights must be finite and at least 0.");
-      }
+      requireElementWeight(cell, w);
       sum += w;
     }
     total += sum;

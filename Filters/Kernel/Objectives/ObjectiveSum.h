@@ -30,7 +30,8 @@ public:
    * @param mesh must outlive the sum. The coordinates in its view's array may change between calls;
    * the dimension and the plane remain those found when the mesh was made.
    * @param threads 0: that of objective.evaluation
-   * @param part the mesh is a part of another, which has elements of weight; this one need not
+   * @param part the mesh is a part of another, in which some weight is above 0; in this part all
+   * may be 0
    */
   ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads = 0, bool part = false);
   ~ObjectiveSum();
@@ -58,5 +59,8 @@ public:
 private:
   std::unique_ptr<ObjectiveSumState> Impl;
 };
+
+/// Throws Error that names the cell unless its weight is finite and at least 0.
+TAUTLINE_KERNEL_EXPORT void requireElementWeight(Index cell, double weight);
 }
 #endif

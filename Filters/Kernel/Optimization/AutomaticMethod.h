@@ -28,11 +28,12 @@ public:
    * @param repaired set where an element that was left out has become valid
    */
   virtual StopReason sweep(Slowness* slow, bool& failed, bool& repaired) = 0;
-  /// Moves all points at once, to convergence. Throws MemoryError if its matrix does not fit.
+  /// Moves all points at once, to convergence. Throws MemoryError if the matrix of Newton's method
+  /// does not fit and the optimizer is Automatic.
   virtual StopReason minimizeAll(Optimizer method) = 0;
 
-  /// Whether more elements have several corners that make one value (quadrilaterals, hexahedra and
-  /// wedges) than one.
+  /// Whether most elements have several corners that together make one value: quadrilaterals,
+  /// hexahedra and wedges.
   virtual bool hasMostlyCorners() const = 0;
   /// See HessianMatrix::hasConvexPart(), of the first objective.
   virtual bool hasConvexPart() = 0;
@@ -46,7 +47,8 @@ public:
   virtual void store() = 0;
   /// Goes to other points.
   virtual void restart(const std::vector<double>& points) = 0;
-  /// Replaces points by their harmonicPoints(); false if there are none.
+  /// Replaces points by their harmonicPoints(); false if there are none. Throws MemoryError if the
+  /// matrix does not fit.
   virtual bool findHarmonicPoints(std::vector<double>& points) = 0;
   /// The record of the points as they are.
   virtual IterationRecord record(int iteration) = 0;

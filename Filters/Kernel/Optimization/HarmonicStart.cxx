@@ -106,6 +106,26 @@ Laplacian assemble(const OptimizationProblem& problem, const std::vector<std::in
   return a;
 }
 
+/// Throws MemoryError if there is no memory for the matrix, its grids and the vectors.
+void requireMemoryFor(const OptimizationProblem& problem)
+{
+  const MeshView& view = problem.moving().view();
+  double edges = 0; // once for each element that has them
+  for (const CellBlock& block : problem.moving().blocks())
+  {
+    edges += static_cast<double>(block.count) * topology(block.type).edges;
+  }
+  // An entry is a pair of rows before equal ones are joined; of a tetrahedral mesh every fifth is
+  // left. The grids have as much as the matrix.
+  constexpr double pair = 2 * sizeof(std::int32_t);
+  constexpr double block = size * size * sizeof(double) + sizeof(std::int32_t);
+  constexpr double ofEdge = 2 * pair + 2 * 2 * block / 5;
+  constexpr double vectors = 10;
+  requireMemory(
+    ofEdge * edges + vectors * size * sizeof(double) * static_cast<double>(view.numberOfPoints),
+    "The harmonic map", "the start is used instead");
+}
+
 BlockMatrixView viewOf(const Laplacian& a, Index count)
 {
   return { size, count, a.starts.data(), a.columns.data(), a.diagonals.data(), a.blocks.data() };
@@ -158,6 +178,7 @@ bool solve(const VectorAlgebra& algebra, const std::vector<double>& right, const
 //------------------------------------------------------------------------------
 std::vector<double> harmonicPoints(OptimizationProblem& problem, const std::vector<double>& start)
 {
+  requireMemoryFor(problem);
   const SimplexMesh& s = problem.simplices();
   const Index count = s.freeVertices();
   std::vector<std::int32_t> rows(start.size() / 3, -1);
@@ -196,6 +217,7 @@ bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
   Laplacian a;
   Index count = 0;
   bool fits = true;
+  std::vector<double> all, found, x, right;
   mesh.group().together(
     [&]
     {
@@ -203,11 +225,20 @@ bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
       {
         if (problem)
         {
+          requireMemoryFor(*problem); // also for what follows, where no rank may fail alone
           count = rows.rows();
           a = assemble(*problem, rows.rowOfPoint(), count, points);
         }
+        all.resize(static_cast<std::size_t>(size * rows.rows()));
+        found.resize(all.size());
+        x.resize(static_cast<std::size_t>(size * rows.numberOfOwned()));
+        right.resize(x.size());
       }
       catch (const std::bad_alloc&)
+      {
+        fits = false;
+      }
+      catch (const MemoryError&)
       {
         fits = false;
       }
@@ -216,12 +247,10 @@ bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
   {
     throw MemoryError("The harmonic map does not fit into memory.");
   }
-  std::vector<double> all(static_cast<std::size_t>(size * rows.rows())), found(all.size());
   for (Index row = 0; row < rows.rows(); ++row)
   {
     std::copy_n(&points[3 * static_cast<std::size_t>(rows.points()[row])], 3, &all[size * row]);
   }
-  std::vector<double> x(size * rows.numberOfOwned()), right(x.size());
   rows.pick(all.data(), x.data(), size);
   rows.pick(count > 0 ? a.right.data() : all.data(), right.data(), size);
   MultigridOnRanks grids(rows, threads);

@@ -226,8 +226,9 @@ public:
 
   StopReason minimizeAll(Optimizer method) override
   {
-    return this->inMemory(
-      [&] { return optimizeGlobally(this->Problem, this->Watch, method, this->Result); });
+    const auto minimize = [&]
+    { return optimizeGlobally(this->Problem, this->Watch, method, this->Result); };
+    return method == Optimizer::NewtonConjugateGradient ? this->inMemory(minimize) : minimize();
   }
 
   bool hasMostlyCorners() const override

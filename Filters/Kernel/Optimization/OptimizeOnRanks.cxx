@@ -180,7 +180,7 @@ void OptimizationOnRanks::makeProblem()
 }
 
 //------------------------------------------------------------------------------
-/// Throws Error if an objective that is not in closed form has no element of weight on any rank.
+/// Throws Error if all weights of an objective that is not in closed form are 0, on all ranks.
 void OptimizationOnRanks::checkWeights(const std::vector<unsigned char>& closed)
 {
   const MeshView& view = this->TheMesh.view();

@@ -56,7 +56,7 @@ TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
  * @param mirrored the mesh is reversed throughout, see Mesh::setMirrored(); the same on all ranks
  * @param options arrays per point are of local points of `mesh`, and count where a rank owns the
  * point; fixed must not be null (see rankBoundary()). Targets and weights are of local cells, the
- * same on all ranks that have a cell; an objective may have none of weight on some of them. The
+ * same on all ranks that have a cell; on some ranks all weights of an objective may be 0. The
  * observer is called on every rank.
  * @return the points are those of the local points; all else is of the whole mesh
  */

@@ -124,7 +124,10 @@ inline void checkSame(const std::vector<double>& here, const std::vector<double>
   double farthest = 0;
   for (std::size_t i = 0; i < here.size(); ++i)
   {
-    farthest = std::max(farthest, here[i] == HUGE_VAL ? 0.0 : std::abs(here[i] - expected[i]));
+    const double far = here[i] == HUGE_VAL ? 0.0 : std::abs(here[i] - expected[i]);
+    const bool broken = std::isnan(expected[i]) && std::isnan(here[i]);
+    farthest = broken || far <= farthest ? farthest : far; // NaN stays
+    TAUTLINE_CHECK(!std::isnan(farthest));
   }
   TAUTLINE_CHECK(farthest <= 1e-10);
 }

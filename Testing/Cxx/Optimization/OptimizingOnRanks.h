@@ -59,7 +59,7 @@ inline Run runOn(const MeshData& whole, Cut cut, int ranks, const OptimizeOption
   Constraint constraint = Constraint::FixedBoundary, double limit = 0,
   const SetElements& set = nullptr)
 {
-  return moveOnRanks<Found>(whole, cut, ranks,
+  Run run = moveOnRanks<Found>(whole, cut, ranks,
     [&](DistributedMesh& mesh, Found& result)
     {
       OptimizeOptions options = given;
@@ -88,6 +88,16 @@ inline Run runOn(const MeshData& whole, Cut cut, int ranks, const OptimizeOption
       }
       static_cast<OptimizeResult&>(result) = optimizeOnRanks(mesh, false, options);
     });
+  for (const Found& other : run.results)
+  {
+    const Found& first = run.result;
+    TAUTLINE_CHECK(other.reason == first.reason);
+    TAUTLINE_CHECK_EQUAL(other.history.size(), first.history.size());
+    TAUTLINE_CHECK_EQUAL(other.history.back().objective, first.history.back().objective);
+    TAUTLINE_CHECK_EQUAL(other.freeVertices, first.freeVertices);
+    TAUTLINE_CHECK_EQUAL(other.invertedAfter, first.invertedAfter);
+  }
+  return run;
 }
 
 inline double farthest(const std::vector<double>& a, const std::vector<double>& b)
@@ -95,7 +105,8 @@ inline double farthest(const std::vector<double>& a, const std::vector<double>& 
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
   {
-    largest = std::max(largest, std::abs(a[i] - b[i]));
+    const double far = std::abs(a[i] - b[i]);
+    largest = std::isnan(far) ? HUGE_VAL : std::max(largest, far);
   }
   return largest;
 }
