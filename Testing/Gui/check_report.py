@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """check_report.py FILE [picture]: the report that the test SaveReport saved has everything, and needs no other file.
 
-With "picture", of another filter: it has a picture of the view, and needs no other file.
+With "picture", for the report of another filter, only the picture is checked, and that no other file is needed.
 """
 
 import base64

@@ -21,11 +21,5 @@ port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0
 "${launcher[@]}" "$pvserver" "${plugins[@]}" --server-port="$port" --force-offscreen-rendering &
 server=$!
 trap 'kill "$server" 2>/dev/null; wait "$server" 2>/dev/null' EXIT
-output=$(mktemp)
-trap 'kill "$server" 2>/dev/null; wait "$server" 2>/dev/null; rm -f "$output"' EXIT
 # tries again until the server listens
-"$paraview" --url="cs://127.0.0.1:$port" "${plugins[@]}" "$@" 2>&1 | tee "$output" || exit
-if ! grep -q "All sessions ended" "$output"; then
-  echo "client_server.sh: the client ended before the last event of the session" >&2
-  exit 1
-fi
+"$(dirname "$0")/play_sessions.sh" "$paraview" --url="cs://127.0.0.1:$port" "${plugins[@]}" "$@"
