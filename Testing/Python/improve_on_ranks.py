@@ -241,7 +241,7 @@ for cut in CUTS:
         improved(f"kept {cut}", mesh(cut, triangles=True), keep, Preset=AGGRESSIVE)
 improved("single", mesh("random", single=True), Preset=AGGRESSIVE)
 improved("selected", mesh("tree"), keep_selected, Preset=AGGRESSIVE, Rounds=2)
-improved("sliding", mesh("tree"), Boundary=1, Rounds=2)
+improved("sliding", mesh("tree"), Preset=AGGRESSIVE, Boundary=1, Rounds=2)
 improved("late", mesh("tree"), Preset=AGGRESSIVE, TimeLimit=1e-9)
 reversed_mesh = mesh("slabs")
 turn(reversed_mesh, slice(None))

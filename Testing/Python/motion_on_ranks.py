@@ -57,7 +57,8 @@ def points_of(proxy) -> list:
     found = parts(proxy, sys.argv[1])
     where = np.concatenate([one["place"] for one in found])
     points = np.concatenate([one["points"] for one in found])
-    whole = np.full((where.max() + 1, 3), np.nan)
+    assert np.array_equal(np.unique(where), np.arange(where.max() + 1)), "a point is missing"
+    whole = np.empty((where.max() + 1, 3))
     whole[where] = points
     assert np.array_equal(whole[where], points, equal_nan=True)
     return whole.tolist()

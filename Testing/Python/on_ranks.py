@@ -23,6 +23,11 @@ ENVIRONMENT = dict(
 SECONDS = 400
 
 
+def printed(folder: str) -> list[str]:
+    """What each rank has printed."""
+    return [part.read_text(encoding="utf-8", errors="replace") for part in sorted(Path(folder).iterdir())]
+
+
 def run_with_output(script: str, ranks: int, *arguments: str, symmetric: bool = False) -> tuple[dict, str]:
     """What a script writes, as JSON, to the file that is its first argument, and what is printed.
 
@@ -34,10 +39,14 @@ def run_with_output(script: str, ranks: int, *arguments: str, symmetric: bool = 
     with tempfile.TemporaryDirectory() as folder:
         # A file for what each rank prints: mpirun mixes lines of several.
         command += ["sh", "-c", f'exec "$0" "$@" >"{folder}/$$" 2>&1', sys.argv[1], *(["--sym"] if symmetric else [])]
-        done = subprocess.run([*command, str(HERE / script), str(file), *arguments], env=ENVIRONMENT, timeout=SECONDS,
-                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)  # fmt: skip
-        printed = [part.read_text(encoding="utf-8") for part in sorted(Path(folder).iterdir())]
-    text = "".join([done.stdout, *printed])
+        try:
+            done = subprocess.run([*command, str(HERE / script), str(file), *arguments], env=ENVIRONMENT,
+                                  timeout=SECONDS, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                                  text=True)  # fmt: skip
+        except subprocess.TimeoutExpired:
+            print(f"{script} on {ranks} ranks takes longer than {SECONDS} s", *printed(folder), sep="\n", flush=True)
+            raise
+        text = "".join([done.stdout, *printed(folder)])
     assert file.exists(), text
     found = json.loads(file.read_text(encoding="utf-8"))
     assert found["ranks"] == ranks, found["ranks"]
