@@ -90,15 +90,21 @@ set(CPACK_DEBIAN_DOC_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/prerm") # 
 # Debian 13's ParaView reads its own one in its directory of libraries, and no other; its second line names a file that no
 # package of Debian has, for plugins of other packages.
 if (TAUTLINE_USE_PARAVIEW AND TAUTLINE_AUTOLOAD)
+  set(prefix "${CPACK_PACKAGING_INSTALL_PREFIX}")
   set(plugins "/${CMAKE_INSTALL_LIBDIR}/${PARAVIEW_PLUGIN_SUBDIR}")
-  get_filename_component(own "/usr${plugins}/../paraview.conf" ABSOLUTE)
-  set(other)
+  get_filename_component(own "${prefix}${plugins}/../paraview.conf" ABSOLUTE)
+  set(hook "${prefix}/${CMAKE_INSTALL_DATADIR}/paraview/plugins")
+  set(lines)
   if (EXISTS "${own}")
-    file(STRINGS "${own}" other REGEX "^/usr/share/paraview/plugins$")
+    file(STRINGS "${own}" lines)
+    if (NOT hook IN_LIST lines)
+      message(WARNING "${own} has no line ${hook}, and ParaView reads no other list of plugins: it will not load the \
+plugin of the package when it starts.")
+    endif ()
   endif ()
-  if (other)
+  if (hook IN_LIST lines)
     file(WRITE "${CMAKE_BINARY_DIR}/Packaging/plugins" "<?xml version=\"1.0\"?>\n<Plugins>\n\
-  <Plugin name=\"Tautline\" auto_load=\"1\" filename=\"/usr${plugins}/Tautline/Tautline.so\"/>\n</Plugins>\n")
+  <Plugin name=\"Tautline\" auto_load=\"1\" filename=\"${prefix}${plugins}/Tautline/Tautline.so\"/>\n</Plugins>\n")
     install(FILES "${CMAKE_BINARY_DIR}/Packaging/plugins" DESTINATION "${CMAKE_INSTALL_DATADIR}/paraview"
       COMPONENT plugin)
   else ()
