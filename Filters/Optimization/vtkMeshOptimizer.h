@@ -533,8 +533,8 @@ public:
   ///@{
   /**
    * Whether one process, too, works in the order that does not depend on how a mesh is spread over
-   * processes, which several processes always use: the points are then the same on any number of
-   * them. Off.
+   * processes, which several processes use unless the mesh is gathered: the points are then the
+   * same on any number of them. Off.
    */
   vtkSetMacro(ReproducibleOrder, bool);
   vtkGetMacro(ReproducibleOrder, bool);

@@ -157,10 +157,10 @@ def peridynamics(
     spectrum: whether to compute the extreme eigenvalues.
     spectrum_tolerance: relative, of the eigenvalues, 1e-14 to 0.1.
     solve: whether to solve for `source` and the solution `given` in the layer.
-    preconditioner: of the conjugate gradients that solve: "jacobi", the diagonal; or an inverse for waves
-        shorter than the horizon, with, for longer ones, "local amg", algebraic multigrid for the local limit on the
-        same triangles, or "two-level", a coarse grid with cells of about half the horizon: the choice for Poisson's
-        ratios above 0.4. The last two need values given in the layer.
+    preconditioner: of the conjugate gradients that solve: "jacobi" is the diagonal. "local amg" and "two-level" combine
+        an inverse for waves shorter than the horizon with a method for longer ones: "local amg" with algebraic
+        multigrid for the local limit on the same triangles, "two-level" with a coarse grid whose cells are about half
+        as wide as the horizon. Choose "two-level" for Poisson's ratios above 0.4. Both need values given in the layer.
     source: a number, or name or values of an array.
     given: name or values of an array; None is 0.
     sparsity: largest width of the picture of the matrix, pixels, 0 (no picture) to 4096.
