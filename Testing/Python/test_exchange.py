@@ -191,7 +191,8 @@ def test_formats():
     assert len(shell("formats").splitlines()) == len(rows) + 2
     # What the table says can be read has a reader, here.
     for ending, row in rows.items():
-        (FOLDER / f"table{ending}").write_text("nonsense")
+        ucd = row["format"] == "AVS UCD"  # without meshio only this of the two formats
+        (FOLDER / f"table{ending}").write_text("1 1 0 0 0\n1 0 0 0\n1 1 pt 1\n" if ucd else "nonsense")
         try:
             tl.read(FOLDER / f"table{ending}")
         except tl.Error as error:

@@ -50,9 +50,11 @@ def _facts(ending: str) -> dict[str, Any]:
         facts |= {"format": solver.title, "read": solver.built(), "times": solver.times}
     elif meshio:
         here = installed()
-        # AVS UCD files .inp are read by VTK.
-        name = MESHIO_FORMATS[ending] + (", AVS UCD" if ending == ".inp" else "")
-        facts |= {"format": name, "read": here or ending == ".inp", "write": here, "by": "meshio"}
+        facts |= {"format": MESHIO_FORMATS[ending], "read": here, "write": here, "by": "meshio"}
+        if ending == ".inp":  # of two formats: AVS UCD is read by VTK
+            facts["format"] = f"{facts['format']}, AVS UCD"
+            if not here:
+                facts |= {"format": "AVS UCD", "read": True, "by": "VTK"}
     return facts
 
 
