@@ -43,7 +43,7 @@ struct Elements
 
 //------------------------------------------------------------------------------
 std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataObject* input,
-  int threads, bool mergePoints, std::string* why)
+  int threads, bool mergePoints, bool redistribute, std::string* why)
 {
   const auto gather = [why](const std::string& reason)
   {
@@ -65,7 +65,7 @@ std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataO
   }
   const bool elsewhere =
     group->rank() > 0 && input && input->GetNumberOfElements(vtkDataObject::CELL) > 0;
-  if (!group->any(elsewhere))
+  if (group->size() == 1 || (!redistribute && !group->any(elsewhere)))
   {
     return gather("");
   }
@@ -75,7 +75,7 @@ std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataO
   }
   try
   {
-    mesh = std::make_unique<RankMesh>(*group, piece, threads, mergePoints);
+    mesh = std::make_unique<RankMesh>(*group, piece, threads, mergePoints, redistribute);
   }
   catch (const OppositeOrders&)
   {
@@ -115,11 +115,13 @@ vtkDataSet* requirePiece(vtkDataObject* input)
 }
 
 //------------------------------------------------------------------------------
-RankMesh::RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergePoints)
+RankMesh::RankMesh(
+  RankGroup& group, vtkDataSet* input, int threads, bool mergePoints, bool redistribute)
   : Group(group)
   , Input(vtkPointSet::SafeDownCast(input))
   , Threads(threads)
   , MergePoints(mergePoints)
+  , Redistributed(redistribute && group.size() > 1)
 {
   Elements elements;
   bool copies = false;
@@ -198,7 +200,7 @@ RankMesh::RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergeP
     ghosts = elements.ghosts.data();
   }
   this->TheMesh = std::make_unique<DistributedMesh>(
-    group, MeshPiece{ view, mergePoints ? nullptr : ids.data(), ghosts });
+    group, MeshPiece{ view, mergePoints ? nullptr : ids.data(), ghosts, this->Redistributed });
   this->checkOrder();
 }
 
@@ -237,6 +239,16 @@ void RankMesh::checkOrder()
       "process, in ParaView by Aggregate Dataset, with Reproducible Order off, or let "
       "Element Quality reorder the cells (Reorient) first.");
   }
+}
+
+//------------------------------------------------------------------------------
+std::string RankMesh::notice() const
+{
+  const std::string ofPiece = this->Adapter->notice();
+  const std::string division = this->Redistributed
+    ? "The mesh was divided anew among " + std::to_string(this->Group.size()) + " processes."
+    : "";
+  return division.empty() ? ofPiece : ofPiece.empty() ? division : ofPiece + "\n" + division;
 }
 
 //------------------------------------------------------------------------------

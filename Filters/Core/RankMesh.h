@@ -42,11 +42,14 @@ public:
  * process, surfaces in space, planes that are inclined, cells of extreme size, and what RankMesh
  * refuses; and processes that do not communicate by MPI. Collective.
  * @param group gets the processes, which outlive the mesh
+ * @param redistribute divides the mesh anew among the processes (MeshPiece::divideAnew), also where
+ * all cells are on the first
  * @param why if not null, gets the reason in words, "it has blocks", the same on all processes;
  * with the message of the error where RankMesh refuses the mesh; "" where all is in one place
  */
 TAUTLINECORE_EXPORT std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group,
-  vtkDataObject* input, int threads, bool mergePoints, std::string* why = nullptr);
+  vtkDataObject* input, int threads, bool mergePoints, bool redistribute,
+  std::string* why = nullptr);
 
 /// "The mesh was put together on the first process: why.", or "" without a reason; a full stop at
 /// the end of the reason is not doubled.
@@ -68,7 +71,8 @@ public:
    * @brief Throws Error on all processes if a piece is malformed, has no explicit points or
    * quadratic cells, and OppositeOrders if neighbouring cells list their points so.
    */
-  RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergePoints);
+  RankMesh(
+    RankGroup& group, vtkDataSet* input, int threads, bool mergePoints, bool redistribute = false);
 
   DistributedMesh& mesh() { return *this->TheMesh; }
   const DistributedMesh& mesh() const { return *this->TheMesh; }
@@ -84,7 +88,7 @@ public:
   /// One flag per cell of the piece: ghosts, and cells of lower dimension; they do not count.
   const std::vector<unsigned char>& skipped() const { return this->Skip; }
   /// Remarks for the user on this piece, or "".
-  std::string notice() const { return this->Adapter->notice(); }
+  std::string notice() const;
 
   /// Marks points of the piece with a value other than 0, or of cells with one; null: none. Not
   /// collective.
@@ -142,7 +146,7 @@ private:
   vtkPointSet* Input = nullptr;
   int Threads;
   int Dimension = 0;
-  bool MergePoints;
+  bool MergePoints, Redistributed;
   bool Mirrored = false;
   Index InvertedElements = 0;
   std::unique_ptr<MeshAdapter> Adapter;

@@ -57,4 +57,5 @@ void vtkMeshMotionAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
+  os << indent << "Redistribute: " << this->Redistribute << "\n";
 }

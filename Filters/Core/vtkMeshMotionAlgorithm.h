@@ -59,6 +59,19 @@ public:
   vtkBooleanMacro(MergeCoincidentPoints, bool);
   ///@}
 
+  ///@{
+  /**
+   * On a server with several processes: whether the mesh is divided anew among them, by a k-d tree
+   * of its points, also where all of it is on the first process, as readers of serial files leave
+   * it. Then all of them have as much to do, and little to send. The result goes back to the pieces
+   * of the input, with the same points. What needs the whole mesh is gathered as without it. The
+   * default is off.
+   */
+  vtkSetMacro(Redistribute, bool);
+  vtkGetMacro(Redistribute, bool);
+  vtkBooleanMacro(Redistribute, bool);
+  ///@}
+
   /// The table of output port 1.
   vtkTable* GetHistory() { return this->GetOutputTable(HistoryPort); }
 
@@ -94,6 +107,7 @@ protected:
   bool ProceedInBlock(int block, double fraction);
 
   bool MergeCoincidentPoints = true;
+  bool Redistribute = false;
 
 private:
   vtkMeshMotionAlgorithm(const vtkMeshMotionAlgorithm&) = delete;

@@ -392,7 +392,7 @@ bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
     return false;
   }
   this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]),
-    this->Threads, this->MergeCoincidentPoints);
+    this->Threads, this->MergeCoincidentPoints, this->Redistribute);
   return this->Pieces != nullptr;
 }
 

@@ -207,8 +207,8 @@ bool vtkMeshPerturbation::TakesPieces(vtkInformationVector** inputs)
   {
     return false;
   }
-  this->Pieces = tautline::takePieces(
-    this->Group, vtkDataObject::GetData(inputs[0]), this->Threads, this->MergeCoincidentPoints);
+  this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[0]), this->Threads,
+    this->MergeCoincidentPoints, false);
   return this->Pieces != nullptr;
 }
 

@@ -257,7 +257,7 @@ bool vtkMeshUntangler::TakesPieces(vtkInformationVector** inputs)
   this->Group.reset();
   std::string why;
   this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]),
-    this->Threads, this->MergeCoincidentPoints, &why);
+    this->Threads, this->MergeCoincidentPoints, this->Redistribute, &why);
   this->WhyGathered = tautline::gatheredSentence(why);
   return this->Pieces != nullptr;
 }

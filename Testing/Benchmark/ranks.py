@@ -17,7 +17,8 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).parent
-FILTERS = ("quality", "optimize", "untangle", "warp", "perturb", "improve")
+FILTERS = ("quality", "optimize", "optimize-first", "optimize-first-redistributed", "untangle", "warp", "perturb",
+           "improve")  # fmt: skip
 MOST_MEMORY = 0.6  # of one process, for each of two ranks
 SECONDS = 3600
 

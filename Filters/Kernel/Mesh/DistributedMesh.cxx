@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DistributedMesh.h"
 
+#include "PointDivision.h"
 #include "TakenCells.h"
 #include "tautline/Core/Random.h"
 
@@ -272,7 +273,19 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
 void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<char>& used)
 {
   RankGroup& group = *this->Group;
-  const std::vector<PointKey> range = this->distribute(this->makeKeys(piece, used));
+  std::vector<PointKey> keys = this->makeKeys(piece, used);
+  std::unique_ptr<PointDivision> division;
+  if (piece.divideAnew)
+  {
+    std::vector<Vec3> places;
+    for (const PointKey& key : keys)
+    {
+      places.push_back({ key.x[0], key.x[1], key.x[2] });
+    }
+    division = std::make_unique<PointDivision>(group, places);
+  }
+  const std::vector<PointKey> range = this->distribute(keys);
+  keys = std::vector<PointKey>();
   Index count = 0;
   for (std::size_t i = 0; i < range.size(); ++i)
   {
@@ -302,6 +315,10 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
         least = hash;
         owner = range[end].rank;
       }
+    }
+    if (division && least < std::numeric_limits<std::uint64_t>::max())
+    {
+      owner = division->find({ range[begin].x[0], range[begin].x[1], range[begin].x[2] });
     }
     for (std::size_t i = begin; i < end; ++i)
     {

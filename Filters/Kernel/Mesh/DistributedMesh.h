@@ -23,6 +23,10 @@ struct MeshPiece
   const Index* globalIds = nullptr;
   /// One flag per cell, nonzero for a copy of a cell that another rank has (ghost); or null.
   const unsigned char* ghosts = nullptr;
+  /// Whether the points are divided anew among the ranks, by a k-d tree of their coordinates: each
+  /// rank then owns about as many, whoever has them. Else a rank owns points that it has. The same
+  /// on all ranks.
+  bool divideAnew = false;
 };
 
 /**
@@ -32,7 +36,7 @@ struct MeshPiece
  *
  * Each point has a global number, 0 to globalPoints() - 1, along a space-filling curve of the
  * coordinates; ties are broken by the coordinates and by the ids given. It is owned by one of the
- * ranks that have it. A rank gets all cells that have one of its own points (halo of vertex
+ * ranks that have it, or by any (MeshPiece::divideAnew). A rank gets all cells that have one of its own points (halo of vertex
  * neighbourhoods), in an order that follows from the numbers of their points. So what is computed
  * about an own point is bitwise the same whoever owns it.
  *
@@ -68,8 +72,8 @@ public:
   Index local(Index number) const;
   /// Per local point: the rank that owns it.
   const std::vector<int>& owners() const { return this->Owners; }
-  /// Of the ranks with a cell at a point, the one with the least of these numbers owns it; of equal
-  /// ones the lowest rank.
+  /// Of the ranks with a cell at a point, the one with the least of these numbers owns it, unless
+  /// they are divided anew; of equal ones the lowest rank.
   static std::uint64_t ownerHash(Index number, int rank);
   bool owned(Index point) const { return this->Owners[point] == this->Group->rank(); }
   /// One flag per local cell: whether this rank owns it.

@@ -13,6 +13,11 @@ using namespace tautline;
 
 namespace
 {
+std::string divided(int size)
+{
+  return "\nThe mesh was divided anew among " + std::to_string(size) + " processes.";
+}
+
 /// On all processes with the mesh cut, and on the first alone with all of it.
 template <class Filter, class Set, class Check>
 void testFilter(const char* name, vtkMPIController* controller, const MeshData& whole,
@@ -42,6 +47,14 @@ void testFilter(const char* name, vtkMPIController* controller, const MeshData& 
     checkSame(pointsOf(whole, few, set, other.Get()), expected);
     check(serial.Get(), other.Get(), rank);
   }
+  // All of it on the first process, divided anew.
+  const Context inner("divided anew");
+  const RankPart part = partOf(whole, rank, all);
+  vtkNew<Filter> filter;
+  filter->RedistributeOn();
+  checkSame(pointsOf(whole, part, set, filter.Get()), expected);
+  check(serial.Get(), filter.Get(), rank);
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(divided(size)) != std::string::npos);
 }
 
 /// Tables of a run are on the first process, with the numbers of one up to rounding.
@@ -189,13 +202,15 @@ void testUntangler(vtkMPIController* controller)
 {
   testFilter<vtkMeshUntangler>(
     "untangle", controller, jittered(CellType::Tetrahedron, 6, 0.45), [](vtkMeshUntangler*) {},
-    [](vtkMeshUntangler* serial, vtkMeshUntangler* ranks, int rank)
+    [controller](vtkMeshUntangler* serial, vtkMeshUntangler* ranks, int rank)
     {
+      const std::string remark =
+        ranks->GetRedistribute() ? divided(controller->GetNumberOfProcesses()) : "";
       TAUTLINE_CHECK(ranks->GetInvertedBefore() > 0);
       TAUTLINE_CHECK(ranks->GetInvertedAfter() < ranks->GetInvertedBefore());
       TAUTLINE_CHECK_EQUAL(ranks->GetInvertedBefore(), serial->GetInvertedBefore());
       TAUTLINE_CHECK_EQUAL(ranks->GetInvertedAfter(), serial->GetInvertedAfter());
-      TAUTLINE_CHECK_EQUAL(std::string(ranks->GetSummary()), std::string(serial->GetSummary()));
+      TAUTLINE_CHECK_EQUAL(std::string(ranks->GetSummary()), serial->GetSummary() + remark);
       checkTables(serial->GetHistory(), ranks->GetHistory(), rank, "Inverted");
     });
 }

@@ -73,6 +73,19 @@ void testRanks(int rank, int ranks)
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), rank == 0 ? data.numberOfCells() : 0);
   TAUTLINE_CHECK(contains(filter->GetSummary(), "elements are valid"));
+  TAUTLINE_CHECK(!contains(filter->GetSummary(), "divided anew"));
+
+  // The same, divided among all.
+  filter->RedistributeOn();
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), rank == 0 ? data.numberOfCells() : 0);
+  if (rank == 0)
+  {
+    TAUTLINE_CHECK_NEAR(distance(withPointsOf(data, meshOf(filter)), expected), 0, 1e-10);
+  }
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "divided anew among " + std::to_string(ranks)));
+  filter->RedistributeOff();
 
   // A block on each; the others are null, and how many blocks are listed differs.
   vtkNew<vtkMultiBlockDataSet> blocks;

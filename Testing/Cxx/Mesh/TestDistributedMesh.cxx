@@ -4,6 +4,7 @@
 #include "Check.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DistributedMesh.h"
+#include "tautline/Mesh/PointDivision.h"
 
 #include <numeric>
 #include <set>
@@ -194,6 +195,101 @@ std::vector<std::string> messagesOf(int ranks, const Change& change)
 }
 
 /// An error on one rank is one on all.
+/// Divided anew: the numbers are the same, every point has one owner, all ranks own about as many,
+/// whoever has the cells; a random cut gets halos like surfaces.
+void testDivision()
+{
+  const MeshData whole = jittered(CellType::Tetrahedron, 9);
+  const auto points = static_cast<double>(whole.numberOfPoints());
+  for (const Cut cut : { Cut::FirstOnly, Cut::Random, Cut::Slabs })
+  {
+    for (const int ranks : { 2, 3, 4 })
+    {
+      const Context context(
+        "cut " + std::to_string(static_cast<int>(cut)) + ", " + std::to_string(ranks) + " ranks");
+      const auto rankOf = cutBy(whole, cut, ranks);
+      std::vector<int> owners(whole.numberOfPoints(), -1);
+      std::vector<Index> own(ranks), cells(ranks);
+      std::mutex mutex;
+      onRanks(ranks,
+        [&](RankGroup& group)
+        {
+          const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
+          const MeshPiece piece = { part.data.view(), nullptr, part.ghosts.data(), true };
+          const DistributedMesh mesh(group, piece);
+          const DistributedMesh undivided(group, { piece.view, nullptr, piece.ghosts });
+          TAUTLINE_CHECK_EQUAL(mesh.globalPoints(), whole.numberOfPoints());
+          TAUTLINE_CHECK_EQUAL(mesh.globalCells(), whole.numberOfCells());
+          // What the owner sets arrives at all that have the point, also at pieces without cells
+          // of their own.
+          std::vector<double> values(mesh.localPoints(), -1);
+          for (Index p = 0; p < mesh.localPoints(); ++p)
+          {
+            values[p] = mesh.owned(p) ? static_cast<double>(mesh.numbers()[p]) : -1.0;
+          }
+          mesh.exchange(values.data(), 1);
+          const std::lock_guard<std::mutex> lock(mutex);
+          for (Index p = 0; p < mesh.localPoints(); ++p)
+          {
+            TAUTLINE_CHECK_EQUAL(values[p], static_cast<double>(mesh.numbers()[p]));
+            own[group.rank()] += mesh.owned(p);
+          }
+          cells[group.rank()] = mesh.view().numberOfCells;
+          for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+          {
+            const Index local = mesh.localOfPiece()[p], before = undivided.localOfPiece()[p];
+            TAUTLINE_CHECK_EQUAL(mesh.numbers()[local], undivided.numbers()[before]);
+            int& noted = owners[part.pointOf[p]];
+            TAUTLINE_CHECK(noted < 0 || noted == mesh.owners()[local]);
+            noted = mesh.owners()[local];
+          }
+        });
+      TAUTLINE_CHECK_EQUAL(
+        std::accumulate(own.begin(), own.end(), Index(0)), whole.numberOfPoints());
+      for (int rank = 0; rank < ranks; ++rank)
+      {
+        TAUTLINE_CHECK_NEAR(static_cast<double>(own[rank]), points / ranks, 1.0);
+        TAUTLINE_CHECK(cells[rank] > 0);
+        // Parts between planes: far fewer cells than all, which a random cut has on each rank.
+        TAUTLINE_CHECK(cells[rank] < whole.numberOfCells() * 8 / 10);
+      }
+    }
+  }
+}
+
+/// Points in a plane, on a line, at one place, fewer than ranks.
+void testDivisionOfFew()
+{
+  for (const int ranks : { 1, 2, 5 })
+  {
+    for (const Index count : { 0, 1, 3, 40 })
+    {
+      const Context context(std::to_string(count) + " points, " + std::to_string(ranks));
+      onRanks(ranks,
+        [&](RankGroup& group)
+        {
+          std::vector<Vec3> line, place(count, Vec3{ 1, 2, 3 });
+          for (Index i = 0; i < count; ++i)
+          {
+            line.push_back({ 0.5, static_cast<double>(i), 0 });
+          }
+          const PointDivision ofLine(group, line), ofPlace(group, place);
+          std::vector<Index> own(ranks, 0);
+          for (const Vec3& x : line)
+          {
+            const int rank = ofLine.find(x);
+            TAUTLINE_CHECK(rank >= 0 && rank < ranks);
+            ++own[std::clamp(rank, 0, ranks - 1)];
+          }
+          const Index most = *std::max_element(own.begin(), own.end());
+          TAUTLINE_CHECK(count < 40 || most <= count / ranks + 1);
+          const int rank = ofPlace.find({ 1, 2, 3 });
+          TAUTLINE_CHECK(rank >= 0 && rank < ranks);
+        });
+    }
+  }
+}
+
 void testErrors()
 {
   const auto all = [](const std::vector<std::string>& messages, const char* text)
@@ -334,6 +430,8 @@ int TestDistributedMesh(int, char*[])
   testIntervals();
   testLayout(CellType::Tetrahedron);
   testLayout(CellType::Hexahedron);
+  testDivision();
+  testDivisionOfFew();
   testErrors();
   return exitCode();
 }
