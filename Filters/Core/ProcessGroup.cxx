@@ -120,4 +120,47 @@ std::unique_ptr<RankGroup> makeProcessGroup()
 #endif
   return std::make_unique<SingleRank>();
 }
+
+//------------------------------------------------------------------------------
+std::unique_ptr<RankGroup> tryProcessGroup()
+{
+  try
+  {
+    return makeProcessGroup();
+  }
+  catch (const Error&) // on all processes
+  {
+    return nullptr;
+  }
+}
+
+//------------------------------------------------------------------------------
+Assistants::Assistants(std::unique_ptr<RankGroup> group)
+  : Group(std::move(group))
+{
+}
+
+Assistants::~Assistants()
+{
+  if (this->Group && !this->Called)
+  {
+    this->Group->any(false);
+  }
+}
+
+RankGroup& Assistants::call()
+{
+  this->Called = true;
+  if (!this->Group)
+  {
+    return this->Alone;
+  }
+  this->Group->any(true);
+  return *this->Group;
+}
+
+bool Assistants::areCalled(RankGroup& group)
+{
+  return group.any(false);
+}
 }

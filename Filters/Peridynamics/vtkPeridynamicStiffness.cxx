@@ -5,6 +5,7 @@
 #include "PeridynamicOutput.h"
 #include "PointMerge.h"
 #include "GatheredExecution.h"
+#include "ProcessGroup.h"
 
 #include "tautline/Peridynamics/PeridynamicSolve.h"
 
@@ -52,6 +53,8 @@ constexpr double SolverTolerance = 1e-10; // relative residual of the solution
 }
 
 //------------------------------------------------------------------------------
+vtkPeridynamicStiffness::~vtkPeridynamicStiffness() = default;
+
 vtkPeridynamicStiffness::vtkPeridynamicStiffness()
 {
   this->SetNumberOfOutputPorts(NumberOfPorts);
@@ -158,6 +161,7 @@ int vtkPeridynamicStiffness::RequestData(
   vtkDataSet* output = vtkDataSet::GetData(outputVector, MeshPort);
   vtkTable* table = vtkTable::GetData(outputVector, SpectrumPort);
   vtkImageData* picture = vtkImageData::GetData(outputVector, SparsityPort);
+  tautline::Assistants assistants(std::move(this->Group));
   this->ClearResult();
   this->Assembled = false;
   table->Initialize();
@@ -174,7 +178,7 @@ int vtkPeridynamicStiffness::RequestData(
       output->ShallowCopy(input);
       if (input->GetNumberOfCells() > 0)
       {
-        this->Compute(input, output, table, picture);
+        this->Compute(assistants, input, output, table, picture);
       }
     });
 }
@@ -221,8 +225,8 @@ tautline::Spectrum vtkPeridynamicStiffness::FindSpectrum(const tautline::Peridyn
 }
 
 //------------------------------------------------------------------------------
-void vtkPeridynamicStiffness::Compute(
-  vtkDataSet* input, vtkDataSet* output, vtkTable* table, vtkImageData* picture)
+void vtkPeridynamicStiffness::Compute(tautline::Assistants& assistants, vtkDataSet* input,
+  vtkDataSet* output, vtkTable* table, vtkImageData* picture)
 {
   const tautline::PeridynamicOptions options = this->GetOptions();
   tautline::HorizonInput taken(
@@ -248,8 +252,12 @@ void vtkPeridynamicStiffness::Compute(
     given = tautline::onFunctions(taken, options.basis, components, array, onPoints);
   }
 
+  // All processes assemble, each a part of the rows.
+  tautline::RankGroup& group = assistants.call();
+  tautline::meshOfFirst(group, taken.mesh());
+  group.gatherItems(given);
   const tautline::PeridynamicSystem system =
-    tautline::assemblePeridynamics(taken.mesh(), options, given.empty() ? nullptr : &given);
+    tautline::assemblePeridynamics(group, taken.mesh(), options, given.empty() ? nullptr : &given);
   this->Assembled = true;
   const tautline::Spectrum found =
     this->ComputeSpectrum ? this->FindSpectrum(system) : tautline::Spectrum();
@@ -380,6 +388,28 @@ void vtkPeridynamicStiffness::Report(const tautline::PeridynamicSystem& system,
 tautline::GatheredResult vtkPeridynamicStiffness::GetGatheredResult() const
 {
   return tautline::GatheredResult::SameMesh;
+}
+
+//------------------------------------------------------------------------------
+bool vtkPeridynamicStiffness::TakesPieces(vtkInformationVector**)
+{
+  this->Group = tautline::tryProcessGroup();
+  return false;
+}
+
+//------------------------------------------------------------------------------
+void vtkPeridynamicStiffness::Assist()
+{
+  const std::unique_ptr<tautline::RankGroup> group = std::move(this->Group);
+  if (!group || !tautline::Assistants::areCalled(*group))
+  {
+    return;
+  }
+  const tautline::HorizonMesh mesh = tautline::meshOfFirst(*group, {});
+  const std::vector<double> given = group->gatherItems(std::vector<double>())[0];
+  tautline::PeridynamicOptions options = this->GetOptions();
+  options.progress = nullptr; // the first process reports
+  tautline::assemblePeridynamics(*group, mesh, options, given.empty() ? nullptr : &given);
 }
 
 //------------------------------------------------------------------------------

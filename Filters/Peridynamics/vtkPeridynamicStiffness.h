@@ -78,6 +78,7 @@
 #include "vtkTautlineSetRange.h"        // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
 
+#include <memory> // for the group
 #include <vector> // for KernelValues
 
 class vtkDataArray;
@@ -87,7 +88,9 @@ class vtkTable;
 
 namespace tautline
 {
+class Assistants;
 class HorizonInput;
+class RankGroup;
 struct PeridynamicOptions;
 struct PeridynamicSystem;
 struct SolveReport;
@@ -392,13 +395,15 @@ public:
 
 protected:
   vtkPeridynamicStiffness();
-  ~vtkPeridynamicStiffness() override = default;
+  ~vtkPeridynamicStiffness() override;
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestDataObject(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   bool NeedsFinitePoints(int port) const override;
   tautline::GatheredResult GetGatheredResult() const override;
+  bool TakesPieces(vtkInformationVector** inputs) override;
+  void Assist() override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
 
@@ -407,7 +412,8 @@ private:
   void operator=(const vtkPeridynamicStiffness&) = delete;
 
   tautline::PeridynamicOptions GetOptions();
-  void Compute(vtkDataSet* input, vtkDataSet* output, vtkTable* table, vtkImageData* picture);
+  void Compute(tautline::Assistants& assistants, vtkDataSet* input, vtkDataSet* output,
+    vtkTable* table, vtkImageData* picture);
   vtkDataArray* GetRegion(vtkDataSet* input);
   tautline::Spectrum FindSpectrum(const tautline::PeridynamicSystem& system);
   void Report(const tautline::PeridynamicSystem& system, const tautline::Spectrum* spectrum,
@@ -419,6 +425,7 @@ private:
   /// The eigenvalues and the solution: those found so far.
   bool KeepsBest() const override { return this->Assembled; }
 
+  std::unique_ptr<tautline::RankGroup> Group; ///< of several processes, in an execution
   bool MergeCoincidentPoints = true;
   double Horizon = 0.2;
   int Kernel = POWER;

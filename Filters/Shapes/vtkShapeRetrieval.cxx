@@ -178,43 +178,6 @@ void fillTables(const ShapeSet& set, const tautline::Retrieval& result, vtkTable
   }
 }
 
-/// The processes that wait for shapes in Assist(): they get them, or are told that there are none.
-class Helpers
-{
-public:
-  explicit Helpers(tautline::RankGroup* group)
-    : Group(group)
-  {
-  }
-  ~Helpers()
-  {
-    try
-    {
-      this->call({});
-    }
-    catch (const std::exception&)
-    {
-      // they have it, too
-    }
-  }
-  Helpers(const Helpers&) = delete;
-  Helpers& operator=(const Helpers&) = delete;
-
-  /// Sends the shapes, once. @return whether there are such processes
-  bool call(const std::vector<tautline::Silhouette>& shapes)
-  {
-    tautline::RankGroup* const group = std::exchange(this->Group, nullptr);
-    if (group)
-    {
-      tautline::shapesOfFirst(*group, shapes);
-    }
-    return group != nullptr;
-  }
-
-private:
-  tautline::RankGroup* Group;
-};
-
 void drawSheet(
   const ShapeSet& set, const tautline::Retrieval& result, int size, vtkImageData* sheet)
 {
@@ -275,8 +238,7 @@ int vtkShapeRetrieval::RequestData(
 {
   vtkMultiBlockDataSet* input = vtkMultiBlockDataSet::GetData(inputVector[0]);
   this->ClearResult();
-  const std::unique_ptr<tautline::RankGroup> several = std::move(this->Group);
-  Helpers helpers(several.get());
+  tautline::Assistants assistants(std::move(this->Group));
   if (!input)
   {
     return this->Fail(outputVector,
@@ -293,10 +255,9 @@ int vtkShapeRetrieval::RequestData(
       const ShapeSet set = takeShapes(input, static_cast<tautline::Foreground>(this->Foreground));
       const tautline::RetrievalOptions options = this->GetOptionsOfRun();
       this->Matching = true;
-      tautline::SingleRank alone;
-      tautline::RankGroup& group = helpers.call(set.shapes) ? *several : alone;
-      const tautline::Retrieval result =
-        tautline::retrieveShapes(group, set.shapes, set.numbers, options);
+      tautline::RankGroup& group = assistants.call();
+      const tautline::Retrieval result = tautline::retrieveShapes(
+        group, tautline::shapesOfFirst(group, set.shapes), set.numbers, options);
       fillTables(set, result, vtkTable::GetData(outputVector, 0),
         vtkTable::GetData(outputVector, 1), vtkTable::GetData(outputVector, 2),
         vtkTable::GetData(outputVector, 3));
@@ -346,15 +307,7 @@ tautline::RetrievalOptions vtkShapeRetrieval::GetOptionsOfRun()
 //------------------------------------------------------------------------------
 bool vtkShapeRetrieval::TakesPieces(vtkInformationVector**)
 {
-  this->Group.reset();
-  try
-  {
-    this->Group = tautline::makeProcessGroup();
-  }
-  catch (const tautline::Error&)
-  {
-    // on all processes: the first one works alone
-  }
+  this->Group = tautline::tryProcessGroup();
   return false;
 }
 
@@ -362,18 +315,16 @@ bool vtkShapeRetrieval::TakesPieces(vtkInformationVector**)
 void vtkShapeRetrieval::Assist()
 {
   const std::unique_ptr<tautline::RankGroup> several = std::move(this->Group);
-  if (!several)
+  if (!several || !tautline::Assistants::areCalled(*several))
   {
     return;
   }
   const std::vector<tautline::Silhouette> shapes = tautline::shapesOfFirst(*several, {});
-  if (!shapes.empty())
-  {
-    tautline::RetrievalOptions options = this->GetOptionsOfRun();
-    options.match.progress = nullptr;                            // the first process reports
-    const std::vector<tautline::Index> labels(shapes.size(), 0); // evaluated there only
-    tautline::retrieveShapes(*several, shapes, labels, options);
-  }
+  tautline::RetrievalOptions options = this->GetOptionsOfRun();
+  options.match.progress = nullptr; // the first process reports
+  this->Matching = true;            // the limit of the run ends it, on all processes
+  const std::vector<tautline::Index> labels(shapes.size(), 0); // evaluated there only
+  tautline::retrieveShapes(*several, shapes, labels, options);
 }
 
 //------------------------------------------------------------------------------

@@ -437,7 +437,8 @@ PeridynamicStrain peridynamicStrain(
   }
   const BoxGrid grid(triangles.low, triangles.high);
   const BondCut cut(triangles, options.horizon, options.cutBonds);
-  const PeridynamicWork work = { triangles, grid, space, options, cut };
+  const std::vector<char> needed = space.trianglesWithUnknowns(triangles);
+  const PeridynamicWork work = { triangles, grid, space, options, cut, needed };
   PeridynamicStrain strain;
   strain.dilatation.assign(triangles.size(), 0.0);
   strain.energyDensity.assign(triangles.size(), 0.0);

@@ -8,6 +8,7 @@
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
+#include "tautline/Mesh/PointDivision.h"
 
 #include <algorithm>
 
@@ -264,21 +265,25 @@ private:
   Stopwatch Time;
 };
 
-SparseMatrix makePattern(const FunctionSpace& space, const BoxGrid& supports, double horizon,
-  Index components, int threads)
+/// @param rows per unknown, whether its rows are wanted; the others are empty
+SparseMatrix makePattern(const FunctionSpace& space, const std::vector<char>& rows,
+  const BoxGrid& supports, double horizon, Index components, int threads)
 {
   SparseMatrix pattern;
-  const Index rows = space.unknowns;
-  pattern.size = rows * components;
-  std::vector<Index> counts(rows);
+  pattern.size = space.unknowns * components;
+  std::vector<Index> counts(space.unknowns, 0);
   constexpr Index grain = 64;
   ScratchPool<std::vector<std::int32_t>> lists;
   // First pass: lengths of the rows; second pass: their columns.
   for (const bool fill : { false, true })
   {
-    parallelFor(rows, grain, threads, lists,
+    parallelFor(space.unknowns, grain, threads, lists,
       [&](std::vector<std::int32_t>& found, Index row)
       {
+        if (!rows[row])
+        {
+          return;
+        }
         neighbours(space, supports, horizon, row, found);
         counts[row] = static_cast<Index>(found.size());
         for (Index c = 0; fill && c < components; ++c)
@@ -307,9 +312,10 @@ SparseMatrix makePattern(const FunctionSpace& space, const BoxGrid& supports, do
   return pattern;
 }
 
-/// Moves the sums of a triangle's functions to their rows.
-void flush(const PeridynamicWork& work, Index t, const std::vector<std::int32_t>& near,
-  RowSums& sums, double scale, const std::vector<double>* given, PeridynamicSystem& system)
+/// Moves the sums of a triangle's functions to their rows. @param rows per unknown: those wanted
+void flush(const PeridynamicWork& work, const std::vector<char>& rows, Index t,
+  const std::vector<std::int32_t>& near, RowSums& sums, double scale,
+  const std::vector<double>* given, PeridynamicSystem& system)
 {
   const FunctionSpace& space = work.space;
   const int functions = space.perTriangle();
@@ -318,7 +324,7 @@ void flush(const PeridynamicWork& work, Index t, const std::vector<std::int32_t>
   for (int a = 0; a < functions; ++a)
   {
     const Index row = space.unknownOf[space.function(work.triangles, t, a)];
-    if (row < 0)
+    if (row < 0 || !rows[row])
     {
       continue;
     }
@@ -345,7 +351,8 @@ void flush(const PeridynamicWork& work, Index t, const std::vector<std::int32_t>
       {
         double* from = sums.at(a, f);
         const Index row = space.unknownOf[space.function(work.triangles, t, a)];
-        for (int i = 0; given && row >= 0 && space.unknownOf[f] < 0 && i < c; ++i)
+        const bool counts = given && row >= 0 && rows[row] && space.unknownOf[f] < 0;
+        for (int i = 0; counts && i < c; ++i)
         {
           for (int j = 0; j < c; ++j)
           {
@@ -389,14 +396,109 @@ double estimatePeridynamicMemory(const HorizonMesh& mesh, const PeridynamicOptio
 }
 
 //------------------------------------------------------------------------------
-PeridynamicSystem assemblePeridynamics(
-  const HorizonMesh& mesh, const PeridynamicOptions& options, const std::vector<double>* given)
+namespace
+{
+/// The slices of a colour after which ranks learn whether one of them has stopped.
+constexpr Index SlicesOfColour = 8;
+
+/// Errors of one rank are those of all; one rank alone keeps their types.
+void together(RankGroup& group, const std::function<void()>& work)
+{
+  if (group.size() == 1)
+  {
+    work();
+  }
+  else
+  {
+    group.together(work);
+  }
+}
+
+/// The rank that assembles the rows of each unknown function.
+std::vector<int> ranksOfRows(RankGroup& group, const FunctionSpace& space)
+{
+  std::vector<int> ranks(space.unknowns, 0);
+  if (group.size() == 1)
+  {
+    return ranks;
+  }
+  std::vector<Vec3> places;
+  for (const Index f : space.functionOf)
+  {
+    const Vec2 middle = 0.5 * (space.low[f] + space.high[f]);
+    places.push_back({ middle[0], middle[1], 0.0 });
+  }
+  // The same on all ranks; one of them is enough for the division.
+  const PointDivision division(group, group.rank() == 0 ? places : std::vector<Vec3>());
+  std::transform(places.begin(), places.end(), ranks.begin(),
+    [&division](const Vec3& x) { return division.find(x); });
+  return ranks;
+}
+
+/// Sends the rows of each rank to the first one, which has the pattern of all.
+void gatherRows(RankGroup& group, const std::vector<int>& ranks, PeridynamicSystem& system)
+{
+  SparseMatrix& matrix = system.matrix;
+  const Index c = system.components;
+  std::vector<std::vector<double>> values(group.size()), loads(group.size());
+  const auto forEachRow = [&](int rank, const auto& visit)
+  {
+    for (Index row = 0; row < matrix.size; ++row)
+    {
+      if (ranks[row / c] == rank)
+      {
+        visit(row);
+      }
+    }
+  };
+  group.together(
+    [&]
+    {
+      forEachRow(group.rank(),
+        [&](Index row)
+        {
+          if (group.rank() > 0)
+          {
+            values[0].insert(values[0].end(), matrix.values.begin() + matrix.offsets[row],
+              matrix.values.begin() + matrix.offsets[row + 1]);
+            if (!system.constraintLoad.empty())
+            {
+              loads[0].push_back(system.constraintLoad[row]);
+            }
+          }
+        });
+      if (group.rank() > 0)
+      {
+        matrix = SparseMatrix();
+      }
+    });
+  const auto gotValues = group.exchangeItems(values);
+  const auto gotLoads = group.exchangeItems(loads);
+  for (int rank = 1; rank < group.size() && group.rank() == 0; ++rank)
+  {
+    auto value = gotValues[rank].begin();
+    auto load = gotLoads[rank].begin();
+    forEachRow(rank,
+      [&](Index row)
+      {
+        const Index length = matrix.offsets[row + 1] - matrix.offsets[row];
+        std::copy_n(value, length, matrix.values.begin() + matrix.offsets[row]);
+        value += length;
+        if (!system.constraintLoad.empty())
+        {
+          system.constraintLoad[row] = *load++;
+        }
+      });
+  }
+}
+
+/// Everything that can be wrong, before the expensive part. Sets what of the system follows from it.
+void checkAssembly(const HorizonMesh& mesh, const PeridynamicOptions& options,
+  const std::vector<double>* given, PeridynamicSystem& system)
 {
   checkOptions(options);
-  // All checks come before the expensive part.
   const PlanarTriangles triangles(mesh);
   checkHorizon(mesh, options.horizon);
-  PeridynamicSystem system;
   system.components = isElastic(options.model) ? 2 : 1;
   system.layerDeficit =
     options.constrained ? layerDeficit(mesh, interactionReach(options), options.threads) : 0.0;
@@ -407,30 +509,35 @@ PeridynamicSystem assemblePeridynamics(
     throw Error("the given solution has " + std::to_string(given->size()) + " values; " +
       std::to_string(space.functions * system.components) + " are expected");
   }
-  const BoxGrid grid(triangles.low, triangles.high), supports(space.low, space.high);
-  system.memory = bytesFor(mesh, space, supports, options);
+  system.memory = bytesFor(mesh, space, BoxGrid(space.low, space.high), options);
   checkMemory(system.memory, options);
+}
 
-  const BondCut cut(triangles, options.horizon, options.cutBonds);
-  const PeridynamicWork work = { triangles, grid, space, options, cut };
-  AssemblyControl control(options, 0.0, 0.5);
-  const bool exact = options.discretization == Discretization::Exact;
-  std::shared_ptr<PairIntegrals> integrals;
-  if (exact)
+/// What an assembly works on.
+struct AssemblyParts
+{
+  AssemblyParts(const HorizonMesh& mesh, const PeridynamicOptions& options)
+    : triangles(mesh)
+    , space(mesh, triangles, options)
+    , grid(triangles.low, triangles.high)
+    , supports(space.low, space.high)
+    , cut(triangles, options.horizon, options.cutBonds)
   {
-    integrals = makePairIntegrals(work, [&](double fraction) { return control.proceed(fraction); });
-    control.throwIfStopped();
-    system.integratedPairs = numberOfIntegratedPairs(*integrals);
   }
-  const bool stateBased = options.model == PeridynamicModel::StateBased;
-  control.setRange(exact ? 0.5 : 0.0, stateBased ? StateBasedShare : 1.0);
-  system.matrix =
-    makePattern(space, supports, interactionReach(options), system.components, options.threads);
-  system.constraintLoad.assign(given ? system.matrix.size : 0, 0.0);
 
-  const auto colours = colourTriangles(triangles, space, space.trianglesWithUnknowns(triangles));
-  const double scale = kernelScale(options);
-  Index done = 0;
+  PlanarTriangles triangles;
+  FunctionSpace space;
+  BoxGrid grid, supports;
+  BondCut cut;
+};
+
+/// Integrates the triangles of the colours, in their order, into the rows wanted.
+void addTriangles(RankGroup& group, const PeridynamicWork& work, const PairIntegrals* integrals,
+  const std::vector<char>& rows, const std::vector<double>* given, AssemblyControl& control,
+  PeridynamicSystem& system)
+{
+  const FunctionSpace& space = work.space;
+  const PeridynamicOptions& options = work.options;
   struct Scratch
   {
     RowSums sums;
@@ -441,46 +548,150 @@ PeridynamicSystem assemblePeridynamics(
     [&]
     {
       return Scratch{ RowSums(space.functions, static_cast<int>(system.components)),
-        exact ? makeExactAssembler(work, *integrals) : makeDissertationAssembler(work), {} };
+        integrals ? makeExactAssembler(work, *integrals) : makeDissertationAssembler(work), {} };
     });
   constexpr Index grain = 16;
-  // Within a colour no two threads write to the same row; the colours have a fixed order.
+  const double scale = kernelScale(options);
+  // Within a colour no two threads write to the same row; the colours have a fixed order, the same
+  // on all ranks, so that rows are summed in it.
+  const auto colours =
+    colourTriangles(work.triangles, space, space.trianglesWithUnknowns(work.triangles));
+  const Index slices = group.size() > 1 ? SlicesOfColour : 1;
+  Index done = 0;
+  const Index all = std::count(work.needed.begin(), work.needed.end(), 1);
   for (const std::vector<std::int32_t>& colour : colours)
   {
-    const auto size = static_cast<Index>(colour.size());
-    parallelFor(
-      size, grain, options.threads, scratches,
-      [&](Scratch& scratch, Index k)
-      {
-        const Index t = colour[k];
-        work.neighboursOf(t, scratch.near);
-        scratch.assembler->assemble(t, scratch.near, scratch.sums);
-        flush(work, t, scratch.near, scratch.sums, scale, given, system);
-      },
-      [&](double fraction)
-      {
-        const double before = static_cast<double>(done), now = fraction * static_cast<double>(size);
-        return control.proceed((before + now) / static_cast<double>(triangles.size()));
-      });
-    control.throwIfStopped();
-    done += size;
+    std::vector<std::int32_t> own;
+    std::copy_if(colour.begin(), colour.end(), std::back_inserter(own),
+      [&work](std::int32_t t) { return work.needed[t] != 0; });
+    const auto size = static_cast<Index>(own.size());
+    for (Index slice = 0; slice < slices; ++slice)
+    {
+      const Index begin = size * slice / slices, end = size * (slice + 1) / slices;
+      together(group,
+        [&]
+        {
+          parallelFor(
+            end - begin, grain, options.threads, scratches,
+            [&](Scratch& scratch, Index k)
+            {
+              const Index t = own[begin + k];
+              work.neighboursOf(t, scratch.near);
+              scratch.assembler->assemble(t, scratch.near, scratch.sums);
+              flush(work, rows, t, scratch.near, scratch.sums, scale, given, system);
+            },
+            [&](double fraction)
+            {
+              const double now = fraction * static_cast<double>(end - begin);
+              return control.proceed(
+                (static_cast<double>(done) + now) / static_cast<double>(std::max<Index>(all, 1)));
+            });
+          control.throwIfStopped();
+        });
+      done += end - begin;
+    }
   }
-  if (stateBased)
+}
+}
+
+//------------------------------------------------------------------------------
+PeridynamicSystem assemblePeridynamics(
+  const HorizonMesh& mesh, const PeridynamicOptions& options, const std::vector<double>* given)
+{
+  SingleRank alone;
+  return assemblePeridynamics(alone, mesh, options, given);
+}
+
+//------------------------------------------------------------------------------
+PeridynamicSystem assemblePeridynamics(RankGroup& group, const HorizonMesh& mesh,
+  const PeridynamicOptions& options, const std::vector<double>* given)
+{
+  PeridynamicSystem system;
+  std::unique_ptr<AssemblyParts> parts;
+  // What may fail, also at the time limit, fails on all ranks.
+  together(group,
+    [&]
+    {
+      checkAssembly(mesh, options, given, system);
+      parts = std::make_unique<AssemblyParts>(mesh, options);
+    });
+  const bool first = group.rank() == 0;
+  const PlanarTriangles& triangles = parts->triangles;
+  const FunctionSpace& space = parts->space;
+  const std::vector<int> ranks = ranksOfRows(group, space);
+  std::vector<char> own(space.unknowns), needed(triangles.size(), 0);
+  std::transform(ranks.begin(), ranks.end(), own.begin(),
+    [&group](int rank) { return static_cast<char>(rank == group.rank()); });
+  for (Index t = 0; t < triangles.size(); ++t)
   {
-    control.setRange(StateBasedShare, 1.0);
-    addDilatation(work, given, system, [&](double fraction) { return control.proceed(fraction); });
-    control.throwIfStopped();
+    for (int a = 0; a < space.perTriangle(); ++a)
+    {
+      const Index row = space.unknownOf[space.function(triangles, t, a)];
+      needed[t] |= static_cast<char>(row >= 0 && own[row]);
+    }
   }
-  system.asymmetry = symmetrize(system.matrix, options.threads);
-  dropZeros(system.matrix);
-  if (exact)
+  const PeridynamicWork work = { triangles, parts->grid, space, options, parts->cut, needed };
+  AssemblyControl control(options, 0.0, 0.5);
+  const bool exact = options.discretization == Discretization::Exact;
+  const bool stateBased = options.model == PeridynamicModel::StateBased;
+  std::shared_ptr<PairIntegrals> integrals;
+  together(group,
+    [&]
+    {
+      if (exact)
+      {
+        integrals =
+          makePairIntegrals(work, [&](double fraction) { return control.proceed(fraction); });
+        control.throwIfStopped();
+      }
+      control.setRange(exact ? 0.5 : 0.0, stateBased ? StateBasedShare : 1.0);
+      system.matrix = makePattern(space, first ? std::vector<char>(own.size(), 1) : own,
+        parts->supports, interactionReach(options), system.components, options.threads);
+      system.constraintLoad.assign(given ? system.matrix.size : 0, 0.0);
+    });
+  system.integratedPairs = group.sum(exact ? numberOfIntegratedPairs(*integrals) : 0);
+  addTriangles(group, work, integrals.get(), own, given, control, system);
+  if (group.size() > 1)
   {
-    system.asymmetry = 0.0; // rounding
+    gatherRows(group, ranks, system);
   }
-  checkDiagonal(system);
+  together(group,
+    [&]
+    {
+      if (!first)
+      {
+        return;
+      }
+      if (stateBased)
+      {
+        control.setRange(StateBasedShare, 1.0);
+        addDilatation(
+          work, given, system, [&](double fraction) { return control.proceed(fraction); });
+        control.throwIfStopped();
+      }
+      system.asymmetry = symmetrize(system.matrix, options.threads);
+      dropZeros(system.matrix);
+      if (exact)
+      {
+        system.asymmetry = 0.0; // rounding
+      }
+      checkDiagonal(system);
+    });
   system.unknownOf = space.unknownOf;
   system.functionOf = space.functionOf;
   return system;
+}
+
+//------------------------------------------------------------------------------
+HorizonMesh meshOfFirst(RankGroup& group, const HorizonMesh& own)
+{
+  const bool first = group.rank() == 0;
+  HorizonMesh mesh;
+  mesh.points = group.gatherItems(first ? own.points : std::vector<double>())[0];
+  mesh.triangles = group.gatherItems(first ? own.triangles : std::vector<Index>())[0];
+  mesh.layer = group.gatherItems(first ? own.layer : std::vector<unsigned char>())[0];
+  mesh.givenPoints = group.gatherItems(first ? own.givenPoints : std::vector<unsigned char>())[0];
+  return mesh;
 }
 
 //------------------------------------------------------------------------------

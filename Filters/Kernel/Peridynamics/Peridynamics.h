@@ -39,6 +39,7 @@
 #define tautline_Peridynamics_h
 
 #include "PeridynamicOptions.h"
+#include "tautline/Core/RankGroup.h"
 #include "tautline/SolversExport.h"
 
 namespace tautline
@@ -57,6 +58,22 @@ namespace tautline
  */
 TAUTLINE_SOLVERS_EXPORT PeridynamicSystem assemblePeridynamics(const HorizonMesh& mesh,
   const PeridynamicOptions& options, const std::vector<double>* given = nullptr);
+
+/**
+ * @brief The same on ranks: they share the functions by planes (k-d tree), and each integrates the
+ * rows of its own, with all triangles as far as the horizon around these. Collective; all ranks
+ * pass the same mesh, options (but for threads, time limit and progress) and values.
+ *
+ * @return on the first rank the system of one rank, bitwise; on others one without a matrix. Of the
+ * pairs integrated, those that several ranks need count on each. The dilatation of the state-based
+ * model is added on the first rank.
+ */
+TAUTLINE_SOLVERS_EXPORT PeridynamicSystem assemblePeridynamics(RankGroup& group,
+  const HorizonMesh& mesh, const PeridynamicOptions& options,
+  const std::vector<double>* given = nullptr);
+
+/// The mesh of the first rank, on all ranks. Collective. @param own of the first rank
+TAUTLINE_SOLVERS_EXPORT HorizonMesh meshOfFirst(RankGroup& group, const HorizonMesh& own);
 
 /// Bytes assemblePeridynamics() will take, from a sample of the rows. Checks the mesh on the way.
 TAUTLINE_SOLVERS_EXPORT double estimatePeridynamicMemory(

@@ -138,8 +138,7 @@ PairIntegrals::PairIntegrals(
   // Pairs repeat only in meshes of few shapes, such as structured ones.
   const Index few = std::max<Index>(64, work.triangles.size() / 16);
   this->Reuse = work.options.reuseCongruent && this->NumberOfShapes <= few;
-  const std::vector<char> needed = work.space.trianglesWithUnknowns(work.triangles);
-  this->Reuse ? this->findPairs(needed) : this->findTouching(needed);
+  this->Reuse ? this->findPairs(work.needed) : this->findTouching(work.needed);
   this->integrate(proceed);
 }
 

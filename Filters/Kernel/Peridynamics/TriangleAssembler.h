@@ -22,6 +22,7 @@ struct PeridynamicWork
   const FunctionSpace& space;
   const PeridynamicOptions& options;
   const BondCut& cut;
+  const std::vector<char>& needed; ///< per triangle: whether rows of its functions are assembled
 
   /// The triangles that triangle t interacts with, itself included.
   void neighboursOf(Index t, std::vector<std::int32_t>& near) const

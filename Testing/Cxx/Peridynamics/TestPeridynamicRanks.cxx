@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Nonlocal matrices assembled by ranks that are threads: those of one rank, bitwise; what is wrong
+// on one rank, and what stops one, ends all.
+#include "Check.h"
+#include "HorizonMeshes.h"
+#include "ThreadRanks.h"
+
+#include "tautline/Peridynamics/Peridynamics.h"
+
+using namespace tautline;
+
+namespace
+{
+struct Case
+{
+  const char* name;
+  PeridynamicBasis basis;
+  PeridynamicModel model;
+  Discretization discretization;
+};
+
+constexpr Case cases[] = {
+  { "linear", PeridynamicBasis::Linear, PeridynamicModel::Scalar, Discretization::Exact },
+  { "constant", PeridynamicBasis::Constant, PeridynamicModel::Scalar, Discretization::Exact },
+  { "discontinuous", PeridynamicBasis::DiscontinuousLinear, PeridynamicModel::Scalar,
+    Discretization::Exact },
+  { "elastic", PeridynamicBasis::Linear, PeridynamicModel::Elastic, Discretization::Exact },
+  { "state-based", PeridynamicBasis::Linear, PeridynamicModel::StateBased, Discretization::Exact },
+  { "dissertation", PeridynamicBasis::Linear, PeridynamicModel::Scalar,
+    Discretization::Dissertation },
+};
+
+PeridynamicOptions optionsOf(const Case& each)
+{
+  PeridynamicOptions options;
+  options.basis = each.basis;
+  options.model = each.model;
+  options.discretization = each.discretization;
+  options.horizon = 0.2;
+  options.tolerance = 1e-4;
+  options.threads = 1;
+  options.poissonRatio = 0.3;
+  return options;
+}
+
+constexpr int Elements = 10; // along a side
+
+HorizonMesh meshFor(const PeridynamicOptions& options, double shake)
+{
+  const auto layers = static_cast<int>(std::lround(Elements * interactionReach(options)));
+  return shakenSquare(Elements, layers, shake);
+}
+
+void testEqual()
+{
+  for (const bool shaken : { false, true })
+  {
+    for (const Case& each : cases)
+    {
+      const PeridynamicOptions options = optionsOf(each);
+      // Shaken, no two pairs of triangles are alike.
+      const HorizonMesh mesh = meshFor(options, shaken ? 0.1 : 0.0);
+      const Index components = options.model == PeridynamicModel::Scalar ? 1 : 2;
+      std::vector<double> given(components * numberOfFunctions(mesh, options.basis));
+      Random random(9);
+      for (double& value : given)
+      {
+        value = random.uniform(-1, 1);
+      }
+      const PeridynamicSystem one = assemblePeridynamics(mesh, options, &given);
+      for (const int size : { 2, 3, 5 })
+      {
+        const Context context(
+          std::string(each.name) + (shaken ? ", shaken, " : ", ") + std::to_string(size));
+        std::vector<PeridynamicSystem> systems(size);
+        onRanks(size,
+          [&](RankGroup& group)
+          {
+            const HorizonMesh here = meshOfFirst(group, group.rank() == 0 ? mesh : HorizonMesh());
+            PeridynamicOptions own = options;
+            own.threads = 1 + group.rank() % 2;
+            systems[group.rank()] = assemblePeridynamics(group, here, own, &given);
+          });
+        const PeridynamicSystem& all = systems[0];
+        TAUTLINE_CHECK(all.matrix.offsets == one.matrix.offsets);
+        TAUTLINE_CHECK(all.matrix.columns == one.matrix.columns);
+        TAUTLINE_CHECK(all.matrix.values == one.matrix.values);
+        TAUTLINE_CHECK(all.constraintLoad == one.constraintLoad);
+        TAUTLINE_CHECK_EQUAL(all.asymmetry, one.asymmetry);
+        TAUTLINE_CHECK(all.functionOf == one.functionOf);
+        TAUTLINE_CHECK(all.integratedPairs >= one.integratedPairs);
+        // Without repeated pairs, only those near the planes are integrated by several ranks.
+        TAUTLINE_CHECK(!shaken || all.integratedPairs <= 2 * one.integratedPairs);
+        for (int rank = 1; rank < size; ++rank)
+        {
+          TAUTLINE_CHECK_EQUAL(systems[rank].matrix.size, 0);
+          TAUTLINE_CHECK(systems[rank].unknownOf == one.unknownOf);
+        }
+      }
+    }
+  }
+}
+
+void testEnds()
+{
+  const PeridynamicOptions options = optionsOf(cases[0]);
+  const HorizonMesh mesh = meshFor(options, 0.0);
+  const auto run = [&](int rank, const auto& change)
+  {
+    onRanks(3,
+      [&](RankGroup& group)
+      {
+        PeridynamicOptions own = options;
+        HorizonMesh here = mesh;
+        if (group.rank() == rank)
+        {
+          change(own, here);
+        }
+        assemblePeridynamics(group, here, own);
+      });
+  };
+  TAUTLINE_CHECK_THROWS(
+    run(0,
+      [](PeridynamicOptions& own, HorizonMesh&) { own.progress = [](double) { return false; }; }),
+    "stopped by the user");
+  TAUTLINE_CHECK_THROWS(run(2, [](PeridynamicOptions& own, HorizonMesh&) { own.timeLimit = 1e-9; }),
+    "In process 2: the time limit");
+  TAUTLINE_CHECK_THROWS(
+    run(1, [](PeridynamicOptions& own, HorizonMesh&) { own.memoryLimit = 1000; }),
+    "In process 1: the matrix");
+  TAUTLINE_CHECK_THROWS(
+    run(0, [](PeridynamicOptions& own, HorizonMesh&) { own.horizon = 0.5; }), "interaction layer");
+  // Progress that is asked for only after the start.
+  TAUTLINE_CHECK_THROWS(run(1,
+                          [](PeridynamicOptions& own, HorizonMesh&)
+                          { own.progress = [](double part) { return part < 0.8; }; }),
+    "stopped by the user");
+}
+}
+
+int TestPeridynamicRanks(int, char*[])
+{
+  testEqual();
+  testEnds();
+  return exitCode();
+}
