@@ -165,6 +165,7 @@ def optimize(
     threads: int = 0,
     merge_coincident_points: bool = True,
     reproducible_order: bool = False,
+    redistribute: bool = False,
     progress: Progress | bool | None = None,
     **options: Any,
 ) -> OptimizeResult:
@@ -221,7 +222,9 @@ def optimize(
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
         of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
     reproducible_order: work in the order that does not depend on how a mesh is spread over processes, as several of
-        them always do.
+        them do unless the mesh is gathered.
+    redistribute: on several processes (pvbatch --sym under MPI, where each calls this function with its piece): divide
+        the mesh anew among them, also where the first one has all of it.
     options: properties of vtkMeshOptimizer. Stopping: maximum_iterations (300), gradient_norm (1e-6), relative_change
         (1e-5), two_digits (False), reduction (1: off), best_known (None: estimated), stop_when_valid (False).
         Scalarization: c (0: automatic), exponent (1), tolerance (0.01), utopia (one number per objective). Metrics:
@@ -258,6 +261,7 @@ def optimize(
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     filter_.SetReproducibleOrder(bool(reproducible_order))
+    filter_.SetRedistribute(bool(redistribute))
     if _is_number(size):
         size = np.full(inputs.mesh.GetNumberOfCells(), size)
     if _is_number(limits):

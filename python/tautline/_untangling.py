@@ -67,6 +67,7 @@ def untangle(
     threads: int = 0,
     merge_coincident_points: bool = True,
     reproducible_order: bool = False,
+    redistribute: bool = False,
     progress: Progress | bool | None = None,
 ) -> UntangleResult:
     """Make the elements of a mesh valid by moving its points; the number of inverted elements never grows.
@@ -82,7 +83,9 @@ def untangle(
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
         of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
     reproducible_order: work in the order that does not depend on how a mesh is spread over processes, as several of
-        them always do.
+        them do unless the mesh is gathered.
+    redistribute: on several processes (pvbatch --sym under MPI, where each calls this function with its piece): divide
+        the mesh anew among them, also where the first one has all of it.
 
     Raises Error for wrong arguments and for meshes that the filter refuses. Elements that remain inverted are not an
     error: see inverted, obstacle and summary of the result.
@@ -99,6 +102,7 @@ def untangle(
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     filter_.SetReproducibleOrder(bool(reproducible_order))
+    filter_.SetRedistribute(bool(redistribute))
     inputs.use(_FIXED, fixed, "fixed", POINTS)
     filter_.SetInputDataObject(0, inputs.mesh)
     run(filter_)
