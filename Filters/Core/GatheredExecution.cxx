@@ -478,11 +478,6 @@ void GatheredExecution::prepareOutputs(ReplacedData& replaced)
 void GatheredExecution::execute(const std::function<int()>& execute)
 {
   const OneProcess alone;
-  this->Failure = this->attempt([this] { this->assembleAll(); });
-  if (!this->Failure.empty())
-  {
-    return;
-  }
   ReplacedData replaced;
   for (PortMesh& mesh : this->Meshes)
   {
@@ -586,11 +581,22 @@ int GatheredExecution::run(const std::function<int()>& execute)
   this->gather();
   if (this->Rank == FirstProcess)
   {
+    const OneProcess alone;
+    problem = this->attempt([this] { this->assembleAll(); });
+  }
+  // No process assists in what does not begin.
+  problem = shareText(this->Controller, problem);
+  if (!problem.empty())
+  {
+    return this->fail(problem);
+  }
+  if (this->Rank == FirstProcess)
+  {
     this->execute(execute);
   }
   else if (this->Rules.assist)
   {
-    // What fails here fails on the first process, too, which reports it.
+    // Work in step fails on the first process, too, which reports it.
     this->attempt(this->Rules.assist);
   }
   if (!this->shareOutcome())

@@ -142,9 +142,16 @@ Assistants::Assistants(std::unique_ptr<RankGroup> group)
 
 Assistants::~Assistants()
 {
-  if (this->Group && !this->Called)
+  try
   {
-    this->Group->any(false);
+    if (this->Group && !this->Called)
+    {
+      this->Group->any(false);
+    }
+  }
+  catch (const std::exception&)
+  {
+    // no memory for a message
   }
 }
 

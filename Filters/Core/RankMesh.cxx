@@ -45,11 +45,12 @@ struct Elements
 std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataObject* input,
   int threads, bool mergePoints, bool redistribute, std::string* why)
 {
-  const auto gather = [why](const std::string& reason)
+  bool scattered = true;
+  const auto gather = [&](const std::string& reason)
   {
     if (why)
     {
-      *why = reason;
+      *why = scattered ? reason : "";
     }
     return std::unique_ptr<RankMesh>();
   };
@@ -65,7 +66,8 @@ std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataO
   }
   const bool elsewhere =
     group->rank() > 0 && input && input->GetNumberOfElements(vtkDataObject::CELL) > 0;
-  if (group->size() == 1 || (!redistribute && !group->any(elsewhere)))
+  scattered = group->any(elsewhere);
+  if (group->size() == 1 || (!redistribute && !scattered))
   {
     return gather("");
   }
@@ -84,6 +86,10 @@ std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataO
   catch (const Error& error) // the same on all processes; one process may refuse it, too
   {
     return gather(std::string("its pieces could not be joined. ") + error.what());
+  }
+  if (mesh->mesh().globalCells() == 0)
+  {
+    return gather("");
   }
   const bool framed = !CoordinateFrame(coordinateRange(mesh->mesh().view()), false).isIdentity();
   if (group->any(framed))

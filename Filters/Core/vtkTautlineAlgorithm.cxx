@@ -201,7 +201,7 @@ int vtkTautlineAlgorithm::ExecuteGathered(
   rules.base = this->GetGatheredBase();
   rules.exchange = [this](tautline::ResultStream& stream) { this->ExchangeResult(stream); };
   rules.assist = [this] { this->Assist(); };
-  // On the first process, which is alone meanwhile.
+  // On the first process, which is the only one that VTK has meanwhile.
   const auto execute = [&]
   {
     const tautline::ExecutionLimits limits = { this->GetExecutionSeconds(),

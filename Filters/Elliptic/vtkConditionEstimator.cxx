@@ -90,7 +90,8 @@ std::vector<Contribution> largest(const tautline::ElementContributions& elements
   }
   std::stable_sort(all.begin(), all.end(),
     [](const Contribution& a, const Contribution& b) { return a.share > b.share; });
-  all.resize(std::min<std::size_t>(all.size(), ListedElements));
+  // Not resize(), about which GCC 16 has a warning that is wrong.
+  all.erase(all.begin() + std::min<std::ptrdiff_t>(all.size(), ListedElements), all.end());
   return all;
 }
 

@@ -254,8 +254,11 @@ void vtkPeridynamicStiffness::Compute(tautline::Assistants& assistants, vtkDataS
 
   // All processes assemble, each a part of the rows.
   tautline::RankGroup& group = assistants.call();
-  tautline::meshOfFirst(group, taken.mesh());
-  group.gatherItems(given);
+  if (group.size() > 1)
+  {
+    tautline::meshOfFirst(group, taken.mesh());
+    group.gatherItems(given);
+  }
   const tautline::PeridynamicSystem system =
     tautline::assemblePeridynamics(group, taken.mesh(), options, given.empty() ? nullptr : &given);
   this->Assembled = true;

@@ -44,7 +44,8 @@
  * vtkTable of one row: `Condition` (0 where the matrix is not positive definite), `Smallest`,
  * `Largest`, `SmallestBound`, `LargestBound` (absolute error bounds), `Definite`, `Converged`,
  * `Iterations`, `Rows`, `Nonzeros`, `Asymmetry` (of the dissertation's discretization: norm of the
- * part that is dropped, relative), `LayerDeficit`, `IntegratedPairs`, `Memory` (bytes, estimated);
+ * part that is dropped, relative), `LayerDeficit`, `IntegratedPairs` (on several processes those
+ * of all, pairs near the planes between them several times), `Memory` (bytes, estimated);
  * of the solution, 0 unless Solve: `SolverIterations`, `SolverResidual` (relative),
  * `SolverConverged`, `PreconditionedCondition` (estimated from the iterations, from below).
  *

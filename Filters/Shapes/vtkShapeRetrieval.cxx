@@ -256,8 +256,12 @@ int vtkShapeRetrieval::RequestData(
       const tautline::RetrievalOptions options = this->GetOptionsOfRun();
       this->Matching = true;
       tautline::RankGroup& group = assistants.call();
-      const tautline::Retrieval result = tautline::retrieveShapes(
-        group, tautline::shapesOfFirst(group, set.shapes), set.numbers, options);
+      if (group.size() > 1)
+      {
+        tautline::shapesOfFirst(group, set.shapes);
+      }
+      const tautline::Retrieval result =
+        tautline::retrieveShapes(group, set.shapes, set.numbers, options);
       fillTables(set, result, vtkTable::GetData(outputVector, 0),
         vtkTable::GetData(outputVector, 1), vtkTable::GetData(outputVector, 2),
         vtkTable::GetData(outputVector, 3));
@@ -319,8 +323,8 @@ void vtkShapeRetrieval::Assist()
   {
     return;
   }
-  const std::vector<tautline::Silhouette> shapes = tautline::shapesOfFirst(*several, {});
   tautline::RetrievalOptions options = this->GetOptionsOfRun();
+  const std::vector<tautline::Silhouette> shapes = tautline::shapesOfFirst(*several, {});
   options.match.progress = nullptr; // the first process reports
   this->Matching = true;            // the limit of the run ends it, on all processes
   const std::vector<tautline::Index> labels(shapes.size(), 0); // evaluated there only

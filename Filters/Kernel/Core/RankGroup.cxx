@@ -4,6 +4,7 @@
 #include "Memory.h"
 
 #include <algorithm>
+#include <exception>
 #include <cmath>
 #include <limits>
 
@@ -19,6 +20,7 @@ constexpr int highBits = 60, lowBits = 32;
 
 /// How errors begin that another rank explains.
 constexpr const char* vague = "Another rank";
+constexpr const char* interrupted = "the computation was interrupted";
 constexpr const char* elsewhere = "Another rank has rejected its part of the data.";
 }
 
@@ -171,6 +173,7 @@ double RankGroup::orderlessSum(const std::vector<double>& values)
 void RankGroup::together(const std::function<void()>& work)
 {
   std::string message;
+  std::exception_ptr interruption;
   try
   {
     work();
@@ -180,7 +183,16 @@ void RankGroup::together(const std::function<void()>& work)
     message = errorText(error, "take more processes or a coarser mesh");
     message = message.empty() ? elsewhere : message;
   }
+  catch (...) // an interruption, which is no error
+  {
+    interruption = std::current_exception();
+    message = interrupted;
+  }
   const std::vector<Bytes> all = this->allGather(Bytes(message.begin(), message.end()));
+  if (interruption)
+  {
+    std::rethrow_exception(interruption);
+  }
   // Of a rank that explains it, rather than of one that was told so.
   const auto explains = [](const Bytes& text)
   { return !text.empty() && std::string(text.begin(), text.end()).rfind(vague, 0) != 0; };

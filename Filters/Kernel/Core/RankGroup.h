@@ -77,7 +77,8 @@ public:
 
   /**
    * @brief Does work that does not communicate. What it throws on any rank is thrown on all, as
-   * Error, with the message of the lowest rank that explains it, so that none waits for another.
+   * Error, with the message of the lowest rank that explains it, so that none waits for another. An
+   * interruption is one on its own rank, and an error on the others.
    */
   void together(const std::function<void()>& work);
 };

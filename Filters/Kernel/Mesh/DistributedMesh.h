@@ -73,7 +73,7 @@ public:
   /// Per local point: the rank that owns it.
   const std::vector<int>& owners() const { return this->Owners; }
   /// Of the ranks with a cell at a point, the one with the least of these numbers owns it, unless
-  /// they are divided anew; of equal ones the lowest rank.
+  /// the points are divided anew; of equal ones the lowest rank.
   static std::uint64_t ownerHash(Index number, int rank);
   bool owned(Index point) const { return this->Owners[point] == this->Group->rank(); }
   /// One flag per local cell: whether this rank owns it.

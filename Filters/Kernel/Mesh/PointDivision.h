@@ -18,7 +18,8 @@ namespace tautline
  * @brief A tree of planes across the longest extents (recursive bisection), such that all ranks get
  * about as many of the points: within a few percent, as a sample decides.
  *
- * It depends on the coordinates only, not on which rank has a point. Points with the same
+ * All ranks have the same tree, and a place is in one part, whichever ranks have points there.
+ * Points with the same
  * coordinate across a plane are told apart by their others, so regular grids are divided as evenly.
  */
 class TAUTLINE_KERNEL_EXPORT PointDivision

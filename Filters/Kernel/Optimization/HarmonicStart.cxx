@@ -115,15 +115,16 @@ void requireMemoryFor(const OptimizationProblem& problem)
   {
     edges += static_cast<double>(block.count) * topology(block.type).edges;
   }
-  // An entry is a pair of rows before equal ones are joined; of a tetrahedral mesh every fifth is
-  // left. The grids have as much as the matrix.
-  constexpr double pair = 2 * sizeof(std::int32_t);
+  // Pairs of rows in both directions, before equal ones are joined: in a plane every second is left,
+  // in a volume every fourth or fifth. Lists grow by doubling; the grids have as much as the matrix.
+  constexpr double pair = 2 * sizeof(std::int32_t), growth = 2, directions = 2, grids = 2;
   constexpr double block = size * size * sizeof(double) + sizeof(std::int32_t);
-  constexpr double ofEdge = 2 * pair + 2 * 2 * block / 5;
+  const double left = problem.moving().dimension() == Dimension::Volume ? 0.25 : 0.5;
+  const double ofEdge = directions * (growth * pair + growth * left * block) + grids * left * block;
   constexpr double vectors = 10;
   requireMemory(
     ofEdge * edges + vectors * size * sizeof(double) * static_cast<double>(view.numberOfPoints),
-    "The harmonic map", "the start is used instead");
+    "The harmonic map", "sweeps go on instead");
 }
 
 BlockMatrixView viewOf(const Laplacian& a, Index count)

@@ -399,7 +399,7 @@ double estimatePeridynamicMemory(const HorizonMesh& mesh, const PeridynamicOptio
 namespace
 {
 /// The slices of a colour after which ranks learn whether one of them has stopped.
-constexpr Index SlicesOfColour = 8;
+constexpr Index SlicesOfColour = 32;
 
 /// Errors of one rank are those of all; one rank alone keeps their types.
 void together(RankGroup& group, const std::function<void()>& work)
@@ -423,11 +423,15 @@ std::vector<int> ranksOfRows(RankGroup& group, const FunctionSpace& space)
     return ranks;
   }
   std::vector<Vec3> places;
-  for (const Index f : space.functionOf)
-  {
-    const Vec2 middle = 0.5 * (space.low[f] + space.high[f]);
-    places.push_back({ middle[0], middle[1], 0.0 });
-  }
+  group.together(
+    [&]
+    {
+      for (const Index f : space.functionOf)
+      {
+        const Vec2 middle = 0.5 * (space.low[f] + space.high[f]);
+        places.push_back({ middle[0], middle[1], 0.0 });
+      }
+    });
   // The same on all ranks; one of them is enough for the division.
   const PointDivision division(group, group.rank() == 0 ? places : std::vector<Vec3>());
   std::transform(places.begin(), places.end(), ranks.begin(),
@@ -435,66 +439,67 @@ std::vector<int> ranksOfRows(RankGroup& group, const FunctionSpace& space)
   return ranks;
 }
 
-/// Sends the rows of each rank to the first one, which has the pattern of all.
+/// Sends the rows of each rank to the first one, which has the pattern of all: one rank after the
+/// other, so that few are there twice.
 void gatherRows(RankGroup& group, const std::vector<int>& ranks, PeridynamicSystem& system)
 {
   SparseMatrix& matrix = system.matrix;
   const Index c = system.components;
-  std::vector<std::vector<double>> values(group.size()), loads(group.size());
-  const auto forEachRow = [&](int rank, const auto& visit)
+  const bool loaded = !system.constraintLoad.empty();
+  for (int rank = 1; rank < group.size(); ++rank)
   {
-    for (Index row = 0; row < matrix.size; ++row)
+    const auto forEachRow = [&](const auto& visit)
     {
-      if (ranks[row / c] == rank)
+      for (Index row = 0; row < matrix.size; ++row)
       {
-        visit(row);
-      }
-    }
-  };
-  group.together(
-    [&]
-    {
-      forEachRow(group.rank(),
-        [&](Index row)
+        if (ranks[row / c] == rank)
         {
-          if (group.rank() > 0)
-          {
-            values[0].insert(values[0].end(), matrix.values.begin() + matrix.offsets[row],
-              matrix.values.begin() + matrix.offsets[row + 1]);
-            if (!system.constraintLoad.empty())
+          visit(row, matrix.offsets[row], matrix.offsets[row + 1]);
+        }
+      }
+    };
+    std::vector<std::vector<double>> sent(group.size());
+    group.together(
+      [&]
+      {
+        std::vector<double>& values = sent[0];
+        if (group.rank() == rank)
+        {
+          forEachRow(
+            [&](Index row, Index begin, Index end)
             {
-              loads[0].push_back(system.constraintLoad[row]);
-            }
-          }
-        });
-      if (group.rank() > 0)
-      {
-        matrix = SparseMatrix();
-      }
-    });
-  const auto gotValues = group.exchangeItems(values);
-  const auto gotLoads = group.exchangeItems(loads);
-  for (int rank = 1; rank < group.size() && group.rank() == 0; ++rank)
-  {
-    auto value = gotValues[rank].begin();
-    auto load = gotLoads[rank].begin();
-    forEachRow(rank,
-      [&](Index row)
-      {
-        const Index length = matrix.offsets[row + 1] - matrix.offsets[row];
-        std::copy_n(value, length, matrix.values.begin() + matrix.offsets[row]);
-        value += length;
-        if (!system.constraintLoad.empty())
-        {
-          system.constraintLoad[row] = *load++;
+              values.insert(
+                values.end(), matrix.values.begin() + begin, matrix.values.begin() + end);
+              if (loaded)
+              {
+                values.push_back(system.constraintLoad[row]);
+              }
+            });
+          matrix = SparseMatrix();
         }
       });
+    const std::vector<double> values = std::move(group.exchangeItems(sent)[rank]);
+    if (group.rank() == 0)
+    {
+      auto value = values.begin();
+      forEachRow(
+        [&](Index row, Index begin, Index end)
+        {
+          std::copy_n(value, end - begin, matrix.values.begin() + begin);
+          value += end - begin;
+          if (loaded)
+          {
+            system.constraintLoad[row] = *value++;
+          }
+        });
+    }
   }
 }
 
 /// Everything that can be wrong, before the expensive part. Sets what of the system follows from it.
+/// @param share of the matrix that this rank needs memory for, at most 1
 void checkAssembly(const HorizonMesh& mesh, const PeridynamicOptions& options,
-  const std::vector<double>* given, PeridynamicSystem& system)
+  const std::vector<double>* given, double share, PeridynamicSystem& system)
 {
   checkOptions(options);
   const PlanarTriangles triangles(mesh);
@@ -510,7 +515,7 @@ void checkAssembly(const HorizonMesh& mesh, const PeridynamicOptions& options,
       std::to_string(space.functions * system.components) + " are expected");
   }
   system.memory = bytesFor(mesh, space, BoxGrid(space.low, space.high), options);
-  checkMemory(system.memory, options);
+  checkMemory(share * system.memory, options);
 }
 
 /// What an assembly works on.
@@ -608,11 +613,12 @@ PeridynamicSystem assemblePeridynamics(RankGroup& group, const HorizonMesh& mesh
 {
   PeridynamicSystem system;
   std::unique_ptr<AssemblyParts> parts;
+  const double share = group.rank() == 0 ? 1.0 : 1.0 / group.size();
   // What may fail, also at the time limit, fails on all ranks.
   together(group,
     [&]
     {
-      checkAssembly(mesh, options, given, system);
+      checkAssembly(mesh, options, given, share, system);
       parts = std::make_unique<AssemblyParts>(mesh, options);
     });
   const bool first = group.rank() == 0;

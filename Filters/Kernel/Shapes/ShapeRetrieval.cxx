@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -250,7 +251,9 @@ private:
     {
       this->Stop = MatchStop::TimeLimit;
     }
-    for (const std::vector<Found>& list : this->Group.gatherItems(found))
+    std::vector<std::vector<Found>> sent(this->Group.size());
+    sent[0].swap(found);
+    for (const std::vector<Found>& list : this->Group.exchangeItems(sent))
     {
       for (const Found& each : list)
       {
@@ -563,7 +566,7 @@ std::vector<Silhouette> shapesOfFirst(RankGroup& group, const std::vector<Silhou
 {
   std::vector<SentShape> sent;
   std::vector<Vec2> outlines;
-  std::vector<float> masks;
+  std::vector<char> pixels; // of masks, which have 0 and 1
   const bool isFirst = group.rank() == 0;
   group.together(
     [&]
@@ -575,18 +578,19 @@ std::vector<Silhouette> shapesOfFirst(RankGroup& group, const std::vector<Silhou
           s.components, s.holes, s.width, s.height, s.centre, s.maxDistance, s.area, s.perimeter,
           s.threshold, static_cast<char>(s.touchesBorder), static_cast<char>(s.dark) });
         outlines.insert(outlines.end(), s.outline.begin(), s.outline.end());
-        masks.insert(masks.end(), s.mask.begin(), s.mask.end());
+        std::transform(s.mask.begin(), s.mask.end(), std::back_inserter(pixels),
+          [](float inside) { return static_cast<char>(inside != 0.0f); });
       }
     });
   sent = group.gatherItems(sent)[0];
   outlines = group.gatherItems(outlines)[0];
-  masks = group.gatherItems(masks)[0];
+  pixels = group.gatherItems(pixels)[0];
   std::vector<Silhouette> shapes;
   group.together(
     [&]
     {
       auto point = outlines.begin();
-      auto pixel = masks.begin();
+      auto pixel = pixels.begin();
       for (const SentShape& from : sent)
       {
         Silhouette s;
@@ -639,6 +643,11 @@ Retrieval retrieveShapes(RankGroup& group, const std::vector<Silhouette>& shapes
   result.stop = comparison.stop();
   result.vertices = comparison.vertices();
   result.matches = comparison.matches();
+  if (group.rank() > 0)
+  {
+    result.distances.clear();
+    return result;
+  }
   if (options.method == RetrievalMethod::Outline)
   {
     combine(comparison.models(), options, result.distances);

@@ -95,8 +95,8 @@ TAUTLINE_KERNEL_EXPORT Retrieval retrieveShapes(const std::vector<Silhouette>& s
   const std::vector<Index>& labels, const RetrievalOptions& options);
 
 /**
- * @brief The same on ranks: of the pairs that are matched, each rank takes every n-th. Collective;
- * all ranks get the result, which is that of one rank.
+ * @brief The same on ranks: of the pairs that are matched, each rank takes every n-th. Collective.
+ * The first rank gets the result, which is that of one rank; the others learn why it ended.
  *
  * A time limit, a callback that returns false and an error of one rank end it on all, within
  * seconds.

@@ -434,6 +434,30 @@ void testShapes()
     });
 }
 
+/// Pieces that cannot be joined are an error on all, also where the others would assist.
+void testNotJoined()
+{
+  const Context context("pieces that cannot be joined");
+  MeshData data;
+  const double x = rank(); // the ids are at two places
+  data.points = { x, 0, 0, x + 1, 0, 0, x, 1, 0 };
+  data.addCell(CellType::Triangle, { 0, 1, 2 });
+  auto grid = toGrid(data);
+  vtkNew<vtkIdTypeArray> ids;
+  ids->SetName("ids");
+  for (vtkIdType id : { 0, 1, 2 })
+  {
+    ids->InsertNextValue(id);
+  }
+  grid->GetPointData()->SetGlobalIds(ids);
+  vtkNew<vtkPeridynamicStiffness> filter;
+  Messages messages(filter);
+  filter->SetInputData(grid);
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("ERROR: "));
+  TAUTLINE_CHECK(messages.has("global"));
+}
+
 /// Shape Retrieval divides the pairs among the processes: the distances are those of one, bitwise;
 /// an image without a shape is an error on all.
 void testRetrieval()
@@ -549,6 +573,7 @@ int TestGatheredRanks(int argc, char* argv[])
     testUpstream();
     testShapes();
     testRetrieval();
+    testNotJoined();
 #ifdef TAUTLINE_MESHING
     testMeshers();
 #endif

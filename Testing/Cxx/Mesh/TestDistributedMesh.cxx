@@ -194,7 +194,6 @@ std::vector<std::string> messagesOf(int ranks, const Change& change)
   return messages;
 }
 
-/// An error on one rank is one on all.
 /// Divided anew: the numbers are the same, every point has one owner, all ranks own about as many,
 /// whoever has the cells; a random cut gets halos like surfaces.
 void testDivision()
@@ -290,6 +289,7 @@ void testDivisionOfFew()
   }
 }
 
+/// An error on one rank is one on all.
 void testErrors()
 {
   const auto all = [](const std::vector<std::string>& messages, const char* text)

@@ -5,6 +5,7 @@
 #include "HorizonMeshes.h"
 #include "ThreadRanks.h"
 
+#include "tautline/Core/Interruption.h"
 #include "tautline/Peridynamics/Peridynamics.h"
 
 using namespace tautline;
@@ -130,6 +131,35 @@ void testEnds()
     "In process 1: the matrix");
   TAUTLINE_CHECK_THROWS(
     run(0, [](PeridynamicOptions& own, HorizonMesh&) { own.horizon = 0.5; }), "interaction layer");
+  // An interruption, which is no error, on one rank; the others do not wait for it.
+  std::vector<std::string> ends(3);
+  onRanks(3,
+    [&](RankGroup& group)
+    {
+      const PollScope scope(
+        [&]
+        {
+          if (group.rank() == 1)
+          {
+            throw Interrupted();
+          }
+        });
+      try
+      {
+        assemblePeridynamics(group, mesh, options);
+      }
+      catch (const Interrupted&)
+      {
+        ends[group.rank()] = "interrupted";
+      }
+      catch (const Error& error)
+      {
+        ends[group.rank()] = error.what();
+      }
+    });
+  TAUTLINE_CHECK(ends ==
+    (std::vector<std::string>{ "In process 1: the computation was interrupted", "interrupted",
+      "In process 1: the computation was interrupted" }));
   // Progress that is asked for only after the start.
   TAUTLINE_CHECK_THROWS(run(1,
                           [](PeridynamicOptions& own, HorizonMesh&)
