@@ -39,8 +39,8 @@ public:
 /**
  * @brief The input as a mesh that each process works on a piece of. Null, on all processes, where
  * that is not possible and the mesh has to be gathered: composite data, all cells on the first
- * process unless redistributed, surfaces in space, planes that are inclined, cells of extreme size, and what RankMesh
- * refuses; and processes that do not communicate by MPI. Collective.
+ * process unless redistributed, surfaces in space, planes that are inclined, cells of extreme size,
+ * and what RankMesh refuses; and processes that do not communicate by MPI. Collective.
  * @param group gets the processes, which outlive the mesh
  * @param redistribute divides the mesh anew among the processes (MeshPiece::divideAnew), also where
  * all cells are on the first

@@ -97,9 +97,9 @@ private:
 };
 
 /**
- * @brief Throws Interrupted if the computations of this thread are interrupted, or on a worker those
- * of its loop's caller, and what a function of a PollScope throws. Has no effect while another
- * exception is on its way.
+ * @brief Throws Interrupted if the computations of this thread are interrupted, or on a worker
+ * those of its loop's caller, and what a function of a PollScope throws. Has no effect while
+ * another exception is on its way.
  */
 TAUTLINE_KERNEL_EXPORT void throwIfInterrupted();
 
@@ -126,8 +126,8 @@ TAUTLINE_KERNEL_EXPORT void measurePolls(bool measure);
  */
 TAUTLINE_KERNEL_EXPORT double longestUnpolledSeconds();
 
-/// Whether throwIfInterrupted() can have an effect on this thread, which is no worker: then work that cannot call it
-/// is worth a watchdog.
+/// Whether throwIfInterrupted() can have an effect on this thread, which is no worker: then work
+/// that cannot call it is worth a watchdog.
 TAUTLINE_KERNEL_EXPORT bool interruptible();
 }
 #endif

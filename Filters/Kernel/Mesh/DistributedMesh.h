@@ -36,9 +36,9 @@ struct MeshPiece
  *
  * Each point has a global number, 0 to globalPoints() - 1, along a space-filling curve of the
  * coordinates; ties are broken by the coordinates and by the ids given. It is owned by one of the
- * ranks that have it, or by any (MeshPiece::divideAnew). A rank gets all cells that have one of its own points (halo of vertex
- * neighbourhoods), in an order that follows from the numbers of their points. So what is computed
- * about an own point is bitwise the same whoever owns it.
+ * ranks that have it, or by any (MeshPiece::divideAnew). A rank gets all cells that have one of its
+ * own points (halo of vertex neighbourhoods), in an order that follows from the numbers of their
+ * points. So what is computed about an own point is bitwise the same whoever owns it.
  *
  * Local points come in the order of their numbers: own ones, those of the halo cells, and those of
  * the piece. Every cell is owned by the rank that owns its point of the lowest number.

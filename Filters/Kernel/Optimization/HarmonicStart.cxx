@@ -115,8 +115,9 @@ void requireMemoryFor(const OptimizationProblem& problem)
   {
     edges += static_cast<double>(block.count) * topology(block.type).edges;
   }
-  // Pairs of rows in both directions, before equal ones are joined: in a plane every second is left,
-  // in a volume every fourth or fifth. Lists grow by doubling; the grids have as much as the matrix.
+  // Pairs of rows in both directions, before equal ones are joined: in a plane every second is
+  // left, in a volume every fourth or fifth. Lists grow by doubling; the grids have as much as the
+  // matrix.
   constexpr double pair = 2 * sizeof(std::int32_t), growth = 2, directions = 2, grids = 2;
   constexpr double block = size * size * sizeof(double) + sizeof(std::int32_t);
   const double left = problem.moving().dimension() == Dimension::Volume ? 0.25 : 0.5;

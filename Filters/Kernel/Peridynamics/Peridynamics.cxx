@@ -3,12 +3,12 @@
 
 #include "Dilatation.h"
 #include "PeridynamicsKernel.h"
+#include "PeridynamicsRanks.h"
 #include "TriangleAssembler.h"
 
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
-#include "tautline/Mesh/PointDivision.h"
 
 #include <algorithm>
 
@@ -414,89 +414,7 @@ void together(RankGroup& group, const std::function<void()>& work)
   }
 }
 
-/// The rank that assembles the rows of each unknown function.
-std::vector<int> ranksOfRows(RankGroup& group, const FunctionSpace& space)
-{
-  std::vector<int> ranks(space.unknowns, 0);
-  if (group.size() == 1)
-  {
-    return ranks;
-  }
-  std::vector<Vec3> places;
-  group.together(
-    [&]
-    {
-      for (const Index f : space.functionOf)
-      {
-        const Vec2 middle = 0.5 * (space.low[f] + space.high[f]);
-        places.push_back({ middle[0], middle[1], 0.0 });
-      }
-    });
-  // The same on all ranks; one of them is enough for the division.
-  const PointDivision division(group, group.rank() == 0 ? places : std::vector<Vec3>());
-  std::transform(places.begin(), places.end(), ranks.begin(),
-    [&division](const Vec3& x) { return division.find(x); });
-  return ranks;
-}
-
-/// Sends the rows of each rank to the first one, which has the pattern of all: one rank after the
-/// other, so that few are there twice.
-void gatherRows(RankGroup& group, const std::vector<int>& ranks, PeridynamicSystem& system)
-{
-  SparseMatrix& matrix = system.matrix;
-  const Index c = system.components;
-  const bool loaded = !system.constraintLoad.empty();
-  for (int rank = 1; rank < group.size(); ++rank)
-  {
-    const auto forEachRow = [&](const auto& visit)
-    {
-      for (Index row = 0; row < matrix.size; ++row)
-      {
-        if (ranks[row / c] == rank)
-        {
-          visit(row, matrix.offsets[row], matrix.offsets[row + 1]);
-        }
-      }
-    };
-    std::vector<std::vector<double>> sent(group.size());
-    group.together(
-      [&]
-      {
-        std::vector<double>& values = sent[0];
-        if (group.rank() == rank)
-        {
-          forEachRow(
-            [&](Index row, Index begin, Index end)
-            {
-              values.insert(
-                values.end(), matrix.values.begin() + begin, matrix.values.begin() + end);
-              if (loaded)
-              {
-                values.push_back(system.constraintLoad[row]);
-              }
-            });
-          matrix = SparseMatrix();
-        }
-      });
-    const std::vector<double> values = std::move(group.exchangeItems(sent)[rank]);
-    if (group.rank() == 0)
-    {
-      auto value = values.begin();
-      forEachRow(
-        [&](Index row, Index begin, Index end)
-        {
-          std::copy_n(value, end - begin, matrix.values.begin() + begin);
-          value += end - begin;
-          if (loaded)
-          {
-            system.constraintLoad[row] = *value++;
-          }
-        });
-    }
-  }
-}
-
-/// Everything that can be wrong, before the expensive part. Sets what of the system follows from it.
+/// Everything that can be wrong, before the expensive part. Sets what of the system follows.
 /// @param share of the matrix that this rank needs memory for, at most 1
 void checkAssembly(const HorizonMesh& mesh, const PeridynamicOptions& options,
   const std::vector<double>* given, double share, PeridynamicSystem& system)

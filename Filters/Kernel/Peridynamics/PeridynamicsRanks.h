@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PeridynamicsRanks.h
+ * @brief How ranks share the rows of a nonlocal matrix. Internal to the kernel: not installed.
+ */
+#ifndef tautline_PeridynamicsRanks_h
+#define tautline_PeridynamicsRanks_h
+
+#include "FunctionSpace.h"
+#include "tautline/Core/RankGroup.h"
+
+#include <vector>
+
+namespace tautline
+{
+/// The rank that assembles the rows of each unknown function. Collective.
+std::vector<int> ranksOfRows(RankGroup& group, const FunctionSpace& space);
+
+/**
+ * @brief Sends the rows of each rank to the first one, which has the pattern of all: one rank after
+ * the other, so that few are there twice. The others have no matrix after it. Collective.
+ * @param ranks of ranksOfRows()
+ */
+void gatherRows(RankGroup& group, const std::vector<int>& ranks, PeridynamicSystem& system);
+}
+#endif
