@@ -216,7 +216,8 @@ void testRanks()
 {
   std::vector<Silhouette> shapes;
   std::vector<Index> labels;
-  for (int kind = 0; kind < static_cast<int>(Kinds.size()); ++kind)
+  constexpr int kinds = 3;
+  for (int kind = 0; kind < kinds; ++kind)
   {
     shapes.push_back(animal(kind, 0));
     shapes.push_back(animal(kind, 1));
@@ -227,12 +228,12 @@ void testRanks()
   image.locations.kind = Locations::Contour;
   image.locations.contour = 24;
   RetrievalOptions shortlist = RetrievalOptions::highest();
-  shortlist.shortlist = 3;
+  shortlist.shortlist = 2;
   for (RetrievalOptions options : { RetrievalOptions::highest(), shortlist, image })
   {
     options.match.threads = 1;
     const Retrieval one = retrieveShapes(shapes, labels, options);
-    for (const int size : { 2, 3, 5 })
+    for (const int size : { 2, 5 })
     {
       const Context context(std::to_string(size) + " ranks");
       std::vector<Retrieval> all(size);
