@@ -77,7 +77,7 @@ grid.GetPointData().AddArray(push)
 FILTERS = {
     "quality": (0, lambda mesh: ElementQuality(mesh, Metrics=["Inverse mean ratio"])),
     "optimize": (0, lambda mesh: OptimizeMesh(mesh, ReproducibleOrder=1, MaximumIterations=3)),
-    "optimize-first": (0, lambda mesh: OptimizeMesh(mesh, ReproducibleOrder=1, MaximumIterations=3)),
+    "optimize-first": (0, lambda mesh: OptimizeMesh(mesh, MaximumIterations=3)),
     "optimize-first-redistributed": (0, lambda mesh: OptimizeMesh(mesh, MaximumIterations=3, Redistribute=1)),
     "untangle": (100, lambda mesh: UntangleMesh(mesh, ReproducibleOrder=1)),
     "warp": (0, lambda mesh: WarpMesh(mesh, Motion="Displacement array", Displacement=["POINTS", "push"],
