@@ -107,7 +107,9 @@ def picture(mesh: Path, file: Path) -> None:
     bar.Title, bar.ComponentTitle, bar.HorizontalTitle = TITLE, "", 1
     bar.TitleColor = bar.LabelColor = BLACK
     bar.TitleFontSize, bar.LabelFontSize = 20, 18
-    bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, "%.1f", "%.1f"
+    # ParaView 6.1 has the formats of std::format.
+    label = "{:.1f}" if simple.GetParaViewVersion() >= (6, 1) else "%.1f"
+    bar.AutomaticLabelFormat, bar.LabelFormat, bar.RangeLabelFormat = 0, label, label
     bar.WindowLocation, bar.Position, bar.ScalarBarLength = "Any Location", [0.82, 0.27], 0.5
     bar.Visibility = 1
     note = simple.Show(simple.Text(Text="blue: inverted"), view)
