@@ -6,6 +6,7 @@
 #ifndef tautline_VtkCompatibility_h
 #define tautline_VtkCompatibility_h
 
+#include "vtkAOSDataArrayTemplate.h"
 #include "vtkCellArray.h"
 #include "vtkDataSet.h"
 #include "vtkIdList.h"
@@ -58,25 +59,37 @@ inline vtkUnsignedCharArray* cellTypesOf(vtkUnstructuredGrid* grid)
 #pragma GCC diagnostic pop
 #endif
 
-/// The offsets of cells that are stored in 64 bits; null where VTK 9.6 computes them.
-inline const vtkTypeInt64* plainOffsets(vtkCellArray* cells)
+/// The offsets of cells that are stored in 64 bits; null where they are not a plain array.
+inline vtkAOSDataArrayTemplate<vtkTypeInt64>* offsets64(vtkCellArray* cells)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
-  auto* array = cells->GetOffsetsAOSArray64();
+  return cells->GetOffsetsAOSArray64();
 #else
-  auto* array = cells->GetOffsetsArray64();
+  return cells->GetOffsetsArray64();
 #endif
-  return array ? array->GetPointer(0) : nullptr;
 }
 
 /// The points of cells that are stored in 64 bits; null where they are not a plain array.
-inline const vtkTypeInt64* plainConnectivity(vtkCellArray* cells)
+inline vtkAOSDataArrayTemplate<vtkTypeInt64>* connectivity64(vtkCellArray* cells)
 {
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
-  auto* array = cells->GetConnectivityAOSArray64();
+  return cells->GetConnectivityAOSArray64();
 #else
-  auto* array = cells->GetConnectivityArray64();
+  return cells->GetConnectivityArray64();
 #endif
+}
+
+/// Where offsets64() begins; null where VTK 9.6 computes the offsets.
+inline const vtkTypeInt64* plainOffsets(vtkCellArray* cells)
+{
+  auto* array = offsets64(cells);
+  return array ? array->GetPointer(0) : nullptr;
+}
+
+/// Where connectivity64() begins; null where the points are not a plain array.
+inline const vtkTypeInt64* plainConnectivity(vtkCellArray* cells)
+{
+  auto* array = connectivity64(cells);
   return array ? array->GetPointer(0) : nullptr;
 }
 } // namespace tautline

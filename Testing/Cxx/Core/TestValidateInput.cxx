@@ -6,6 +6,7 @@
 
 #include "Meshes.h"
 #include "ValidateInput.h"
+#include "VtkCompatibility.h"
 
 #include "tautline/Mesh/ArrayChecks.h"
 
@@ -18,7 +19,6 @@
 #include "vtkStringArray.h"
 #include "vtkStructuredGrid.h"
 #include "vtkTable.h"
-#include "vtkTypeInt64Array.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <limits>
@@ -126,12 +126,12 @@ void testArrays()
 
 void testCells()
 {
-  const auto wrong = [](const std::string& text,
-                       const std::function<void(vtkTypeInt64Array*, vtkTypeInt64Array*)>& how)
+  using Array = vtkAOSDataArrayTemplate<vtkTypeInt64>;
+  const auto wrong = [](const std::string& text, const std::function<void(Array*, Array*)>& how)
   {
     const auto mesh = solid();
     mesh->GetCells()->ConvertTo64BitStorage();
-    how(mesh->GetCells()->GetOffsetsArray64(), mesh->GetCells()->GetConnectivityArray64());
+    how(offsets64(mesh->GetCells()), connectivity64(mesh->GetCells()));
     expect(mesh, text);
     mesh->GetCells()->ConvertTo32BitStorage();
     expect(mesh, text);
@@ -148,11 +148,11 @@ void testCells()
   wrong("The offsets of the cells end at 160, but the connectivity has 159 entries",
     [](auto*, auto* ids) { ids->SetNumberOfValues(159); });
   const auto types = solid();
-  types->GetCellTypesArray()->SetValue(7, VTK_HEXAHEDRON);
+  cellTypesOf(types)->SetValue(7, VTK_HEXAHEDRON);
   expect(types, "Cell 7 is not a proper vtkHexahedron: it lists 4 points");
-  types->GetCellTypesArray()->SetValue(7, 250);
+  cellTypesOf(types)->SetValue(7, 250);
   expect(types, "Cell 7 has the type 250, which does not exist");
-  types->GetCellTypesArray()->SetNumberOfValues(39);
+  cellTypesOf(types)->SetNumberOfValues(39);
   expect(types, "There are 40 cells but 39 cell types");
 
   const auto poly = toPolyData(blockMesh(CellType::Triangle, 2, 2, 0));

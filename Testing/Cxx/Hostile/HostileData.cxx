@@ -3,6 +3,7 @@
 
 #include "Check.h"
 #include "Meshes.h"
+#include "VtkCompatibility.h"
 #include "VtkMeshes.h"
 
 #include "vtkDoubleArray.h"
@@ -95,9 +96,9 @@ Data withCells(vtkDataObject* suitable, const std::function<void(Ids&, Ids&)>& c
     return nullptr;
   }
   cells->ConvertTo64BitStorage();
-  const auto values = [](vtkTypeInt64Array* array)
+  const auto values = [](vtkAOSDataArrayTemplate<vtkTypeInt64>* array)
   { return Ids(array->GetPointer(0), array->GetPointer(0) + array->GetNumberOfValues()); };
-  Ids offsets = values(cells->GetOffsetsArray64()), ids = values(cells->GetConnectivityArray64());
+  Ids offsets = values(offsets64(cells)), ids = values(connectivity64(cells));
   change(offsets, ids);
   const auto array = [](const Ids& from)
   {
@@ -118,7 +119,7 @@ Data withTypes(vtkDataObject* suitable, const std::function<void(vtkUnsignedChar
   {
     return nullptr;
   }
-  change(grid->GetCellTypesArray());
+  change(cellTypesOf(grid));
   return grid;
 }
 

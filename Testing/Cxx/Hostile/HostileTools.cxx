@@ -3,6 +3,7 @@
 
 #include "Check.h"
 #include "Meshes.h"
+#include "VtkCompatibility.h"
 #include "VtkMeshes.h"
 
 #include "vtkCompositeDataIterator.h"
@@ -112,7 +113,7 @@ void hash(std::uint64_t& sum, vtkDataSet* data)
   if (auto* mesh = vtkUnstructuredGrid::SafeDownCast(data))
   {
     hash(sum, mesh->GetCells());
-    hash(sum, mesh->GetCellTypesArray());
+    hash(sum, cellTypesOf(mesh));
   }
   if (auto* poly = vtkPolyData::SafeDownCast(data))
   {
