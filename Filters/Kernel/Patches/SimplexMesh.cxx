@@ -6,6 +6,7 @@
 #include "tautline/Mesh/CornerPoints.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -65,6 +66,23 @@ std::uint64_t blockPair(std::int32_t a, std::int32_t b)
   return static_cast<std::uint64_t>(std::max(a, b)) << 32 |
     static_cast<std::uint64_t>(std::min(a, b));
 }
+
+/// Recognizes most pairs that come again within a chunk, where neighbours follow each other.
+class RecentPairs
+{
+public:
+  bool isNew(std::uint64_t pair)
+  {
+    std::uint64_t& place = this->Places[(pair ^ (pair >> 28)) % this->Places.size()];
+    const bool other = place != pair;
+    place = pair;
+    return other;
+  }
+
+private:
+  /// A pair's later block is never the first one: 0 is no pair.
+  std::array<std::uint64_t, 256> Places = {};
+};
 
 /// Even permutations of a simplex that bring each vertex to the front.
 constexpr int toFront3[4][4] = { { 0, 1, 2, 3 }, { 1, 0, 3, 2 }, { 2, 3, 0, 1 }, { 3, 2, 1, 0 } };
@@ -340,30 +358,36 @@ template <int Dim>
 std::vector<std::vector<std::uint64_t>> SimplexMesh::blocksOfSimplices(int threads) const
 {
   constexpr int corners = Dim + 1;
+  constexpr std::int32_t none = -1;
   std::vector<std::vector<std::uint64_t>> ofChunk(numberOfChunks(this->Simplices));
   forEachChunk(this->Simplices, threads,
     [&](Index chunk, Index begin, Index end)
     {
       std::vector<std::uint64_t>& pairs = ofChunk[chunk];
+      RecentPairs recent;
       for (Index i = begin; i < end; ++i)
       {
         const std::int32_t* corner = this->Corners.data() + corners * i;
+        std::int32_t block[corners];
+        for (int k = 0; k < corners; ++k)
+        {
+          block[k] = corner[k] < this->Free ? corner[k] / VertexBlocks::size : none;
+        }
         for (int k = 0; k < corners; ++k)
         {
           for (int l = k + 1; l < corners; ++l)
           {
-            const std::int32_t a = corner[k] / VertexBlocks::size,
-                               b = corner[l] / VertexBlocks::size;
-            // Most simplices lie in one block.
-            if (a != b && corner[k] < this->Free && corner[l] < this->Free)
+            if (block[k] != block[l] && block[k] != none && block[l] != none)
             {
-              pairs.push_back(blockPair(a, b));
+              const std::uint64_t pair = blockPair(block[k], block[l]);
+              if (recent.isNew(pair))
+              {
+                pairs.push_back(pair);
+              }
             }
           }
         }
       }
-      std::sort(pairs.begin(), pairs.end());
-      pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
     });
   return ofChunk;
 }

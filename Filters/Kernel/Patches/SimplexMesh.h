@@ -11,6 +11,7 @@
 #ifndef tautline_SimplexMesh_h
 #define tautline_SimplexMesh_h
 
+#include "tautline/Core/LargeArray.h"
 #include "tautline/Mesh/Mesh.h"
 #include "tautline/Quality/Metrics.h"
 
@@ -146,11 +147,10 @@ private:
   std::int32_t Simplices = 0;
   std::vector<std::int32_t> Point;
   std::vector<double> X;
-  std::vector<std::int32_t> Corners;
-  std::vector<std::int32_t> Cell;
-  std::vector<std::int32_t> Shape;
+  LargeArray<std::int32_t> Corners, Cell, Shape;
   std::vector<TargetSimplex> Shapes;
-  std::vector<std::int32_t> PatchStarts, PatchVertices, PatchCorners;
+  std::vector<std::int32_t> PatchStarts;
+  LargeArray<std::int32_t> PatchVertices, PatchCorners;
   VertexBlocks Blocks;
 };
 
