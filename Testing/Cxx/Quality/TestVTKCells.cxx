@@ -7,10 +7,10 @@
 #include "VtkMeshes.h"
 
 #include "MeshAdapter.h"
+#include "VtkCompatibility.h"
 
 #include "vtkCellSizeFilter.h"
 #include "vtkCellTypeSource.h"
-#include "vtkCellTypes.h"
 #include "vtkCellValidator.h"
 
 #include <numeric>
@@ -33,7 +33,7 @@ constexpr int blockSize = 2; ///< unit cubes (squares) in each direction
 
 void testSource(int vtkType, bool higher)
 {
-  const Context context(vtkCellTypes::GetClassNameFromTypeId(vtkType));
+  const Context context(cellClassName(vtkType));
   vtkNew<vtkCellTypeSource> source;
   source->SetCellType(vtkType);
   source->SetBlocksDimensions(blockSize, blockSize, blockSize);
