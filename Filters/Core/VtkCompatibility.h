@@ -10,10 +10,14 @@
 #include "vtkCellArray.h"
 #include "vtkDataSet.h"
 #include "vtkIdList.h"
+#include "vtkStructuredData.h"
 #include "vtkTypeInt64Array.h"
+#include "vtkUniformGridAMR.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 #include "vtkVersionMacros.h"
+
+#include <vector>
 
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
 #include "vtkCellTypeUtilities.h"
@@ -91,6 +95,19 @@ inline const vtkTypeInt64* plainConnectivity(vtkCellArray* cells)
 {
   auto* array = connectivity64(cells);
   return array ? array->GetPointer(0) : nullptr;
+}
+
+/// Gives an AMR data set in space its levels, with so many blocks each.
+inline void initializeLevels(vtkUniformGridAMR* amr, const std::vector<unsigned int>& blocks)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+  amr->Initialize(blocks);
+  amr->SetGridDescription(vtkStructuredData::VTK_STRUCTURED_XYZ_GRID);
+#else
+  const std::vector<int> counts(blocks.begin(), blocks.end());
+  amr->Initialize(static_cast<int>(counts.size()), counts.data());
+  amr->SetGridDescription(VTK_XYZ_GRID);
+#endif
 }
 } // namespace tautline
 

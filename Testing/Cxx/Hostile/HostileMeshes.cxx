@@ -3,6 +3,7 @@
 
 #include "Check.h"
 #include "Meshes.h"
+#include "VtkCompatibility.h"
 #include "VtkMeshes.h"
 
 #include "vtkDoubleArray.h"
@@ -114,11 +115,9 @@ Data hyperTreeGrid()
 Data amr()
 {
   auto result = vtkSmartPointer<vtkOverlappingAMR>::New();
-  const int blocks[] = { 1 };
   const double origin[] = { 0, 0, 0 }, spacing[] = { 1, 1, 1 };
-  result->Initialize(1, blocks);
+  initializeLevels(result, { 1 });
   result->SetOrigin(origin);
-  result->SetGridDescription(VTK_XYZ_GRID);
   result->SetSpacing(0, spacing);
   vtkNew<vtkUniformGrid> leaf;
   leaf->SetDimensions(4, 4, 4);
