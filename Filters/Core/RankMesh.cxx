@@ -4,9 +4,11 @@
 #include "Blocks.h"
 #include "MovableMesh.h"
 #include "ProcessGroup.h"
+#include "Processes.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Solvers/GraphPartition.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataSet.h"
@@ -43,7 +45,7 @@ struct Elements
 
 //------------------------------------------------------------------------------
 std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataObject* input,
-  int threads, bool mergePoints, bool redistribute, std::string* why)
+  int threads, bool mergePoints, Redistribution redistribution, std::string* why)
 {
   bool scattered = true;
   const auto gather = [&](const std::string& reason)
@@ -67,7 +69,7 @@ std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataO
   const bool elsewhere =
     group->rank() > 0 && input && input->GetNumberOfElements(vtkDataObject::CELL) > 0;
   scattered = group->any(elsewhere);
-  if (group->size() == 1 || (!redistribute && !scattered))
+  if (group->size() == 1 || (redistribution == Redistribution::None && !scattered))
   {
     return gather("");
   }
@@ -77,7 +79,7 @@ std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataO
   }
   try
   {
-    mesh = std::make_unique<RankMesh>(*group, piece, threads, mergePoints, redistribute);
+    mesh = std::make_unique<RankMesh>(*group, piece, threads, mergePoints, redistribution);
   }
   catch (const OppositeOrders&)
   {
@@ -122,12 +124,12 @@ vtkDataSet* requirePiece(vtkDataObject* input)
 
 //------------------------------------------------------------------------------
 RankMesh::RankMesh(
-  RankGroup& group, vtkDataSet* input, int threads, bool mergePoints, bool redistribute)
+  RankGroup& group, vtkDataSet* input, int threads, bool mergePoints, Redistribution redistribution)
   : Group(group)
   , Input(vtkPointSet::SafeDownCast(input))
   , Threads(threads)
   , MergePoints(mergePoints)
-  , Redistributed(redistribute && group.size() > 1)
+  , Divided(group.size() > 1 ? redistribution : Redistribution::None)
 {
   Elements elements;
   bool copies = false;
@@ -205,9 +207,34 @@ RankMesh::RankMesh(
     view.connectivity = elements.connectivity.data();
     ghosts = elements.ghosts.data();
   }
-  this->TheMesh = std::make_unique<DistributedMesh>(
-    group, MeshPiece{ view, mergePoints ? nullptr : ids.data(), ghosts, this->Redistributed });
+  this->divide({ view, mergePoints ? nullptr : ids.data(), ghosts });
   this->checkOrder();
+}
+
+//------------------------------------------------------------------------------
+/// Makes the mesh of the pieces.
+void RankMesh::divide(const MeshPiece& given)
+{
+  MeshPiece piece = given;
+  piece.divideAnew = this->Divided != Redistribution::None;
+  std::vector<int> owners;
+  if (this->Divided == Redistribution::PtScotch)
+  {
+    const Processes processes;
+    if (processes.count() != this->Group.size())
+    {
+      throw Error("PT-Scotch needs processes that communicate by MPI: take a k-d tree.");
+    }
+    // The k-d tree first, so that the graph is spread evenly while PT-Scotch divides it.
+    const DistributedMesh first(this->Group, piece);
+    const std::vector<int> ofLocal = partitionPoints(first, processes.communicator());
+    for (const Index local : first.localOfPiece())
+    {
+      owners.push_back(local < 0 ? 0 : ofLocal[local]);
+    }
+    piece.owners = owners.data();
+  }
+  this->TheMesh = std::make_unique<DistributedMesh>(this->Group, piece);
 }
 
 //------------------------------------------------------------------------------
@@ -251,9 +278,10 @@ void RankMesh::checkOrder()
 std::string RankMesh::notice() const
 {
   const std::string ofPiece = this->Adapter->notice();
-  const std::string division = this->Redistributed
-    ? "The mesh was divided anew among " + std::to_string(this->Group.size()) + " processes."
-    : "";
+  const std::string division = this->Divided == Redistribution::None
+    ? ""
+    : "The mesh was divided anew among " + std::to_string(this->Group.size()) + " processes" +
+      (this->Divided == Redistribution::PtScotch ? " by PT-Scotch." : ".");
   return division.empty() ? ofPiece : ofPiece.empty() ? division : ofPiece + "\n" + division;
 }
 

@@ -29,6 +29,15 @@ TAUTLINECORE_EXPORT vtkDataSet* requirePiece(vtkDataObject* input);
 
 class RankMesh;
 
+/// Whether and how a mesh is divided anew among the processes, see
+/// vtkMeshMotionAlgorithm::SetRedistribute().
+enum class Redistribution
+{
+  None,
+  KdTree,
+  PtScotch
+};
+
 /// Neighbouring cells list their points in opposite orders: the mesh can be gathered.
 class OppositeOrders : public Error
 {
@@ -42,13 +51,12 @@ public:
  * process unless redistributed, surfaces in space, planes that are inclined, cells of extreme size,
  * and what RankMesh refuses; and processes that do not communicate by MPI. Collective.
  * @param group gets the processes, which outlive the mesh
- * @param redistribute divides the mesh anew among the processes (MeshPiece::divideAnew), also where
- * all cells are on the first
+ * @param redistribution of the mesh among the processes, also where all cells are on the first
  * @param why if not null, gets the reason in words, "it has blocks", the same on all processes;
  * with the message of the error where RankMesh refuses the mesh; "" where all is in one place
  */
 TAUTLINECORE_EXPORT std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group,
-  vtkDataObject* input, int threads, bool mergePoints, bool redistribute,
+  vtkDataObject* input, int threads, bool mergePoints, Redistribution redistribution,
   std::string* why = nullptr);
 
 /// "The mesh was put together on the first process: why.", or "" without a reason; a full stop at
@@ -71,8 +79,8 @@ public:
    * @brief Throws Error on all processes if a piece is malformed, has no explicit points or
    * quadratic cells, and OppositeOrders if neighbouring cells list their points so.
    */
-  RankMesh(
-    RankGroup& group, vtkDataSet* input, int threads, bool mergePoints, bool redistribute = false);
+  RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergePoints,
+    Redistribution redistribution = Redistribution::None);
 
   DistributedMesh& mesh() { return *this->TheMesh; }
   const DistributedMesh& mesh() const { return *this->TheMesh; }
@@ -140,13 +148,15 @@ public:
   std::string move(vtkPointSet* output, const std::vector<double>& local) const;
 
 private:
+  void divide(const MeshPiece& piece);
   void checkOrder();
 
   RankGroup& Group;
   vtkPointSet* Input = nullptr;
   int Threads;
   int Dimension = 0;
-  bool MergePoints, Redistributed;
+  bool MergePoints;
+  Redistribution Divided;
   bool Mirrored = false;
   Index InvertedElements = 0;
   std::unique_ptr<MeshAdapter> Adapter;

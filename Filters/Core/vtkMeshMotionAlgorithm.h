@@ -33,6 +33,7 @@
 #define vtkMeshMotionAlgorithm_h
 
 #include "TautlineCoreModule.h" // for export macro
+#include "vtkTautlineSetRange.h"
 #include "vtkTautlineTimedAlgorithm.h"
 
 class vtkDataObject;
@@ -59,17 +60,24 @@ public:
   vtkBooleanMacro(MergeCoincidentPoints, bool);
   ///@}
 
+  enum Redistributions
+  {
+    NO_REDISTRIBUTION = 0, ///< each process works on the points that its piece has
+    KD_TREE = 1,           ///< boxes of about as many points: fast
+    PT_SCOTCH = 2 ///< parts of about as many elements with short borders: needs PETSc's PT-Scotch
+  };
+
   ///@{
   /**
-   * On a server with several processes: whether the mesh is divided anew among them, by a k-d tree
-   * of its points, also where all of it is on the first process, as readers of serial files leave
-   * it. Then all of them have as much to do, and little to send. The result goes back to the pieces
-   * of the input, with the same points. What needs the whole mesh is gathered as without it. The
-   * default is off.
+   * On a server with several processes: whether and how the mesh is divided anew among them, also
+   * where all of it is on the first process, as readers of serial files leave it. Then all of them
+   * have as much to do, and little to send. The result goes back to the pieces of the input, with
+   * the same points. What needs the whole mesh is gathered as without it. RedistributeOn() takes
+   * the k-d tree. The default is NO_REDISTRIBUTION.
    */
-  vtkSetMacro(Redistribute, bool);
-  vtkGetMacro(Redistribute, bool);
-  vtkBooleanMacro(Redistribute, bool);
+  vtkTautlineSetRangeMacro(Redistribute, int, NO_REDISTRIBUTION, PT_SCOTCH);
+  vtkGetMacro(Redistribute, int);
+  vtkBooleanMacro(Redistribute, int);
   ///@}
 
   /// The table of output port 1.
@@ -107,7 +115,7 @@ protected:
   bool ProceedInBlock(int block, double fraction);
 
   bool MergeCoincidentPoints = true;
-  bool Redistribute = false;
+  int Redistribute = NO_REDISTRIBUTION;
 
 private:
   vtkMeshMotionAlgorithm(const vtkMeshMotionAlgorithm&) = delete;

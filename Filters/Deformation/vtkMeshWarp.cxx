@@ -391,8 +391,9 @@ bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
   {
     return false;
   }
-  this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]),
-    this->Threads, this->MergeCoincidentPoints, this->Redistribute);
+  this->Pieces =
+    tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]), this->Threads,
+      this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute));
   return this->Pieces != nullptr;
 }
 

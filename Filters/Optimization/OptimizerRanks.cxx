@@ -366,8 +366,8 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
   std::string why = what.empty() ? "" : what + " need the whole mesh";
   if (what.empty())
   {
-    this->Pieces = tautline::takePieces(
-      this->Group, data, this->Threads, this->MergeCoincidentPoints, this->Redistribute, &why);
+    this->Pieces = tautline::takePieces(this->Group, data, this->Threads,
+      this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute), &why);
   }
   else if (!onAny(vtkMultiProcessController::GetGlobalController()->GetLocalProcessId() > 0 &&
              data->GetNumberOfElements(vtkDataObject::CELL) > 0))

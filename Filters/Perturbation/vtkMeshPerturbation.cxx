@@ -208,7 +208,7 @@ bool vtkMeshPerturbation::TakesPieces(vtkInformationVector** inputs)
     return false;
   }
   this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[0]), this->Threads,
-    this->MergeCoincidentPoints, false);
+    this->MergeCoincidentPoints, tautline::Redistribution::None);
   return this->Pieces != nullptr;
 }
 

@@ -256,8 +256,9 @@ bool vtkMeshUntangler::TakesPieces(vtkInformationVector** inputs)
   this->Pieces.reset();
   this->Group.reset();
   std::string why;
-  this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]),
-    this->Threads, this->MergeCoincidentPoints, this->Redistribute, &why);
+  this->Pieces =
+    tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]), this->Threads,
+      this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute), &why);
   this->WhyGathered = tautline::gatheredSentence(why);
   return this->Pieces != nullptr;
 }

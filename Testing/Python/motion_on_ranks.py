@@ -84,7 +84,9 @@ for scattered in (0, 1):  # (scripts of sources import into this module: not "ra
     note(f"optimize {scattered}", optimized)
     results[f"optimize {scattered}"]["history"] = table(optimized, 1, "Objective")
     results[f"optimize {scattered}"]["mean"] = table(optimized, 2, "MeanAfter")
-    note(f"redistributed {scattered}", OptimizeMesh(Input=cube(6, 0.3, scattered), ReproducibleOrder=1, Redistribute=1))
+    for division in ("k-d Tree", "PT-Scotch"):
+        divided = OptimizeMesh(Input=cube(6, 0.3, scattered), ReproducibleOrder=1, Redistribute=division)
+        note(f"{division} {scattered}", divided)
     slide = OptimizeMesh(Input=cube(4, 0.3, scattered), ReproducibleOrder=1)
     slide.Boundary = SLIDING
     note(f"slide {scattered}", slide)

@@ -22,6 +22,10 @@ TARGETS: tuple[Target, ...] = get_args(Target)
 Preconditioner = Literal["jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg", "none"]
 PRECONDITIONERS: tuple[Preconditioner, ...] = get_args(Preconditioner)
 
+#: How several processes divide a mesh anew, in the filters' numbering.
+Redistribution = Literal["off", "k-d tree", "pt-scotch"]
+REDISTRIBUTIONS: tuple[Redistribution, ...] = get_args(Redistribution)
+
 _MAX_THREADS = 1024
 
 Name = TypeVar("Name", bound=str)
@@ -42,6 +46,12 @@ def pick(option: str, value: Any, allowed: Sequence[str]) -> int:
 def picked(option: str, value: Any, allowed: Sequence[Name]) -> Name:
     """The one of the allowed names that a value means; see pick()."""
     return allowed[pick(option, value, allowed)]
+
+
+def set_redistribution(filter_: Any, value: Redistribution | bool) -> None:
+    """Set Redistribute of a filter; True is a k-d tree."""
+    name = ("off", "k-d tree")[value] if isinstance(value, bool) else value
+    filter_.SetRedistribute(pick("redistribute", name, REDISTRIBUTIONS))
 
 
 def within(option: str, value: float, low: float, high: float) -> float:

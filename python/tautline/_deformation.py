@@ -16,10 +16,12 @@ from . import _commands, _vtk
 from ._arguments import (
     PRECONDITIONERS,
     Preconditioner,
+    Redistribution,
     flag_option,
     number_option,
     pick,
     set_options,
+    set_redistribution,
     set_threads,
     set_time_limit,
     within,
@@ -127,7 +129,7 @@ def warp(
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
-    redistribute: bool = False,
+    redistribute: Redistribution | bool = "off",
     progress: Progress | bool | None = None,
     **options: Any,
 ) -> WarpResult:
@@ -168,7 +170,7 @@ def warp(
     merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
         of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
     redistribute: on several processes (pvbatch --sym under MPI, where each calls this function with its piece): divide
-        the mesh anew among them, also where the first one has all of it.
+        the mesh anew among them, also where the first one has all of it; "off", "k-d tree" (or True), "pt-scotch".
     options: properties of vtkMeshWarp: steps (1; 0: as many as needed), maximum_steps (100), tolerance (1e-10),
         poisson_ratio (0.3), stiffening_power (1), stiffening_factor (2), maximum_stiffenings (50), distance_power (3),
         support_radius (0: automatic), fit_tolerance (1e-3), untangle_first (True), untangling_beta (0),
@@ -187,7 +189,7 @@ def warp(
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
-    filter_.SetRedistribute(bool(redistribute))
+    set_redistribution(filter_, redistribute)
     filter_.SetAutomaticSolver(pick("solver", solver, SOLVERS) == 0)
     filter_.SetSolver(max(pick("solver", solver, SOLVERS) - 1, 0))
     filter_.SetPreconditioner(pick("preconditioner", preconditioner, PRECONDITIONERS))

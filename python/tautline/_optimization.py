@@ -14,6 +14,7 @@ from . import _commands, _vtk
 from ._arguments import (
     COMBINATIONS,
     TARGETS,
+    Redistribution,
     check_options,
     flag_option,
     number,
@@ -21,6 +22,7 @@ from ._arguments import (
     pick,
     picked,
     set_options,
+    set_redistribution,
     set_threads,
     set_time_limit,
     within,
@@ -165,7 +167,7 @@ def optimize(
     threads: int = 0,
     merge_coincident_points: bool = True,
     reproducible_order: bool = False,
-    redistribute: bool = False,
+    redistribute: Redistribution | bool = "off",
     progress: Progress | bool | None = None,
     **options: Any,
 ) -> OptimizeResult:
@@ -224,7 +226,7 @@ def optimize(
     reproducible_order: work in the order that does not depend on how a mesh is spread over processes, as several of
         them do unless the mesh is gathered.
     redistribute: on several processes (pvbatch --sym under MPI, where each calls this function with its piece): divide
-        the mesh anew among them, also where the first one has all of it.
+        the mesh anew among them, also where the first one has all of it; "off", "k-d tree" (or True), "pt-scotch".
     options: properties of vtkMeshOptimizer. Stopping: maximum_iterations (300), gradient_norm (1e-6), relative_change
         (1e-5), two_digits (False), reduction (1: off), best_known (None: estimated), stop_when_valid (False).
         Scalarization: c (0: automatic), exponent (1), tolerance (0.01), utopia (one number per objective). Metrics:
@@ -261,7 +263,7 @@ def optimize(
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     filter_.SetReproducibleOrder(bool(reproducible_order))
-    filter_.SetRedistribute(bool(redistribute))
+    set_redistribution(filter_, redistribute)
     if _is_number(size):
         size = np.full(inputs.mesh.GetNumberOfCells(), size)
     if _is_number(limits):

@@ -11,7 +11,7 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
-from ._arguments import pick, set_threads, set_time_limit
+from ._arguments import Redistribution, pick, set_redistribution, set_threads, set_time_limit
 from ._arrays import POINTS, Array, InputArrays, Values, cell_array, history_of, point_array, table_rows
 from ._errors import interruptible, run
 from ._interrupts import Progress
@@ -67,7 +67,7 @@ def untangle(
     threads: int = 0,
     merge_coincident_points: bool = True,
     reproducible_order: bool = False,
-    redistribute: bool = False,
+    redistribute: Redistribution | bool = "off",
     progress: Progress | bool | None = None,
 ) -> UntangleResult:
     """Make the elements of a mesh valid by moving its points; the number of inverted elements never grows.
@@ -85,7 +85,7 @@ def untangle(
     reproducible_order: work in the order that does not depend on how a mesh is spread over processes, as several of
         them do unless the mesh is gathered.
     redistribute: on several processes (pvbatch --sym under MPI, where each calls this function with its piece): divide
-        the mesh anew among them, also where the first one has all of it.
+        the mesh anew among them, also where the first one has all of it; "off", "k-d tree" (or True), "pt-scotch".
 
     Raises Error for wrong arguments and for meshes that the filter refuses. Elements that remain inverted are not an
     error: see inverted, obstacle and summary of the result.
@@ -102,7 +102,7 @@ def untangle(
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
     filter_.SetReproducibleOrder(bool(reproducible_order))
-    filter_.SetRedistribute(bool(redistribute))
+    set_redistribution(filter_, redistribute)
     inputs.use(_FIXED, fixed, "fixed", POINTS)
     filter_.SetInputDataObject(0, inputs.mesh)
     run(filter_)

@@ -81,6 +81,7 @@ struct DistributedMesh::PointKey
   Index source;   ///< the point of the piece
   Index rank;     ///< of the piece
   Index withCell; ///< whether a cell that is no ghost has it there
+  Index owner;    ///< that is wanted, or -1
 
   auto place() const { return std::tie(this->curve, this->x[0], this->x[1], this->x[2], this->id); }
   /// By the place alone: keys of one point are equal.
@@ -133,6 +134,11 @@ DistributedMesh::DistributedMesh(RankGroup& group, const MeshPiece& piece)
         {
           throw Error("The global id of point " + std::to_string(p) +
             " is negative: run Generate Global Ids again.");
+        }
+        if (used[p] && piece.owners && (piece.owners[p] < 0 || piece.owners[p] >= group.size()))
+        {
+          throw Error("Point " + std::to_string(p) + " shall be owned by rank " +
+            std::to_string(piece.owners[p]) + " of " + std::to_string(group.size()) + ".");
         }
       }
     });
@@ -203,8 +209,8 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
     {
       continue;
     }
-    PointKey key = { 0, { 0, 0, 0 }, withIds ? piece.globalIds[p] : 0, p, group.rank(),
-      used[p] > 1 };
+    PointKey key = { 0, { 0, 0, 0 }, withIds ? piece.globalIds[p] : 0, p, group.rank(), used[p] > 1,
+      piece.owners ? piece.owners[p] : -1 };
     for (int c = 0; c < 3; ++c)
     {
       key.x[c] = piece.view.points[3 * p + c] + 0.0;                // -0 becomes 0
@@ -316,9 +322,12 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
         owner = range[end].rank;
       }
     }
-    if (division && least < std::numeric_limits<std::uint64_t>::max())
+    if (least < std::numeric_limits<std::uint64_t>::max()) // an element has it
     {
-      owner = division->find({ range[begin].x[0], range[begin].x[1], range[begin].x[2] });
+      const PointKey& key = range[begin];
+      owner = key.owner >= 0 ? key.owner
+        : division           ? division->find({ key.x[0], key.x[1], key.x[2] })
+                             : owner;
     }
     for (std::size_t i = begin; i < end; ++i)
     {

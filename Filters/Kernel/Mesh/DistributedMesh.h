@@ -27,6 +27,9 @@ struct MeshPiece
   /// rank then owns about as many, whoever has them. Else a rank owns points that it has. The same
   /// on all ranks.
   bool divideAnew = false;
+  /// The rank that shall own each point, the same on all ranks for the same point, instead of a
+  /// division; or null, on all ranks with points.
+  const int* owners = nullptr;
 };
 
 /**
@@ -36,9 +39,9 @@ struct MeshPiece
  *
  * Each point has a global number, 0 to globalPoints() - 1, along a space-filling curve of the
  * coordinates; ties are broken by the coordinates and by the ids given. It is owned by one of the
- * ranks that have it, or by any (MeshPiece::divideAnew). A rank gets all cells that have one of its
- * own points (halo of vertex neighbourhoods), in an order that follows from the numbers of their
- * points. So what is computed about an own point is bitwise the same whoever owns it.
+ * ranks that have it, or by any (MeshPiece::divideAnew, owners). A rank gets all cells that have
+ * one of its own points (halo of vertex neighbourhoods), in an order that follows from the numbers
+ * of their points. So what is computed about an own point is bitwise the same whoever owns it.
  *
  * Local points come in the order of their numbers: own ones, those of the halo cells, and those of
  * the piece. Every cell is owned by the rank that owns its point of the lowest number.
@@ -73,7 +76,7 @@ public:
   /// Per local point: the rank that owns it.
   const std::vector<int>& owners() const { return this->Owners; }
   /// Of the ranks with a cell at a point, the one with the least of these numbers owns it, unless
-  /// the points are divided anew; of equal ones the lowest rank.
+  /// the points are divided anew or have owners; of equal ones the lowest rank.
   static std::uint64_t ownerHash(Index number, int rank);
   bool owned(Index point) const { return this->Owners[point] == this->Group->rank(); }
   /// One flag per local cell: whether this rank owns it.

@@ -2,9 +2,16 @@
 #include "GraphPartition.h"
 
 #include "PetscSession.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Mesh/FacetTable.h"
+#include "tautline/Ranks/RankExchange.h"
 
 #include <petscmat.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <limits>
+#include <numeric>
 
 namespace tautline
 {
@@ -32,12 +39,18 @@ std::vector<std::pair<Index, Index>> neighbours(const Mesh& mesh)
   return pairs;
 }
 
+/// What PETSc takes over and frees.
+PetscInt* petscArray(std::size_t size)
+{
+  PetscInt* array = nullptr;
+  petsc(PetscMalloc1(size + 1, &array));
+  return array;
+}
+
 /// The graph in PETSc's format, whose arrays PETSc frees.
 PetscMatrix graphOf(Index cells, const std::vector<std::pair<Index, Index>>& pairs)
 {
-  PetscInt *offsets = nullptr, *columns = nullptr;
-  petsc(PetscMalloc1(cells + 1, &offsets));
-  petsc(PetscMalloc1(pairs.size() + 1, &columns));
+  PetscInt *offsets = petscArray(cells + 1), *columns = petscArray(pairs.size());
   std::fill(offsets, offsets + cells + 1, 0);
   for (std::size_t i = 0; i < pairs.size(); ++i)
   {
@@ -48,6 +61,120 @@ PetscMatrix graphOf(Index cells, const std::vector<std::pair<Index, Index>>& pai
   PetscMatrix graph;
   const auto size = static_cast<PetscInt>(cells);
   petsc(MatCreateMPIAdj(PETSC_COMM_SELF, size, size, offsets, columns, nullptr, graph.out()));
+  return graph;
+}
+
+/**
+ * @brief PT-Scotch works with one thread from here on, unless the environment states how many.
+ *
+ * Its threads call MPI at the same time (where it divides copies of a graph, from four ranks on),
+ * which MPI allows with MPI_THREAD_MULTIPLE only; ParaView's MPI has MPI_THREAD_SINGLE, and crashes
+ * or hangs. PETSc has no option for it, so that is set as Scotch reads it, once.
+ */
+void useOneThread()
+{
+  static const bool done = setenv("SCOTCH_PTHREAD_NUMBER", "1", 0) == 0;
+  if (!done)
+  {
+    throw Error(
+      "The environment variable SCOTCH_PTHREAD_NUMBER cannot be set: there is no memory.");
+  }
+}
+
+/// The parts of the vertices of this rank.
+/// @param weights made by petscArray(), or null: all are equal
+std::vector<int> partsOf(
+  MPI_Comm comm, const PetscMatrix& graph, Index vertices, PetscInt* weights, int parts)
+{
+  useOneThread();
+  PetscPartitioning partitioning;
+  petsc(MatPartitioningCreate(comm, partitioning.out()));
+  petsc(MatPartitioningSetAdjacency(partitioning, graph));
+  petsc(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
+  petsc(MatPartitioningSetNParts(partitioning, parts));
+  if (weights)
+  {
+    petsc(MatPartitioningSetVertexWeights(partitioning, weights));
+  }
+  PetscIndices found;
+  petsc(MatPartitioningApply(partitioning, found.out()));
+  const PetscInt* values = nullptr;
+  petsc(ISGetIndices(found, &values));
+  std::vector<int> result(values, values + vertices);
+  petsc(ISRestoreIndices(found, &values));
+  return result;
+}
+
+[[noreturn]] void throwNotDivided(const PetscError& error)
+{
+  throw Error(std::string("PT-Scotch, through PETSc, has not divided the mesh (") + error.what() +
+    "): take a k-d tree, or a PETSc with PT-Scotch.");
+}
+
+/// The points that this rank owns, with numbers that follow those of the rank before, and their
+/// neighbours.
+struct PointGraph
+{
+  std::vector<Index> offsets = { 0 }, neighbours, weights;
+};
+
+PointGraph pointGraph(const DistributedMesh& mesh)
+{
+  Index own = 0, first = 0;
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    own += mesh.owned(p);
+  }
+  const auto counts = mesh.group().gatherItems(std::vector<Index>{ own });
+  for (int rank = 0; rank < mesh.group().rank(); ++rank)
+  {
+    first += counts[rank][0];
+  }
+  std::vector<double> numbers(mesh.localPoints(), 0.0);
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    numbers[p] = mesh.owned(p) ? static_cast<double>(first++) : 0.0;
+  }
+  mesh.exchange(numbers.data(), 1);
+  PointGraph graph;
+  mesh.group().together(
+    [&]
+    {
+      const MeshView& view = mesh.view();
+      const VertexCells cells = Mesh(view).vertexCells();
+      std::vector<Index> around;
+      for (Index p = 0; p < mesh.localPoints(); ++p)
+      {
+        pollInterruption(p);
+        if (!mesh.owned(p))
+        {
+          continue;
+        }
+        around.clear();
+        for (Index i = cells.offsets[p]; i < cells.offsets[p + 1]; ++i)
+        {
+          const Index cell = cells.cells[i];
+          for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
+          {
+            if (view.connectivity[n] != p)
+            {
+              around.push_back(static_cast<Index>(numbers[view.connectivity[n]]));
+            }
+          }
+        }
+        std::sort(around.begin(), around.end());
+        around.erase(std::unique(around.begin(), around.end()), around.end());
+        graph.neighbours.insert(graph.neighbours.end(), around.begin(), around.end());
+        graph.offsets.push_back(static_cast<Index>(graph.neighbours.size()));
+        graph.weights.push_back(cells.offsets[p + 1] - cells.offsets[p]);
+      }
+      constexpr Index most = std::numeric_limits<PetscInt>::max();
+      if (mesh.globalPoints() > most || graph.offsets.back() > most)
+      {
+        throw Error("The mesh is too large for PETSc's 32-bit numbers: take a k-d tree, or a PETSc "
+                    "with 64-bit indices.");
+      }
+    });
   return graph;
 }
 }
@@ -61,33 +188,61 @@ std::vector<int> partitionGraph(const Mesh& mesh, int parts)
     throw Error("A mesh of " + std::to_string(cells) + " cells cannot have " +
       std::to_string(parts) + " parts: from 1 to the number of cells is allowed.");
   }
-  std::vector<int> partOfCell(cells, 0);
   if (parts == 1)
   {
-    return partOfCell;
+    return std::vector<int>(cells, 0);
   }
   const auto pairs = neighbours(mesh);
   PetscScope scope;
   try
   {
-    const PetscMatrix graph = graphOf(cells, pairs);
-    PetscPartitioning partitioning;
-    petsc(MatPartitioningCreate(PETSC_COMM_SELF, partitioning.out()));
-    petsc(MatPartitioningSetAdjacency(partitioning, graph));
-    petsc(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
-    petsc(MatPartitioningSetNParts(partitioning, parts));
-    PetscIndices found;
-    petsc(MatPartitioningApply(partitioning, found.out()));
-    const PetscInt* values = nullptr;
-    petsc(ISGetIndices(found, &values));
-    std::copy_n(values, cells, partOfCell.begin());
-    petsc(ISRestoreIndices(found, &values));
+    return partsOf(PETSC_COMM_SELF, graphOf(cells, pairs), cells, nullptr, parts);
   }
   catch (const PetscError& error)
   {
-    throw Error(std::string("PT-Scotch, through PETSc, has not divided the mesh (") + error.what() +
-      "): take a k-d tree, or a PETSc with PT-Scotch.");
+    throwNotDivided(error);
   }
-  return partOfCell;
+}
+
+//------------------------------------------------------------------------------
+std::vector<int> partitionPoints(const DistributedMesh& mesh, Communicator communicator)
+{
+  const int ranks = mesh.group().size();
+  if (ranks == 1 || mesh.globalPoints() < ranks)
+  {
+    return mesh.owners();
+  }
+  const PointGraph points = pointGraph(mesh);
+  const auto own = static_cast<Index>(points.weights.size());
+  std::vector<int> parts;
+  PetscScope scope;
+  try
+  {
+    const MPI_Comm comm = mpiOf(communicator);
+    const auto petscCopy = [](const std::vector<Index>& numbers)
+    {
+      PetscInt* array = petscArray(numbers.size());
+      std::transform(numbers.begin(), numbers.end(), array,
+        [](Index number) { return static_cast<PetscInt>(number); });
+      return array;
+    };
+    PetscMatrix graph;
+    petsc(
+      MatCreateMPIAdj(comm, static_cast<PetscInt>(own), static_cast<PetscInt>(mesh.globalPoints()),
+        petscCopy(points.offsets), petscCopy(points.neighbours), nullptr, graph.out()));
+    parts = partsOf(comm, graph, own, petscCopy(points.weights), ranks);
+  }
+  catch (const PetscError& error)
+  {
+    throwNotDivided(error);
+  }
+  std::vector<double> owners(mesh.localPoints(), 0.0);
+  auto part = parts.begin();
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    owners[p] = mesh.owned(p) ? *part++ : 0.0;
+  }
+  mesh.exchange(owners.data(), 1);
+  return { owners.begin(), owners.end() };
 }
 }

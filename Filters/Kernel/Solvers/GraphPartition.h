@@ -6,7 +6,8 @@
 #ifndef tautline_GraphPartition_h
 #define tautline_GraphPartition_h
 
-#include "tautline/Mesh/Mesh.h"
+#include "tautline/Core/Communicator.h"
+#include "tautline/Mesh/DistributedMesh.h"
 #include "tautline/SolversExport.h"
 
 #include <vector>
@@ -20,8 +21,9 @@ namespace tautline
  * @param parts at least 1, at most the number of cells
  * @return per cell, the number of its part, 0 to parts - 1
  *
- * The parts are not reproducible: PT-Scotch works with threads, and two calls, also of two runs of
- * one program, give different parts, about as good.
+ * The parts may differ from call to call, about as good: what PT-Scotch makes depends on its
+ * version and on the order of messages. It works with one thread, unless the environment variable
+ * SCOTCH_PTHREAD_NUMBER states another number.
  *
  * Throws Error for numbers of parts out of range and where PETSc has no PT-Scotch.
  *
@@ -29,5 +31,20 @@ namespace tautline
  * Parallel Computing 34 (2008), through PETSc's MatPartitioning.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<int> partitionGraph(const Mesh& mesh, int parts);
+
+/**
+ * @brief Divides the points of a mesh on several ranks among these, by the graph in which two
+ * points are neighbours if an element has both: few points then have neighbours on another rank.
+ * The weight of a point is the number of its elements, which is what a patch costs. All ranks
+ * divide the graph together.
+ * @param communicator of MPI, with the ranks of the mesh's group
+ * @return per local point the rank that shall own it (MeshPiece::owners); that of now, if there are
+ * fewer points than ranks
+ *
+ * The division may differ from call to call, as that of partitionGraph(). Throws Error on all ranks
+ * where PETSc has no PT-Scotch, or too few bits for the numbers. Collective.
+ */
+TAUTLINE_SOLVERS_EXPORT std::vector<int> partitionPoints(
+  const DistributedMesh& mesh, Communicator communicator);
 }
 #endif

@@ -13,9 +13,10 @@ using namespace tautline;
 
 namespace
 {
-std::string divided(int size)
+std::string divided(int size, int how)
 {
-  return "\nThe mesh was divided anew among " + std::to_string(size) + " processes.";
+  return "\nThe mesh was divided anew among " + std::to_string(size) + " processes" +
+    (how == vtkMeshMotionAlgorithm::PT_SCOTCH ? " by PT-Scotch." : ".");
 }
 
 /// On all processes with the mesh cut, and on the first alone with all of it.
@@ -48,13 +49,17 @@ void testFilter(const char* name, vtkMPIController* controller, const MeshData& 
     check(serial.Get(), other.Get(), rank);
   }
   // All of it on the first process, divided anew.
-  const Context inner("divided anew");
-  const RankPart part = partOf(whole, rank, all);
-  vtkNew<Filter> filter;
-  filter->RedistributeOn();
-  checkSame(pointsOf(whole, part, set, filter.Get()), expected);
-  check(serial.Get(), filter.Get(), rank);
-  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(divided(size)) != std::string::npos);
+  for (const int how : { vtkMeshMotionAlgorithm::KD_TREE, vtkMeshMotionAlgorithm::PT_SCOTCH })
+  {
+    const Context inner("divided anew " + std::to_string(how));
+    const RankPart part = partOf(whole, rank, all);
+    vtkNew<Filter> filter;
+    filter->SetRedistribute(how);
+    checkSame(pointsOf(whole, part, set, filter.Get()), expected);
+    check(serial.Get(), filter.Get(), rank);
+    const std::string summary = filter->GetSummary();
+    TAUTLINE_CHECK(summary.find(divided(size, how)) != std::string::npos);
+  }
 }
 
 /// Tables of a run are on the first process, with the numbers of one up to rounding.
@@ -205,7 +210,9 @@ void testUntangler(vtkMPIController* controller)
     [controller](vtkMeshUntangler* serial, vtkMeshUntangler* ranks, int rank)
     {
       const std::string remark =
-        ranks->GetRedistribute() ? divided(controller->GetNumberOfProcesses()) : "";
+        ranks->GetRedistribute() == vtkMeshMotionAlgorithm::NO_REDISTRIBUTION
+        ? ""
+        : divided(controller->GetNumberOfProcesses(), ranks->GetRedistribute());
       TAUTLINE_CHECK(ranks->GetInvertedBefore() > 0);
       TAUTLINE_CHECK(ranks->GetInvertedAfter() < ranks->GetInvertedBefore());
       TAUTLINE_CHECK_EQUAL(ranks->GetInvertedBefore(), serial->GetInvertedBefore());
