@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <tuple>
@@ -346,20 +347,6 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
   }
 }
 
-namespace
-{
-/// exchangeItems() without copies of what stays on this rank.
-template <class Item>
-std::vector<std::vector<Item>> exchangeOthers(RankGroup& group, std::vector<std::vector<Item>> sent)
-{
-  std::vector<Item> own;
-  own.swap(sent[group.rank()]);
-  std::vector<std::vector<Item>> received = group.exchangeItems(sent);
-  received[group.rank()] = std::move(own);
-  return received;
-}
-}
-
 //------------------------------------------------------------------------------
 /// The local points, and where each number is among them.
 void DistributedMesh::takePoints(
@@ -397,81 +384,122 @@ Index DistributedMesh::local(Index number) const
 }
 
 //------------------------------------------------------------------------------
+/// The points that cells have on this rank, and those of the cells that others send.
+/// @param needed per other rank, points of the piece that it needs, with repetitions
+void DistributedMesh::exchangePoints(
+  const MeshPiece& piece, const std::vector<char>& used, std::vector<std::vector<Index>> needed)
+{
+  RankGroup& group = *this->Group;
+  const MeshView& view = piece.view;
+  const auto pointAt = [&](Index p)
+  {
+    SentPoint point = { this->PieceNumbers[p], { 0, 0, 0 }, this->PieceOwners[p] };
+    std::copy_n(view.points + 3 * p, 3, point.x);
+    return point;
+  };
+  std::vector<std::vector<SentPoint>> sent(group.size());
+  for (int rank = 0; rank < group.size(); ++rank)
+  {
+    std::vector<Index>& points = needed[rank];
+    std::sort(points.begin(), points.end());
+    points.erase(std::unique(points.begin(), points.end()), points.end());
+    std::transform(points.begin(), points.end(), std::back_inserter(sent[rank]), pointAt);
+  }
+  std::vector<SentPoint> points;
+  points.reserve(static_cast<std::size_t>(view.numberOfPoints));
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    if (used[p])
+    {
+      points.push_back(pointAt(p));
+    }
+  }
+  for (const auto& list : group.exchangeItems(sent))
+  {
+    points.insert(points.end(), list.begin(), list.end());
+  }
+  this->takePoints(piece, used, std::move(points));
+}
+
+//------------------------------------------------------------------------------
 /// The cells that have a point of this rank, from each rank: type, number of points, local points.
-std::vector<std::vector<Index>> DistributedMesh::exchangeCells(
+std::vector<std::vector<std::int32_t>> DistributedMesh::exchangeCells(
   const MeshPiece& piece, const std::vector<char>& used)
 {
   RankGroup& group = *this->Group;
   const MeshView& view = piece.view;
-  std::vector<std::vector<Index>> sentCells(group.size());
-  std::vector<std::vector<SentPoint>> sentPoints(group.size());
-  std::vector<std::vector<Index>> needed(group.size()); // points of the piece, per rank
+  const int self = group.rank();
+  const auto takes = [&](Index cell)
+  { return !(piece.ghosts && piece.ghosts[cell]) && takesPart(view, cell); };
+  const auto isOwn = [&](Index point) { return this->PieceOwners[point] == self; };
+  std::vector<std::vector<Index>> sent(group.size()), needed(group.size());
   std::vector<int> ranks;
-  if (view.numberOfCells > 0) // most cells stay
-  {
-    sentCells[group.rank()].reserve(2 * view.numberOfCells + view.offsets[view.numberOfCells]);
-  }
+  std::size_t staying = 0; // length of the list of those of this rank
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
-    if ((piece.ghosts && piece.ghosts[cell]) || !takesPart(view, cell))
+    if (!takes(cell))
     {
       continue;
     }
-    const Index begin = view.offsets[cell], end = view.offsets[cell + 1];
-    ranks.clear();
-    for (Index n = begin; n < end; ++n)
+    const Index *begin = view.connectivity + view.offsets[cell],
+                *end = view.connectivity + view.offsets[cell + 1];
+    const auto own = std::count_if(begin, end, isOwn);
+    staying += own > 0 ? 2 + static_cast<std::size_t>(end - begin) : 0;
+    if (own == end - begin) // most cells stay
     {
-      ranks.push_back(this->PieceOwners[view.connectivity[n]]);
+      continue;
+    }
+    ranks.clear();
+    for (const Index* node = begin; node != end; ++node)
+    {
+      ranks.push_back(this->PieceOwners[*node]);
     }
     std::sort(ranks.begin(), ranks.end());
     ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
     for (const int rank : ranks)
     {
-      sentCells[rank].push_back(view.cellTypes[cell]);
-      sentCells[rank].push_back(end - begin);
-      for (Index n = begin; n < end; ++n)
+      if (rank == self)
       {
-        sentCells[rank].push_back(this->PieceNumbers[view.connectivity[n]]);
-        if (rank != group.rank()) // which needs all points that are used
-        {
-          needed[rank].push_back(view.connectivity[n]);
-        }
+        continue;
+      }
+      sent[rank].push_back(view.cellTypes[cell]);
+      sent[rank].push_back(end - begin);
+      for (const Index* node = begin; node != end; ++node)
+      {
+        sent[rank].push_back(this->PieceNumbers[*node]);
+        needed[rank].push_back(*node);
       }
     }
   }
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    if (used[p])
-    {
-      needed[group.rank()].push_back(p);
-    }
-  }
+  this->exchangePoints(piece, used, std::move(needed));
+
+  std::vector<std::vector<std::int32_t>> lists(group.size());
+  const std::vector<std::vector<Index>> received = group.exchangeItems(sent);
   for (int rank = 0; rank < group.size(); ++rank)
   {
-    std::sort(needed[rank].begin(), needed[rank].end());
-    needed[rank].erase(std::unique(needed[rank].begin(), needed[rank].end()), needed[rank].end());
-    for (const Index p : needed[rank])
+    const std::vector<Index>& list = received[rank];
+    for (std::size_t i = 0; i < list.size(); i += 2 + static_cast<std::size_t>(list[i + 1]))
     {
-      SentPoint point = { this->PieceNumbers[p], { 0, 0, 0 }, this->PieceOwners[p] };
-      std::copy_n(view.points + 3 * p, 3, point.x);
-      sentPoints[rank].push_back(point);
+      lists[rank].push_back(static_cast<std::int32_t>(list[i]));
+      lists[rank].push_back(static_cast<std::int32_t>(list[i + 1]));
+      std::transform(list.begin() + static_cast<std::ptrdiff_t>(i) + 2,
+        list.begin() + static_cast<std::ptrdiff_t>(i) + 2 +
+          static_cast<std::ptrdiff_t>(list[i + 1]),
+        std::back_inserter(lists[rank]),
+        [this](Index number) { return static_cast<std::int32_t>(this->local(number)); });
     }
   }
-  std::vector<SentPoint> points;
-  for (const auto& list : exchangeOthers(group, std::move(sentPoints)))
+  lists[self].reserve(staying);
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
-    points.insert(points.end(), list.begin(), list.end());
-  }
-  std::vector<std::vector<Index>>().swap(needed);
-  this->takePoints(piece, used, std::move(points));
-  std::vector<std::vector<Index>> lists = exchangeOthers(group, std::move(sentCells));
-  for (std::vector<Index>& list : lists)
-  {
-    for (auto cell = list.begin(); cell != list.end();)
+    const Index *begin = view.connectivity + view.offsets[cell],
+                *end = view.connectivity + view.offsets[cell + 1];
+    if (takes(cell) && std::any_of(begin, end, isOwn))
     {
-      const auto first = cell + 2, last = first + static_cast<std::ptrdiff_t>(cell[1]);
-      std::transform(first, last, first, [this](Index number) { return this->local(number); });
-      cell = last;
+      lists[self].push_back(view.cellTypes[cell]);
+      lists[self].push_back(static_cast<std::int32_t>(end - begin));
+      std::transform(begin, end, std::back_inserter(lists[self]),
+        [this](Index point) { return static_cast<std::int32_t>(this->LocalOfPiece[point]); });
     }
   }
   return lists;
@@ -481,7 +509,7 @@ std::vector<std::vector<Index>> DistributedMesh::exchangeCells(
 void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>& used)
 {
   RankGroup& group = *this->Group;
-  std::vector<std::vector<Index>> lists = this->exchangeCells(piece, used);
+  std::vector<std::vector<std::int32_t>> lists = this->exchangeCells(piece, used);
   std::unique_ptr<TakenCells> taken;
   group.together(
     [&]

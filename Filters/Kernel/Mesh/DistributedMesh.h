@@ -126,7 +126,9 @@ private:
   void takeCells(const MeshPiece& piece, const std::vector<char>& used);
   void takePoints(
     const MeshPiece& piece, const std::vector<char>& used, std::vector<SentPoint> points);
-  std::vector<std::vector<Index>> exchangeCells(
+  void exchangePoints(
+    const MeshPiece& piece, const std::vector<char>& used, std::vector<std::vector<Index>> needed);
+  std::vector<std::vector<std::int32_t>> exchangeCells(
     const MeshPiece& piece, const std::vector<char>& used);
   void connect();
 

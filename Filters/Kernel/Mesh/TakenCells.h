@@ -33,7 +33,7 @@ public:
   };
 
   /// Sorts the cells of the lists by their points, 0 to `points` - 1; a cell has at least one.
-  TakenCells(std::vector<std::vector<Index>> lists, Index points)
+  TakenCells(std::vector<std::vector<std::int32_t>> lists, Index points)
     : Lists(std::move(lists))
   {
     // By the lowest point first, then the few cells that have it in common.
@@ -43,7 +43,7 @@ public:
     this->Cells.resize(ends.back());
     this->forEach([&](const Cell& cell) { this->Cells[ends[cell.least]++] = cell; });
     std::size_t begin = 0;
-    Sorted scratch;
+    std::vector<Item> scratch;
     for (Index point = 0; point < points; begin = ends[point++])
     {
       this->sort(this->Cells.data() + begin, this->Cells.data() + ends[point], scratch);
@@ -51,9 +51,12 @@ public:
   }
 
   const std::vector<Cell>& cells() const { return this->Cells; }
-  Index type(const Cell& cell) const { return this->list(cell)[0]; }
-  const Index* begin(const Cell& cell) const { return this->list(cell) + 2; }
-  const Index* end(const Cell& cell) const { return this->begin(cell) + this->list(cell)[1]; }
+  std::int32_t type(const Cell& cell) const { return this->list(cell)[0]; }
+  const std::int32_t* begin(const Cell& cell) const { return this->list(cell) + 2; }
+  const std::int32_t* end(const Cell& cell) const
+  {
+    return this->begin(cell) + this->list(cell)[1];
+  }
   /// Whether the types and the points are the same, in any order.
   bool same(const Cell& a, const Cell& b) const
   {
@@ -62,57 +65,90 @@ public:
   }
 
 private:
-  /// Cells and their points in increasing order.
-  struct Sorted
+  /// A cell and its points in increasing order, of which all but the lowest count here.
+  struct Item
   {
-    struct Item
-    {
-      Cell cell;
-      std::size_t begin, end; ///< of its points
-    };
-    std::vector<Item> items;
-    std::vector<Index> points;
+    static constexpr int most = 7;
+    std::int32_t points[most]; ///< then -1: of cells with the same points the shorter comes first
+    Cell cell;
   };
 
-  const Index* list(const Cell& cell) const { return this->Lists[cell.rank].data() + cell.at; }
+  const std::int32_t* list(const Cell& cell) const
+  {
+    return this->Lists[cell.rank].data() + cell.at;
+  }
 
-  /// Sorts by the points, then by the type, then by the order of the points in the cell.
-  void sort(Cell* first, Cell* last, Sorted& sorted) const
+  /// Sorts cells with the same lowest point by all points in increasing order, then by the type,
+  /// then by the order of the points in the cell.
+  void sort(Cell* first, Cell* last, std::vector<Item>& items) const
   {
     if (last - first < 2)
     {
       return;
     }
-    sorted.items.clear();
-    sorted.points.clear();
+    items.clear();
     for (const Cell* cell = first; cell != last; ++cell)
     {
-      const std::size_t begin = sorted.points.size();
-      sorted.points.insert(sorted.points.end(), this->begin(*cell), this->end(*cell));
-      std::sort(sorted.points.begin() + static_cast<std::ptrdiff_t>(begin), sorted.points.end());
-      sorted.items.push_back({ *cell, begin, sorted.points.size() });
-    }
-    std::sort(sorted.items.begin(), sorted.items.end(),
-      [&](const Sorted::Item& a, const Sorted::Item& b)
+      Item& item = items.emplace_back();
+      item.cell = *cell;
+      std::fill_n(item.points, Item::most, -1);
+      int count = 0;
+      for (const std::int32_t* node = this->begin(*cell); node != this->end(*cell); ++node)
       {
-        const Index* points = sorted.points.data();
-        const auto [one, other] =
-          std::mismatch(points + a.begin, points + a.end, points + b.begin, points + b.end);
-        if (one != points + a.end && other != points + b.end)
+        if (*node == cell->least)
         {
-          return *one < *other;
+          continue;
         }
-        const std::size_t ofOne = a.end - a.begin, ofOther = b.end - b.begin;
-        return ofOne != ofOther ? ofOne < ofOther
-          : this->type(a.cell) != this->type(b.cell)
-          ? this->type(a.cell) < this->type(b.cell)
-          : std::lexicographical_compare(
-              this->begin(a.cell), this->end(a.cell), this->begin(b.cell), this->end(b.cell));
-      });
-    for (const Sorted::Item& item : sorted.items)
+        if (count == Item::most)
+        {
+          this->sortLong(first, last);
+          return;
+        }
+        int at = count++;
+        for (; at > 0 && item.points[at - 1] > *node; --at)
+        {
+          item.points[at] = item.points[at - 1];
+        }
+        item.points[at] = *node;
+      }
+    }
+    const auto before = [this](const Item& a, const Item& b)
+    {
+      const int different =
+        static_cast<int>(std::mismatch(a.points, a.points + Item::most, b.points).first - a.points);
+      return different < Item::most ? a.points[different] < b.points[different]
+                                    : this->comesFirst(a.cell, b.cell);
+    };
+    std::sort(items.begin(), items.end(), before);
+    for (const Item& item : items)
     {
       *first++ = item.cell;
     }
+  }
+
+  /// Of cells with the same points.
+  bool comesFirst(const Cell& a, const Cell& b) const
+  {
+    return this->type(a) != this->type(b)
+      ? this->type(a) < this->type(b)
+      : std::lexicographical_compare(this->begin(a), this->end(a), this->begin(b), this->end(b));
+  }
+
+  /// The same as sort() where a cell has too many points for an Item.
+  void sortLong(Cell* first, Cell* last) const
+  {
+    const auto pointsOf = [this](const Cell& cell)
+    {
+      std::vector<std::int32_t> points(this->begin(cell), this->end(cell));
+      std::sort(points.begin(), points.end());
+      return points;
+    };
+    std::sort(first, last,
+      [&](const Cell& a, const Cell& b)
+      {
+        const auto ofA = pointsOf(a), ofB = pointsOf(b);
+        return ofA != ofB ? ofA < ofB : this->comesFirst(a, b);
+      });
   }
 
   template <class Visit>
@@ -120,18 +156,17 @@ private:
   {
     for (std::size_t rank = 0; rank < this->Lists.size(); ++rank)
     {
-      const std::vector<Index>& list = this->Lists[rank];
+      const std::vector<std::int32_t>& list = this->Lists[rank];
       for (std::size_t i = 0; i < list.size(); i += 2 + static_cast<std::size_t>(list[i + 1]))
       {
         Cell cell = { static_cast<Index>(i), static_cast<std::int32_t>(rank), 0 };
-        cell.least =
-          static_cast<std::int32_t>(*std::min_element(this->begin(cell), this->end(cell)));
+        cell.least = *std::min_element(this->begin(cell), this->end(cell));
         visit(cell);
       }
     }
   }
 
-  std::vector<std::vector<Index>> Lists; ///< per rank
+  std::vector<std::vector<std::int32_t>> Lists; ///< per rank
   std::vector<Cell> Cells;
 };
 }
