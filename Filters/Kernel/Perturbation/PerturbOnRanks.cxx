@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <numeric>
 
 namespace tautline
 {
@@ -39,25 +40,23 @@ public:
   }
 
 private:
-  template <class Visit>
-  void forEachEarlier(const DistributedMesh& mesh, const Perturber& perturber,
-    const std::vector<unsigned char>& chosen, const Visit& visit) const;
-
-  std::vector<Index> Offsets, Later; ///< own vertices that wait for each local one
+  std::vector<Index> Offsets;
+  std::vector<std::int32_t> Later;   ///< own vertices that wait for each local one
   std::vector<std::int32_t> Waiting; ///< per local vertex: for how many
   std::vector<Index> Ready;
 };
 
 //------------------------------------------------------------------------------
-/// Calls visit(earlier, later) once for each own vertex that is chosen and each chosen one of a
-/// lower id with which it has a cell.
-template <class Visit>
-void MovingOrder::forEachEarlier(const DistributedMesh& mesh, const Perturber& perturber,
-  const std::vector<unsigned char>& chosen, const Visit& visit) const
+MovingOrder::MovingOrder(
+  const DistributedMesh& mesh, const Perturber& perturber, const std::vector<unsigned char>& chosen)
+  : Offsets(mesh.localPoints() + 1, 0)
+  , Waiting(mesh.localPoints(), 0)
 {
+  // Each own vertex that is chosen waits for the chosen ones of lower ids with which it has a cell.
   const MeshView& view = mesh.view();
   const VertexCells& cells = perturber.adjacency();
-  std::vector<Index> around;
+  std::vector<std::int32_t> all, around;
+  std::vector<Index> own;
   for (const Index vertex : perturber.movable())
   {
     pollInterruption(vertex);
@@ -74,44 +73,34 @@ void MovingOrder::forEachEarlier(const DistributedMesh& mesh, const Perturber& p
         const Index other = view.connectivity[n];
         if (chosen[other] && perturber.idOf(other) < perturber.idOf(vertex))
         {
-          around.push_back(other);
+          around.push_back(static_cast<std::int32_t>(other));
         }
       }
     }
     std::sort(around.begin(), around.end());
     around.erase(std::unique(around.begin(), around.end()), around.end());
-    for (const Index earlier : around)
-    {
-      visit(earlier, vertex);
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-MovingOrder::MovingOrder(
-  const DistributedMesh& mesh, const Perturber& perturber, const std::vector<unsigned char>& chosen)
-  : Offsets(mesh.localPoints() + 1, 0)
-  , Waiting(mesh.localPoints(), 0)
-{
-  this->forEachEarlier(mesh, perturber, chosen,
-    [this](Index earlier, Index later)
-    {
-      ++this->Offsets[earlier + 1];
-      ++this->Waiting[later];
-    });
-  for (std::size_t p = 1; p < this->Offsets.size(); ++p)
-  {
-    this->Offsets[p] += this->Offsets[p - 1];
-  }
-  this->Later.resize(this->Offsets.back());
-  std::vector<Index> at(this->Offsets.begin(), this->Offsets.end() - 1);
-  this->forEachEarlier(mesh, perturber, chosen,
-    [&](Index earlier, Index later) { this->Later[at[earlier]++] = later; });
-  for (const Index vertex : perturber.movable())
-  {
-    if (chosen[vertex] && mesh.owned(vertex) && this->Waiting[vertex] == 0)
+    all.insert(all.end(), around.begin(), around.end());
+    own.push_back(vertex);
+    this->Waiting[vertex] = static_cast<std::int32_t>(around.size());
+    if (around.empty())
     {
       this->Ready.push_back(vertex);
+    }
+  }
+  // The same by those that are waited for.
+  for (const std::int32_t earlier : all)
+  {
+    ++this->Offsets[earlier + 1];
+  }
+  std::partial_sum(this->Offsets.begin(), this->Offsets.end(), this->Offsets.begin());
+  this->Later.resize(all.size());
+  std::vector<Index> at(this->Offsets.begin(), this->Offsets.end() - 1);
+  auto earlier = all.begin();
+  for (const Index vertex : own)
+  {
+    for (std::int32_t i = 0; i < this->Waiting[vertex]; ++i)
+    {
+      this->Later[at[*earlier++]++] = static_cast<std::int32_t>(vertex);
     }
   }
 }

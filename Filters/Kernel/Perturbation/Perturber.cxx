@@ -2,6 +2,7 @@
 #include "Perturber.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Mesh/BoundaryPoints.h"
 
 #include <algorithm>
 #include <limits>
@@ -78,7 +79,7 @@ void Perturber::findMovable(const unsigned char* fixed)
   const MeshView& view = this->TheMesh.view();
   const int dimension = this->TheMesh.dimension() == Dimension::Volume ? 3 : 2;
   // Fixed: the boundary, and the points of cells that are not elements or have no finite shape.
-  std::vector<char> stays = this->TheMesh.boundary().isBoundaryPoint;
+  std::vector<char> stays = boundaryPoints(this->TheMesh, this->Options.threads);
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     pollInterruption(cell);
