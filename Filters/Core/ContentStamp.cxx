@@ -67,7 +67,7 @@ void addDataSet(ContentStamp& stamp, vtkDataObject* data)
   if (grid)
   {
     addCells(stamp, grid->GetCells());
-    add(stamp, cellTypesOf(grid));
+    add(stamp, storedCellTypes(grid));
   }
   else
   {

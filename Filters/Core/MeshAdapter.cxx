@@ -298,8 +298,8 @@ void MeshAdapter::takeCells(vtkDataSet* input)
   // An unstructured grid without pixels, voxels and polygons is taken as it is.
   if (auto* grid = vtkUnstructuredGrid::SafeDownCast(input))
   {
-    vtkUnsignedCharArray* types = cellTypesOf(grid);
-    const unsigned char* type = types ? types->GetPointer(0) : nullptr;
+    this->GivenTypes = cellTypesOf(grid);
+    const unsigned char* type = this->GivenTypes ? this->GivenTypes->GetPointer(0) : nullptr;
     const bool plain = type &&
       std::none_of(type, type + count,
         [](unsigned char t)
@@ -547,7 +547,7 @@ void flipCells(vtkDataSet* data, const std::vector<unsigned char>& flags)
   if (grid)
   {
     auto types = vtkSmartPointer<vtkUnsignedCharArray>::New();
-    types->DeepCopy(cellTypesOf(grid));
+    types->DeepCopy(storedCellTypes(grid));
     grid->SetCells(types, cells);
   }
   else

@@ -20,6 +20,7 @@
 #include "tautline/Mesh/Mesh.h"
 
 #include "vtkSmartPointer.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <memory>
 #include <string>
@@ -107,6 +108,7 @@ private:
   bool acrossY(Index first) const;
 
   std::vector<double> Points;
+  vtkSmartPointer<vtkUnsignedCharArray> GivenTypes; ///< that the view refers to
   std::vector<unsigned char> Types;
   std::vector<Index> Offsets;
   std::vector<Index> Connectivity;

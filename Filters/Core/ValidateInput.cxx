@@ -272,7 +272,7 @@ std::string cellProblem(vtkCellArray* cells, const CellRules& rules)
 /// Ids of the faces of polyhedra, as a cell array or as a stream.
 std::string polyhedronProblem(vtkUnstructuredGrid* grid, int threads)
 {
-  vtkUnsignedCharArray* types = cellTypesOf(grid);
+  const vtkSmartPointer<vtkUnsignedCharArray> types = cellTypesOf(grid);
   const Index cells = grid->GetNumberOfCells();
   const unsigned char* type = types ? types->GetPointer(0) : nullptr;
   if (!type || std::find(type, type + cells, VTK_POLYHEDRON) == type + cells)
@@ -340,7 +340,7 @@ std::string polyhedronProblem(vtkUnstructuredGrid* grid, int threads)
 std::string gridProblem(vtkUnstructuredGrid* grid, int threads)
 {
   const Index cells = grid->GetNumberOfCells();
-  vtkUnsignedCharArray* types = cellTypesOf(grid);
+  const vtkSmartPointer<vtkUnsignedCharArray> types = cellTypesOf(grid);
   const Index given = types ? types->GetNumberOfValues() : 0;
   if (given != cells)
   {

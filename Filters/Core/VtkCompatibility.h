@@ -10,6 +10,7 @@
 #include "vtkCellArray.h"
 #include "vtkDataSet.h"
 #include "vtkIdList.h"
+#include "vtkSmartPointer.h"
 #include "vtkStructuredData.h"
 #include "vtkTypeInt64Array.h"
 #include "vtkUniformGridAMR.h"
@@ -50,18 +51,29 @@ inline void cellPoints(
 #endif
 }
 
-/// The types of the cells, one byte each. The successor in 9.6 may return a computed array.
-#if defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wdeprecated-declarations"
-#endif
-inline vtkUnsignedCharArray* cellTypesOf(vtkUnstructuredGrid* grid)
+/// The types of the cells as they are stored. VTK 9.6 may compute them.
+inline vtkDataArray* storedCellTypes(vtkUnstructuredGrid* grid)
 {
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
+  return grid->GetCellTypes();
+#else
   return grid->GetCellTypesArray();
-}
-#if defined(__GNUC__)
-#pragma GCC diagnostic pop
 #endif
+}
+
+/// The types of the cells, one byte each; a copy where VTK 9.6 computes them, as for cells of one
+/// type. Null if there are none.
+inline vtkSmartPointer<vtkUnsignedCharArray> cellTypesOf(vtkUnstructuredGrid* grid)
+{
+  vtkDataArray* stored = storedCellTypes(grid);
+  vtkSmartPointer<vtkUnsignedCharArray> types = vtkUnsignedCharArray::SafeDownCast(stored);
+  if (stored && !types)
+  {
+    types = vtkSmartPointer<vtkUnsignedCharArray>::New();
+    types->DeepCopy(stored);
+  }
+  return types;
+}
 
 /// The offsets of cells that are stored in 64 bits; null where they are not a plain array.
 inline vtkAOSDataArrayTemplate<vtkTypeInt64>* offsets64(vtkCellArray* cells)

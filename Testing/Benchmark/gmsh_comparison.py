@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 import tautline as tl
+from tautline._arrays import cell_types
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkCleanPolyData, vtkTriangleFilter
@@ -98,7 +99,7 @@ def gmsh_box(size: float) -> vtkUnstructuredGrid:
 
 def tetrahedra(mesh: object) -> vtkUnstructuredGrid:
     """The linear tetrahedra of a mesh with the points that they use."""
-    types = vtk_to_numpy(mesh.GetCellTypesArray())
+    types = vtk_to_numpy(cell_types(mesh))
     cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray())
     offsets = vtk_to_numpy(mesh.GetCells().GetOffsetsArray())
     kept = cells[np.repeat(types == TETRAHEDRON, np.diff(offsets))].reshape(-1, 4)

@@ -29,6 +29,7 @@ from pathlib import Path
 
 import numpy as np
 import tautline as tl
+from tautline._arrays import cell_types
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkAbstractArray, vtkDataArray
 from vtkmodules.vtkCommonDataModel import (
@@ -118,7 +119,7 @@ class Digest:
             grid = (*data.GetExtent(), *data.GetOrigin(), *data.GetSpacing(), *data.GetDirectionMatrix().GetData())
             self.array(f"{name}/grid", np.array(grid))
         if isinstance(data, vtkUnstructuredGrid) and data.GetNumberOfCells():
-            self.add(f"{name}/cell types", data.GetCellTypesArray())
+            self.add(f"{name}/cell types", cell_types(data))
             self.add_cells(f"{name}/cells", data.GetCells())
         if isinstance(data, vtkPolyData):
             for kind in ("Verts", "Lines", "Polys", "Strips"):

@@ -10,6 +10,7 @@ from typing import Any, Callable, Iterator, NamedTuple, Sequence, Union
 import numpy as np
 from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkUnsignedCharArray, vtkVersion
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 
 from ._errors import Error
@@ -64,6 +65,19 @@ def leaves(data: vtkDataObject) -> Iterator[vtkDataSet]:
         if isinstance(walk.GetCurrentDataObject(), vtkDataSet):
             yield walk.GetCurrentDataObject()
         walk.GoToNextItem()
+
+
+def cell_types(grid: Any) -> Any:
+    """The vtkUnsignedCharArray of the types of an unstructured grid's cells, which VTK 9.6 may compute; None if there
+    are none.
+    """
+    computes = (vtkVersion.GetVTKMajorVersion(), vtkVersion.GetVTKMinorVersion()) >= (9, 6)
+    stored = grid.GetCellTypes() if computes else grid.GetCellTypesArray()
+    if stored is None or stored.IsA("vtkUnsignedCharArray"):
+        return stored
+    types = vtkUnsignedCharArray()
+    types.DeepCopy(stored)
+    return types
 
 
 def cell_array(data: vtkDataObject, name: str) -> Array:

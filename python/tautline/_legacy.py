@@ -15,6 +15,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPointSet, vtkPolyData, vtkUnstructuredGrid
 
+from ._arrays import cell_types
 from ._errors import Error
 
 _HEADER = re.compile(rb"\s*# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n\s*(ASCII|BINARY)\b[^\n]*\n?", re.I)
@@ -72,9 +73,10 @@ def check_references(name: str, mesh: vtkDataObject) -> None:
         if offsets.size and (offsets[0] != 0 or offsets[-1] != ids.size or (np.diff(offsets) < 0).any()):
             raise Error(f"{name}: the offsets of {title} are not in order, or not as many as points")
     if isinstance(mesh, vtkUnstructuredGrid) and mesh.GetCells():
-        types = mesh.GetCellTypesArray().GetNumberOfValues() if mesh.GetCellTypesArray() else 0
-        if types != mesh.GetCells().GetNumberOfCells():
-            raise Error(f"{name}: there are {types} types of {mesh.GetCells().GetNumberOfCells()} cells")
+        types = cell_types(mesh)
+        count = types.GetNumberOfTuples() if types else 0
+        if count != mesh.GetCells().GetNumberOfCells():
+            raise Error(f"{name}: there are {count} types of {mesh.GetCells().GetNumberOfCells()} cells")
 
 
 def _lists(mesh: vtkDataObject) -> dict[str, vtkCellArray]:

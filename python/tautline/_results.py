@@ -23,7 +23,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkParallelCore import vtkCommunicator
 
-from ._arrays import Array, leaves, table_rows
+from ._arrays import Array, cell_types, leaves, table_rows
 from ._errors import Error
 from ._files import file_name, replace_text
 from ._pictures import picture_html
@@ -260,8 +260,8 @@ def _geometry(data: vtkDataSet) -> list[Array]:
             return found
         if cells:
             found += [_numbers(cells.GetOffsetsArray()), _numbers(cells.GetConnectivityArray())]
-    if hasattr(data, "GetCellTypesArray") and data.GetCellTypesArray():
-        found.append(_numbers(data.GetCellTypesArray()))
+    if hasattr(data, "GetCellTypesArray") and cell_types(data):
+        found.append(_numbers(cell_types(data)))
     return found
 
 
