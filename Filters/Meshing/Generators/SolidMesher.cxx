@@ -401,6 +401,51 @@ std::string withoutExponent(double value)
   return text;
 }
 
+/// The power of two that brings the largest coordinate between 1 and 2: it rounds nothing.
+double unitScale(const std::vector<double>& points)
+{
+  double largest = 0.0;
+  for (const double x : points)
+  {
+    largest = std::max(largest, std::abs(x));
+  }
+  return largest >= std::numeric_limits<double>::min() ? std::ldexp(1.0, -std::ilogb(largest))
+                                                       : 1.0;
+}
+
+void scale(std::vector<double>& lengths, double by)
+{
+  for (double& length : lengths)
+  {
+    length *= by;
+  }
+}
+
+/// TetGen 1.6 compares lengths and volumes with absolute numbers.
+void scaleInput(SolidBoundary& boundary, SolidOptions& options, double by)
+{
+  scale(boundary.points, by);
+  scale(boundary.holes, by);
+  for (SolidFacet& facet : boundary.facets)
+  {
+    for (auto& hole : facet.holes)
+    {
+      for (double& x : hole)
+      {
+        x *= by;
+      }
+    }
+  }
+  scale(options.pointSizes, by);
+  const double ofVolumes = by * by * by;
+  options.volume *= ofVolumes;
+  constexpr std::size_t perRegion = 5, place = 3; // x y z, reference, volume
+  for (std::size_t i = 0; i < options.regions.size(); ++i)
+  {
+    options.regions[i] *= i % perRegion < place ? by : i % perRegion > place ? ofVolumes : 1.0;
+  }
+}
+
 std::string switchesFor(const SolidOptions& options)
 {
   char text[128];
@@ -423,9 +468,13 @@ std::string switchesFor(const SolidOptions& options)
 }
 
 //------------------------------------------------------------------------------
-SolidMesh meshSolid(const SolidBoundary& boundary, const SolidOptions& options)
+SolidMesh meshSolid(const SolidBoundary& given, const SolidOptions& wanted)
 {
-  checkBoundary(boundary);
+  checkBoundary(given);
+  SolidBoundary boundary = given;
+  SolidOptions options = wanted;
+  const double unit = unitScale(boundary.points);
+  scaleInput(boundary, options, unit);
   if (!options.pointSizes.empty() && options.pointSizes.size() != boundary.points.size() / 3)
   {
     throw Error("there must be one size for each point");
@@ -445,6 +494,7 @@ SolidMesh meshSolid(const SolidBoundary& boundary, const SolidOptions& options)
     throw Error(
       "there is nothing inside of the surface: is it closed, do the holes leave anything?");
   }
+  scale(mesh.points, 1.0 / unit);
   mesh.faceMarkers.resize(mesh.faces.size() / 3, 1);
   mesh.pointMarkers.assign(mesh.points.size() / 3, 0);
   for (std::size_t i = 0; i < mesh.faces.size(); ++i)
