@@ -10,8 +10,11 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <set>
 
@@ -181,10 +184,59 @@ bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>
   return true;
 }
 
+/// A folder for the files that TetGen 1.6 writes where facets intersect; removed at the end.
+class ScratchFolder
+{
+public:
+  ScratchFolder()
+  {
+    std::error_code error;
+    std::string name = (std::filesystem::temp_directory_path(error) / "tautline-XXXXXX").string();
+    if (error || !::mkdtemp(name.data()))
+    {
+      throw Error("no folder for temporary files of TetGen: " +
+        (error ? error.message() : std::string(std::strerror(errno))));
+    }
+    this->Path = name;
+  }
+  ~ScratchFolder()
+  {
+    std::error_code ignored;
+    std::filesystem::remove_all(this->Path, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  const std::string& path() const { return this->Path; }
+
+  /// The markers of the facets that TetGen has left out, as they intersect others.
+  std::vector<int> skippedMarkers() const
+  {
+    std::vector<int> markers;
+    std::ifstream file(std::filesystem::path(this->Path) / "tetgen-tmpfile_skipped.face");
+    Index count = 0, number, a, b, c;
+    int marker = 0;
+    file >> count >> number; // whether there are markers
+    while (file >> number >> a >> b >> c >> marker)
+    {
+      markers.push_back(marker);
+    }
+    return markers;
+  }
+
+private:
+  std::string Path;
+};
+
 /// In a process of its own: TetGen, then its result into the pipe. Does not return.
 [[noreturn]] void work(const std::string& switches, const SolidBoundary& boundary,
-  const SolidOptions& options, bool numbers, double available, int pipe)
+  const SolidOptions& options, bool numbers, double available, const std::string& folder, int pipe)
 {
+  constexpr int notBegun = 10;
+  if (::chdir(folder.c_str()) != 0)
+  {
+    _exit(notBegun);
+  }
   for (const int signal : { SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT })
   {
     ::signal(signal, SIG_DFL); // no backtraces of the calling program
@@ -207,7 +259,7 @@ bool receive(const std::vector<char>& bytes, std::size_t& at, std::vector<Value>
     tetgenbehavior behavior;
     if (!behavior.parse_commandline(text.data()))
     {
-      _exit(10);
+      _exit(notBegun);
     }
     tetrahedralize(&behavior, &in, &out);
     const auto points = static_cast<std::size_t>(out.numberofpoints);
@@ -277,11 +329,13 @@ int readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
 /**
  * Runs TetGen; 0, the number it throws, Crashed, Stopped or TooLong. It runs in a process of its
  * own: TetGen 1.5 frees its memory twice when it throws, which would take this program with it, and
- * some inputs make it loop or crash.
+ * some inputs make it loop or crash. Where TetGen 1.6 throws, the mesh has the markers of the
+ * facets that intersect others.
  */
 int run(const std::string& switches, const SolidBoundary& boundary, const SolidOptions& options,
   bool numbers, SolidMesh& mesh)
 {
+  const ScratchFolder folder;
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)
   {
@@ -292,7 +346,7 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
   if (child == 0)
   {
     ::close(ends[0]);
-    work(switches, boundary, options, numbers, available, ends[1]);
+    work(switches, boundary, options, numbers, available, folder.path(), ends[1]);
   }
   ::close(ends[1]);
   std::vector<char> bytes;
@@ -330,6 +384,7 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
   {
+    mesh.faceMarkers = folder.skippedMarkers();
     return WIFEXITED(status) ? WEXITSTATUS(status) : Crashed;
   }
   std::size_t at = 0;
@@ -346,7 +401,8 @@ std::string intersectingFacets(const SolidBoundary& boundary, SolidOptions optio
   options.pointSizes.clear();
   options.timeLimit = Seconds;
   SolidMesh mesh;
-  if (run("pdQz", boundary, options, true, mesh) != 0)
+  const int code = run("pdQz", boundary, options, true, mesh);
+  if (code != 0 && mesh.faceMarkers.empty())
   {
     return {};
   }
