@@ -36,7 +36,7 @@ def test_numbers() -> None:
             assert all(1000 * kilobytes[m][n] >= 32 * messages[m][n] > 0 for m in METHODS), (domain, n)
         assert halo["graph"]["8"] < halo["slabs"]["8"], (domain, halo)
         near = studies.column("decomposition", f"{domain}_slabs", "parts", "neighbours")
-        assert near["2"] == 1 and 2 <= near["8"] <= 4, near
+        assert near["2"] == 1 and 2 <= near["8"] <= 5, near  # thin slabs touch those behind the next
 
 
 def test_divisions() -> None:
