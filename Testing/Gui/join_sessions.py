@@ -4,7 +4,8 @@
 ParaView starts once for all of them, as its start takes longer than most sessions; fresh_session.py removes between two
 what the first has made, and names the one that begins. "All sessions ended" is printed after the last event.
 --no-pictures leaves out the comparisons of pictures.
-An event in a comment that begins with "Since ParaView 5.13:" is played by that version and later ones.
+An event in a comment that begins with "Since ParaView 5.13:" is played by that version and later ones. Widgets that a
+version has moved, and texts that it shows otherwise, are replaced (CHANGED).
 """
 
 import re
@@ -19,16 +20,24 @@ BEGIN = (
 )
 END = "print('All sessions ended', file=sys.__stdout__, flush=True)"
 
-
+#: Since a version of ParaView: a pattern in the sessions, and what takes its place.
+CHANGED = (
+    ((6, 1), r"InteractiveBox/(?=(translate|rotate|scale)[XYZ])",
+     "InteractiveBox/tabWidget/qt_tabwidget_stackedwidget/fieldsPage/"),
+    ((6, 1), r'(/cellCount" property="text" arguments="[0-9]+),([0-9]+)"', r'\1\2"'),
+)  # fmt: skip
 SINCE = re.compile(r"<!-- Since ParaView ([0-9]+)[.]([0-9]+): (<pqevent [^<]*/>) -->")
 
 
 def text_for(session, version):
-    """The session, with the events that only this version of ParaView, a pair, and later ones need."""
-    return SINCE.sub(
+    """The session as this version of ParaView, a pair, plays it."""
+    text = SINCE.sub(
         lambda found: found[3] if version >= (int(found[1]), int(found[2])) else "",
         session.read_text(encoding="utf-8"),
     )
+    for since, pattern, replacement in CHANGED:
+        text = re.sub(pattern, replacement, text) if version >= since else text
+    return text
 
 
 def joined(sessions, pictures, version):
