@@ -172,6 +172,11 @@ double RankGroup::orderlessSum(const std::vector<double>& values)
 //------------------------------------------------------------------------------
 void RankGroup::together(const std::function<void()>& work)
 {
+  if (this->size() == 1)
+  {
+    work();
+    return;
+  }
   std::string message;
   std::exception_ptr interruption;
   try
@@ -205,9 +210,8 @@ void RankGroup::together(const std::function<void()>& work)
   {
     const bool everywhere =
       std::all_of(all.begin(), all.end(), [&](const Bytes& text) { return text == *first; });
-    const std::string where = everywhere || !explained || this->size() == 1
-      ? ""
-      : "In process " + std::to_string(first - all.begin()) + ": ";
+    const std::string where =
+      everywhere || !explained ? "" : "In process " + std::to_string(first - all.begin()) + ": ";
     throw Error(where + std::string(first->begin(), first->end()));
   }
 }

@@ -401,19 +401,6 @@ namespace
 /// The slices of a colour after which ranks learn whether one of them has stopped.
 constexpr Index SlicesOfColour = 32;
 
-/// Errors of one rank are those of all; one rank alone keeps their types.
-void together(RankGroup& group, const std::function<void()>& work)
-{
-  if (group.size() == 1)
-  {
-    work();
-  }
-  else
-  {
-    group.together(work);
-  }
-}
-
 /// Everything that can be wrong, before the expensive part. Sets what of the system follows.
 /// @param share of the matrix that this rank needs memory for, at most 1
 void checkAssembly(const HorizonMesh& mesh, const PeridynamicOptions& options,
@@ -477,8 +464,11 @@ void addTriangles(RankGroup& group, const PeridynamicWork& work, const PairInteg
   const double scale = kernelScale(options);
   // Within a colour no two threads write to the same row; the colours have a fixed order, the same
   // on all ranks, so that rows are summed in it.
-  const auto colours =
-    colourTriangles(work.triangles, space, space.trianglesWithUnknowns(work.triangles));
+  std::vector<std::vector<std::int32_t>> colours;
+  group.together(
+    [&] {
+      colours = colourTriangles(work.triangles, space, space.trianglesWithUnknowns(work.triangles));
+    });
   const Index slices = group.size() > 1 ? SlicesOfColour : 1;
   Index done = 0;
   const Index all = std::count(work.needed.begin(), work.needed.end(), 1);
@@ -491,7 +481,7 @@ void addTriangles(RankGroup& group, const PeridynamicWork& work, const PairInteg
     for (Index slice = 0; slice < slices; ++slice)
     {
       const Index begin = size * slice / slices, end = size * (slice + 1) / slices;
-      together(group,
+      group.together(
         [&]
         {
           parallelFor(
@@ -533,7 +523,7 @@ PeridynamicSystem assemblePeridynamics(RankGroup& group, const HorizonMesh& mesh
   std::unique_ptr<AssemblyParts> parts;
   const double share = group.rank() == 0 ? 1.0 : 1.0 / group.size();
   // What may fail, also at the time limit, fails on all ranks.
-  together(group,
+  group.together(
     [&]
     {
       checkAssembly(mesh, options, given, share, system);
@@ -543,23 +533,29 @@ PeridynamicSystem assemblePeridynamics(RankGroup& group, const HorizonMesh& mesh
   const PlanarTriangles& triangles = parts->triangles;
   const FunctionSpace& space = parts->space;
   const std::vector<int> ranks = ranksOfRows(group, space);
-  std::vector<char> own(space.unknowns), needed(triangles.size(), 0);
-  std::transform(ranks.begin(), ranks.end(), own.begin(),
-    [&group](int rank) { return static_cast<char>(rank == group.rank()); });
-  for (Index t = 0; t < triangles.size(); ++t)
-  {
-    for (int a = 0; a < space.perTriangle(); ++a)
+  std::vector<char> own, needed;
+  group.together(
+    [&]
     {
-      const Index row = space.unknownOf[space.function(triangles, t, a)];
-      needed[t] |= static_cast<char>(row >= 0 && own[row]);
-    }
-  }
+      own.resize(space.unknowns);
+      needed.assign(triangles.size(), 0);
+      std::transform(ranks.begin(), ranks.end(), own.begin(),
+        [&group](int rank) { return static_cast<char>(rank == group.rank()); });
+      for (Index t = 0; t < triangles.size(); ++t)
+      {
+        for (int a = 0; a < space.perTriangle(); ++a)
+        {
+          const Index row = space.unknownOf[space.function(triangles, t, a)];
+          needed[t] |= static_cast<char>(row >= 0 && own[row]);
+        }
+      }
+    });
   const PeridynamicWork work = { triangles, parts->grid, space, options, parts->cut, needed };
   AssemblyControl control(options, 0.0, 0.5);
   const bool exact = options.discretization == Discretization::Exact;
   const bool stateBased = options.model == PeridynamicModel::StateBased;
   std::shared_ptr<PairIntegrals> integrals;
-  together(group,
+  group.together(
     [&]
     {
       if (exact)
@@ -579,7 +575,7 @@ PeridynamicSystem assemblePeridynamics(RankGroup& group, const HorizonMesh& mesh
   {
     gatherRows(group, ranks, system);
   }
-  together(group,
+  group.together(
     [&]
     {
       if (!first)

@@ -138,7 +138,7 @@ public:
   std::vector<double> run()
   {
     std::vector<double> energies(static_cast<std::size_t>(this->Count * this->Count), -1.0);
-    this->together(
+    this->Group.together(
       [&]
       {
         runChunks(
@@ -180,20 +180,6 @@ public:
 private:
   bool outlines() const { return this->Options.method == RetrievalMethod::Outline; }
 
-  /// Errors of one rank are those of all; one rank alone keeps their types.
-  template <class Work>
-  void together(const Work& work)
-  {
-    if (this->Group.size() == 1)
-    {
-      work();
-    }
-    else
-    {
-      this->Group.together(work);
-    }
-  }
-
   /// What stops one rank stops all.
   void shareStop()
   {
@@ -234,7 +220,7 @@ private:
     while (going)
     {
       const auto before = static_cast<Index>(left.size());
-      this->together([&] { this->matchRound(left, all, energies); });
+      this->Group.together([&] { this->matchRound(left, all, energies); });
       const auto rest = std::stable_partition(
         left.begin(), left.end(), [&](Index pair) { return energies[pair] < 0.0; });
       for (auto pair = rest; pair != left.end(); ++pair)
@@ -627,14 +613,7 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
 Retrieval retrieveShapes(RankGroup& group, const std::vector<Silhouette>& shapes,
   const std::vector<Index>& labels, const RetrievalOptions& options)
 {
-  if (group.size() == 1)
-  {
-    checkInput(shapes, labels, options);
-  }
-  else
-  {
-    group.together([&] { checkInput(shapes, labels, options); });
-  }
+  group.together([&] { checkInput(shapes, labels, options); });
   const Index count = static_cast<Index>(shapes.size());
   Retrieval result;
   result.count = count;
