@@ -14,7 +14,7 @@
 #include "vtkPointData.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
-#include "vtkSignedCharArray.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <string>
 
@@ -31,13 +31,13 @@ std::string markName(int port)
 //------------------------------------------------------------------------------
 void addMarks(vtkDataSetAttributes* marked, vtkIdType count, int port, vtkDataSetAttributes* result)
 {
-  vtkNew<vtkSignedCharArray> marks;
+  vtkNew<vtkUnsignedCharArray> marks; // VTK 9.1 sends signed ones as plain ones, another type
   marks->SetName(markName(port).c_str());
   marks->SetNumberOfTuples(count);
   vtkDataArray* given = marked ? marked->GetArray(SelectedArray) : nullptr;
   for (vtkIdType i = 0; i < count; ++i)
   {
-    marks->SetValue(i, static_cast<signed char>(given && given->GetComponent(i, 0) > 0));
+    marks->SetValue(i, static_cast<unsigned char>(given && given->GetComponent(i, 0) > 0));
   }
   result->AddArray(marks);
 }
