@@ -148,9 +148,9 @@ def _check_content(name: str, form: SolverFormat) -> None:
 
 
 def _reader(name: str, form: SolverFormat) -> Any:
-    _check_content(name, form)
     if not form.built():
         raise Error(f"{name}: this VTK has no reader for {form.title}; save the mesh as .vtu")
+    _check_content(name, form)
     reader = getattr(import_module(f"vtkmodules.{form.module}"), form.reader)()
     getattr(reader, form.setter)(name)
     if form is _EXODUS:
