@@ -7,6 +7,7 @@
 //   memory-tautline, memory-verdict   one filter, once; peak memory in bytes per element
 
 #include "../../Filters/Core/MeshAdapter.h"
+#include "../Cxx/Quality/VerdictCompatibility.h"
 #include "../Cxx/VtkMeshes.h"
 #include "Clocks.h"
 #include "KuhnMesh.h"
@@ -231,7 +232,7 @@ vtkSmartPointer<vtkMeshQuality> verdictFilter(vtkDataSet* grid)
 {
   auto filter = vtkSmartPointer<vtkMeshQuality>::New();
   filter->SetInputData(grid);
-  filter->SetTetQualityMeasureToMeanRatio();
+  measureMeanRatio(filter);
   return filter;
 }
 

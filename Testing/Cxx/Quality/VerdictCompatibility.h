@@ -72,6 +72,16 @@ struct VerdictFunctions : vtkMeshQuality
   static constexpr std::nullptr_t PyramidEquiangleSkew = nullptr;
 #endif
 };
+
+/// Makes a filter measure the mean ratio of tetrahedra, which VTK 9.1 has as Shape only.
+inline void measureMeanRatio(vtkMeshQuality* filter)
+{
+#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 2, 0)
+  filter->SetTetQualityMeasureToShape();
+#else
+  filter->SetTetQualityMeasureToMeanRatio();
+#endif
+}
 } // namespace tautline
 
 #endif
