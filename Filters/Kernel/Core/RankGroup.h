@@ -78,7 +78,7 @@ public:
   /**
    * @brief Does work that does not communicate. What it throws on any rank is thrown on all, as
    * Error, with the message of the lowest rank that explains it, so that none waits for another. An
-   * interruption is one on its own rank, and an error on the others. One rank alone throws as usual.
+   * interruption is one on its own rank, and an error on the others. One rank throws as usual.
    */
   void together(const std::function<void()>& work);
 };
