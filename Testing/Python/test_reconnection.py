@@ -96,7 +96,8 @@ def test_objective():
         at_bound = remaining["quality_bound"] <= 1.002 * remaining["quality"]
         assert (facets == at_bound).all(), objective
         extremes[objective] = sine.min(), shape.min()
-    assert extremes["angles"][0] > extremes["angles and shape"][0] and extremes["shape"][1] > extremes["angles"][1]
+    # The smallest angles may be at the same bound, of a facet that stays.
+    assert extremes["angles"][0] >= extremes["angles and shape"][0] and extremes["shape"][1] > extremes["angles"][1]
 
 
 def test_cell_transfer():
