@@ -4,6 +4,7 @@
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -59,6 +60,10 @@ def test_tetgen():
     for options in ("-pq", "-pqz", "-pqnnfe", "-pqAa0.02", "-pqo2", "-pqo2nnf", "-pqNEF"):
         for old in OUTPUT.glob("cube.1.*"):
             old.unlink()
+        if "o2" in options and subprocess.run(["tetgen", options, "cube.smesh"], cwd=OUTPUT, capture_output=True,
+                                              check=False).returncode == -signal.SIGSEGV:  # fmt: skip
+            print(f"left out: tetgen {options} crashes, as version 1.6 does")
+            continue
         told = run("tetgen", options, "cube.smesh")
         if "N" in options:
             continue

@@ -119,7 +119,12 @@ Data withTypes(vtkDataObject* suitable, const std::function<void(vtkUnsignedChar
   {
     return nullptr;
   }
-  change(cellTypesOf(grid));
+  const vtkSmartPointer<vtkUnsignedCharArray> types = cellTypesOf(grid);
+  if (types != storedCellTypes(grid))
+  {
+    grid->SetCells(types, grid->GetCells()); // they were computed
+  }
+  change(types);
   return grid;
 }
 
