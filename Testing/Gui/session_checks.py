@@ -410,6 +410,7 @@ def watch_frames():
     hole, _ = hole_of(warp)
 
     def frame(*_):
+        warp.UpdatePipeline(scene.AnimationTime)  # ParaView 6.1 does so after this event
         mesh = servermanager.Fetch(warp)
         points = vtk_to_numpy(mesh.GetPoints().GetData())[:, :2].astype(float) @ [1, 1j]
         SEEN.append((scene.AnimationTime, points[hole]))
