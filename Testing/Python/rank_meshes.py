@@ -80,7 +80,9 @@ def piece(points: np.ndarray, cells: np.ndarray, own: np.ndarray, ghosts: bool =
     offsets = np.arange(0, local.size + 1, corners, dtype=np.int64)
     local = local.reshape(-1).astype(np.int64)
     array.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(local, deep=True))
-    grid.SetCells(VTK_TETRA if corners == 4 else VTK_TRIANGLE, array)
+    # A type per cell: VTK 9.6 takes cells that are inserted later for the one type of a mesh otherwise.
+    types = np.full(array.GetNumberOfCells(), VTK_TETRA if corners == 4 else VTK_TRIANGLE, np.uint8)
+    grid.SetCells(numpy_to_vtk(types, deep=True), array)
     add_array(grid.GetPointData(), "place", used.astype(np.int64))
     add_array(grid.GetCellData(), "cell", np.flatnonzero(taken).astype(np.int64))
     if ghosts:
