@@ -12,8 +12,8 @@ CUTS = ("slabs", "tree", "random")
 ROUNDING = 1e-13
 CLOSE, DIGITS = 1e-9, 1e-3
 # Of a result in parts against that of one process; parts of 250 cells with fixed points have few ways. On Debian 12 the
-# loss is below 0.1 degrees; with other compilers rounding takes other ways.
-ANGLE_LOSS, RATIO_LOSS = {"plain": 2.0, "kept": 1.0}, 1.1
+# loss is below 0.1 degrees; with other compilers rounding takes other ways (GCC 16: 1.2 degrees).
+ANGLE_LOSS, RATIO_LOSS = 2.0, 1.1
 FACES = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]
 GATHERED = {
     "small": "fewer than", "on surface": "a boundary on the surface", "metric": "a metric as objective",
@@ -146,7 +146,7 @@ def check_parts(ranks: int, found: dict, one: dict, given: dict, serial: dict) -
         rounds, alone = len(numbers["history"]["N elements"]) - 1, one[case]
         print(f"{ranks} ranks, {name}, {rounds} rounds: {numbers['angle'][1]:.3f}, {numbers['worst'][1]:.4f}"
               f"; one process {alone['angle'][1]:.3f}, {alone['worst'][1]:.4f}")  # fmt: skip
-        assert numbers["angle"][1] > alone["angle"][1] - ANGLE_LOSS[name], (numbers["angle"], alone["angle"])
+        assert numbers["angle"][1] > alone["angle"][1] - ANGLE_LOSS, (numbers["angle"], alone["angle"])
         assert numbers["worst"][1] < RATIO_LOSS * alone["worst"][1], (numbers["worst"], alone["worst"])
     for case in ("single", "selected", "sliding", "late", "reversed", "once"):
         whole = Whole(file, case, ranks)
