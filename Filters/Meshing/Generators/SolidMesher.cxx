@@ -494,12 +494,16 @@ void scaleInput(SolidBoundary& boundary, SolidOptions& options, double by)
     }
   }
   scale(options.pointSizes, by);
-  const double ofVolumes = by * by * by;
-  options.volume *= ofVolumes;
+  // One factor after the other: the third power of the scale alone may be infinite.
+  const auto volumeOf = [by](double volume) { return volume * by * by * by; };
+  options.volume = volumeOf(options.volume);
   constexpr std::size_t perRegion = 5, place = 3; // x y z, reference, volume
   for (std::size_t i = 0; i < options.regions.size(); ++i)
   {
-    options.regions[i] *= i % perRegion < place ? by : i % perRegion > place ? ofVolumes : 1.0;
+    double& number = options.regions[i];
+    number = i % perRegion < place ? by * number
+      : i % perRegion > place      ? volumeOf(number)
+                                   : number;
   }
 }
 
@@ -539,29 +543,42 @@ std::string switchesFor(const SolidOptions& options)
   return switches;
 }
 
-/// run() until no tetrahedron is larger than wanted: TetGen 1.6 exceeds its bound, by up to a half.
+/// run() until no tetrahedron is larger than wanted, which TetGen 1.6 exceeds by up to a half. Not
+/// with a surface that is kept: its facets may hold larger ones. Returns the best mesh so far where
+/// a later run fails or does not help.
 int runWithin(const SolidBoundary& boundary, SolidOptions options, SolidMesh& mesh)
 {
   using Clock = std::chrono::steady_clock;
   constexpr int mostRuns = 6;
-  constexpr double rounding = 1e-9, reserve = 0.95;
+  constexpr double rounding = 1e-9, reserve = 0.95, leastShare = 0.4;
   const double wanted = options.volume, limit = options.timeLimit;
   const auto start = Clock::now();
+  double best = std::numeric_limits<double>::infinity();
   for (int i = 1;; ++i)
   {
-    const int code = run(switchesFor(options), boundary, options, false, mesh);
-    const double largest = code == 0 && wanted > 0.0 ? largestVolume(mesh) : 0.0;
-    if (largest <= wanted * (1.0 + rounding) || i == mostRuns)
+    SolidMesh next;
+    const int code = run(switchesFor(options), boundary, options, false, next);
+    if (code != 0)
     {
-      return code;
+      return i == 1 || code == Stopped ? code : 0;
     }
-    options.volume *= reserve * wanted / largest;
+    const double largest = largestVolume(next);
+    const bool better = largest < best;
+    if (better)
+    {
+      mesh = std::move(next);
+      best = largest;
+    }
+    const double bound = std::max(options.volume * reserve * wanted / largest, leastShare * wanted);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    options.timeLimit = limit > 0.0 ? limit - seconds : 0.0;
-    if (limit > 0.0 && options.timeLimit <= 0.0)
+    if (!(wanted > 0.0) || options.preserveSurface || !better ||
+      best <= wanted * (1.0 + rounding) || i == mostRuns || bound >= options.volume ||
+      (limit > 0.0 && seconds >= limit))
     {
-      return TooLong;
+      return 0;
     }
+    options.volume = bound;
+    options.timeLimit = limit > 0.0 ? limit - seconds : 0.0;
   }
 }
 }
