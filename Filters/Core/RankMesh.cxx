@@ -227,7 +227,16 @@ void RankMesh::divide(const MeshPiece& given)
     }
     // The k-d tree first, so that the graph is spread evenly while PT-Scotch divides it.
     const DistributedMesh first(this->Group, piece);
-    const std::vector<int> ofLocal = partitionPoints(first, processes.communicator());
+    std::vector<int> ofLocal = first.owners();
+    try
+    {
+      ofLocal = partitionPoints(first, processes.communicator());
+    }
+    catch (const NotDivided& error) // on all processes: the owners of the k-d tree stay
+    {
+      this->Divided = Redistribution::KdTree;
+      this->WhyTree = std::string(" ") + error.what();
+    }
     for (const Index local : first.localOfPiece())
     {
       owners.push_back(local < 0 ? 0 : ofLocal[local]);
@@ -281,7 +290,7 @@ std::string RankMesh::notice() const
   const std::string division = this->Divided == Redistribution::None
     ? ""
     : "The mesh was divided anew among " + std::to_string(this->Group.size()) + " processes" +
-      (this->Divided == Redistribution::PtScotch ? " by PT-Scotch." : ".");
+      (this->Divided == Redistribution::PtScotch ? " by PT-Scotch." : ".") + this->WhyTree;
   return division.empty() ? ofPiece : ofPiece.empty() ? division : ofPiece + "\n" + division;
 }
 

@@ -157,6 +157,7 @@ private:
   int Dimension = 0;
   bool MergePoints;
   Redistribution Divided;
+  std::string WhyTree; ///< the error of PT-Scotch, behind a blank
   bool Mirrored = false;
   Index InvertedElements = 0;
   std::unique_ptr<MeshAdapter> Adapter;

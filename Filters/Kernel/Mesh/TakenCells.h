@@ -65,7 +65,7 @@ public:
   }
 
 private:
-  /// A cell and its points in increasing order, of which all but the lowest count here.
+  /// A cell and its points in increasing order, without the lowest, which is that of all.
   struct Item
   {
     static constexpr int most = 7;
@@ -93,10 +93,12 @@ private:
       item.cell = *cell;
       std::fill_n(item.points, Item::most, -1);
       int count = 0;
+      bool skipped = false;
       for (const std::int32_t* node = this->begin(*cell); node != this->end(*cell); ++node)
       {
-        if (*node == cell->least)
+        if (*node == cell->least && !skipped)
         {
+          skipped = true;
           continue;
         }
         if (count == Item::most)

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 namespace tautline
@@ -89,13 +90,13 @@ std::vector<int> partsOf(
   useOneThread();
   PetscPartitioning partitioning;
   petsc(MatPartitioningCreate(comm, partitioning.out()));
-  petsc(MatPartitioningSetAdjacency(partitioning, graph));
-  petsc(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
-  petsc(MatPartitioningSetNParts(partitioning, parts));
-  if (weights)
+  if (weights) // taken over before anything can fail
   {
     petsc(MatPartitioningSetVertexWeights(partitioning, weights));
   }
+  petsc(MatPartitioningSetAdjacency(partitioning, graph));
+  petsc(MatPartitioningSetType(partitioning, MATPARTITIONINGPTSCOTCH));
+  petsc(MatPartitioningSetNParts(partitioning, parts));
   PetscIndices found;
   petsc(MatPartitioningApply(partitioning, found.out()));
   const PetscInt* values = nullptr;
@@ -107,8 +108,8 @@ std::vector<int> partsOf(
 
 [[noreturn]] void throwNotDivided(const PetscError& error)
 {
-  throw Error(std::string("PT-Scotch, through PETSc, has not divided the mesh (") + error.what() +
-    "): take a k-d tree, or a PETSc with PT-Scotch.");
+  throw NotDivided(std::string("PT-Scotch, through PETSc, has not divided the mesh (") +
+    error.what() + "): take a k-d tree, or a PETSc with PT-Scotch.");
 }
 
 /// The points that this rank owns, with numbers that follow those of the rank before, and their
@@ -154,7 +155,8 @@ PointGraph pointGraph(const DistributedMesh& mesh)
         for (Index i = cells.offsets[p]; i < cells.offsets[p + 1]; ++i)
         {
           const Index cell = cells.cells[i];
-          for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
+          const int corners = topology(cornerType(view.cellTypes[cell])).nodes;
+          for (Index n = view.offsets[cell]; n < view.offsets[cell] + corners; ++n)
           {
             if (view.connectivity[n] != p)
             {
@@ -168,13 +170,17 @@ PointGraph pointGraph(const DistributedMesh& mesh)
         graph.offsets.push_back(static_cast<Index>(graph.neighbours.size()));
         graph.weights.push_back(cells.offsets[p + 1] - cells.offsets[p]);
       }
-      constexpr Index most = std::numeric_limits<PetscInt>::max();
-      if (mesh.globalPoints() > most || graph.offsets.back() > most)
-      {
-        throw Error("The mesh is too large for PETSc's 32-bit numbers: take a k-d tree, or a PETSc "
-                    "with 64-bit indices.");
-      }
     });
+  // PT-Scotch adds up neighbours and weights of all ranks.
+  constexpr Index most = std::numeric_limits<PetscInt>::max();
+  const Index weight = std::accumulate(graph.weights.begin(), graph.weights.end(), Index(0));
+  if (std::max({ mesh.globalPoints(), mesh.group().sum(graph.offsets.back()),
+        mesh.group().sum(weight) }) > most)
+  {
+    throw NotDivided(
+      "The mesh is too large for PETSc's 32-bit numbers: take a k-d tree, or a PETSc "
+      "with 64-bit indices.");
+  }
   return graph;
 }
 }
@@ -215,22 +221,32 @@ std::vector<int> partitionPoints(const DistributedMesh& mesh, Communicator commu
   const PointGraph points = pointGraph(mesh);
   const auto own = static_cast<Index>(points.weights.size());
   std::vector<int> parts;
-  PetscScope scope;
+  // What fails on one rank before PETSc communicates fails on all.
+  std::unique_ptr<PetscScope> scope;
+  PetscInt *offsets = nullptr, *neighbours = nullptr, *weights = nullptr;
+  mesh.group().together(
+    [&]
+    {
+      scope = std::make_unique<PetscScope>();
+      useOneThread();
+      const auto petscCopy = [](const std::vector<Index>& numbers)
+      {
+        PetscInt* array = petscArray(numbers.size());
+        std::transform(numbers.begin(), numbers.end(), array,
+          [](Index number) { return static_cast<PetscInt>(number); });
+        return array;
+      };
+      offsets = petscCopy(points.offsets);
+      neighbours = petscCopy(points.neighbours);
+      weights = petscCopy(points.weights);
+    });
   try
   {
     const MPI_Comm comm = mpiOf(communicator);
-    const auto petscCopy = [](const std::vector<Index>& numbers)
-    {
-      PetscInt* array = petscArray(numbers.size());
-      std::transform(numbers.begin(), numbers.end(), array,
-        [](Index number) { return static_cast<PetscInt>(number); });
-      return array;
-    };
     PetscMatrix graph;
-    petsc(
-      MatCreateMPIAdj(comm, static_cast<PetscInt>(own), static_cast<PetscInt>(mesh.globalPoints()),
-        petscCopy(points.offsets), petscCopy(points.neighbours), nullptr, graph.out()));
-    parts = partsOf(comm, graph, own, petscCopy(points.weights), ranks);
+    petsc(MatCreateMPIAdj(comm, static_cast<PetscInt>(own),
+      static_cast<PetscInt>(mesh.globalPoints()), offsets, neighbours, nullptr, graph.out()));
+    parts = partsOf(comm, graph, own, weights, ranks);
   }
   catch (const PetscError& error)
   {

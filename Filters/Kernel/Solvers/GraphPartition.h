@@ -14,6 +14,13 @@
 
 namespace tautline
 {
+/// PETSc has no PT-Scotch, or PT-Scotch cannot divide a graph.
+class TAUTLINE_SOLVERS_EXPORT NotDivided : public Error
+{
+public:
+  using Error::Error;
+};
+
 /**
  * @brief Divides the graph of the cells, of which two are neighbours if they share an edge (2D) or
  * face (3D), into parts of about as many cells, so that few edges of the graph are cut. This
@@ -41,8 +48,8 @@ TAUTLINE_SOLVERS_EXPORT std::vector<int> partitionGraph(const Mesh& mesh, int pa
  * @return per local point the rank that shall own it (MeshPiece::owners); that of now, if there are
  * fewer points than ranks
  *
- * The division may differ from call to call, as that of partitionGraph(). Throws Error on all ranks
- * where PETSc has no PT-Scotch, or too few bits for the numbers. Collective.
+ * The division may differ from call to call, as that of partitionGraph(). Throws NotDivided on all
+ * ranks where PETSc has no PT-Scotch, or too few bits for the numbers. Collective.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<int> partitionPoints(
   const DistributedMesh& mesh, Communicator communicator);

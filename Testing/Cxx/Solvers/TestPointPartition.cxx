@@ -114,11 +114,12 @@ void testDivision(RankGroup& group, Communicator communicator, CellType type, Cu
   TAUTLINE_CHECK(haloOf(graph) <= 0.5 * haloOf(scattered));
 }
 
-/// Fewer points than ranks, a rank that does not exist, and ranks that are not MPI's.
+/// Fewer points than ranks (of four), and a rank that does not exist.
 void testLimits(RankGroup& group, Communicator communicator)
 {
   MeshData triangle = movedBlock(CellType::Triangle, 1, 0.0);
-  const RankPart part = partOf(triangle, group.rank(), [](Index) { return 0; });
+  const RankPart part =
+    partOf(triangle, group.rank(), [](Index cell) { return cell == 0 ? 0 : -1; });
   MeshPiece piece = { part.data.view() };
   const DistributedMesh mesh(group, piece);
   const std::vector<int> owners = partitionPoints(mesh, communicator);
