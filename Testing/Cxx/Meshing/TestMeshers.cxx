@@ -333,6 +333,27 @@ void testTetrahedraScales()
   TAUTLINE_CHECK(mesher->GetOutput()->GetNumberOfCells() > 200);
 }
 
+/// Facets that are kept hold larger tetrahedra than wanted: no smaller bound is tried then, which
+/// would only make many more inside.
+void testTetrahedraOfKeptSurface()
+{
+  constexpr int steps = 24; // around and between the poles
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetThetaResolution(steps);
+  sphere->SetPhiResolution(steps);
+  vtkNew<vtkTetGenMesher> mesher;
+  mesher->SetInputConnection(sphere->GetOutputPort());
+  mesher->PreserveSurfaceOn();
+  const double volume = 2e-5;
+  mesher->SetVolume(volume);
+  mesher->Update();
+  const Facts facts = measure(mesher->GetOutput());
+  TAUTLINE_CHECK(facts.largestCell > volume);
+  const auto cells = static_cast<double>(mesher->GetOutput()->GetNumberOfCells());
+  const double least = facts.size / volume; // 1.5 times as many; with smaller bounds 3.6 times
+  TAUTLINE_CHECK(cells > least && cells < 2 * least);
+}
+
 /// Two nested cubes: the inner one a region of its own, or a hole.
 void testRegionsAndHoles()
 {
@@ -482,6 +503,7 @@ int TestMeshers(int, char* argv[])
   testTriangleFailures();
   testTetrahedra();
   testTetrahedraScales();
+  testTetrahedraOfKeptSurface();
   testRegionsAndHoles();
   testTetrahedraFailures();
   return tautline::exitCode();
