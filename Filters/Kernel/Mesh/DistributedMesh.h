@@ -27,8 +27,8 @@ struct MeshPiece
   /// rank then owns about as many, whoever has them. Else a rank owns points that it has. The same
   /// on all ranks.
   bool divideAnew = false;
-  /// The rank that shall own each point, the same on all ranks for the same point, instead of a
-  /// division; or null, on all ranks with points.
+  /// The rank that shall own each point that a cell has which is no ghost, the same on all ranks
+  /// for the same point, instead of a division; or null, on all ranks with points.
   const int* owners = nullptr;
 };
 

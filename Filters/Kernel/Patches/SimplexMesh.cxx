@@ -73,7 +73,9 @@ class RecentPairs
 public:
   bool isNew(std::uint64_t pair)
   {
-    std::uint64_t& place = this->Places[(pair ^ (pair >> 28)) % this->Places.size()];
+    // The later block, shifted by some bits, spreads pairs with the same earlier one.
+    constexpr int later = 32, spread = 4;
+    std::uint64_t& place = this->Places[(pair ^ (pair >> (later - spread))) % most];
     const bool other = place != pair;
     place = pair;
     return other;
@@ -81,7 +83,8 @@ public:
 
 private:
   /// A pair's later block is never the first one: 0 is no pair.
-  std::array<std::uint64_t, 256> Places = {};
+  static constexpr std::size_t most = 256; ///< small beside a chunk, and a power of two
+  std::array<std::uint64_t, most> Places = {};
 };
 
 /// Even permutations of a simplex that bring each vertex to the front.
