@@ -95,6 +95,13 @@ std::string summarize(
             "points with a smaller objective were found.";
   }
   text << surfaceErrorSentence(result.surfaceError);
+  if (result.leftSurface > 0)
+  {
+    text << "\n"
+         << result.leftSurface << (result.leftSurface == 1 ? " point" : " points")
+         << " of the boundary near the worst elements left the surface, within Surface Tolerance. "
+            "Leave Surface off keeps them on it.";
+  }
   if (result.heldOnSurface > 0)
   {
     text << "\nSurface Tolerance holds " << result.heldOnSurface

@@ -218,6 +218,47 @@ void OptimizerSetup::setSurfaceTolerance(const OptimizerSettings& settings)
 }
 
 //------------------------------------------------------------------------------
+/// The points of the outer surface that are not fixed for other reasons than features, nor features
+/// by the user's choice.
+void OptimizerSetup::findLeaving(const OptimizerSettings& settings, const InputBlock& block)
+{
+  if (!settings.leaveSurface || !(this->Options.surfaceTolerance > 0) ||
+    !(this->Options.improveWorst > 0) || !this->slidesOnModel(settings))
+  {
+    return;
+  }
+  const std::vector<signed char> kinds =
+    kindsOf(chosenArray(settings.arrays, KindArray, block.input, "of feature kinds"),
+      this->TheMesh.representative());
+  const bool planar = this->TheMesh.mesh().dimension() == Dimension::Planar;
+  this->Leaving.assign(this->Found.kind.size(), 0);
+  std::vector<unsigned char> onInterface = this->Leaving;
+  const auto mark = [&](Index p, bool interface)
+  { (interface ? onInterface : this->Leaving)[p] = 1; };
+  for (const Features::Facet& facet : this->Found.facets)
+  {
+    for (int k = 0; k < facet.size; ++k)
+    {
+      mark(facet.nodes[k], facet.interface);
+    }
+  }
+  for (const Features::Edge& edge : this->Found.edges)
+  {
+    if (planar)
+    {
+      mark(edge.first, edge.interface);
+      mark(edge.second, edge.interface);
+    }
+  }
+  for (std::size_t p = 0; p < this->Leaving.size(); ++p)
+  {
+    const bool chosen = !kinds.empty() && kinds[p] > PatchPoint;
+    this->Leaving[p] = this->Leaving[p] && !onInterface[p] && !this->Held[p] && !chosen;
+  }
+  this->Options.leaving = this->Leaving.data();
+}
+
+//------------------------------------------------------------------------------
 /// Which points slide on which part of the model, and which stay.
 void OptimizerSetup::holdPoints(const OptimizerSettings& settings)
 {

@@ -57,6 +57,7 @@ struct OptimizerSettings
   bool keepFeatures = true;      ///< of surfaces, and where points slide on the boundary
   bool smoothSurface = true;     ///< slide on a smooth surface through the points, not on facets
   double surfaceTolerance = 0.0; ///< of OnSurface, a fraction of the diagonal; 0: any distance
+  bool leaveSurface = true;      ///< see OptimizeOptions::leaving
   vtkDataObject* geometry = nullptr; ///< what points slide on instead of the input, or null
   bool showFeatures = false;         ///< add the arrays of the features to the output
   double maximumDisplacement = 0.0;  ///< 0: any distance
@@ -110,6 +111,7 @@ private:
   void placePoints();
   void holdPoints(const OptimizerSettings& settings);
   void setSurfaceTolerance(const OptimizerSettings& settings);
+  void findLeaving(const OptimizerSettings& settings, const InputBlock& block);
   void setLimits(const OptimizerSettings& settings, const InputBlock& block);
   void setObjectives(const OptimizerSettings& settings, const InputBlock& block);
   void setUnit(Objective& objective) const;
@@ -129,6 +131,7 @@ private:
   bool HasGeometry = false;
   std::vector<std::int32_t> Parts;
   std::vector<unsigned char> Held; ///< points that are fixed for other reasons than features
+  std::vector<unsigned char> Leaving;
   OptimizeOptions Options;
 };
 

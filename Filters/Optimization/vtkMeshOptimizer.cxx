@@ -340,6 +340,7 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
   settings.keepFeatures = this->KeepFeatures;
   settings.smoothSurface = this->SmoothSurface;
   settings.surfaceTolerance = this->SurfaceTolerance;
+  settings.leaveSurface = this->LeaveSurface;
   settings.showFeatures = this->ShowFeatures;
   settings.maximumDisplacement = this->MaximumDisplacement;
   settings.mergePoints = this->MergeCoincidentPoints;
@@ -618,6 +619,7 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "KeepFeatures: " << this->KeepFeatures << "\n";
   os << indent << "SmoothSurface: " << this->SmoothSurface << "\n";
   os << indent << "SurfaceTolerance: " << this->SurfaceTolerance << "\n";
+  os << indent << "LeaveSurface: " << this->LeaveSurface << "\n";
   os << indent << "ShowFeatures: " << this->ShowFeatures << "\n";
   os << indent << "MaximumDisplacement: " << this->MaximumDisplacement << "\n";
   os << indent << "ProjectToSurface: " << this->ProjectToSurface << "\n";

@@ -423,6 +423,20 @@ public:
 
   ///@{
   /**
+   * With the preset WORST_ELEMENT (or ImproveWorst), the boundary ON_SURFACE, KeepFeatures and a
+   * SurfaceTolerance above 0: points of the boundary near the worst elements, corners and points of
+   * curves too, may leave the surface within that tolerance, where sliding does not improve these
+   * elements any more. Points on interfaces, fixed points and those given as corner or curve
+   * points (array at index 5) do not leave; with limits of the displacement, none does. The summary
+   * says how many did. The default is on.
+   */
+  vtkSetMacro(LeaveSurface, bool);
+  vtkGetMacro(LeaveSurface, bool);
+  vtkBooleanMacro(LeaveSurface, bool);
+  ///@}
+
+  ///@{
+  /**
    * Add the features to the output: the point array `FeatureKind` (0 within a patch or the mesh, 1
    * on a curve, 2 corner) and `PatchId`, of the points within a patch and of the cells of a
    * surface (-1: none). The default is off.
@@ -642,6 +656,7 @@ private:
   bool KeepFeatures = true;
   bool SmoothSurface = true;
   double SurfaceTolerance = 0.001;
+  bool LeaveSurface = true;
   bool ShowFeatures = false;
   double MaximumDisplacement = 0.0;
   bool ProjectToSurface = true;

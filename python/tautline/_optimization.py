@@ -152,6 +152,7 @@ def optimize(
     keep_features: bool = True,
     smooth_surface: bool = True,
     surface_tolerance: float = 0.001,
+    leave_surface: bool = True,
     show_features: bool = False,
     feature_kinds: Values | None = None,
     regions: Values | None = None,
@@ -200,6 +201,9 @@ def optimize(
     surface_tolerance: with the boundary "on surface", how far the new boundary may be from the old one, and the old one
         from the new one (with a geometry, only the new one from that), as a fraction of the diagonal of the bounding
         box, 0 to 1; 0: any distance.
+    leave_surface: with the preset "worst element" and the boundary "on surface", whether points of the boundary near
+        the worst elements, corners too, may leave the surface within surface_tolerance, where sliding does not improve
+        these elements any more.
     show_features: whether the result has the point array `FeatureKind` (0 within a patch, 1 on a curve, 2 corner) and
         the point and cell array `PatchId`.
     feature_kinds: kinds of the points instead of those found: 0, 1, 2, or -1 as found; one per point, or the name of a
@@ -251,6 +255,7 @@ def optimize(
     filter_.SetKeepFeatures(bool(keep_features))
     filter_.SetSmoothSurface(bool(smooth_surface))
     filter_.SetSurfaceTolerance(within("surface_tolerance", surface_tolerance, 0, 1))
+    filter_.SetLeaveSurface(bool(leave_surface))
     filter_.SetShowFeatures(bool(show_features))
     filter_.SetProjectToSurface(bool(project_to_surface))
     filter_.SetUntangleFirst(bool(untangle_first))
@@ -426,6 +431,7 @@ def add_commands(commands: Any) -> None:
     _commands.add_flag(parser, "smooth_surface", "whether points slide on a smooth surface, not on facets", "--facets")
     parser.add_argument("--surface-tolerance", type=float, metavar="FRACTION", default=0.001,
                         help="how far, in diagonals, a boundary may slide off itself (default: 0.001)")  # fmt: skip
+    _commands.add_flag(parser, "leave_surface", "whether points near the worst elements may leave the boundary by that")
     parser.add_argument("--show-features", action="store_true", help="add the arrays FeatureKind and PatchId")
     parser.add_argument("--feature-kinds", metavar="ARRAY", help="point array: 0 patch, 1 curve, 2 corner, -1 as found")
     parser.add_argument("--regions", metavar="ARRAY", help="cell array of regions, whose interfaces are kept")
@@ -449,7 +455,7 @@ def _objective(text: str) -> Objective:
 def _run_optimize(arguments: argparse.Namespace) -> None:
     names = ("preset", "scalarization", "optimizer", "maximum_iterations", "reference", "size", "tensor", "fixed",
              "boundary", "flat_angle", "worst_metric", "hold_worst", "feature_angle", "keep_features", "smooth_surface",
-             "surface_tolerance", "show_features", "feature_kinds", "regions", "geometry", "time_limit", "threads",
-             "merge_coincident_points", "reproducible_order")  # fmt: skip
+             "surface_tolerance", "leave_surface", "show_features", "feature_kinds", "regions", "geometry",
+             "time_limit", "threads", "merge_coincident_points", "reproducible_order")  # fmt: skip
     result = optimize(arguments.mesh, arguments.objectives, **_commands.given(arguments, names))
     _commands.finish(arguments, result, result.summary, table_rows(result.history))

@@ -40,6 +40,8 @@ struct LocalOptions
   std::vector<double> limits, start;
   /// Per vertex, or empty: what it slides on, or null.
   std::vector<const SurfaceProjection*> surfaces;
+  /// Per vertex, or empty: whether it is on the surface, with no more to hold it than surfaceLimit.
+  std::vector<unsigned char> loose;
   /// How far these steps may take the surface; or null.
   SurfaceLimit* surfaceLimit = nullptr;
   /// Per simplex, or empty; of the fast terms. Needs SimplexMesh::indexPatches().

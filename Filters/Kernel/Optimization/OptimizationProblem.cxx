@@ -12,6 +12,9 @@ namespace
 /// How much of the surface tolerance the other elements may use before the worst one is improved:
 /// points at the limit are in its way.
 constexpr double beforeWorst = 0.3;
+/// How much of the surface tolerance is used at the places where distances are measured: places in
+/// between may be farther, most of all at points that leave the surface.
+constexpr double marginOfSliding = 0.85, marginOfLeaving = 0.7;
 
 /// Cells of the mesh's own dimension: those that are optimized.
 bool isElement(const Mesh& mesh, CellType type)
@@ -121,8 +124,9 @@ void OptimizationProblem::makeSurface()
   }
   if (this->Surface && options.surfaceTolerance > 0)
   {
+    const double margin = options.leaving ? marginOfLeaving : marginOfSliding;
     this->Limit = std::make_unique<SurfaceLimit>(this->TheMesh, *this->Simplices, *this->Surface,
-      options.surfaceTolerance / this->Simplices->scale(), !options.onGeometry);
+      margin * options.surfaceTolerance / this->Simplices->scale(), !options.onGeometry);
     this->shareTolerance(options.improveWorst > 0 ? beforeWorst : 1.0);
   }
 }
@@ -397,9 +401,15 @@ LocalOptions OptimizationProblem::localOptions() const
   {
     const std::int32_t part = this->Options.model ? this->Options.parts[s.point(v)] : -1;
     const bool slides = !this->Options.slideSurface || this->Options.slideSurface[s.point(v)];
-    local.surfaces.push_back(this->Options.model ? (part < 0 ? nullptr : &this->Parts[part])
-        : slides                                 ? this->Surface.get()
-                                                 : nullptr);
+    const bool loose = !this->Loose.empty() && this->Loose[s.point(v)];
+    local.surfaces.push_back(loose ? nullptr
+        : this->Options.model      ? (part < 0 ? nullptr : &this->Parts[part])
+        : slides                   ? this->Surface.get()
+                                   : nullptr);
+    if (!this->Loose.empty())
+    {
+      local.loose.push_back(loose);
+    }
   }
   local.surfaceLimit = this->Limit.get();
   if (this->Options.limits)

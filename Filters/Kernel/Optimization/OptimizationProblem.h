@@ -37,6 +37,8 @@ public:
   double surfaceError() const;
   /// How much of the surface tolerance steps may use from now on, 0 to 1.
   void shareTolerance(double share);
+  /// Lets points, one flag each, leave what they slide on; only the surface tolerance holds them.
+  void loosen(std::vector<unsigned char> points) { this->Loose = std::move(points); }
   /// Points that the surface tolerance holds: their last steps were refused.
   Index heldOnSurface() const;
   std::size_t objectives() const { return this->Resolved.size(); }
@@ -99,6 +101,7 @@ private:
   std::unique_ptr<SurfaceProjection> Surface;
   std::unique_ptr<SurfaceLimit> Limit;  ///< of steps on it
   std::vector<SurfaceProjection> Parts; ///< of the model
+  std::vector<unsigned char> Loose;     ///< per point, or empty
   std::vector<Objective> Resolved;
   std::vector<LocalTerm> Terms; ///< of each objective; with the metric's sum only once it was used
   bool AllFast = false;

@@ -7,6 +7,7 @@
 #include "tautline/Core/Memory.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "ImproveWorst.h"
+#include "LeaveSurface.h"
 #include "Minimize.h"
 #include "OptionChecks.h"
 #include "QualityGuard.h"
@@ -289,15 +290,16 @@ private:
 
 /// Improves the worst element as far as wanted, and at least to that of the input. Stores the
 /// points and measures the elements there.
-QualityGuard::State settleWorst(OptimizationProblem& problem, const StoppingTest& watch,
-  const QualityGuard& guard, OptimizeResult& result)
+QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
+  const StoppingTest& watch, const QualityGuard& guard, const Stopwatch& clock,
+  OptimizeResult& result)
 {
   // The metrics of the mean and of the worst element disagree on stretched hexahedra.
   constexpr double ofAnotherMetric = 5;
   const OptimizeOptions& options = problem.options();
   const bool same = worstMetric(problem.moving(), options) == options.objectives[0].metric;
   const double allowance = options.improveWorst * (same ? 1.0 : ofAnotherMetric);
-  const bool going = result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit;
+  bool going = result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit;
   const bool wanted = going && allowance > 0;
   if (!wanted)
   {
@@ -315,8 +317,21 @@ QualityGuard::State settleWorst(OptimizationProblem& problem, const StoppingTest
       [&](IterationRecord record)
       {
         record.iteration = result.history.back().iteration + 1;
-        return report(problem, watch, result, record);
+        return going = report(problem, watch, result, record);
       });
+    if (going && wanted && options.leaving && options.surfaceTolerance > 0 && !options.limits)
+    {
+      result.leftSurface = leaveSurface(mesh, problem, guard, allowance, clock,
+        [&](OptimizationProblem& now, IterationRecord record)
+        {
+          record.iteration = result.history.back().iteration + 1;
+          return going = report(now, watch, result, record);
+        });
+    }
+    if (!going || problem.outOfTime())
+    {
+      result.reason = going ? StopReason::TimeLimit : StopReason::Aborted;
+    }
   }
   QualityGuard::State state = guard.check(problem);
   if (state.violated)
@@ -352,7 +367,7 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
       result.reason = StopReason::NoProgress;
     }
     result.unchanged = true;
-    result.restored = 0;
+    result.restored = result.leftSurface = 0;
     state.validity = validityOf(problem.moving(), problem.options().threads);
     state.values = guard.values();
   }
@@ -398,7 +413,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   }
   else
   {
-    state = settleWorst(problem, watch, guard, result);
+    state = settleWorst(mesh, problem, watch, guard, clock, result);
     verify(mesh, problem, first, guard, state, result);
   }
   result.iterations = result.history.back().iteration;

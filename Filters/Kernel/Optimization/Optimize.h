@@ -38,6 +38,7 @@ struct OptimizeResult
   /// the input's, from either to the other, or from it to the geometry; else 0.
   double surfaceError = 0;
   Index heldOnSurface = 0; ///< points whose last steps surfaceTolerance refused
+  Index leftSurface = 0;   ///< points of OptimizeOptions::leaving that left it
   bool untangled = false;  ///< untangle() was run first
   /// Points that went back to their place in the input, because an element there would otherwise be
   /// worse than the worst one of the input.

@@ -131,6 +131,13 @@ struct OptimizeOptions
    * farther.
    */
   double surfaceTolerance = 0.0;
+  /**
+   * @brief One flag per point, or null. With improveWorst and surfaceTolerance: nonzero for points
+   * of the boundary of a volume or planar mesh, fixed ones too, that may leave what they slide on,
+   * within that tolerance, near the worst elements, where these do not improve otherwise. Not with
+   * limits.
+   */
+  const unsigned char* leaving = nullptr;
   /// Whether the model was made of another surface than that of the mesh.
   bool onGeometry = false;
   /// Lets steps invert elements that are valid. Off: they are shortened.

@@ -92,6 +92,10 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
     throw Error("Patch iterations must be at least 1; culling and the mean's allowance for the "
                 "worst element must not be negative.");
   }
+  if (options.leaving && !options.fixed)
+  {
+    throw Error("Points that may leave the surface need the flags of the fixed points.");
+  }
   const bool global = isGlobal(options.optimizer);
   if (options.model && !options.parts)
   {

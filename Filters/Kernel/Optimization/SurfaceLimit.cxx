@@ -9,8 +9,6 @@ namespace tautline
 {
 namespace
 {
-/// Of the distance: places between those that are looked at may be farther.
-constexpr double margin = 0.85;
 /// Of the distance: what is nearer counts as so far, which is found faster.
 constexpr double near = 0.1;
 /// Places in a leaf of their tree, at most.
@@ -72,7 +70,7 @@ SurfaceLimit::SurfaceLimit(const Mesh& mesh, const SimplexMesh& simplices,
   const SurfaceProjection& surface, double distance, bool bothWays)
   : Simplices(simplices)
   , Surface(surface)
-  , Whole(margin * distance)
+  , Whole(distance)
   , Distance(this->Whole)
 {
   this->findFacets(mesh);
@@ -180,16 +178,14 @@ double SurfaceLimit::farthest(const std::vector<Triangle>& triangles, double mos
 {
   std::vector<Vec3> places;
   double largest = near * this->Distance;
+  std::int32_t piece = 0;
   for (std::size_t i = 0; i < triangles.size() && largest <= most; ++i)
   {
     places.clear();
     addSamples(triangles[i], divisions, places);
     for (const Vec3& x : places)
     {
-      if (!this->Surface.isWithin(x, largest))
-      {
-        largest = std::max(largest, norm(this->Surface.closest(x) - x));
-      }
+      largest = std::max(largest, this->Surface.distanceOf(x, largest, most, piece));
     }
   }
   return largest;

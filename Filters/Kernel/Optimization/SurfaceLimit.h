@@ -34,7 +34,8 @@ public:
 
   /**
    * @param surface that the facets are kept near to; must outlive the limit
-   * @param distance in the coordinates of `simplices`, above 0
+   * @param distance in the coordinates of `simplices`, above 0; places between those at which it is
+   * measured may be somewhat farther
    * @param bothWays whether the surface is to stay near to the facets, too
    */
   SurfaceLimit(const Mesh& mesh, const SimplexMesh& simplices, const SurfaceProjection& surface,

@@ -202,6 +202,14 @@ void SurfaceProjection::build()
     this->Nodes.emplace_back();
     this->build(0, 0, static_cast<std::int32_t>(this->Pieces.size()));
   }
+  for (const Piece& piece : this->Pieces)
+  {
+    const auto& [a, b, c] = piece.corner;
+    const Vec3 center = (1.0 / 3.0) * (a + b + c);
+    constexpr double slack = 1 + 1e-6; // far more than rounding
+    this->Balls.push_back(
+      { center, slack * std::max({ norm(a - center), norm(b - center), norm(c - center) }) });
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -446,26 +454,41 @@ std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
 }
 
 //------------------------------------------------------------------------------
-bool SurfaceProjection::isWithin(const Vec3& x, double distance) const
+double SurfaceProjection::distanceOf(
+  const Vec3& x, double enough, double most, std::int32_t& piece) const
 {
-  const double most2 = distance * distance;
   constexpr int deepest = 64;
   std::int32_t stack[deepest];
   int top = 0;
+  double least = std::numeric_limits<double>::infinity(), reach = most;
+  // What is far from the ball around a piece is far from the piece.
+  const auto look = [&](std::int32_t i)
+  {
+    const Vec3 toCenter = this->Balls[i].center - x;
+    const double far = this->Balls[i].radius + reach;
+    if (dot(toCenter, toCenter) > far * far)
+    {
+      return;
+    }
+    const double distance = norm(this->closestOf(i, x) - x);
+    if (distance < least)
+    {
+      least = distance;
+      reach = std::min(reach, least);
+      piece = i;
+    }
+  };
   if (!this->Nodes.empty())
   {
     stack[top++] = 0;
+    look(piece);
   }
-  while (top > 0)
+  while (top > 0 && least > enough)
   {
     const Node& node = this->Nodes[stack[--top]];
     for (std::int32_t i = node.first; i < node.first + node.count; ++i)
     {
-      const Vec3 d = this->closestOf(i, x) - x;
-      if (dot(d, d) <= most2)
-      {
-        return true;
-      }
+      look(i);
     }
     if (node.count == 0)
     {
@@ -474,17 +497,18 @@ bool SurfaceProjection::isWithin(const Vec3& x, double distance) const
       const double toLeft = squareDistance(left.low, left.high, x),
                    toRight = squareDistance(right.low, right.high, x);
       const bool leftFirst = toLeft <= toRight;
-      if (std::max(toLeft, toRight) <= most2)
+      const double reach2 = reach * reach;
+      if (std::max(toLeft, toRight) <= reach2)
       {
         stack[top++] = node.first + (leftFirst ? 1 : 0);
       }
-      if (std::min(toLeft, toRight) <= most2)
+      if (std::min(toLeft, toRight) <= reach2)
       {
         stack[top++] = node.first + (leftFirst ? 0 : 1);
       }
     }
   }
-  return false;
+  return least;
 }
 
 //------------------------------------------------------------------------------

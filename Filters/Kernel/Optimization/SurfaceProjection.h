@@ -63,8 +63,12 @@ public:
   /// The unit normal there, of a curve the unit tangent; zero if there is none.
   Vec3 direction(const Vec3& x) const;
 
-  /// Whether x is at most so far from the facets.
-  bool isWithin(const Vec3& x, double distance) const;
+  /**
+   * @brief The distance of x from the facets; anything up to `enough` if it is that, and anything
+   * above `most` if it is that. Infinite without facets.
+   * @param piece where the search begins, 0 or what a place near to x gave; set to the nearest
+   */
+  double distanceOf(const Vec3& x, double enough, double most, std::int32_t& piece) const;
 
   /// The samples of the facets, see addSamples(), each once.
   std::vector<Vec3> samples(int divisions) const;
@@ -82,6 +86,11 @@ private:
   {
     Vec3 low, high;
     std::int32_t first, count; ///< count 0: children are first and first + 1
+  };
+  struct Ball
+  {
+    Vec3 center;
+    double radius;
   };
   /// A point of the curved surface with the normal, or tangent, there.
   struct Place
@@ -103,6 +112,7 @@ private:
   Place find(const Vec3& x) const;
 
   std::vector<Piece> Pieces;
+  std::vector<Ball> Balls; ///< around the pieces
   std::vector<CubicControls> Controls;
   std::vector<Node> Nodes;
   bool Curve = false;

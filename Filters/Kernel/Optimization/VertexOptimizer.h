@@ -66,6 +66,10 @@ private:
   {
     return this->Options.surfaces.empty() ? nullptr : this->Options.surfaces[v];
   }
+  bool isLoose(std::int32_t v) const
+  {
+    return !this->Options.loose.empty() && this->Options.loose[v];
+  }
   bool isOnCurve(std::int32_t v) const
   {
     const SurfaceProjection* surface = this->surfaceOf(v);
@@ -73,7 +77,7 @@ private:
   }
   bool isOnSurface(std::int32_t v) const
   {
-    return (Dim == 2 && this->Simplices.surface()) || this->surfaceOf(v);
+    return (Dim == 2 && this->Simplices.surface()) || this->surfaceOf(v) || this->isLoose(v);
   }
   std::vector<Vec3> normalsAt(std::int32_t v) const;
   bool isUpright(

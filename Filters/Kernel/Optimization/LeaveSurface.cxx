@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "LeaveSurface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+namespace
+{
+constexpr int maxRounds = 50;
+/// Elements count as the worst up to this factor from the worst value.
+constexpr double amongWorst = 1.05;
+/// Points move within so many layers of elements about the worst ones.
+constexpr int layers = 2;
+/// A round that improves the worst value by less than this fraction of it is the last.
+constexpr double worthwhile = 5e-3;
+
+/// The elements whose values are near the worst one, of those that have a point which can move.
+std::vector<char> worstElements(const OptimizationProblem& problem, const Objective& judged,
+  const std::vector<unsigned char>& movable, double& worst)
+{
+  const Mesh& mesh = problem.moving();
+  const MeshView& view = mesh.view();
+  std::vector<double> q(view.numberOfCells);
+  evaluateMetric(mesh, judged.metric, judged.evaluation, q.data());
+  const bool larger = metricInfo(judged.metric).direction == Direction::LargerIsBetter;
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  std::vector<char> candidates(view.numberOfCells, 0);
+  bool found = false;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; t.dimension == dimension && i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      const Index* node = view.connectivity + view.offsets[cell];
+      if (std::isfinite(q[cell]) &&
+        std::any_of(node, node + t.nodes, [&](Index p) { return movable[p] != 0; }))
+      {
+        candidates[cell] = 1;
+        worst = !found ? q[cell] : larger ? std::min(worst, q[cell]) : std::max(worst, q[cell]);
+        found = true;
+      }
+    }
+  }
+  const double margin = (amongWorst - 1) * std::abs(worst);
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    candidates[cell] = candidates[cell] && std::abs(q[cell] - worst) <= margin;
+  }
+  return candidates;
+}
+
+/// Sets the flags of the points of elements with a flag, or of those that have a point with one.
+void spread(const MeshView& view, std::vector<char>& elements, std::vector<unsigned char>& points)
+{
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    for (Index n = view.offsets[cell]; elements[cell] && n < view.offsets[cell + 1]; ++n)
+    {
+      points[view.connectivity[n]] = 1;
+    }
+  }
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const Index* node = view.connectivity + view.offsets[cell];
+    const Index* end = view.connectivity + view.offsets[cell + 1];
+    elements[cell] = std::any_of(node, end, [&](Index p) { return points[p] != 0; });
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+Index leaveSurface(const Mesh& mesh, OptimizationProblem& problem, const QualityGuard& guard,
+  double allowance, const Stopwatch& clock,
+  const std::function<bool(OptimizationProblem&, const IterationRecord&)>& report)
+{
+  const MeshView& view = mesh.view();
+  OptimizeOptions options = problem.options();
+  problem.store();
+  std::vector<double> onSurface = problem.points(); // of a loose point, where it was last
+  const std::vector<unsigned char> fixed(options.fixed, options.fixed + view.numberOfPoints);
+  std::vector<unsigned char> movable(view.numberOfPoints), loose(view.numberOfPoints, 0);
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    movable[p] = !fixed[p] || options.leaving[p];
+  }
+  const Objective& judged = guard.judged();
+  const double mean = problem.record(0).mean[0];
+  const bool largerMean =
+    metricInfo(options.objectives[0].metric).direction == Direction::LargerIsBetter;
+  const double meanSign = largerMean ? -1 : 1;
+  double worst = 0;
+  std::vector<char> elements = worstElements(problem, judged, movable, worst);
+  const bool some = std::any_of(elements.begin(), elements.end(), [](char e) { return e != 0; });
+  for (int round = 0; some && round < maxRounds && !problem.outOfTime(); ++round)
+  {
+    // Points that have left stay loose, as they are on nothing they could slide on.
+    std::vector<unsigned char> near(view.numberOfPoints, 0), held(view.numberOfPoints);
+    spread(view, elements, near);
+    for (Index p = 0; p < view.numberOfPoints; ++p)
+    {
+      if (!loose[p] && near[p] && options.leaving[p])
+      {
+        loose[p] = 1;
+        std::copy_n(&problem.points()[3 * p], 3, &onSurface[3 * p]);
+      }
+    }
+    for (int layer = 0; layer < layers; ++layer)
+    {
+      spread(view, elements, near);
+    }
+    for (Index p = 0; p < view.numberOfPoints; ++p)
+    {
+      held[p] = !(near[p] && (loose[p] || !fixed[p]));
+    }
+    options.fixed = held.data();
+    std::vector<double> points = problem.points();
+    OptimizationProblem inner(mesh, options, points, clock);
+    inner.loosen(loose);
+    const IterationRecord first = inner.record(0);
+    inner.start(first);
+    const double now = first.mean[0];
+    // What is left of the allowance, as a fraction of the mean there is.
+    const double worsened = meanSign * (now - mean);
+    const double left = std::max(0.0, (allowance * std::abs(mean) - worsened) / std::abs(now));
+    bool going = true;
+    improveWorst(inner, guard, { left, false },
+      [&](const IterationRecord& record) { return going = report(inner, record); });
+    inner.store();
+    const double before = worst;
+    problem.restart(points);
+    elements = worstElements(problem, judged, movable, worst);
+    if (!going || std::abs(worst - before) < worthwhile * std::abs(before))
+    {
+      break;
+    }
+  }
+  Index left = 0;
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    const double* now = &problem.points()[3 * p];
+    left += loose[p] && !std::equal(now, now + 3, &onSurface[3 * p]);
+  }
+  return left;
+}
+}
