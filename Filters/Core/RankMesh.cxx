@@ -14,6 +14,7 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
@@ -101,6 +102,15 @@ std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataO
   return mesh->inSpaceOrPlane()
     ? std::move(mesh)
     : gather("it is a surface in space, or in a plane that is not at right angles to an axis");
+}
+
+//------------------------------------------------------------------------------
+bool isScattered(vtkDataObject* input)
+{
+  vtkMultiProcessController* all = severalProcesses();
+  const bool here = all && all->GetLocalProcessId() > 0 && input &&
+    input->GetNumberOfElements(vtkDataObject::CELL) > 0;
+  return minimumOverProcesses(here ? 0 : 1) == 0;
 }
 
 //------------------------------------------------------------------------------

@@ -59,6 +59,9 @@ TAUTLINECORE_EXPORT std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGro
   vtkDataObject* input, int threads, bool mergePoints, Redistribution redistribution,
   std::string* why = nullptr);
 
+/// Whether processes other than the first have cells of a mesh. Collective.
+TAUTLINECORE_EXPORT bool isScattered(vtkDataObject* input);
+
 /// "The mesh was put together on the first process: why.", or "" without a reason; a full stop at
 /// the end of the reason is not doubled.
 TAUTLINECORE_EXPORT std::string gatheredSentence(const std::string& why);

@@ -47,6 +47,7 @@ private:
   PointFlags staying();
   void moveByArray();
   void moveByTransform();
+  void findTensors();
   std::vector<double> transformed(double fraction);
   WarpResult warp();
   void report(const WarpResult& result, WarpFacts& facts, TableRows& history, TableRows& statistics,
@@ -60,6 +61,7 @@ private:
   PointFlags Boundary, Moved, Stay, Prescribed;
   std::vector<double> Displacement; ///< 3 per local point, at the amount
   MovedPoints Cloud;                ///< of a transform
+  std::vector<double> Tensors;      ///< 6 per local cell, or empty
 };
 
 //------------------------------------------------------------------------------
@@ -279,6 +281,39 @@ void PieceWarp::moveByTransform()
 }
 
 //------------------------------------------------------------------------------
+/// Coefficients per cell of the piece, as those of the local cells.
+void PieceWarp::findTensors()
+{
+  const WarpSettings& set = this->Settings;
+  if (!set.anisotropic() || set.options.coefficients != WarpCoefficients::PerCell)
+  {
+    return;
+  }
+  std::vector<double> ofPiece;
+  this->Group.together(
+    [&]
+    {
+      if (!this->here())
+      {
+        return;
+      }
+      ofPiece = set.tensorsByRegion
+        ? tensorsOf(chosenArray(set.arrays, RegionArray, this->Piece.input, "of regions"),
+            set.regions, set.options.tensor.data())
+        : tensorsOf(chosenArray(set.arrays, TensorArray, this->Piece.input, "of coefficients"));
+      for (std::size_t i = 0; i < ofPiece.size(); ++i)
+      {
+        if (!this->Whole.skipped()[i / 6] && !std::isfinite(ofPiece[i]))
+        {
+          throw Error("The coefficients of cell " + std::to_string(i / 6) +
+            " of a piece are not finite: correct the array, or choose other Coefficients.");
+        }
+      }
+    });
+  this->Tensors = this->Whole.ofCells(ofPiece, 6);
+}
+
+//------------------------------------------------------------------------------
 WarpResult PieceWarp::warp()
 {
   const WarpSettings& set = this->Settings;
@@ -303,6 +338,7 @@ WarpResult PieceWarp::warp()
   }
   WarpOptions options = set.options;
   options.prescribed = this->Prescribed.data();
+  options.tensors = this->Tensors.empty() ? nullptr : this->Tensors.data();
   options.maximumSeconds = set.secondsLeft();
   options.progress = [&set](double fraction) { return set.progress(0, fraction); };
   Warper warper(
@@ -408,9 +444,12 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   facts.movedPoints = this->Group.sum(facts.movedPoints);
   facts.largestDisplacement = this->Group.maximum(facts.largestDisplacement);
   facts.boundaryPoints = this->countOwned(this->Prescribed);
+  this->findTensors();
   const WarpResult result = this->warp();
   facts.method = nameOf(this->Settings.options.method);
-  facts.coefficients = this->Settings.anisotropic() && this->Settings.amount > 0;
+  const WarpCoefficients coefficients = this->Settings.options.coefficients;
+  facts.coefficients = this->Settings.anisotropic() && this->Settings.amount > 0 &&
+    coefficients != WarpCoefficients::PerCell && coefficients != WarpCoefficients::LocalGradients;
   facts.amount = this->Settings.amount;
   facts.threads = this->Settings.options.threads;
   facts.seconds = clock.seconds();
@@ -419,11 +458,18 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
 }
 
 //------------------------------------------------------------------------------
-bool warpsInPieces(const WarpSession& session)
+std::string needOfWholeMesh(const WarpSession& session)
 {
   const MotionSource motion = session.settings.motion;
-  return (motion == MotionSource::Displacement || motion == MotionSource::Transform) &&
-    !session.sequence() && warpsOnRanks(session.settings.options);
+  if (motion == MotionSource::TimeSteps || session.sequence())
+  {
+    return "motions over time";
+  }
+  if (motion == MotionSource::Target)
+  {
+    return "motions to a target";
+  }
+  return warpsOnRanks(session.settings.options) ? "" : "rescaled untangling objectives";
 }
 
 //------------------------------------------------------------------------------

@@ -15,8 +15,9 @@ namespace tautline
 {
 class RankMesh;
 
-/// Whether such a motion is distributed: by an array or a transform, by warpsOnRanks().
-bool warpsInPieces(const WarpSession& session);
+/// What needs the whole mesh in one place, in the plural, "motions to a target"; "" if each process
+/// takes its piece.
+std::string needOfWholeMesh(const WarpSession& session);
 
 /// What a process has of the inputs and outputs.
 struct WarpPiece

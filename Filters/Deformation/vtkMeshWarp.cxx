@@ -347,6 +347,7 @@ int vtkMeshWarp::RequestData(
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
   this->Summary = totals.summary;
   this->AddToSummary(pieces ? "" : this->GetBlockNotice());
+  this->AddToSummary(this->WhyGathered);
   this->InvertedAfterWarp = totals.invertedAfterWarp;
   this->Inverted = totals.inverted;
   this->Impossible = totals.impossible;
@@ -387,13 +388,16 @@ bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
   this->Pieces.reset();
   this->Group.reset();
   this->Session->settings = this->GetSettings();
-  if (!tautline::warpsInPieces(*this->Session))
+  vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
+  const std::string what = tautline::needOfWholeMesh(*this->Session);
+  std::string why =
+    what.empty() || !tautline::isScattered(input) ? "" : what + " need the whole mesh";
+  if (what.empty())
   {
-    return false;
+    this->Pieces = tautline::takePieces(this->Group, input, this->Threads,
+      this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute), &why);
   }
-  this->Pieces =
-    tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]), this->Threads,
-      this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute));
+  this->WhyGathered = tautline::gatheredSentence(why);
   return this->Pieces != nullptr;
 }
 

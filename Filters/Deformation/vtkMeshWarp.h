@@ -457,6 +457,7 @@ private:
   /// The mesh of an execution in which each process takes its piece; else null.
   std::unique_ptr<tautline::RankGroup> Group;
   std::unique_ptr<tautline::RankMesh> Pieces;
+  std::string WhyGathered; ///< a sentence, or ""
 
   void ClearNumbers();
   /// Whether the time of a request is a fraction of the way.

@@ -17,7 +17,6 @@
 #include "vtkDataSet.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
-#include "vtkMultiProcessController.h"
 #include "vtkPointSet.h"
 #include "vtkSelection.h"
 
@@ -369,8 +368,7 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
     this->Pieces = tautline::takePieces(this->Group, data, this->Threads,
       this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute), &why);
   }
-  else if (!onAny(vtkMultiProcessController::GetGlobalController()->GetLocalProcessId() > 0 &&
-             data->GetNumberOfElements(vtkDataObject::CELL) > 0))
+  else if (!tautline::isScattered(data))
   {
     why.clear(); // it is in one place
   }

@@ -56,8 +56,10 @@ SparseMatrix matrixOf(
   return empty;
 }
 
-/// K M^-1 K: M is diagonal. Points outside all cells have empty rows.
-SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass)
+/// K M^-1 K: M is diagonal. Points outside all cells have empty rows. On several ranks the terms of
+/// the own points j, K_ij K_jk / M_jj, whose rows of K are whole: those of all ranks are to be added
+/// up.
+SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass, const WarpRanks& ranks)
 {
   SparseMatrix result;
   result.size = K.size;
@@ -71,6 +73,10 @@ SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass)
     for (Index e = K.offsets[i]; e < K.offsets[i + 1]; ++e)
     {
       const std::int32_t j = K.columns[e];
+      if (!ranks.owns(j))
+      {
+        continue;
+      }
       const double scale = mass[j] > 0 ? K.values[e] / mass[j] : 0.0;
       for (Index f = K.offsets[j]; f < K.offsets[j + 1]; ++f)
       {
@@ -148,8 +154,16 @@ SparseMatrix Femwarp::assemble(double regularization, WarpControl& control) cons
   this->Parts.ranks().together([&] { matrix = matrixOf(this->Input, pde, options); });
   if (this->Kind == Operator::Biharmonic)
   {
-    const std::vector<double> one(this->Input.view().numberOfPoints, 1.0);
-    matrix = squared(matrix, loadVector(this->Input, one.data(), 1, options));
+    this->Parts.ranks().together(
+      [&]
+      {
+        std::vector<double> mass(this->Input.view().numberOfPoints, 1.0);
+        if (this->Input.view().numberOfCells > 0)
+        {
+          mass = loadVector(this->Input, mass.data(), 1, options);
+        }
+        matrix = squared(matrix, mass, this->Parts.ranks());
+      });
   }
   control.result().assembleSeconds += control.elapsed() - before;
   return matrix;
@@ -167,8 +181,10 @@ void Femwarp::partition(WarpControl& control)
   }
   const int dimension = this->Parts.dimension() == Dimension::Volume ? 3 : 2;
   const double* points = this->Input.view().points;
+  WarpMatrix given(matrix);
+  given.shared = this->Kind == Operator::Biharmonic;
   this->System = std::make_unique<WarpSystem>(
-    matrix, 1, this->Held, points, dimension, control.options(), this->Parts.ranks());
+    given, 1, this->Held, points, dimension, control.options(), this->Parts.ranks());
   this->Second.reset();
   if (this->Decoupled > 0)
   {
@@ -195,6 +211,7 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
     const double* t = this->Pde.tensors + 6 * i;
     size = std::max(size, *std::max_element(t, t + 3));
   }
+  size = ranks.maximum(size);
   std::vector<double> scale(n);
   for (Index i = 0; i < n; ++i)
   {

@@ -19,7 +19,7 @@ std::string counted(Index count, const char* what)
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-void checkOptions(const Mesh& mesh, const WarpOptions& options)
+void checkOptions(const Mesh& mesh, const WarpOptions& options, const WarpRanks& ranks)
 {
   const auto refuse = [](bool wrong, const char* text)
   {
@@ -67,12 +67,15 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options)
   }
   if (anisotropic && options.coefficients == WarpCoefficients::PerCell)
   {
-    refuse(!options.tensors, "Coefficients per cell are chosen, but there are none.");
+    refuse(!options.tensors && mesh.view().numberOfCells > 0,
+      "Coefficients per cell are chosen, but there are none.");
     for (Index i = 0; i < mesh.view().numberOfCells; ++i)
     {
       if (!semidefinite(options.tensors + 6 * i))
       {
-        throw Error("The coefficients of cell " + std::to_string(i) +
+        // The cells of a rank have numbers of its own.
+        throw Error("The coefficients of " +
+          (ranks.several() ? "a cell" : "cell " + std::to_string(i)) +
           " are not finite or not positive semidefinite.");
       }
     }
@@ -154,7 +157,7 @@ struct Warper::Implementation
     , First(mesh, mesh, Parts)
     , MovedBoundary(mesh, Parts.prescribed(), ranks)
   {
-    ranks.together([&] { checkOptions(mesh, options); });
+    ranks.together([&] { checkOptions(mesh, options, ranks); });
     checkMesh(mesh, this->Parts, options);
   }
 
@@ -400,21 +403,8 @@ struct Warper::Local
 //------------------------------------------------------------------------------
 bool warpsOnRanks(const WarpOptions& options)
 {
-  switch (options.method)
-  {
-    case WarpMethod::AnisotropicFemwarp:
-      return options.coefficients != WarpCoefficients::PerCell &&
-        options.coefficients != WarpCoefficients::LocalGradients;
-    case WarpMethod::Femwarp:
-    case WarpMethod::SmallStepFemwarp:
-    case WarpMethod::IterativeStiffening:
-    case WarpMethod::JacobianStiffening:
-    case WarpMethod::InverseDistance:
-    case WarpMethod::RadialBasis:
-      return true;
-    default:
-      return false;
-  }
+  // The untangling metric of (4.24) is rescaled by the whole mesh.
+  return options.method != WarpMethod::Hybrid || options.untangleFirst;
 }
 
 //------------------------------------------------------------------------------
@@ -423,7 +413,7 @@ Warper::Warper(const Mesh& mesh, const WarpOptions& options)
 {
 }
 
-Warper::Warper(const DistributedMesh& mesh, bool mirrored, std::vector<Index> ids,
+Warper::Warper(DistributedMesh& mesh, bool mirrored, std::vector<Index> ids,
   Communicator communicator, const WarpOptions& options)
 {
   mesh.group().together(
@@ -432,8 +422,8 @@ Warper::Warper(const DistributedMesh& mesh, bool mirrored, std::vector<Index> id
       if (!warpsOnRanks(options))
       {
         throw Error(
-          "This method, or its coefficients, need the mesh in one place: gather it on one "
-          "process, or choose FEMWARP, inverse distances or radial basis functions.");
+          "Hybrid without Untangle First needs the mesh in one place: gather it on one process, "
+          "or switch Untangle First on.");
       }
       if (!options.prescribed && mesh.localPoints() > 0)
       {
@@ -442,8 +432,10 @@ Warper::Warper(const DistributedMesh& mesh, bool mirrored, std::vector<Index> id
       this->Here = std::make_unique<Local>(mesh, mirrored, std::move(ids), options.threads);
     });
   static const unsigned char none = 0; // not null, which would be the boundary
+  static const double noTensor = 0;
   WarpOptions own = options;
   own.prescribed = options.prescribed ? options.prescribed : &none;
+  own.tensors = options.tensors || mesh.view().numberOfCells > 0 ? options.tensors : &noTensor;
   this->Impl = std::make_unique<Implementation>(
     this->Here->Part, own, WarpRanks(mesh, this->Here->Ids, communicator));
 }

@@ -57,8 +57,8 @@ public:
    * @param ids one per local point: the pointwise methods take the prescribed points in this order
    * @param options prescribed must be given
    */
-  Warper(const DistributedMesh& mesh, bool mirrored, std::vector<Index> ids,
-    Communicator communicator, const WarpOptions& options);
+  Warper(DistributedMesh& mesh, bool mirrored, std::vector<Index> ids, Communicator communicator,
+    const WarpOptions& options);
   ~Warper();
 
   /**

@@ -163,9 +163,11 @@ SymmetricTensor principalDirections(
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> localGradients(const MeshView& mesh, const double* displacement)
+std::vector<double> localGradients(
+  const MeshView& mesh, const double* displacement, const WarpRanks& ranks)
 {
   const Index n = mesh.numberOfCells;
+  const Index all = ranks.several() ? ranks.mesh().globalCells() : n;
   std::vector<double> tensors(6 * n, 0.0), gradients(n, 0.0);
   double mean = 0.0;
   for (Index cell = 0; cell < n; ++cell)
@@ -187,8 +189,9 @@ std::vector<double> localGradients(const MeshView& mesh, const double* displacem
       t[5] = d[0] * d[2];
     }
     gradients[cell] = motion.gradient;
-    mean += motion.gradient / static_cast<double>(n);
+    mean += ranks.ownsCell(cell) ? motion.gradient / static_cast<double>(all) : 0.0;
   }
+  mean = ranks.sum(mean);
   for (Index cell = 0; cell < n && mean > 0.0; ++cell)
   {
     const double factor = 1.0 + gradients[cell] / mean;

@@ -36,7 +36,8 @@ SymmetricTensor principalDirections(
   const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks);
 
 /**
- * @brief A tensor per cell, 6 numbers each, from the displacements u of all points, 3 each:
+ * @brief A tensor per cell, 6 numbers each, from the displacements u of all points, 3 each; on
+ * several ranks per local cell, with the mean of the whole mesh:
  *
  *     (1 + |grad u|^2 / mean |grad u|^2) (I / 20 + d d^T / |d|^2)
  *
@@ -44,6 +45,7 @@ SymmetricTensor principalDirections(
  * displacements best, which is exact for simplices. Cells that deform much get stiff along the
  * motion, and the motion spreads to those around them. The identity where nothing moves.
  */
-std::vector<double> localGradients(const MeshView& mesh, const double* displacement);
+std::vector<double> localGradients(
+  const MeshView& mesh, const double* displacement, const WarpRanks& ranks);
 }
 #endif

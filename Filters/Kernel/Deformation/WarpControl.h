@@ -56,11 +56,16 @@ public:
   bool proceed(double fraction)
   {
     this->watch(fraction);
+    return this->agree();
+  }
+  /// Whether to go on, after what a rank has watched: collective.
+  bool agree()
+  {
     this->Result.timeLimit = this->Ranks.any(this->Result.timeLimit);
     this->Result.aborted = this->Ranks.any(this->Result.aborted);
     return !this->stopped();
   }
-  /// The same within work that does not communicate; proceed() follows on all ranks.
+  /// The same within work that does not communicate; proceed() or agree() follows on all ranks.
   bool watch(double fraction)
   {
     if (this->Time.reached(this->Options.maximumSeconds))

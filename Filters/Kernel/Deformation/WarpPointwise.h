@@ -55,6 +55,17 @@ TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
 
+class WarpParts;
+/**
+ * @brief The same on several ranks, for the local points: the affine motion is that of the
+ * prescribed points of all, in the order of their ids, and the rows of the matrix are those of the
+ * own points. Solved by WarpSystem, so that points differ from those of one rank by the tolerance.
+ * Empty, on all ranks, when the control stopped the work. Collective.
+ * @param mesh DistributedMesh::view(), the points of which may have moved
+ */
+std::vector<double> warpByWeightedLaplacian(
+  const Mesh& mesh, const WarpParts& parts, const double* displacement, WarpControl& control);
+
 /// What the three methods share: the prescribed displacements, split into an affine motion and the
 /// rest.
 class TAUTLINE_SOLVERS_EXPORT PrescribedMotion

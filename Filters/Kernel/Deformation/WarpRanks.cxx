@@ -77,4 +77,26 @@ std::vector<Index> WarpRanks::numberSets(
   }
   return numberSetsOnRanks(*this->Spread, sets, member, count);
 }
+
+//------------------------------------------------------------------------------
+std::vector<PrescribedPoint> WarpRanks::prescribedOfAll(const MeshView& local,
+  const std::vector<unsigned char>& prescribed, const double* displacement) const
+{
+  std::vector<PrescribedPoint> own, all;
+  for (Index i = 0; i < local.numberOfPoints; ++i)
+  {
+    if (prescribed[i] && this->owns(i))
+    {
+      own.push_back({ this->id(i), pointOf(local, i), {} });
+      std::copy_n(displacement + 3 * i, 3, own.back().displacement.begin());
+    }
+  }
+  for (const std::vector<PrescribedPoint>& list : this->Spread->group().gatherItems(own))
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end(),
+    [](const PrescribedPoint& a, const PrescribedPoint& b) { return a.id < b.id; });
+  return all;
+}
 }

@@ -17,6 +17,13 @@
 
 namespace tautline
 {
+/// A point with a given displacement.
+struct PrescribedPoint
+{
+  Index id;
+  std::array<double, 3> place, displacement;
+};
+
 /**
  * @class tautline::WarpRanks
  * @brief The ranks of a distributed mesh; by default this process alone, where nothing is
@@ -31,7 +38,7 @@ class WarpRanks
 public:
   WarpRanks() = default;
   /// Mesh and ids, one per local point, stay alive; the communicator has the ranks of the mesh.
-  WarpRanks(const DistributedMesh& mesh, const std::vector<Index>& ids, Communicator communicator)
+  WarpRanks(DistributedMesh& mesh, const std::vector<Index>& ids, Communicator communicator)
     : Spread(&mesh)
     , Ids(ids.data())
     , Comm(communicator)
@@ -39,7 +46,8 @@ public:
   }
 
   bool several() const { return this->Spread != nullptr; }
-  const DistributedMesh& mesh() const { return *this->Spread; }
+  /// Of several ranks.
+  DistributedMesh& mesh() const { return *this->Spread; }
   Communicator communicator() const { return this->Comm; }
   /// The order of points in sums over few of them, which then are those of one process, bitwise.
   Index id(Index point) const { return this->Ids[point]; }
@@ -73,8 +81,15 @@ public:
   std::vector<Index> numberSets(
     UnionFind& sets, const std::vector<unsigned char>& member, Index& count) const;
 
+  /**
+   * @brief The prescribed points of all ranks, in the order of their ids.
+   * @param local the part of the mesh here, with a flag and a displacement per point
+   */
+  std::vector<PrescribedPoint> prescribedOfAll(const MeshView& local,
+    const std::vector<unsigned char>& prescribed, const double* displacement) const;
+
 private:
-  const DistributedMesh* Spread = nullptr;
+  DistributedMesh* Spread = nullptr;
   const Index* Ids = nullptr;
   Communicator Comm = nullptr;
 };

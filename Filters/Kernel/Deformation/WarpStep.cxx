@@ -3,13 +3,40 @@
 
 #include "tautline/Quality/Targets.h"
 #include "tautline/Untangling/Untangle.h"
+#include "tautline/Untangling/UntangleOnRanks.h"
 #include "WarpCoefficients.h"
 #include "WarpElastic.h"
 #include "WarpPointwise.h"
-#include "tautline/Optimization/Optimize.h"
+#include "tautline/Optimization/OptimizeOnRanks.h"
 
 namespace tautline
 {
+namespace
+{
+/// A mesh on several ranks with other points, until the end of its life.
+class PlacedMesh
+{
+public:
+  PlacedMesh(DistributedMesh& mesh, const std::vector<double>& points)
+    : Placed(mesh)
+    , Before(mesh.points())
+  {
+    // In place: views of the mesh go on to read the same memory.
+    std::copy(points.begin(), points.end(), mesh.points().begin());
+  }
+  ~PlacedMesh()
+  {
+    std::copy(this->Before.begin(), this->Before.end(), this->Placed.points().begin());
+  }
+  PlacedMesh(const PlacedMesh&) = delete;
+  PlacedMesh& operator=(const PlacedMesh&) = delete;
+
+private:
+  DistributedMesh& Placed;
+  const std::vector<double> Before;
+};
+}
+
 //------------------------------------------------------------------------------
 WarpStep::WarpStep(const Mesh& from, const Mesh& initial, const WarpParts& parts)
   : From(from)
@@ -49,7 +76,9 @@ void WarpStep::updateFemwarp(const double* displacement, WarpControl& control)
         // The motion of the interior, by FEMWARP, gives the coefficients of the second solve.
         Femwarp first(
           this->From, this->Parts, Femwarp::Operator::Harmonic, IdentityTensor, nullptr, control);
-        this->Tensors = localGradients(this->From.view(), first.warp(displacement, control).data());
+        this->Tensors = localGradients(
+          this->From.view(), first.warp(displacement, control).data(), this->Parts.ranks());
+        this->Tensors.reserve(1); // not null on a rank without cells
         tensors = this->Tensors.data();
         this->Scalar.reset();
         break;
@@ -89,7 +118,9 @@ void WarpStep::warp(const double* displacement, WarpControl& control, std::vecto
       moved = this->warpPointwise(warpByRadialBasis, displacement, control);
       break;
     case WarpMethod::WeightedLaplacian:
-      moved = warpByWeightedLaplacian(this->From, prescribed, displacement, control);
+      moved = this->Parts.ranks().several()
+        ? warpByWeightedLaplacian(this->From, this->Parts, displacement, control)
+        : warpByWeightedLaplacian(this->From, prescribed, displacement, control);
       break;
     case WarpMethod::IterativeStiffening:
     case WarpMethod::JacobianStiffening:
@@ -137,32 +168,14 @@ std::vector<double> WarpStep::warpPointwise(
   {
     return method(this->From, prescribed, displacement, control);
   }
-  struct Given
-  {
-    Index id;
-    std::array<double, 3> place, displacement;
-  };
   const MeshView& local = this->From.view();
-  std::vector<Given> own, given;
-  for (Index i = 0; i < local.numberOfPoints; ++i)
-  {
-    if (prescribed[i] && ranks.owns(i))
-    {
-      own.push_back({ ranks.id(i), pointOf(local, i), {} });
-      std::copy_n(displacement + 3 * i, 3, own.back().displacement.begin());
-    }
-  }
-  for (const std::vector<Given>& list : ranks.mesh().group().gatherItems(own))
-  {
-    given.insert(given.end(), list.begin(), list.end());
-  }
-  std::sort(given.begin(), given.end(), [](const Given& a, const Given& b) { return a.id < b.id; });
+  const std::vector<PrescribedPoint> given = ranks.prescribedOfAll(local, prescribed, displacement);
   std::vector<double> moved;
   ranks.together(
     [&]
     {
       std::vector<double> points, displacements;
-      for (const Given& one : given)
+      for (const PrescribedPoint& one : given)
       {
         points.insert(points.end(), one.place.begin(), one.place.end());
         displacements.insert(displacements.end(), one.displacement.begin(), one.displacement.end());
@@ -258,7 +271,8 @@ void WarpStep::improve(
     const Index part = this->Parts.part(static_cast<Index>(i));
     fixed[i] = fixed[i] || part < 0 || !moving[part];
   }
-  if (std::find(fixed.begin(), fixed.end(), 0) == fixed.end())
+  const WarpRanks& ranks = this->Parts.ranks();
+  if (!ranks.any(std::find(fixed.begin(), fixed.end(), 0) != fixed.end()))
   {
     return;
   }
@@ -271,15 +285,17 @@ void WarpStep::improve(
     stage("optimize", this->optimize(Aim::Shape, fixed, control, points));
   }
   const bool tangled = result.invertedAfter > 0;
+  const Index cells =
+    ranks.several() ? ranks.mesh().globalCells() : this->Initial.view().numberOfCells;
   if (tangled && !control.stopped())
   {
     stage("untangle", this->untangle(fixed, control, points));
   }
   // In a step of many the next step needs a good mesh; else the target is the shape of the initial
   // mesh.
-  const bool optimizes = this->Following ? result.invertedAfter == 0
-                                         : options.method == WarpMethod::Hybrid && !literal &&
-      result.invertedAfter < this->Initial.view().numberOfCells;
+  const bool optimizes = this->Following
+    ? result.invertedAfter == 0
+    : options.method == WarpMethod::Hybrid && !literal && result.invertedAfter < cells;
   if (optimizes && !control.stopped())
   {
     // The shape (4.22) grows with the fourth power of T. From elements that are barely valid its
@@ -300,25 +316,49 @@ void WarpStep::improve(
 }
 
 //------------------------------------------------------------------------------
-int WarpStep::untangle(
-  const std::vector<unsigned char>& fixed, WarpControl& control, std::vector<double>& points) const
+/// The initial mesh with other points, which stay alive.
+Mesh WarpStep::moved(const std::vector<double>& points, int threads) const
 {
   MeshView view = this->Initial.view();
   view.points = points.data();
-  Mesh mesh(view, control.options().threads);
+  Mesh mesh(view, threads);
   mesh.setMirrored(this->Initial.mirrored());
+  return mesh;
+}
+
+//------------------------------------------------------------------------------
+int WarpStep::untangle(
+  const std::vector<unsigned char>& fixed, WarpControl& control, std::vector<double>& points) const
+{
+  const WarpRanks& ranks = this->Parts.ranks();
   UntangleOptions options;
   options.effort = this->Following ? Effort::Local : Effort::Normal;
   options.fixed = fixed.data();
   options.threads = control.options().threads;
   options.maximumSeconds = control.secondsLeft();
   options.observer = [&control](const IterationState& state)
-  { return control.proceed(0.3 + 0.4 * state.progress); };
-  UntangleResult done = tautline::untangle(mesh, options);
+  { return control.watch(0.3 + 0.4 * state.progress); };
+  UntangleResult done;
+  if (ranks.several())
+  {
+    const PlacedMesh placed(ranks.mesh(), points);
+    RankUntangleResult ofAll = untangleOnRanks(ranks.mesh(), this->Initial.mirrored(), options);
+    done = std::move(ofAll.result);
+    if (ofAll.exceededMemory)
+    {
+      control.addMessage("The whole mesh did not fit into the memory of the first process, where "
+                         "the elements that are left would have been untangled.");
+    }
+  }
+  else
+  {
+    done = tautline::untangle(this->moved(points, control.options().threads), options);
+  }
   if (done.reason == StopReason::TimeLimit)
   {
     control.result().timeLimit = true;
   }
+  control.agree();
   points = std::move(done.points);
   control.result().impossible = done.impossible;
   return done.history.empty() ? 0 : done.history.back().iteration;
@@ -328,11 +368,17 @@ int WarpStep::untangle(
 int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,
   std::vector<double>& points) const
 {
-  MeshView view = this->Initial.view();
-  view.points = points.data();
-  Mesh mesh(view, control.options().threads);
-  mesh.setMirrored(this->Initial.mirrored());
-  const Targets targets = referenceTargets(mesh, this->Initial);
+  const WarpRanks& ranks = this->Parts.ranks();
+  const Mesh mesh = this->moved(points, control.options().threads);
+  Targets targets;
+  ranks.together(
+    [&]
+    {
+      if (mesh.view().numberOfCells > 0)
+      {
+        targets = referenceTargets(mesh, this->Initial);
+      }
+    });
   const WarpOptions& options = control.options();
   OptimizeOptions optimization = options.optimization;
   optimization.fixed = fixed.data();
@@ -366,7 +412,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   else
   {
     other.metric = Metric::UntangleBeta;
-    std::vector<double> sizes(view.numberOfCells);
+    std::vector<double> sizes(mesh.view().numberOfCells);
     evaluateMetric(this->Initial, Metric::Size, EvaluationOptions(), sizes.data());
     double sum = 0;
     for (double size : sizes)
@@ -383,8 +429,18 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
     stop.maximumSeconds = stop.maximumSeconds > 0 ? std::min(left, stop.maximumSeconds) : left;
   }
   optimization.observer = [&control](const IterationState& state)
-  { return control.proceed(0.7 + 0.3 * state.progress); };
-  OptimizeResult done = tautline::optimize(mesh, optimization);
+  { return control.watch(0.7 + 0.3 * state.progress); };
+  OptimizeResult done;
+  if (ranks.several())
+  {
+    const PlacedMesh placed(ranks.mesh(), points);
+    done = optimizeOnRanks(ranks.mesh(), this->Initial.mirrored(), optimization);
+  }
+  else
+  {
+    done = tautline::optimize(mesh, optimization);
+  }
+  control.agree();
   points = std::move(done.points);
   return done.iterations;
 }

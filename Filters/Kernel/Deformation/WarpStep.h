@@ -56,6 +56,7 @@ private:
     const Mesh&, const std::vector<unsigned char>&, const double*, WarpControl&);
   std::vector<double> warpPointwise(
     PointwiseMethod method, const double* displacement, WarpControl& control) const;
+  Mesh moved(const std::vector<double>& points, int threads) const;
   int untangle(const std::vector<unsigned char>& fixed, WarpControl& control,
     std::vector<double>& points) const;
   enum class Aim

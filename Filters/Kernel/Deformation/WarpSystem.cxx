@@ -54,12 +54,15 @@ void add(double s, const std::vector<double>& x, std::vector<double>& y, int thr
 }
 
 //------------------------------------------------------------------------------
-WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<unsigned char>& held,
+WarpSystem::WarpSystem(const WarpMatrix& given, int block, const std::vector<unsigned char>& held,
   const double* points, int dimension, const WarpOptions& options, const WarpRanks& ranks)
   : Options(options)
   , Ranks(ranks)
   , Block(block)
+  , Symmetric(given.symmetric)
+  , Shared(given.shared && ranks.several())
 {
+  const SparseMatrix& all = given.matrix;
   const Index n = static_cast<Index>(held.size());
   std::vector<std::int32_t> unknown(n * block, -1);
   for (Index p = 0; p < n; ++p)
@@ -84,7 +87,7 @@ WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<uns
     for (Index row = p * block; row < (p + 1) * block; ++row)
     {
       // Another rank has the row of a point that it owns.
-      const Index end = ranks.owns(p) ? all.offsets[row + 1] : all.offsets[row];
+      const Index end = this->Shared || ranks.owns(p) ? all.offsets[row + 1] : all.offsets[row];
       for (Index e = all.offsets[row]; e < end; ++e)
       {
         const std::int32_t column = unknown[all.columns[e]];
@@ -117,9 +120,10 @@ WarpSystem::WarpSystem(const SparseMatrix& all, int block, const std::vector<uns
     this->Unknowns = this->Numbering->globalSize() * block;
   }
   this->DirectLimit = dimension == 2 ? directPlanar : directVolume;
-  this->Method = !options.automaticSolver ? options.solver.method
+  this->Method = !this->automatic()       ? options.solver.method
     : this->Unknowns <= this->DirectLimit ? KrylovMethod::Direct
-                                          : KrylovMethod::ConjugateGradient;
+    : this->Symmetric                     ? KrylovMethod::ConjugateGradient
+                                          : KrylovMethod::BiCGStab;
 }
 
 //------------------------------------------------------------------------------
@@ -132,7 +136,7 @@ void WarpSystem::makeSolver(KrylovMethod method, WarpControl& control)
   options.observer = nullptr;
   options.maximumSeconds = control.secondsLeft();
   options.cancelled = nullptr;
-  if (this->Options.automaticSolver && method == KrylovMethod::ConjugateGradient)
+  if (this->automatic() && method != KrylovMethod::Direct)
   {
     // Coarser and sparser levels than BoomerAMG's own choice: a third of the time for 10^6
     // tetrahedra.
@@ -145,6 +149,7 @@ void WarpSystem::makeSolver(KrylovMethod method, WarpControl& control)
   LinearSystem system;
   system.matrix = &this->Inner->matrix;
   system.blockSize = this->Block;
+  system.symmetric = system.positiveDefinite = this->Symmetric;
   system.coordinates = this->Inner->coordinates.data();
   system.owner = this->Inner;
   system.numbering = this->Numbering.get();
@@ -157,6 +162,24 @@ void WarpSystem::makeSolver(KrylovMethod method, WarpControl& control)
 double WarpSystem::product(const std::vector<double>& a, const std::vector<double>& b) const
 {
   return this->Ranks.sum(tautline::product(a, b, this->Options.threads));
+}
+
+//------------------------------------------------------------------------------
+/// Of a product with a shared matrix: the sum of what the ranks have, and 0 at unknowns of others.
+void WarpSystem::addShares(std::vector<double>& vector) const
+{
+  if (!this->Shared)
+  {
+    return;
+  }
+  this->Numbering->sum(vector.data(), this->Block);
+  for (std::size_t i = 0; i < this->Free.size(); ++i)
+  {
+    if (!this->Numbering->owned(static_cast<Index>(i)))
+    {
+      std::fill_n(vector.begin() + static_cast<std::ptrdiff_t>(i) * this->Block, this->Block, 0.0);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -177,6 +200,7 @@ std::vector<double> WarpSystem::rightHandSide(const std::vector<double>& values)
         right[i] = sum;
       }
     });
+  this->addShares(right);
   return right;
 }
 
@@ -204,6 +228,7 @@ void WarpSystem::remember(const std::vector<double>& solution)
   Former former;
   former.right.resize(this->Inner->matrix.size);
   this->Inner->matrix.multiply(solution.data(), former.right.data(), threads);
+  this->addShares(former.right);
   const double before = std::sqrt(this->product(former.right, former.right));
   std::vector<double> spanned(this->Inner->matrix.size, 0.0);
   const double length = this->project(former.right, spanned);
@@ -287,7 +312,7 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
       constexpr double loosest = 1e-2;
       std::vector<double> y;
       good = this->runSolver(right, std::min(loosest, tolerance * whole / rest), y, control);
-      if (!good && !control.stopped() && this->Options.automaticSolver &&
+      if (!good && !control.stopped() && this->automatic() &&
         this->Method != KrylovMethod::Direct && this->Unknowns <= largestFactor * this->DirectLimit)
       {
         this->makeSolver(KrylovMethod::Direct, control);

@@ -17,6 +17,20 @@
 
 namespace tautline
 {
+/// The matrix of all points.
+struct WarpMatrix
+{
+  WarpMatrix(const SparseMatrix& given) // NOLINT(google-explicit-constructor): a matrix as it is
+    : matrix(given)
+  {
+  }
+  const SparseMatrix& matrix;
+  bool symmetric = true; ///< and positive semidefinite; else diagonally dominant
+  /// On several ranks: the matrix is the sum of those of all of them. Else the rows of own points
+  /// count, which are whole.
+  bool shared = false;
+};
+
 /**
  * @class tautline::WarpSystem
  * @brief Keeps the matrix, its preconditioner or factorization, and former solutions.
@@ -30,15 +44,15 @@ class WarpSystem
 {
 public:
   /**
-   * @param ranks that solve together; of `all` the rows of own points count, and values are given
-   * and found at all local points
-   * @param all the matrix of all points, symmetric and positive semidefinite
+   * @param ranks that solve together; values are given and found at all local points
+   * @param all the matrix of all points, read here only. Where it is not symmetric the automatic
+   * solver is taken.
    * @param block unknowns per point
    * @param held one flag per point: its values are given
    * @param points 3 coordinates per point
    * @param dimension of the mesh, for the choice of the solver
    */
-  WarpSystem(const SparseMatrix& all, int block, const std::vector<unsigned char>& held,
+  WarpSystem(const WarpMatrix& all, int block, const std::vector<unsigned char>& held,
     const double* points, int dimension, const WarpOptions& options, const WarpRanks& ranks);
 
   /**
@@ -57,6 +71,8 @@ private:
   };
 
   std::vector<double> rightHandSide(const std::vector<double>& values) const;
+  void addShares(std::vector<double>& vector) const;
+  bool automatic() const { return this->Options.automaticSolver || !this->Symmetric; }
   double project(std::vector<double>& right, std::vector<double>& solution) const;
   void remember(const std::vector<double>& solution);
   bool runSolver(const std::vector<double>& right, double tolerance, std::vector<double>& solution,
@@ -77,6 +93,7 @@ private:
   std::unique_ptr<PointNumbering> Numbering; ///< of the free points of several ranks
   Index Unknowns = 0;                        ///< on all ranks
   int Block;
+  bool Symmetric, Shared;
   std::vector<Index> Free; ///< points that are not held
   std::shared_ptr<InnerSystem> Inner = std::make_shared<InnerSystem>();
   std::vector<Index> Starts;  ///< of the rows of A_B

@@ -2,6 +2,8 @@
 #include "WarpPointwise.h"
 
 #include "WarpBatches.h"
+#include "WarpSystem.h"
+#include "WarpParts.h"
 #include "tautline/Core/EigenCompatibility.h"
 #include "tautline/Core/LineSearch.h"
 #include "tautline/Core/UnionFind.h"
@@ -144,8 +146,10 @@ void maximizeProduct(const std::vector<Vec3>& offsets, int dimension, std::vecto
 class Combinations
 {
 public:
-  explicit Combinations(const Mesh& mesh)
+  /// Neighbours are in the order of their ids, so that the weights do not depend on the ranks.
+  explicit Combinations(const Mesh& mesh, const WarpRanks& ranks = {})
     : Input(mesh)
+    , Ranks(ranks)
     , Around(mesh.vertexCells())
   {
   }
@@ -171,7 +175,9 @@ public:
         normal += vectorArea(t, p.data());
       }
     }
-    std::sort(result.neighbors.begin(), result.neighbors.end());
+    std::sort(result.neighbors.begin(), result.neighbors.end(),
+      [this](Index a, Index b)
+      { return this->Ranks.several() ? this->Ranks.id(a) < this->Ranks.id(b) : a < b; });
     result.neighbors.erase(
       std::unique(result.neighbors.begin(), result.neighbors.end()), result.neighbors.end());
     result.neighbors.erase(
@@ -224,6 +230,7 @@ private:
   }
 
   const Mesh& Input;
+  WarpRanks Ranks;
   VertexCells Around;
 };
 
@@ -360,6 +367,86 @@ Matrix assemble(const PrescribedMotion& motion, const Unknowns& unknowns,
   matrix.setFromTriplets(entries.begin(), entries.end());
   return matrix;
 }
+
+/// The affine motion at the local points, 3 each, of the prescribed points of all ranks.
+/// @return whether it is all there is, to rounding
+bool affineOfAll(const std::vector<PrescribedPoint>& given, const MeshView& local, int threads,
+  std::vector<double>& motion)
+{
+  std::vector<double> points, displacements;
+  for (const PrescribedPoint& one : given)
+  {
+    points.insert(points.end(), one.place.begin(), one.place.end());
+    displacements.insert(displacements.end(), one.displacement.begin(), one.displacement.end());
+  }
+  points.insert(points.end(), local.points, local.points + 3 * local.numberOfPoints);
+  displacements.resize(points.size(), 0.0);
+  std::vector<unsigned char> flags(points.size() / 3, 0);
+  std::fill_n(flags.begin(), given.size(), 1);
+  const Index start = 0;
+  MeshView view;
+  view.numberOfPoints = static_cast<Index>(flags.size());
+  view.points = points.data();
+  view.offsets = &start;
+  const Mesh cloud(view);
+  const PrescribedMotion all(cloud, flags, displacements.data(), threads);
+  const std::vector<double> moved = all.displacements({});
+  motion.assign(moved.begin() + 3 * static_cast<std::ptrdiff_t>(given.size()), moved.end());
+  return all.affine();
+}
+
+/// Each own unknown minus its combination of neighbours, of all local points; other rows are empty.
+/// @return false if the control stopped it
+bool assembleOwn(
+  const Mesh& mesh, const WarpParts& parts, WarpControl& control, SparseMatrix& matrix)
+{
+  const WarpRanks& ranks = parts.ranks();
+  const Index n = mesh.view().numberOfPoints;
+  std::vector<Index> unknowns;
+  for (Index i = 0; i < n; ++i)
+  {
+    if (!parts.held()[i] && ranks.owns(i))
+    {
+      unknowns.push_back(i);
+    }
+  }
+  std::vector<std::vector<std::pair<Index, double>>> rows(unknowns.size());
+  if (!unknowns.empty())
+  {
+    const Combinations combinations(mesh, ranks);
+    const bool done = forEachBatch(rows.size(), 0.0, control,
+      [&](std::size_t i)
+      {
+        const WeightedNeighbors row = combinations.at(unknowns[i]);
+        rows[i].emplace_back(unknowns[i], 1.0);
+        for (std::size_t j = 0; j < row.neighbors.size(); ++j)
+        {
+          rows[i].emplace_back(row.neighbors[j], -row.weights[j]);
+        }
+        std::sort(rows[i].begin(), rows[i].end());
+      });
+    if (!done)
+    {
+      return false;
+    }
+  }
+  matrix.size = n;
+  auto next = unknowns.begin();
+  for (Index i = 0; i < n; ++i)
+  {
+    if (next != unknowns.end() && *next == i)
+    {
+      for (const auto& [column, value] : rows[next - unknowns.begin()])
+      {
+        matrix.columns.push_back(static_cast<std::int32_t>(column));
+        matrix.values.push_back(value);
+      }
+      ++next;
+    }
+    matrix.offsets.push_back(matrix.nonzeros());
+  }
+  return true;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -405,5 +492,69 @@ std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
     }
   }
   return result;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> warpByWeightedLaplacian(
+  const Mesh& mesh, const WarpParts& parts, const double* displacement, WarpControl& control)
+{
+  const WarpOptions& options = control.options();
+  const WarpRanks& ranks = parts.ranks();
+  const std::vector<unsigned char>& prescribed = parts.prescribed();
+  const MeshView& view = mesh.view();
+  const std::vector<PrescribedPoint> given = ranks.prescribedOfAll(view, prescribed, displacement);
+  std::vector<double> moved;
+  bool affine = false; // the same on all ranks
+  SparseMatrix matrix;
+  ranks.together(
+    [&]
+    {
+      affine = affineOfAll(given, view, options.threads, moved);
+      if (!affine)
+      {
+        assembleOwn(mesh, parts, control, matrix);
+      }
+    });
+  constexpr double assembled = 0.5; // of the progress
+  if (!control.proceed(assembled))
+  {
+    return {};
+  }
+  const Index n = view.numberOfPoints;
+  std::unique_ptr<WarpSystem> system;
+  if (!affine && parts.freePoints() > 0)
+  {
+    WarpMatrix rows(matrix);
+    rows.symmetric = false;
+    const int dimension = parts.dimension() == Dimension::Volume ? 3 : 2;
+    system =
+      std::make_unique<WarpSystem>(rows, 1, parts.held(), view.points, dimension, options, ranks);
+    matrix = {};
+  }
+  std::vector<double> values(n);
+  // A plane is at right angles to an axis: no error leads out of it.
+  for (int c = 0; c < 3 && system; ++c)
+  {
+    for (Index i = 0; i < n; ++i)
+    {
+      values[i] = prescribed[i] ? displacement[3 * i + c] - moved[3 * i + c] : 0.0;
+    }
+    const bool solved = system->solve(values, control);
+    if (control.stopped())
+    {
+      return {};
+    }
+    if (!solved)
+    {
+      throw Error("the linear system of weighted Laplacian smoothing could not be solved to " +
+        std::to_string(options.tolerance) + "; raise the tolerance or choose another method (" +
+        system->failure() + ")");
+    }
+    for (Index i = 0; i < n; ++i)
+    {
+      moved[3 * i + c] += parts.held()[i] ? 0.0 : values[i];
+    }
+  }
+  return moved;
 }
 }
