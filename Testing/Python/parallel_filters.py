@@ -41,6 +41,9 @@ if grid.GetNumberOfPoints():
     here = x[np.array(grid.GetPointData().GetArray("place"))]
     add_array(grid.GetPointData(), "stay", (here[:, 0] < 0.3).astype(float))
     add_array(grid.GetPointData(), "push", here[:, 1:2] * [0.1, 0, 0])
+    numbers = np.array(grid.GetCellData().GetArray("cell"))
+    add_array(grid.GetCellData(), "along", np.stack([1 + numbers % 5, 1 + numbers % 2, 0.2 + numbers % 3], -1))
+    add_array(grid.GetCellData(), "region", (numbers % 4 == 0).astype(float))
     if IDS:
         add_global_ids(grid)
     output.VTKObject.ShallowCopy(grid)
@@ -77,8 +80,16 @@ def motions(name, cut, **given):
     results[f"warp table {name}"] = table(warped, 2)
     if name != "tree":  # two partitions do for so many methods
         methods(name, source)
-    pushed = update(WarpMesh(source, Motion="Displacement array", Displacement=["POINTS", "push"], Method="Hybrid"))
-    results[f"hybrid {name}"] = [values(pushed, ["points"]), pushed.Summary.splitlines()[0]]
+    for key, options in {
+        "hybrid": {"Motion": "Displacement array", "Displacement": ["POINTS", "push"], "Method": "Hybrid"},
+        "untangled": {"Motion": "Displacement array", "Displacement": ["POINTS", "push"],
+                      "Method": "FEMWARP and untangling", "FixedPoints": ["POINTS", "stay"]},
+        "literal": {"Motion": "Displacement array", "Displacement": ["POINTS", "push"], "Method": "Hybrid",
+                    "UntangleFirst": 0},
+    }.items():  # fmt: skip
+        moved = update(WarpMesh(source, **options))
+        results[f"{key} {name}"] = [values(moved, ["points"]), int(moved.InvertedAfterWarp), int(moved.Inverted),
+                                    moved.Summary]  # fmt: skip
     options = {"Percentage": 80, "Fraction": 0.7, "TangledFraction": 0.02, "FixedPoints": ["POINTS", "stay"]}
     moved = update(PerturbMesh(source, **options))
     results[f"tangle {name}"] = [values(moved, ["points", "Displacement"]), moved.Summary]
@@ -111,6 +122,13 @@ def methods(name, source):
         "small steps": {**turned, "Method": "Small-step FEMWARP", "Steps": WARP_STEPS},
         "stiffening": {**turned, "Method": "Elasticity, iterative stiffening"},
         "jacobian": {**pushed, "Method": "Elasticity, Jacobian-based stiffening"},
+        "cells": {**pushed, "Method": "Anisotropic FEMWARP", "Coefficients": "A tensor per cell",
+                  "CellTensors": ["CELLS", "along"]},
+        "regions": {**turned, "Method": "Anisotropic FEMWARP", "Coefficients": "Per region",
+                    "RegionArray": ["CELLS", "region"], "Regions": [1, 1, 0.1, 5]},
+        "gradients": {**pushed, "Method": "Anisotropic FEMWARP", "Coefficients": "From the motion, local gradients"},
+        "biharmonic": {**turned, "Method": "Biharmonic"},
+        "laplacian": {**pushed, "Method": "Weighted Laplacian"},
         "distances": {**pushed, "Method": "Inverse distance weighting"},
         "radial": {**turned, "Method": "Radial basis functions"},
         "part": {**turned, "Method": "FEMWARP", "MovedPart": "Boundary parts by number", "Parts": [1]},
@@ -118,6 +136,7 @@ def methods(name, source):
                    "MovedArray": ["POINTS", "place"]},
     }.items():
         warped = update(WarpMesh(source, **options))
+        assert "put together" not in warped.Summary, warped.Summary
         results[f"{case} {name}"] = [values(warped, ["points"]), values(warped, ["TMP shape"], "cell"),
                                      table(warped, 1), table(warped, 2)]  # fmt: skip
 
