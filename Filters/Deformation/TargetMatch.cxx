@@ -181,13 +181,7 @@ private:
       }
       unknown += result[i] == None;
     }
-    if (unknown > 0)
-    {
-      throw Error("The target's array '" + std::string(ids->GetName()) + "' has " + text(unknown) +
-        " values that are no " +
-        (own ? "values of the mesh's array of that name" : "point of the mesh") +
-        ": choose another array, or None.");
-    }
+    requireKnownIds(unknown, ids->GetName(), own != nullptr);
     return result;
   }
 
@@ -342,38 +336,97 @@ void project(const TargetRequest& request, TargetPlaces& places)
 {
   const MeshView& view = request.view->view();
   const bool ofVolume = request.view->dimension() == Dimension::Volume;
-  const auto surface = surfaceOf(request.target, ofVolume);
+  places.given = *request.projected;
+  Projection found = projected(request.target, ofVolume, view.points, places.given);
+  places.displacement = std::move(found.displacement);
+  places.how = describeProjection(count(places.given), found.farthest);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* chosenTargetIds(vtkDataSet* target, const std::string& name)
+{
+  if (name.empty() || name == "None")
+  {
+    return nullptr;
+  }
+  vtkDataArray* array = target->GetPointData()->GetArray(name.c_str());
+  if (!array)
+  {
+    throw Error(
+      "The target has no point array '" + name + "' of point ids: choose another, or None.");
+  }
+  return array;
+}
+
+//------------------------------------------------------------------------------
+Projection projected(
+  vtkDataSet* target, bool ofVolume, const double* points, const std::vector<unsigned char>& flags)
+{
+  const auto surface = surfaceOf(target, ofVolume);
   vtkNew<vtkStaticCellLocator> locator;
   locator->SetDataSet(surface);
   locator->BuildLocator();
   vtkNew<vtkGenericCell> cell;
-  double farthest = 0;
-  for (Index i = 0; i < view.numberOfPoints; ++i)
+  Projection result;
+  result.displacement.assign(3 * flags.size(), 0.0);
+  for (std::size_t i = 0; i < flags.size(); ++i)
   {
-    if (!(*request.projected)[i])
+    if (!flags[i])
     {
       continue;
     }
     double closest[3], squared = -1;
     vtkIdType id = None;
     int part = 0;
-    locator->FindClosestPoint(view.points + 3 * i, closest, cell, id, part, squared);
+    locator->FindClosestPoint(points + 3 * i, closest, cell, id, part, squared);
     if (id < 0)
     {
-      throw Error("No point of the target is closest to point " + text(i) +
+      throw Error("No point of the target is closest to point " + text(static_cast<Index>(i)) +
         " of the mesh: are the target's coordinates finite?");
     }
-    for (int k = 0; k < 3; ++k)
+    for (std::size_t k = 0; k < 3; ++k)
     {
-      places.displacement[3 * i + k] = closest[k] - view.points[3 * i + k];
+      result.displacement[3 * i + k] = closest[k] - points[3 * i + k];
     }
-    places.given[i] = 1;
-    farthest = std::max(farthest, std::sqrt(squared));
+    result.farthest = std::max(result.farthest, std::sqrt(squared));
   }
-  places.how = "by projection: " + text(count(places.given)) +
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::string describeProjection(Index points, double farthest)
+{
+  return "by projection: " + text(points) +
     " points to the closest point of the target, the farthest of them " + std::to_string(farthest) +
     " away";
 }
+
+std::string describeMatched(Index given, Index matched)
+{
+  return ": " + text(given) + " of " + text(matched) + " points of the boundary";
+}
+
+//------------------------------------------------------------------------------
+void requireFiniteTarget(Index wrong)
+{
+  if (wrong > 0)
+  {
+    throw Error("The target has " + text(wrong) +
+      " points of the boundary with coordinates that are NaN or infinite: repair them, or leave "
+      "them out "
+      "(Correspondence: Point ids).");
+  }
+}
+
+void requireKnownIds(Index unknown, const std::string& array, bool ofMesh)
+{
+  if (unknown > 0)
+  {
+    throw Error("The target's array '" + array + "' has " + text(unknown) + " values that are no " +
+      (ofMesh ? "values of the mesh's array of that name" : "point of the mesh") +
+      ": choose another array, or None.");
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -411,17 +464,10 @@ TargetPlaces placesOf(const TargetRequest& request)
     std::copy(d.begin(), d.end(), &places.displacement[3 * point]);
     places.given[point] = 1;
   }
-  if (wrong > 0)
-  {
-    throw Error("The target has " + text(wrong) +
-      " points of the boundary with coordinates that are NaN or infinite: repair them, or leave "
-      "them out "
-      "(Correspondence: Point ids).");
-  }
+  requireFiniteTarget(wrong);
   if (!ids.empty())
   {
-    places.how += ": " + text(count(places.given)) + " of " + text(count(*request.matched)) +
-      " points of the boundary";
+    places.how += describeMatched(count(places.given), count(*request.matched));
   }
   return places;
 }

@@ -48,5 +48,33 @@ struct TargetPlaces
 
 /// Throws Error that names what does not fit.
 TargetPlaces placesOf(const TargetRequest& request);
+
+/// The point array of a target with a name; null for "" and "None". Throws Error if there is none.
+vtkDataArray* chosenTargetIds(vtkDataSet* target, const std::string& name);
+
+/// Points that were projected.
+struct Projection
+{
+  std::vector<double> displacement; ///< 3 per point, 0 where the flag is
+  double farthest = 0;
+};
+
+/**
+ * @brief The closest points of a target, or of its boundary if it has as many dimensions as the
+ * mesh. Throws Error if the target has no surface (curve).
+ * @param ofVolume whether it is a volume mesh whose points these are
+ * @param points 3 per point
+ */
+Projection projected(
+  vtkDataSet* target, bool ofVolume, const double* points, const std::vector<unsigned char>& flags);
+
+/// "by projection: N points to the closest point of the target, ..."
+std::string describeProjection(Index points, double farthest);
+/// ": N of M points of the boundary", behind how they correspond.
+std::string describeMatched(Index given, Index matched);
+/// Throws Error if target points that are given have coordinates that are not finite.
+void requireFiniteTarget(Index wrong);
+/// Throws Error if values of an array of the target are none of the mesh.
+void requireKnownIds(Index unknown, const std::string& array, bool ofMesh);
 }
 #endif

@@ -4,6 +4,7 @@
 #include "Processes.h"
 #include "RankMesh.h"
 #include "RankStatistics.h"
+#include "WholeOnAll.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Mesh/BoundaryParts.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
@@ -12,10 +13,14 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace tautline
 {
@@ -27,6 +32,51 @@ struct MovedPoints
   std::vector<Index> ids;
   std::vector<double> places; ///< 3 each
 };
+
+/// Whether points of a target correspond to those of the mesh by ids.
+bool matchesByIds(const WarpSettings& settings)
+{
+  const bool chosen = !settings.targetIds.empty() && settings.targetIds != "None";
+  return settings.correspondence == Correspondence::PointIds ||
+    (settings.correspondence == Correspondence::Automatic && chosen);
+}
+
+/// Whether a piece of the target has the points and cells of a piece of the mesh.
+bool isSamePiece(vtkDataSet* input, vtkDataSet* target)
+{
+  if (!target || target->GetNumberOfPoints() != input->GetNumberOfPoints() ||
+    target->GetNumberOfCells() != input->GetNumberOfCells())
+  {
+    return !target && input->GetNumberOfPoints() == 0;
+  }
+  vtkNew<vtkIdList> a, b;
+  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
+  {
+    input->GetCellPoints(cell, a);
+    target->GetCellPoints(cell, b);
+    if (!std::equal(a->begin(), a->end(), b->begin(), b->end()))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Whether each process can find the places of its points; the others match the points of the whole
+/// boundary. On one process.
+bool findsPlaces(const WarpSettings& settings, vtkDataSet* input, vtkDataSet* target)
+{
+  if (settings.correspondence == Correspondence::ClosestPoint)
+  {
+    return true;
+  }
+  if (matchesByIds(settings))
+  {
+    return input->GetNumberOfPoints() == 0 ||
+      input->GetPointData()->GetArray(settings.targetIds.c_str());
+  }
+  return settings.correspondence != Correspondence::SameBoundary && isSamePiece(input, target);
+}
 
 /**
  * @class PieceWarp
@@ -46,6 +96,11 @@ private:
   PointFlags chosenToMove();
   PointFlags staying();
   void moveByArray();
+  void agreeOn(const std::vector<double>& given);
+  template <class PlaceOf>
+  PointFlags moveTo(const PointFlags& matched, const PlaceOf& placeOf);
+  void moveToTarget();
+  void moveByIds(const PointFlags& matched);
   void moveByTransform();
   void findTensors();
   std::vector<double> transformed(double fraction);
@@ -62,6 +117,7 @@ private:
   std::vector<double> Displacement; ///< 3 per local point, at the amount
   MovedPoints Cloud;                ///< of a transform
   std::vector<double> Tensors;      ///< 6 per local cell, or empty
+  std::string Correspondence;       ///< of a target, a sentence
 };
 
 //------------------------------------------------------------------------------
@@ -200,7 +256,15 @@ void PieceWarp::moveByArray()
           displacementsOf(displacementArray(this->Settings.arrays, this->Piece.input), boundary);
       }
     });
-  // Of points that are one all pieces must have the same.
+  this->agreeOn(given);
+}
+
+//------------------------------------------------------------------------------
+/// The displacements of local points from those of the piece's. Of points that are one all pieces
+/// must have the same.
+void PieceWarp::agreeOn(const std::vector<double>& given)
+{
+  const Index points = this->Whole.piece().numberOfPoints;
   constexpr double none = std::numeric_limits<double>::infinity();
   this->Displacement.assign(3 * this->local().localPoints(), 0.0);
   bool differ = false;
@@ -225,6 +289,124 @@ void PieceWarp::moveByArray()
     throw Error("Points at the same place are treated as one, but have different displacements: "
                 "make them equal, or switch Merge Coincident Points off.");
   }
+}
+
+//------------------------------------------------------------------------------
+/// Moves points of the boundary to places of the target.
+/// @param placeOf a point of the piece; writes its place, or returns false
+/// @return one flag per local point: it has a place
+template <class PlaceOf>
+PointFlags PieceWarp::moveTo(const PointFlags& matched, const PlaceOf& placeOf)
+{
+  const MeshView& piece = this->Whole.piece();
+  std::vector<double> given(3 * piece.numberOfPoints, 0.0);
+  PointFlags placed(piece.numberOfPoints, 0);
+  PointFlags broken = placed;
+  for (Index p = 0; p < piece.numberOfPoints; ++p)
+  {
+    const Index at = this->local().localOfPiece()[p];
+    Vec3 place;
+    if (at < 0 || !matched[at] || !placeOf(p, place))
+    {
+      continue;
+    }
+    const Vec3 d = place - tautline::pointOf(piece, p);
+    placed[p] = 1;
+    broken[p] = !std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2]);
+    std::copy(d.begin(), d.end(), &given[3 * p]);
+  }
+  requireFiniteTarget(this->countOwned(this->Whole.anyOf(broken)));
+  this->agreeOn(given);
+  return this->Whole.anyOf(placed);
+}
+
+//------------------------------------------------------------------------------
+/// By an array of ids that both have. The whole target is on every process.
+void PieceWarp::moveByIds(const PointFlags& matched)
+{
+  const std::string& name = this->Settings.targetIds;
+  const auto target = assembleOnAll(this->Group, this->Piece.target, name);
+  std::unordered_map<double, vtkIdType> numbers;
+  vtkDataArray* ids = nullptr;
+  this->Group.together(
+    [&]
+    {
+      ids = chosenTargetIds(target, name);
+      for (vtkIdType i = 0; i < target->GetNumberOfPoints(); ++i)
+      {
+        numbers[ids->GetComponent(i, 0)] = i;
+      }
+    });
+  vtkDataArray* own = this->Piece.input->GetPointData()->GetArray(name.c_str());
+  std::vector<double> known; // ids that points of the mesh have
+  for (Index p = 0; p < this->Whole.piece().numberOfPoints; ++p)
+  {
+    const double id = own->GetComponent(p, 0);
+    if (numbers.count(id) > 0)
+    {
+      known.push_back(id);
+    }
+  }
+  std::unordered_set<double> all;
+  for (const std::vector<double>& list : this->Group.gatherItems(known))
+  {
+    all.insert(list.begin(), list.end());
+  }
+  Index unknown = 0;
+  for (vtkIdType i = 0; i < target->GetNumberOfPoints(); ++i)
+  {
+    unknown += static_cast<Index>(all.count(ids->GetComponent(i, 0)) == 0);
+  }
+  requireKnownIds(unknown, name, true);
+  const PointFlags placed = this->moveTo(matched,
+    [&](Index p, Vec3& place)
+    {
+      const auto found = numbers.find(own->GetComponent(p, 0));
+      if (found == numbers.end())
+      {
+        return false;
+      }
+      target->GetPoint(found->second, place.data());
+      return true;
+    });
+  this->Correspondence =
+    "by point ids" + describeMatched(this->countOwned(placed), this->countOwned(matched));
+}
+
+//------------------------------------------------------------------------------
+void PieceWarp::moveToTarget()
+{
+  const WarpSettings& set = this->Settings;
+  this->Moved = this->chosenToMove();
+  const PointFlags& matched = set.part == MovedPart::Automatic ? this->Boundary : this->Moved;
+  if (set.correspondence == Correspondence::ClosestPoint)
+  {
+    const auto target = assembleOnAll(this->Group, this->Piece.target, "");
+    Projection found;
+    this->Group.together(
+      [&] {
+        found = projected(target, this->Whole.volume(), this->local().points().data(), this->Moved);
+      });
+    std::transform(found.displacement.begin(), found.displacement.end(), found.displacement.begin(),
+      [&set](double d) { return set.amount * d; });
+    this->Displacement = std::move(found.displacement);
+    this->Correspondence =
+      describeProjection(this->countOwned(this->Moved), this->Group.maximum(found.farthest));
+    return;
+  }
+  if (matchesByIds(set))
+  {
+    this->moveByIds(matched);
+    return;
+  }
+  const PointFlags placed = this->moveTo(matched,
+    [this](Index p, Vec3& place)
+    {
+      this->Piece.target->GetPoint(p, place.data());
+      return true;
+    });
+  this->Correspondence = "as the same mesh, point by point" +
+    describeMatched(this->countOwned(placed), this->countOwned(matched));
 }
 
 //------------------------------------------------------------------------------
@@ -422,6 +604,10 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   {
     this->moveByTransform();
   }
+  else if (this->Settings.motion == MotionSource::Target)
+  {
+    this->moveToTarget();
+  }
   else
   {
     this->moveByArray();
@@ -446,6 +632,7 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   facts.boundaryPoints = this->countOwned(this->Prescribed);
   this->findTensors();
   const WarpResult result = this->warp();
+  facts.motion = this->Correspondence;
   facts.method = nameOf(this->Settings.options.method);
   const WarpCoefficients coefficients = this->Settings.options.coefficients;
   facts.coefficients = this->Settings.anisotropic() && this->Settings.amount > 0 &&
@@ -458,7 +645,7 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
 }
 
 //------------------------------------------------------------------------------
-std::string needOfWholeMesh(const WarpSession& session)
+std::string needOfWholeMesh(const WarpSession& session, vtkDataObject* input, vtkDataObject* target)
 {
   const MotionSource motion = session.settings.motion;
   if (motion == MotionSource::TimeSteps || session.sequence())
@@ -467,7 +654,18 @@ std::string needOfWholeMesh(const WarpSession& session)
   }
   if (motion == MotionSource::Target)
   {
-    return "motions to a target";
+    const auto onAny = [](bool here) { return minimumOverProcesses(here ? 0 : 1) == 0; };
+    auto* own = vtkDataSet::SafeDownCast(input);
+    auto* other = vtkDataSet::SafeDownCast(target);
+    if (onAny(!own || (target && !other)))
+    {
+      return "targets with blocks";
+    }
+    if (!onAny(other && other->GetNumberOfPoints() > 0) ||
+      onAny(!findsPlaces(session.settings, own, other)))
+    {
+      return "targets that are matched to the whole boundary";
+    }
   }
   return warpsOnRanks(session.settings.options) ? "" : "rescaled untangling objectives";
 }

@@ -8,6 +8,7 @@
 
 #include "WarpSession.h"
 
+class vtkDataObject;
 class vtkDataSet;
 class vtkSelection;
 
@@ -17,7 +18,10 @@ class RankMesh;
 
 /// What needs the whole mesh in one place, in the plural, "motions to a target"; "" if each process
 /// takes its piece.
-std::string needOfWholeMesh(const WarpSession& session);
+/// Collective.
+/// @param input the piece of the mesh @param target of this process, or null
+std::string needOfWholeMesh(
+  const WarpSession& session, vtkDataObject* input, vtkDataObject* target);
 
 /// What a process has of the inputs and outputs.
 struct WarpPiece
@@ -25,6 +29,7 @@ struct WarpPiece
   vtkDataSet* input;
   vtkSelection* moved; ///< what is selected to move, or null
   vtkSelection* fixed; ///< to stay, or null
+  vtkDataSet* target;  ///< of a motion to a target, or null
   vtkDataSet* output;
 };
 

@@ -87,21 +87,6 @@ vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
   return only;
 }
 
-vtkDataArray* targetIds(vtkDataSet* target, const std::string& name)
-{
-  if (name.empty() || name == "None")
-  {
-    return nullptr;
-  }
-  vtkDataArray* array = target->GetPointData()->GetArray(name.c_str());
-  if (!array)
-  {
-    throw Error(
-      "The target has no point array '" + name + "' of point ids: choose another, or None.");
-  }
-  return array;
-}
-
 bool allZero(const std::vector<double>& values)
 {
   return std::all_of(values.begin(), values.end(), [](double d) { return d == 0; });
@@ -503,7 +488,7 @@ void WarpSession::moveToTarget(const InputBlock& block, const RestingMesh& rest,
   request.view = &rest.mesh->given();
   request.target = targetOf(block, target);
   request.correspondence = set.correspondence;
-  request.ids = targetIds(request.target, set.targetIds);
+  request.ids = chosenTargetIds(request.target, set.targetIds);
   request.projected = &moved;
   request.matched = set.part == MovedPart::Automatic ? &rest.boundary : &moved;
   request.threads = set.options.threads;

@@ -306,7 +306,8 @@ int vtkMeshWarp::RequestData(
         output->ShallowCopy(input);
         const tautline::WarpPiece piece = { vtkDataSet::SafeDownCast(input),
           vtkSelection::GetData(inputVector[MovedPort]),
-          vtkSelection::GetData(inputVector[FixedPort]), vtkDataSet::SafeDownCast(output) };
+          vtkSelection::GetData(inputVector[FixedPort]), vtkDataSet::SafeDownCast(target),
+          vtkDataSet::SafeDownCast(output) };
         tautline::warpPieces(
           session.settings, *this->Group, *pieces, piece, history, statistics, totals);
         return;
@@ -389,7 +390,8 @@ bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
   this->Group.reset();
   this->Session->settings = this->GetSettings();
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
-  const std::string what = tautline::needOfWholeMesh(*this->Session);
+  const std::string what =
+    tautline::needOfWholeMesh(*this->Session, input, vtkDataObject::GetData(inputs[TargetPort]));
   std::string why =
     what.empty() || !tautline::isScattered(input) ? "" : what + " need the whole mesh";
   if (what.empty())

@@ -56,9 +56,9 @@ SparseMatrix matrixOf(
   return empty;
 }
 
-/// K M^-1 K: M is diagonal. Points outside all cells have empty rows. On several ranks the terms of
-/// the own points j, K_ij K_jk / M_jj, whose rows of K are whole: those of all ranks are to be added
-/// up.
+/// K M^-1 K: M is diagonal. Points outside all cells have empty rows. On several ranks the terms
+/// K_ij K_jk / M_jj of the own points j, whose rows of K are whole: those of all ranks are to be
+/// added up.
 SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass, const WarpRanks& ranks)
 {
   SparseMatrix result;
