@@ -53,12 +53,17 @@
  * options of the method are the same: animating Amount, or a target over time, computes them once.
  *
  * @par Several processes:
- * With motions by an array or a transform, each process works on its piece, with the methods
- * FEMWARP, anisotropic FEMWARP (but for coefficients per cell or region), small-step FEMWARP, the
- * elastic ones, inverse distances and radial basis functions: the points are those of one process,
- * to rounding. Matrices are not kept then. Otherwise, and for composite data and inclined planes,
- * the first process has the whole mesh while it computes and sends the results to the pieces. Ghost
- * cells count as copies; on one process, their points stay.
+ * Each process works on its piece. The points are those of one process, to rounding or the
+ * tolerance of the linear solver; where a method untangles or optimizes (HYBRID,
+ * FEMWARP_UNTANGLING) the order is another than on one process, the elements are as valid, and the
+ * points do not depend on the number of processes and the pieces. Matrices are not kept.
+ *
+ * A target is on all processes, where it is matched by CLOSEST_POINT, or by ids of which the mesh
+ * has an array of the same name. It may also have pieces with the points and cells of those of the
+ * mesh (AUTOMATIC_MATCH, SAME_MESH). With other targets, time steps, HYBRID with UntangleFirst off,
+ * composite data and inclined planes, the first process has the whole mesh while it computes and
+ * sends the results to the pieces; the summary states why. Ghost cells count as copies; on one
+ * process, their points stay.
  *
  * @par Example:
  * @code

@@ -23,9 +23,8 @@
 namespace tautline
 {
 /**
- * @brief Whether a mesh on several ranks is deformed by these options: FEMWARP, anisotropic FEMWARP
- * but for coefficients per cell, small-step FEMWARP, the elastic methods, inverse distances and
- * radial basis functions. The others need the mesh in one place.
+ * @brief Whether a mesh on several ranks is deformed by these options: all but Hybrid with
+ * untangleFirst off, which needs the mesh in one place.
  */
 TAUTLINE_SOLVERS_EXPORT bool warpsOnRanks(const WarpOptions& options);
 
@@ -49,13 +48,15 @@ public:
    * @brief The same for a mesh on several ranks, see warpsOnRanks(). Collective, as warp() is then:
    * points, displacements and flags are those of the local points, and a prescribed point is one,
    * with the same displacement, on all ranks that have it. The numbers of the result are those of
-   * the whole mesh.
+   * the whole mesh. Untangling and optimization are those of untangleOnRanks() and
+   * optimizeOnRanks(), whose order does not depend on the ranks.
    * @param mesh stays alive; volume, or planar at right angles to an axis; all cells of one
-   * dimension
+   * dimension. Its points are others within warp(), and as before when it returns.
    * @param mirrored the mesh is reversed throughout, see Mesh::setMirrored(); the same on all ranks
    * @param communicator of MPI, with the ranks of the mesh
    * @param ids one per local point: the pointwise methods take the prescribed points in this order
-   * @param options prescribed must be given
+   * @param options prescribed must be given; tensors are of local cells, the same on all ranks that
+   * have a cell
    */
   Warper(DistributedMesh& mesh, bool mirrored, std::vector<Index> ids, Communicator communicator,
     const WarpOptions& options);
