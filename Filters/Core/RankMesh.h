@@ -85,6 +85,10 @@ public:
   RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergePoints,
     Redistribution redistribution = Redistribution::None);
 
+  /// Frees the memory of mesh(), after which piece(), movedPiece(), skipped(), volume(),
+  /// mirrored() and notice() remain. Not collective.
+  void releaseMesh() { this->TheMesh.reset(); }
+
   DistributedMesh& mesh() { return *this->TheMesh; }
   const DistributedMesh& mesh() const { return *this->TheMesh; }
   /// Whether the mesh is reversed throughout, see Mesh::setMirrored().

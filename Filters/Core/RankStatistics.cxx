@@ -50,8 +50,22 @@ Measurement measureOnRanks(RankGroup& group, const Mesh& piece, int dimension, M
   const EvaluationOptions& options, const signed char* validity, const unsigned char* skip,
   double* values)
 {
+  group.together(
+    [&]
+    {
+      if (piece.view().numberOfCells > 0)
+      {
+        evaluateMetric(piece, metric, options, values);
+      }
+    });
+  return summarizeOnRanks(group, piece.view(), dimension, metric, validity, skip, values);
+}
+
+//------------------------------------------------------------------------------
+Measurement summarizeOnRanks(RankGroup& group, const MeshView& view, int dimension, Metric metric,
+  const signed char* validity, const unsigned char* skip, const double* values)
+{
   const MetricInfo& info = metricInfo(metric);
-  const MeshView& view = piece.view();
   std::vector<double> own;
   std::vector<WorstElement> worstOfOwn, worst;
   Measurement result;
@@ -60,7 +74,6 @@ Measurement measureOnRanks(RankGroup& group, const Mesh& piece, int dimension, M
     {
       if (view.numberOfCells > 0)
       {
-        evaluateMetric(piece, metric, options, values);
         const CellValues data = { view.numberOfCells, values, validity, view.cellTypes, skip };
         own = measuredValues(info, data);
         worstOfOwn = worstElements(info, data);

@@ -32,5 +32,10 @@ struct Measurement
 TAUTLINECORE_EXPORT Measurement measureOnRanks(RankGroup& group, const Mesh& piece, int dimension,
   Metric metric, const EvaluationOptions& options, const signed char* validity,
   const unsigned char* skip, double* values);
+
+/// The same of values that are known, one per cell of the piece.
+TAUTLINECORE_EXPORT Measurement summarizeOnRanks(RankGroup& group, const MeshView& piece,
+  int dimension, Metric metric, const signed char* validity, const unsigned char* skip,
+  const double* values);
 }
 #endif

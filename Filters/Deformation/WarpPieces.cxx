@@ -78,6 +78,40 @@ bool findsPlaces(const WarpSettings& settings, vtkDataSet* input, vtkDataSet* ta
   return settings.correspondence != Correspondence::SameBoundary && isSamePiece(input, target);
 }
 
+/// The shape of each cell against that before. Volumes are measured range by range, as the targets
+/// of a cell need nine times the memory of its value.
+void measureSimilarity(
+  const Mesh& after, const Mesh& before, int threads, std::vector<double>& values)
+{
+  const Index cells = after.view().numberOfCells;
+  Index solid = 0;
+  for (const CellBlock& block : after.blocks())
+  {
+    solid += topology(block.type).dimension == 3 ? block.count : 0;
+  }
+  constexpr Index range = Index(1) << 18;
+  const Index step = solid == cells ? range : cells; // a plane is that of all cells
+  for (Index first = 0; first < cells; first += step)
+  {
+    const auto partOf = [&](const Mesh& mesh)
+    {
+      MeshView view = mesh.view();
+      view.numberOfCells = std::min(step, cells - first);
+      view.cellTypes += first;
+      view.offsets += first;
+      Mesh part(view, threads);
+      part.setMirrored(mesh.mirrored());
+      return part;
+    };
+    const Mesh now = partOf(after);
+    const Targets targets = referenceTargets(now, partOf(before));
+    EvaluationOptions options;
+    options.threads = threads;
+    options.targets = &targets;
+    evaluateMetric(now, Metric::ShapeSimilarity, options, values.data() + first);
+  }
+}
+
 /**
  * @class PieceWarp
  * @brief The state of an execution.
@@ -105,7 +139,7 @@ private:
   void findTensors();
   std::vector<double> transformed(double fraction);
   WarpResult warp();
-  void report(const WarpResult& result, WarpFacts& facts, TableRows& history, TableRows& statistics,
+  void report(WarpResult& result, WarpFacts& facts, TableRows& history, TableRows& statistics,
     WarpTotals& totals);
 
   const WarpSettings& Settings;
@@ -541,47 +575,50 @@ WarpResult PieceWarp::warp()
 }
 
 //------------------------------------------------------------------------------
-void PieceWarp::report(const WarpResult& result, WarpFacts& facts, TableRows& history,
+/// Adds arrays and rows. What is no longer needed is freed on the way, as it is as large as what is
+/// measured: the points of the result, the local mesh and what has moved it.
+void PieceWarp::report(WarpResult& result, WarpFacts& facts, TableRows& history,
   TableRows& statistics, WarpTotals& totals)
 {
   const int threads = this->Settings.options.threads;
   const std::string note =
     this->Whole.move(vtkPointSet::SafeDownCast(this->Piece.output), result.points);
-  const MeshView& view = this->Whole.piece();
-  const std::vector<double> start(view.points, view.points + 3 * view.numberOfPoints);
   const std::vector<double> end = this->Whole.ofPiece(result.points);
-  const Mesh before = this->Whole.movedPiece(start), after = this->Whole.movedPiece(end);
-  std::vector<signed char> valid(view.numberOfCells), validity(view.numberOfCells);
-  before.classifyCells(valid.data(), threads);
-  after.classifyCells(validity.data(), threads);
-  std::vector<double> values(view.numberOfCells);
-  const auto measured = [&](const Mesh& mesh, Metric metric, const EvaluationOptions& options,
-                          const std::vector<signed char>& states, WarpMeasurement& to)
+  result.points = {};
+  this->Displacement = {};
+  this->Tensors = {};
+  this->Ids = {};
+  this->Cloud = {};
+  for (PointFlags* flags : { &this->Boundary, &this->Moved, &this->Stay, &this->Prescribed })
   {
-    const Measurement m = measureOnRanks(this->Group, mesh, this->Whole.volume() ? 3 : 2, metric,
-      options, states.data(), this->Whole.skipped().data(), values.data());
-    to = { m.worst, m.statistics.mean };
-    return m.counts;
-  };
+    *flags = {};
+  }
+  this->Whole.releaseMesh();
+  const MeshView& view = this->Whole.piece();
+  Mesh before(view, threads);
+  before.setMirrored(this->Whole.mirrored());
+  const Mesh after = this->Whole.movedPiece(end);
+  const int dimension = this->Whole.volume() ? 3 : 2;
+  const unsigned char* skip = this->Whole.skipped().data();
+  std::vector<signed char> validity(view.numberOfCells);
+  std::vector<double> values(view.numberOfCells);
   WarpQualities q;
-  EvaluationOptions ideal, similar;
-  ideal.threads = similar.threads = threads;
-  measured(before, Metric::InverseMeanRatio, ideal, valid, q.before);
-  measured(after, Metric::InverseMeanRatio, ideal, validity, q.after);
-  Targets targets;
-  this->Group.together(
-    [&]
-    {
-      if (view.numberOfCells > 0)
-      {
-        targets = referenceTargets(after, before);
-        similar.targets = &targets;
-      }
-    });
-  const ValidityCounts counts =
-    measured(after, Metric::ShapeSimilarity, similar, validity, q.shape);
-  q.inverted = counts.inverted + counts.degenerate;
-  q.elements = q.inverted + counts.valid;
+  EvaluationOptions ideal;
+  ideal.threads = threads;
+  for (const bool moved : { false, true })
+  {
+    const Mesh& mesh = moved ? after : before;
+    mesh.classifyCells(validity.data(), threads);
+    const Measurement m = measureOnRanks(this->Group, mesh, dimension, Metric::InverseMeanRatio,
+      ideal, validity.data(), skip, values.data());
+    (moved ? q.after : q.before) = { m.worst, m.statistics.mean };
+  }
+  this->Group.together([&] { measureSimilarity(after, before, threads, values); });
+  const Measurement shape = summarizeOnRanks(
+    this->Group, view, dimension, Metric::ShapeSimilarity, validity.data(), skip, values.data());
+  q.shape = { shape.worst, shape.statistics.mean };
+  q.inverted = shape.counts.inverted + shape.counts.degenerate;
+  q.elements = q.inverted + shape.counts.valid;
   addWarpArrays(this->Piece.output, values, validity);
   TableRows unused;
   const bool first = this->Group.rank() == 0; // tables of several processes would be joined
@@ -631,7 +668,7 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   facts.largestDisplacement = this->Group.maximum(facts.largestDisplacement);
   facts.boundaryPoints = this->countOwned(this->Prescribed);
   this->findTensors();
-  const WarpResult result = this->warp();
+  WarpResult result = this->warp();
   facts.motion = this->Correspondence;
   facts.method = nameOf(this->Settings.options.method);
   const WarpCoefficients coefficients = this->Settings.options.coefficients;

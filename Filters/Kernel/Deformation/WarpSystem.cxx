@@ -75,8 +75,11 @@ WarpSystem::WarpSystem(const WarpMatrix& given, int block, const std::vector<uns
           static_cast<std::int32_t>(static_cast<Index>(this->Free.size()) * block + k);
       }
       this->Free.push_back(p);
-      this->Inner->coordinates.insert(
-        this->Inner->coordinates.end(), points + 3 * p, points + 3 * p + 3);
+      if (block > 1) // for the rigid body modes
+      {
+        this->Inner->coordinates.insert(
+          this->Inner->coordinates.end(), points + 3 * p, points + 3 * p + 3);
+      }
     }
   }
   this->Inner->matrix.size = static_cast<Index>(this->Free.size()) * block;
@@ -149,8 +152,9 @@ void WarpSystem::makeSolver(KrylovMethod method, WarpControl& control)
   LinearSystem system;
   system.matrix = &this->Inner->matrix;
   system.blockSize = this->Block;
+  system.wholeRows = !this->Shared;
   system.symmetric = system.positiveDefinite = this->Symmetric;
-  system.coordinates = this->Inner->coordinates.data();
+  system.coordinates = this->Block > 1 ? this->Inner->coordinates.data() : nullptr;
   system.owner = this->Inner;
   system.numbering = this->Numbering.get();
   this->Solver = std::make_unique<LinearSolver>(system, options);

@@ -23,6 +23,9 @@ struct LinearSystem
    * row, in order of point. Those of points shared with other ranks are added up.
    */
   const SparseMatrix* matrix = nullptr;
+  /// On several ranks: whether one rank has all entries of a row, and the others none, so that
+  /// nothing is to be added up. Needs less memory.
+  bool wholeRows = false;
   int blockSize = 1; ///< unknowns per point
   bool symmetric = true;
   bool positiveDefinite = true;

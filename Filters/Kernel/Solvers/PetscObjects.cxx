@@ -277,6 +277,17 @@ void PetscSystem::distributeMatrix()
   {
     rowOf[i] = static_cast<PetscInt>(block * numbering.rows()[this->Points[i / block]] + i % block);
   }
+  const auto owned = static_cast<PetscInt>(block * numbering.ownedRows());
+  const auto all = static_cast<PetscInt>(block * numbering.globalSize());
+  petsc(MatCreate(this->Comm, this->Matrix.out()));
+  petsc(MatSetSizes(this->Matrix, owned, owned, all, all));
+  petsc(MatSetType(this->Matrix, MATMPIAIJ));
+  petsc(MatSetBlockSize(this->Matrix, block));
+  if (this->System.wholeRows)
+  {
+    this->insertRows(rowOf);
+    return;
+  }
   // Every rank contributes the entries of its cells, also to rows of other ranks; PETSc sums them
   // up.
   std::vector<PetscInt> rows(source.columns.size()), columns(source.columns.size());
@@ -288,15 +299,67 @@ void PetscSystem::distributeMatrix()
       columns[k] = rowOf[source.columns[k]];
     }
   }
-  const auto owned = static_cast<PetscInt>(block * numbering.ownedRows());
-  const auto all = static_cast<PetscInt>(block * numbering.globalSize());
-  petsc(MatCreate(this->Comm, this->Matrix.out()));
-  petsc(MatSetSizes(this->Matrix, owned, owned, all, all));
-  petsc(MatSetType(this->Matrix, MATMPIAIJ));
-  petsc(MatSetBlockSize(this->Matrix, block));
   petsc(MatSetPreallocationCOO(
     this->Matrix, static_cast<PetscCount>(rows.size()), rows.data(), columns.data()));
   petsc(MatSetValuesCOO(this->Matrix, source.values.data(), ADD_VALUES));
+}
+
+/// Rows that are whole on one rank: without the arrays, twice as large as the matrix, by which PETSc
+/// adds contributions up.
+void PetscSystem::insertRows(const std::vector<PetscInt>& rowOf)
+{
+  const SparseMatrix& source = *this->System.matrix;
+  const PointNumbering& numbering = *this->System.numbering;
+  const int block = this->System.blockSize;
+  const auto owned = static_cast<PetscInt>(block * numbering.ownedRows());
+  const auto all = static_cast<PetscInt>(block * numbering.globalSize());
+  const auto first = static_cast<PetscInt>(block * numbering.firstRow());
+  // Entries of each row in columns of its owner and of others; where the row goes to another rank,
+  // as many in both.
+  const std::size_t points = numbering.rows().size();
+  std::vector<double> counts(2 * static_cast<std::size_t>(block) * points, 0.0);
+  const auto countsOf = [&](Index row)
+  { return counts.data() + 2 * (block * this->Points[row / block] + row % block); };
+  for (Index row = 0; row < source.size; ++row)
+  {
+    const bool here = numbering.owned(this->Points[row / block]);
+    for (Index k = source.offsets[row]; k < source.offsets[row + 1]; ++k)
+    {
+      const PetscInt column = rowOf[source.columns[k]];
+      const bool inside = column >= first && column < first + owned;
+      countsOf(row)[0] += !here || inside;
+      countsOf(row)[1] += !here || !inside;
+    }
+  }
+  numbering.sum(counts.data(), 2 * block);
+  std::vector<PetscInt> own(static_cast<std::size_t>(owned), 0), other = own;
+  for (Index row = 0; row < source.size; ++row)
+  {
+    if (numbering.owned(this->Points[row / block]))
+    {
+      const auto at = static_cast<std::size_t>(rowOf[row] - first);
+      own[at] = std::min(owned, static_cast<PetscInt>(countsOf(row)[0]));
+      other[at] = std::min(all - owned, static_cast<PetscInt>(countsOf(row)[1]));
+    }
+  }
+  petsc(MatMPIAIJSetPreallocation(this->Matrix, 0, own.data(), 0, other.data()));
+  std::vector<PetscInt> columns;
+  for (Index row = 0; row < source.size; ++row)
+  {
+    const Index begin = source.offsets[row], end = source.offsets[row + 1];
+    columns.clear();
+    for (Index k = begin; k < end; ++k)
+    {
+      columns.push_back(rowOf[source.columns[k]]);
+    }
+    if (!columns.empty())
+    {
+      petsc(MatSetValues(this->Matrix, 1, &rowOf[row], static_cast<PetscInt>(columns.size()),
+        columns.data(), source.values.data() + begin, INSERT_VALUES));
+    }
+  }
+  petsc(MatAssemblyBegin(this->Matrix, MAT_FINAL_ASSEMBLY));
+  petsc(MatAssemblyEnd(this->Matrix, MAT_FINAL_ASSEMBLY));
 }
 
 void PetscSystem::attachRigidBodyModes()

@@ -44,6 +44,7 @@ private:
   std::string complaint() const;
   void borrowMatrix(bool copy);
   void distributeMatrix();
+  void insertRows(const std::vector<PetscInt>& rowOf);
   void attachRigidBodyModes();
 
   LinearSystem System;
