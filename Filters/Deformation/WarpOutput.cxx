@@ -216,4 +216,37 @@ void addWarpReport(const WarpResult& result, const WarpFacts& facts, const WarpQ
   totals.worstShape = std::max(totals.worstShape, q.shape.worst);
   totals.reused += facts.reused;
 }
+
+//------------------------------------------------------------------------------
+void measureSimilarity(
+  const Mesh& after, const Mesh& before, int threads, std::vector<double>& values)
+{
+  const Index cells = after.view().numberOfCells;
+  Index solid = 0;
+  for (const CellBlock& block : after.blocks())
+  {
+    solid += topology(block.type).dimension == 3 ? block.count : 0;
+  }
+  constexpr Index range = Index(1) << 18;
+  const Index step = solid == cells ? range : cells; // a plane is that of all cells
+  for (Index first = 0; first < cells; first += step)
+  {
+    const auto partOf = [&](const Mesh& mesh)
+    {
+      MeshView view = mesh.view();
+      view.numberOfCells = std::min(step, cells - first);
+      view.cellTypes += first;
+      view.offsets += first;
+      Mesh part(view, threads);
+      part.setMirrored(mesh.mirrored());
+      return part;
+    };
+    const Mesh now = partOf(after);
+    const Targets targets = referenceTargets(now, partOf(before));
+    EvaluationOptions options;
+    options.threads = threads;
+    options.targets = &targets;
+    evaluateMetric(now, Metric::ShapeSimilarity, options, values.data() + first);
+  }
+}
 }

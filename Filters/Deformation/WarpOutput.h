@@ -68,5 +68,13 @@ void addWarpArrays(
 void addWarpReport(const WarpResult& result, const WarpFacts& facts, const WarpQualities& qualities,
   const std::string& block, const std::vector<std::string>& notes, TableRows& history,
   TableRows& statistics, WarpTotals& totals);
+
+/**
+ * @brief The shape (4.22) of each cell against that before, with targets. Volumes are measured
+ * range by range, as the targets of a cell need nine times the memory of its value.
+ * @param values one per cell, filled
+ */
+void measureSimilarity(
+  const Mesh& after, const Mesh& before, int threads, std::vector<double>& values);
 }
 #endif

@@ -8,7 +8,6 @@
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Mesh/BoundaryParts.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
-#include "tautline/Quality/Targets.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -76,40 +75,6 @@ bool findsPlaces(const WarpSettings& settings, vtkDataSet* input, vtkDataSet* ta
       input->GetPointData()->GetArray(settings.targetIds.c_str());
   }
   return settings.correspondence != Correspondence::SameBoundary && isSamePiece(input, target);
-}
-
-/// The shape of each cell against that before. Volumes are measured range by range, as the targets
-/// of a cell need nine times the memory of its value.
-void measureSimilarity(
-  const Mesh& after, const Mesh& before, int threads, std::vector<double>& values)
-{
-  const Index cells = after.view().numberOfCells;
-  Index solid = 0;
-  for (const CellBlock& block : after.blocks())
-  {
-    solid += topology(block.type).dimension == 3 ? block.count : 0;
-  }
-  constexpr Index range = Index(1) << 18;
-  const Index step = solid == cells ? range : cells; // a plane is that of all cells
-  for (Index first = 0; first < cells; first += step)
-  {
-    const auto partOf = [&](const Mesh& mesh)
-    {
-      MeshView view = mesh.view();
-      view.numberOfCells = std::min(step, cells - first);
-      view.cellTypes += first;
-      view.offsets += first;
-      Mesh part(view, threads);
-      part.setMirrored(mesh.mirrored());
-      return part;
-    };
-    const Mesh now = partOf(after);
-    const Targets targets = referenceTargets(now, partOf(before));
-    EvaluationOptions options;
-    options.threads = threads;
-    options.targets = &targets;
-    evaluateMetric(now, Metric::ShapeSimilarity, options, values.data() + first);
-  }
 }
 
 /**

@@ -304,8 +304,8 @@ void PetscSystem::distributeMatrix()
   petsc(MatSetValuesCOO(this->Matrix, source.values.data(), ADD_VALUES));
 }
 
-/// Rows that are whole on one rank: without the arrays, twice as large as the matrix, by which PETSc
-/// adds contributions up.
+/// Rows that are whole on one rank: without the arrays, twice as large as the matrix, by which
+/// PETSc adds contributions up.
 void PetscSystem::insertRows(const std::vector<PetscInt>& rowOf)
 {
   const SparseMatrix& source = *this->System.matrix;
