@@ -2,12 +2,15 @@
 #include "TetGenFile.h"
 
 #include "FileNames.h"
+#include "FileRanges.h"
 #include "FileSet.h"
+#include "PartExchange.h"
 #include "TextCursor.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 
 namespace tautline
 {
@@ -89,16 +92,27 @@ void readAttributes(TextCursor& cursor, std::vector<MeshArray>& arrays, Index tu
   }
 }
 
-/// A reference is a whole number where all of its values are.
-void makeIntegral(MeshArray& array)
+/// Whether these are references that are all whole numbers, as doubles.
+bool isIntegral(const MeshArray& array)
 {
   constexpr double Exact = 9007199254740992.0; // 2^53
   const auto* doubles = std::get_if<MeshArray::Doubles>(&array.values);
-  if (doubles && array.name == "Reference" &&
+  return doubles && array.name == "Reference" &&
     std::all_of(doubles->begin(), doubles->end(),
-      [](double v) { return std::abs(v) < Exact && v == std::floor(v); }))
+      [](double v) { return std::abs(v) < Exact && v == std::floor(v); });
+}
+
+/// References become whole numbers where all of them are, on all ranks of a group if there is one.
+void makeIntegral(std::vector<MeshArray>& arrays, RankGroup* group)
+{
+  for (MeshArray& array : arrays)
   {
-    array.values = MeshArray::Integers(doubles->begin(), doubles->end());
+    const bool integral = isIntegral(array);
+    if (group ? !group->any(!integral) : integral)
+    {
+      const auto& doubles = std::get<MeshArray::Doubles>(array.values);
+      array.values = MeshArray::Integers(doubles.begin(), doubles.end());
+    }
   }
 }
 
@@ -132,26 +146,20 @@ Index peekBase(TextCursor& cursor, const char* what)
   return base;
 }
 
-NodeList readNodes(TextCursor& cursor, const FileContent& file, MeshFile& mesh)
+/// The vertices from `first` on, as the points of a mesh that has none. `file` has the names of
+/// attributes.
+void readNodeRecords(TextCursor& cursor, const FileContent& file, const NodeList& nodes,
+  Index first, Index count, MeshFile& mesh)
 {
-  NodeList nodes;
-  nodes.header = readNodeHeader(cursor);
   const NodeHeader& header = nodes.header;
-  if (header.count == 0)
-  {
-    return nodes;
-  }
-  const Index columns = 1 + header.dimension + header.attributes + header.markers;
-  cursor.expectRoom(header.count, static_cast<std::size_t>(2 * columns), "number of vertices");
-  nodes.base = peekBase(cursor, "vertex number");
-  resizeLarge(mesh.points, static_cast<std::size_t>(3 * header.count));
-  mesh.pointArrays = attributeArrays(file, header.attributes, header.count, false);
-  MeshArray markers = MeshArray::make(
-    "BoundaryMarker", 1, 'i', header.markers ? static_cast<std::size_t>(header.count) : 0);
+  resizeLarge(mesh.points, static_cast<std::size_t>(3 * count));
+  mesh.pointArrays = attributeArrays(file, header.attributes, count, false);
+  MeshArray markers =
+    MeshArray::make("BoundaryMarker", 1, 'i', header.markers ? static_cast<std::size_t>(count) : 0);
   auto& marker = std::get<MeshArray::Integers>(markers.values);
-  for (Index i = 0; i < header.count; ++i)
+  for (Index i = 0; i < count; ++i)
   {
-    readNumber(cursor, "vertex", nodes.base + i);
+    readNumber(cursor, "vertex", nodes.base + first + i);
     for (int c = 0; c < header.dimension; ++c)
     {
       mesh.points[static_cast<std::size_t>(3 * i + c)] = cursor.coordinate("coordinate");
@@ -167,6 +175,21 @@ NodeList readNodes(TextCursor& cursor, const FileContent& file, MeshFile& mesh)
   {
     mesh.pointArrays.push_back(std::move(markers));
   }
+}
+
+NodeList readNodes(TextCursor& cursor, const FileContent& file, MeshFile& mesh)
+{
+  NodeList nodes;
+  nodes.header = readNodeHeader(cursor);
+  const NodeHeader& header = nodes.header;
+  if (header.count == 0)
+  {
+    return nodes;
+  }
+  const Index columns = 1 + header.dimension + header.attributes + header.markers;
+  cursor.expectRoom(header.count, static_cast<std::size_t>(2 * columns), "number of vertices");
+  nodes.base = peekBase(cursor, "vertex number");
+  readNodeRecords(cursor, file, nodes, 0, header.count, mesh);
   return nodes;
 }
 
@@ -223,39 +246,58 @@ void readCorners(
   }
 }
 
-void readElements(const FileContent& file, const NodeList& nodes, MeshFile& mesh)
+/// The header of the elements, and the number of the first.
+struct ElementHeader
 {
-  TextCursor cursor(file, Comment);
+  Index count = 0, nodes = 0, attributes = 0, base = 0;
+  unsigned char type = 0;
+};
+
+ElementHeader readElementHeader(TextCursor& cursor, const NodeHeader& nodes)
+{
+  ElementHeader header;
   if (!cursor.skipToToken())
   {
     cursor.fail("no header (number of elements, nodes of each, attributes)");
   }
-  const Index count = cursor.integer("number of elements", 0, std::numeric_limits<Index>::max());
+  header.count = cursor.integer("number of elements", 0, std::numeric_limits<Index>::max());
   const char* place = cursor.place();
-  const Index size =
-    cursor.lineIsOver() ? nodes.header.dimension + 1 : cursor.integer("nodes per element");
-  const Index attributes =
-    cursor.lineIsOver() ? 0 : cursor.integer("number of attributes", 0, 10000);
+  header.nodes = cursor.lineIsOver() ? nodes.dimension + 1 : cursor.integer("nodes per element");
+  header.attributes = cursor.lineIsOver() ? 0 : cursor.integer("number of attributes", 0, 10000);
   cursor.expectLineEnd();
-  const unsigned char type = elementType(cursor, place, size, nodes.header.dimension);
-  cursor.expectRoom(
-    count, static_cast<std::size_t>(2 * (1 + size + attributes)), "number of elements");
-  std::vector<MeshArray> arrays = attributeArrays(file, attributes, count, true);
+  header.type = elementType(cursor, place, header.nodes, nodes.dimension);
+  return header;
+}
+
+/// The elements from `first` on, as the only cells of a mesh; Reference is a double.
+void readElementRecords(TextCursor& cursor, const FileContent& file, const ElementHeader& header,
+  const NodeList& nodes, Index first, Index count, MeshFile& mesh)
+{
+  std::vector<MeshArray> arrays = attributeArrays(file, header.attributes, count, true);
   std::vector<Index> connectivity;
-  resizeLarge(connectivity, static_cast<std::size_t>(count * size));
-  const std::vector<int> places = vtkPlaces(type);
-  const Index base = count > 0 ? peekBase(cursor, "element number") : 0;
+  resizeLarge(connectivity, static_cast<std::size_t>(count * header.nodes));
+  const std::vector<int> places = vtkPlaces(header.type);
   for (Index i = 0; i < count; ++i)
   {
-    readNumber(cursor, "element", base + i);
-    readCorners(cursor, nodes, places, size, connectivity.data() + i * size);
+    readNumber(cursor, "element", header.base + first + i);
+    readCorners(cursor, nodes, places, header.nodes, connectivity.data() + i * header.nodes);
     readAttributes(cursor, arrays, i);
     cursor.expectLineEnd();
   }
   cursor.expectFileEnd("element");
-  mesh.addCells(type, std::move(connectivity));
-  std::for_each(arrays.begin(), arrays.end(), makeIntegral);
+  mesh.addCells(header.type, std::move(connectivity));
   mesh.cellArrays = std::move(arrays);
+}
+
+void readElements(const FileContent& file, const NodeList& nodes, MeshFile& mesh)
+{
+  TextCursor cursor(file, Comment);
+  ElementHeader header = readElementHeader(cursor, nodes.header);
+  cursor.expectRoom(header.count,
+    static_cast<std::size_t>(2 * (1 + header.nodes + header.attributes)), "number of elements");
+  header.base = header.count > 0 ? peekBase(cursor, "element number") : 0;
+  readElementRecords(cursor, file, header, nodes, 0, header.count, mesh);
+  makeIntegral(mesh.cellArrays, nullptr);
 }
 
 /// Appends the markers of the cells just added; earlier cells without one get 0, arrays of earlier
@@ -282,54 +324,90 @@ void addMarkers(MeshFile& mesh, std::vector<Index> markers, bool present)
   }
 }
 
-/// Faces (3 or 6 nodes) or edges (2 or 3) with an optional marker; numbers of neighbours are
-/// skipped.
-void readBoundary(const FileContent& file, const NodeList& nodes, bool faces, MeshFile& mesh)
+/// The header of faces (3 or 6 nodes) or edges (2 or 3) with an optional marker, what the first of
+/// them tells about all, and its number.
+struct BoundaryHeader
 {
-  TextCursor cursor(file, Comment);
+  bool faces = false, markers = false;
+  Index count = 0, base = 0;
+  unsigned char type = 0;
+  Index nodes() const { return cellNodes(this->type); }
+};
+
+BoundaryHeader readBoundaryHeader(TextCursor& cursor, bool faces, bool quadraticMesh)
+{
+  BoundaryHeader header;
+  header.faces = faces;
   if (!cursor.skipToToken())
   {
     cursor.fail(faces ? "no header (number of faces, marker flag)"
                       : "no header (number of edges, marker flag)");
   }
-  const Index count =
-    cursor.integer("number of faces or edges", 0, std::numeric_limits<Index>::max());
-  const bool markers = !cursor.lineIsOver() && cursor.integer("marker flag", 0, 1) == 1;
+  header.count = cursor.integer("number of faces or edges", 0, std::numeric_limits<Index>::max());
+  header.markers = !cursor.lineIsOver() && cursor.integer("marker flag", 0, 1) == 1;
   cursor.expectLineEnd();
-  const bool quadraticMesh = !mesh.cellTypes.empty() && cellNodes(mesh.cellTypes[0]) > 4;
-  unsigned char type = faces ? FileTriangle : FileLine;
+  const char* end = cursor.place();
+  header.type = faces ? FileTriangle : FileLine;
   cursor.skipToToken();
-  const int columns = cursor.tokensInLine();
-  if (faces ? (columns - markers == 7 || columns - markers == 9)
-            : quadraticMesh && columns - markers >= 4)
+  const int columns = cursor.tokensInLine() - header.markers;
+  if (faces ? columns == 7 || columns == 9 : quadraticMesh && columns >= 4)
   {
-    type = faces ? FileTriangle6 : FileLine3;
+    header.type = faces ? FileTriangle6 : FileLine3;
   }
-  const Index size = cellNodes(type);
-  cursor.expectRoom(
-    count, static_cast<std::size_t>(2 * (1 + size + markers)), "number of faces or edges");
+  cursor.moveTo(end);
+  return header;
+}
+
+/// The faces or edges from `first` on; numbers of neighbours are skipped.
+void readBoundaryRecords(TextCursor& cursor, const BoundaryHeader& header, const NodeList& nodes,
+  Index first, Index count, MeshFile& mesh)
+{
+  const Index size = header.nodes();
   std::vector<Index> connectivity(static_cast<std::size_t>(count * size)),
-    values(markers ? count : 0);
-  const std::vector<int> places = vtkPlaces(type);
-  const Index base = count > 0 ? peekBase(cursor, "number") : 0;
+    values(header.markers ? count : 0);
+  const std::vector<int> places = vtkPlaces(header.type);
   for (Index i = 0; i < count; ++i)
   {
-    readNumber(cursor, faces ? "face" : "edge", base + i);
+    readNumber(cursor, header.faces ? "face" : "edge", header.base + first + i);
     readCorners(cursor, nodes, places, size, connectivity.data() + i * size);
-    if (markers)
+    if (header.markers)
     {
       values[static_cast<std::size_t>(i)] = cursor.integer("boundary marker", Smallest, Largest);
     }
     cursor.skipRestOfLine();
   }
-  cursor.expectFileEnd(faces ? "face" : "edge");
-  mesh.addCells(type, std::move(connectivity));
-  addMarkers(mesh, std::move(values), markers);
+  cursor.expectFileEnd(header.faces ? "face" : "edge");
+  mesh.addCells(header.type, std::move(connectivity));
+  addMarkers(mesh, std::move(values), header.markers);
+}
+
+void readBoundary(const FileContent& file, const NodeList& nodes, bool faces, MeshFile& mesh)
+{
+  TextCursor cursor(file, Comment);
+  const bool quadraticMesh = !mesh.cellTypes.empty() && cellNodes(mesh.cellTypes[0]) > 4;
+  BoundaryHeader header = readBoundaryHeader(cursor, faces, quadraticMesh);
+  cursor.skipToToken();
+  cursor.expectRoom(header.count,
+    static_cast<std::size_t>(2 * (1 + header.nodes() + header.markers)),
+    "number of faces or edges");
+  header.base = header.count > 0 ? peekBase(cursor, "number") : 0;
+  readBoundaryRecords(cursor, header, nodes, 0, header.count, mesh);
 }
 }
 
 //------------------------------------------------------------------------------
 MeshFile readTetGenComplex(const FileContent& file, const std::string& stem, bool smesh);
+
+namespace
+{
+/// A vertex cell of each of the points from `first` on.
+void addVertexCells(MeshFile& mesh, Index first, Index count)
+{
+  std::vector<Index> all(static_cast<std::size_t>(count));
+  std::iota(all.begin(), all.end(), first);
+  mesh.addCells(FileVertex, std::move(all));
+}
+}
 
 //------------------------------------------------------------------------------
 MeshFile readTetGen(const std::string& name, bool lowerCells)
@@ -365,18 +443,166 @@ MeshFile readTetGen(const std::string& name, bool lowerCells)
   }
   else if (!elements && !faces)
   {
-    std::vector<Index> all(static_cast<std::size_t>(nodes.header.count));
-    for (std::size_t i = 0; i < all.size(); ++i)
-    {
-      all[i] = static_cast<Index>(i);
-    }
-    mesh.addCells(FileVertex, all);
+    addVertexCells(mesh, 0, nodes.header.count);
   }
   if (!lowerCells)
   {
     mesh.keepHighestDimension();
   }
   return mesh;
+}
+
+namespace
+{
+/// One of the files of a set, as the ranks read it: the header by all, then ranges.
+class SharedFile
+{
+public:
+  SharedFile(const FileRanges& ranges, const std::string& name, SetCheck& set)
+    : Ranges(ranges)
+    , Name(name)
+    , Head(ranges.head(name))
+    , HeadCursor(this->Head, Comment)
+  {
+    const FileContent tail = ranges.tail(name);
+    ranges.together([&] { set.add(tail); });
+  }
+
+  /// What `read` finds with a cursor at the begin of the file. There must be records: nothing is
+  /// gained by dividing none.
+  template <class Header, class Read>
+  Header readHeader(const Read& read, Index Header::*base)
+  {
+    return this->Ranges.agreed(
+      [&]
+      {
+        Header header = read(this->HeadCursor);
+        header.*base = peekBase(this->HeadCursor, "number of the first record");
+        return header;
+      });
+  }
+
+  /// Calls read(cursor, file, first, count) for the own ones of the records after the header.
+  template <class Read>
+  void records(Index count, const Read& read)
+  {
+    const Index begin = this->HeadCursor.place() - this->Head.begin();
+    const Index end = this->Ranges.agreed([&] { return fileSize(this->Name); });
+    const LineShare lines = this->Ranges.lines(this->Name, begin, end, Comment, count);
+    this->Ranges.together(
+      [&]
+      {
+        TextCursor cursor(lines.text, Comment);
+        read(cursor, this->Head, lines.first, lines.count);
+      });
+  }
+
+private:
+  const FileRanges& Ranges;
+  std::string Name;
+  FileContent Head;
+  TextCursor HeadCursor;
+};
+
+NodeList shareNodes(
+  const FileRanges& ranges, const std::string& name, SetCheck& set, MeshFile& mesh)
+{
+  SharedFile file(ranges, name, set);
+  const auto nodes = file.readHeader(
+    [](TextCursor& cursor) { return NodeList{ readNodeHeader(cursor) }; }, &NodeList::base);
+  file.records(nodes.header.count,
+    [&](TextCursor& cursor, const FileContent& head, Index first, Index count)
+    {
+      readNodeRecords(cursor, head, nodes, first, count, mesh);
+      cursor.expectFileEnd("vertex");
+    });
+  return nodes;
+}
+
+/// @return the type of the elements
+unsigned char shareElements(const FileRanges& ranges, const std::string& name, SetCheck& set,
+  const NodeList& nodes, MeshFile& mesh)
+{
+  SharedFile file(ranges, name, set);
+  const auto header =
+    file.readHeader([&](TextCursor& cursor) { return readElementHeader(cursor, nodes.header); },
+      &ElementHeader::base);
+  file.records(header.count,
+    [&](TextCursor& cursor, const FileContent& head, Index first, Index count)
+    { readElementRecords(cursor, head, header, nodes, first, count, mesh); });
+  makeIntegral(mesh.cellArrays, &ranges.group());
+  return header.type;
+}
+
+/// @return the type of the faces or edges
+unsigned char shareBoundary(const FileRanges& ranges, const std::string& name, SetCheck& set,
+  const NodeList& nodes, bool faces, bool quadraticMesh, MeshFile& mesh)
+{
+  SharedFile file(ranges, name, set);
+  const auto header = file.readHeader([&](TextCursor& cursor)
+    { return readBoundaryHeader(cursor, faces, quadraticMesh); },
+    &BoundaryHeader::base);
+  file.records(header.count,
+    [&](TextCursor& cursor, const FileContent&, Index first, Index count)
+    { readBoundaryRecords(cursor, header, nodes, first, count, mesh); });
+  return header.type;
+}
+}
+
+//------------------------------------------------------------------------------
+MeshShare shareTetGen(const FileRanges& ranges, const std::string& name, bool lowerCells)
+{
+  const auto [stem, extension] = splitExtension(name);
+  ranges.require(extension == "node" || extension == "ele" || extension == "face" ||
+    extension == "edge"); // others are lists of facets, which are read whole
+  const std::string names[] = { stem + ".node", stem + ".ele", stem + ".face", stem + ".edge" };
+  const bool elements = ranges.exists(names[1]);
+  const bool withLower = lowerCells || !elements;
+  const bool faces = ranges.exists(names[2]) && withLower;
+  const bool edges = ranges.exists(names[3]) && withLower;
+  ranges.require((elements || extension != "ele") && (faces || !withLower || extension != "face") &&
+    (edges || !withLower || extension != "edge"));
+  ranges.expectLarge({ names[0], names[elements ? 1 : faces ? 2 : edges ? 3 : 0] });
+
+  MeshShare share;
+  MeshFile& mesh = share.mesh;
+  SetCheck set;
+  const NodeList nodes = shareNodes(ranges, names[0], set, mesh);
+  bool quadratic = false;
+  const auto endSection = [&]
+  {
+    const Index before =
+      std::accumulate(share.sectionCells.begin(), share.sectionCells.end(), Index(0));
+    share.sectionCells.push_back(mesh.numberOfCells() - before);
+  };
+  if (elements)
+  {
+    quadratic = cellNodes(shareElements(ranges, names[1], set, nodes, mesh)) > 4;
+    endSection();
+  }
+  if (faces)
+  {
+    const unsigned char type = shareBoundary(ranges, names[2], set, nodes, true, quadratic, mesh);
+    quadratic = quadratic || (!elements && cellNodes(type) > 4);
+    endSection();
+  }
+  if (edges)
+  {
+    shareBoundary(ranges, names[3], set, nodes, false, quadratic, mesh);
+    endSection();
+  }
+  if (!elements && !faces && !edges)
+  {
+    const std::vector<Index> begins = rankBegins(ranges.group(), mesh.numberOfPoints());
+    addVertexCells(
+      mesh, begins[static_cast<std::size_t>(ranges.group().rank())], mesh.numberOfPoints());
+    endSection();
+  }
+  if (!lowerCells)
+  {
+    keepHighestDimension(ranges.group(), share);
+  }
+  return share;
 }
 
 namespace

@@ -3,6 +3,7 @@
 
 #include "FileNames.h"
 #include "MeditFile.h"
+#include "PartExchange.h"
 #include "TextCursor.h"
 
 #include "vtkObjectFactory.h"
@@ -13,6 +14,12 @@ vtkStandardNewMacro(vtkMeditReader);
 tautline::MeshFile vtkMeditReader::ReadMesh()
 {
   return tautline::readMedit(this->FileName, this->LowerCells);
+}
+
+//------------------------------------------------------------------------------
+tautline::MeshShare vtkMeditReader::ReadShare(const tautline::FileRanges& ranges)
+{
+  return tautline::shareMedit(ranges, this->FileName, this->LowerCells);
 }
 
 //------------------------------------------------------------------------------

@@ -2,8 +2,11 @@
 #include "vtkMeshFileReader.h"
 
 #include "ExecutionScope.h"
+#include "FileRanges.h"
 #include "MeshFileAdapter.h"
 #include "MeshPart.h"
+#include "PartExchange.h"
+#include "ProcessGroup.h"
 #include "ProgressStep.h"
 #include "tautline/Core/Memory.h"
 
@@ -18,6 +21,7 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <memory>
 #include <new>
 
 namespace
@@ -83,6 +87,65 @@ vtkTypeBool vtkMeshFileReader::ProcessRequest(
 }
 
 //------------------------------------------------------------------------------
+tautline::MeshShare vtkMeshFileReader::ReadShare(const tautline::FileRanges&)
+{
+  throw tautline::UnusualFile();
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshFileReader::Agrees(
+  tautline::RankGroup& group, const tautline::PartRequest& request) const
+{
+  const std::string asked = std::string(this->GetClassName()) + "\n" + this->FileName + "\n" +
+    std::to_string(this->LowerCells) + std::to_string(request.ghostLayers);
+  const std::vector<tautline::Bytes> all =
+    group.allGather(tautline::Bytes(asked.begin(), asked.end()));
+  const bool same = std::all_of(
+    all.begin(), all.end(), [&](const tautline::Bytes& other) { return other == all[0]; });
+  return !group.any(!same || request.part != group.rank());
+}
+
+//------------------------------------------------------------------------------
+tautline::MeshFile vtkMeshFileReader::ReadPartOfWhole(const tautline::PartRequest& request)
+{
+  constexpr double readingShare = 0.8;
+  tautline::MeshFile mesh = [&]
+  {
+    const tautline::ProgressStep progress(this, 0.0, readingShare);
+    return this->ReadMesh();
+  }();
+  return request.parts > 1 ? tautline::partOf(mesh, request) : mesh;
+}
+
+//------------------------------------------------------------------------------
+tautline::MeshFile vtkMeshFileReader::ReadPart(const tautline::PartRequest& request)
+{
+  const std::unique_ptr<tautline::RankGroup> group =
+    request.parts > 1 ? tautline::tryProcessGroup() : nullptr;
+  if (!group || group->size() != request.parts || !this->Agrees(*group, request))
+  {
+    return this->ReadPartOfWhole(request);
+  }
+  try
+  {
+    constexpr double readingShare = 0.6;
+    const tautline::FileRanges ranges(*group);
+    tautline::MeshShare share = [&]
+    {
+      const tautline::ProgressStep progress(this, 0.0, readingShare);
+      return this->ReadShare(ranges);
+    }();
+    return tautline::exchangeParts(ranges, std::move(share), request.ghostLayers);
+  }
+  catch (const tautline::UnusualFile&)
+  {
+    tautline::MeshFile part;
+    group->together([&] { part = this->ReadPartOfWhole(request); });
+    return part;
+  }
+}
+
+//------------------------------------------------------------------------------
 int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
 {
   this->ErrorText.clear();
@@ -95,17 +158,7 @@ int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
     {
       throw tautline::Error("no file name");
     }
-    constexpr double readingShare = 0.8;
-    tautline::MeshFile mesh = [&]
-    {
-      const tautline::ProgressStep progress(this, 0.0, readingShare);
-      return this->ReadMesh();
-    }();
-    const tautline::PartRequest request = requestedPart(outputs->GetInformationObject(0));
-    if (request.parts > 1)
-    {
-      mesh = tautline::partOf(mesh, request);
-    }
+    tautline::MeshFile mesh = this->ReadPart(requestedPart(outputs->GetInformationObject(0)));
     for (const std::string& warning : mesh.warnings)
     {
       vtkWarningMacro(<< this->FileName << ": " << warning);

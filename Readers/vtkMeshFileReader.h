@@ -8,9 +8,16 @@
  * Array names are the same for all formats (see MeshFile.h): `Fixed`, `BoundaryMarker`,
  * `Reference`.
  *
- * On several MPI ranks each rank reads the file and keeps its own compact part of it (recursive
- * bisection, see MeshPart.h), with global ids of points and cells and as many layers of ghost cells
- * as are asked for. While it reads, each rank needs memory for the whole mesh.
+ * On several MPI ranks each rank gets its own compact part of the mesh (recursive bisection, see
+ * MeshPart.h), with global ids of points and cells and as many layers of ghost cells as are asked
+ * for. Where the ranks of VTK's global controller each ask for the piece of their own number, they
+ * read by ranges: each parses its share of the file, and then they exchange points and cells
+ * (PartExchange.h). A rank then needs memory in proportion to its part.
+ *
+ * In all other cases a rank reads the whole file, in memory for the whole mesh, and keeps its part:
+ * the same one, exactly. These are pieces without MPI or of another number than there are ranks,
+ * files of less than 1 MiB, formats and variants that do not state so in their class, files with an
+ * error, and text with another layout than a record per line.
  *
  * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkOffReader vtkMeshFileWriter
  */
@@ -26,7 +33,11 @@ class vtkPointSet;
 
 namespace tautline
 {
+class FileRanges;
+class RankGroup;
 struct MeshFile;
+struct MeshShare;
+struct PartRequest;
 }
 
 class TAUTLINEREADERS_EXPORT vtkMeshFileReader : public vtkAlgorithm
@@ -78,6 +89,9 @@ protected:
 
   /// Reads this->FileName; throws tautline::Error.
   virtual tautline::MeshFile ReadMesh() = 0;
+  /// Reads this rank's share of it; throws UnusualFile, on all ranks, where it must be read whole.
+  /// That is what it does unless a subclass overrides it.
+  virtual tautline::MeshShare ReadShare(const tautline::FileRanges& ranges);
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   virtual int RequestData(vtkInformationVector* outputs);
@@ -86,6 +100,10 @@ protected:
   bool LowerCells = false;
 
 private:
+  tautline::MeshFile ReadPart(const tautline::PartRequest& request);
+  tautline::MeshFile ReadPartOfWhole(const tautline::PartRequest& request);
+  bool Agrees(tautline::RankGroup& group, const tautline::PartRequest& request) const;
+
   std::string ErrorText;
 
   vtkMeshFileReader(const vtkMeshFileReader&) = delete;

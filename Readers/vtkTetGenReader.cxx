@@ -2,6 +2,7 @@
 #include "vtkTetGenReader.h"
 
 #include "FileNames.h"
+#include "PartExchange.h"
 #include "TetGenFile.h"
 
 #include "vtkObjectFactory.h"
@@ -12,6 +13,12 @@ vtkStandardNewMacro(vtkTetGenReader);
 tautline::MeshFile vtkTetGenReader::ReadMesh()
 {
   return tautline::readTetGen(this->FileName, this->LowerCells);
+}
+
+//------------------------------------------------------------------------------
+tautline::MeshShare vtkTetGenReader::ReadShare(const tautline::FileRanges& ranges)
+{
+  return tautline::shareTetGen(ranges, this->FileName, this->LowerCells);
 }
 
 //------------------------------------------------------------------------------

@@ -1,0 +1,756 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PartExchange.h"
+
+#include "MeshPart.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace tautline
+{
+namespace
+{
+__extension__ typedef unsigned __int128 Key; // a place along an axis, then the number of a cell
+constexpr int numberBits = 64;
+
+std::size_t at(Index i)
+{
+  return static_cast<std::size_t>(i);
+}
+
+/// A set of numbers from 0 to a limit: a bit each, and the sum of those before per 64 of them.
+class NumberSet
+{
+public:
+  explicit NumberSet(Index limit)
+    : Words(at(limit) / 64 + 1, 0)
+  {
+  }
+  void add(Index i) { this->Words[at(i) / 64] |= std::uint64_t(1) << (i % 64); }
+  /// The numbers in their order; place() is valid from now on.
+  std::vector<Index> list()
+  {
+    std::vector<Index> all;
+    this->Before.resize(this->Words.size());
+    Index count = 0;
+    for (std::size_t word = 0; word < this->Words.size(); ++word)
+    {
+      this->Before[word] = count;
+      count += __builtin_popcountll(this->Words[word]);
+    }
+    all.reserve(at(count));
+    for (std::size_t word = 0; word < this->Words.size(); ++word)
+    {
+      for (std::uint64_t bits = this->Words[word]; bits != 0; bits &= bits - 1)
+      {
+        all.push_back(static_cast<Index>(64 * word) + __builtin_ctzll(bits));
+      }
+    }
+    return all;
+  }
+  /// How many smaller numbers are in the set.
+  Index place(Index i) const
+  {
+    const std::uint64_t below = (std::uint64_t(1) << (i % 64)) - 1;
+    return this->Before[at(i) / 64] + __builtin_popcountll(this->Words[at(i) / 64] & below);
+  }
+
+private:
+  std::vector<std::uint64_t> Words;
+  std::vector<Index> Before;
+};
+
+/// Points that a rank's cells have, wherever they are.
+struct PointLinks
+{
+  std::vector<Index> points; ///< numbers in the file, in their order
+  std::vector<Index> first;  ///< of the points, per rank that has them; one more
+  RankRows asked;            ///< per rank: own points that it needs, counted from the first own one
+
+  PointLinks(RankGroup& group, const std::vector<Index>& begins, std::vector<Index> needed)
+    : points(std::move(needed))
+  {
+    std::vector<std::vector<Index>> questions;
+    for (int rank = 0; rank < group.size(); ++rank)
+    {
+      const auto from = std::lower_bound(points.begin(), points.end(), begins[at(rank)]);
+      const auto to = std::lower_bound(from, points.end(), begins[at(rank) + 1]);
+      this->first.push_back(from - points.begin());
+      questions.emplace_back(from, to);
+    }
+    this->first.push_back(static_cast<Index>(points.size()));
+    this->asked = group.exchangeItems(questions);
+    for (std::vector<Index>& some : this->asked)
+    {
+      for (Index& point : some)
+      {
+        point -= begins[at(group.rank())];
+      }
+    }
+  }
+};
+
+/// The points of cells; their connectivity becomes places in it.
+PointLinks linkPoints(
+  RankGroup& group, const std::vector<Index>& begins, std::vector<Index>& connectivity)
+{
+  NumberSet used(begins.back());
+  for (const Index point : connectivity)
+  {
+    used.add(point);
+  }
+  std::vector<Index> points = used.list();
+  for (Index& point : connectivity)
+  {
+    point = used.place(point);
+  }
+  return PointLinks(group, begins, std::move(points));
+}
+
+/// Numbers of the own cells in the file.
+std::vector<Index> cellNumbers(RankGroup& group, const std::vector<Index>& sectionCells)
+{
+  const std::vector<std::vector<Index>> all = group.gatherItems(sectionCells);
+  std::vector<Index> numbers;
+  Index next = 0;
+  for (std::size_t section = 0; section < sectionCells.size(); ++section)
+  {
+    for (std::size_t rank = 0; rank < all.size(); ++rank)
+    {
+      for (Index i = 0; static_cast<int>(rank) == group.rank() && i < all[rank][section]; ++i)
+      {
+        numbers.push_back(next + i);
+      }
+      next += all[rank][section];
+    }
+  }
+  return numbers;
+}
+
+//------------------------------------------------------------------------------
+/// A double as a number in the same order; both zeros are one.
+std::uint64_t ordered(double value)
+{
+  constexpr std::uint64_t sign = std::uint64_t(1) << 63;
+  const double one = value == 0.0 ? 0.0 : value;
+  std::uint64_t bits;
+  std::memcpy(&bits, &one, sizeof(bits));
+  return bits & sign ? ~bits : bits | sign;
+}
+
+/// An own cell and its place along an axis.
+struct PlacedCell
+{
+  std::uint64_t place;
+  Index cell;
+  bool operator<(const PlacedCell& other) const
+  {
+    return this->place < other.place || (this->place == other.place && this->cell < other.cell);
+  }
+};
+
+/// Cells that are divided among some parts.
+struct PartGroup
+{
+  int first, parts;
+  Index total;            ///< cells on all ranks
+  std::size_t begin, end; ///< of the own ones
+};
+
+/// What the ranks find out together about their cells.
+class Division
+{
+public:
+  /// @param points coordinates of the places that the connectivity has
+  Division(RankGroup& group, const MeshFile& mesh, const std::vector<double>& points,
+    const std::vector<Index>& numbers)
+    : Group(group)
+    , Mesh(mesh)
+    , Points(points)
+    , Numbers(numbers)
+    , Cells(numbers.size())
+  {
+    for (std::size_t i = 0; i < this->Cells.size(); ++i)
+    {
+      this->Cells[i].cell = static_cast<Index>(i);
+    }
+  }
+
+  /// The part of each own cell.
+  std::vector<int> parts()
+  {
+    std::vector<PartGroup> groups = { { 0, this->Group.size(),
+      this->Group.sum(static_cast<Index>(this->Cells.size())), 0, this->Cells.size() } };
+    const auto whole = [](const PartGroup& g) { return g.parts == 1; };
+    while (!std::all_of(groups.begin(), groups.end(), whole))
+    {
+      groups = this->halve(groups);
+    }
+    std::vector<int> result(this->Cells.size());
+    for (const PartGroup& g : groups)
+    {
+      for (std::size_t i = g.begin; i < g.end; ++i)
+      {
+        result[at(this->Cells[i].cell)] = g.first;
+      }
+    }
+    return result;
+  }
+
+private:
+  double centre(Index cell, int axis) const
+  {
+    const Index* nodes = this->Mesh.connectivity.data();
+    const std::vector<Index>& offsets = this->Mesh.offsets;
+    return cellCentre(this->Points, nodes + offsets[at(cell)], nodes + offsets[at(cell) + 1], axis);
+  }
+
+  Key key(const PlacedCell& cell) const
+  {
+    return Key(cell.place) << numberBits | static_cast<std::uint64_t>(this->Numbers[at(cell.cell)]);
+  }
+
+  /// The longest axis of each group.
+  std::vector<int> axes(const std::vector<PartGroup>& groups)
+  {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    using Box = std::array<std::array<double, 3>, 2>;
+    std::vector<Box> boxes;
+    for (const PartGroup& g : groups)
+    {
+      Box box{ { { infinity, infinity, infinity }, { -infinity, -infinity, -infinity } } };
+      for (std::size_t i = g.begin; i < g.end; ++i)
+      {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+          const double place = this->centre(this->Cells[i].cell, static_cast<int>(axis));
+          box[0][axis] = std::min(box[0][axis], place);
+          box[1][axis] = std::max(box[1][axis], place);
+        }
+      }
+      boxes.push_back(box);
+    }
+    for (const std::vector<Box>& other : this->Group.gatherItems(boxes))
+    {
+      for (std::size_t g = 0; g < boxes.size(); ++g)
+      {
+        for (std::size_t axis = 0; axis < 3; ++axis)
+        {
+          boxes[g][0][axis] = std::min(boxes[g][0][axis], other[g][0][axis]);
+          boxes[g][1][axis] = std::max(boxes[g][1][axis], other[g][1][axis]);
+        }
+      }
+    }
+    std::vector<int> result;
+    for (const Box& box : boxes)
+    {
+      result.push_back(longestAxis(box[0], box[1]));
+    }
+    return result;
+  }
+
+  /// Of each group the smallest key that has so many below it. Own cells are sorted.
+  std::vector<Key> keysAt(const std::vector<PartGroup>& groups, const std::vector<Index>& below)
+  {
+    std::vector<Key> low(groups.size(), 0), high(groups.size(), ~Key(0));
+    while (low != high)
+    {
+      std::vector<Index> counts;
+      for (std::size_t g = 0; g < groups.size(); ++g)
+      {
+        counts.push_back(this->cellsBelow(groups[g], low[g] + (high[g] - low[g]) / 2 + 1));
+      }
+      std::vector<Index> sums(groups.size(), 0);
+      for (const std::vector<Index>& other : this->Group.gatherItems(counts))
+      {
+        std::transform(sums.begin(), sums.end(), other.begin(), sums.begin(), std::plus<Index>());
+      }
+      for (std::size_t g = 0; g < groups.size(); ++g)
+      {
+        const Key middle = low[g] + (high[g] - low[g]) / 2;
+        if (low[g] < high[g])
+        {
+          (sums[g] > below[g] ? high[g] : low[g]) = sums[g] > below[g] ? middle : middle + 1;
+        }
+      }
+    }
+    return low;
+  }
+
+  Index cellsBelow(const PartGroup& g, Key key) const
+  {
+    const auto begin = this->Cells.begin() + static_cast<std::ptrdiff_t>(g.begin);
+    const auto end = this->Cells.begin() + static_cast<std::ptrdiff_t>(g.end);
+    return std::lower_bound(begin, end, key,
+             [this](const PlacedCell& cell, Key other) { return this->key(cell) < other; }) -
+      begin;
+  }
+
+  std::vector<PartGroup> halve(const std::vector<PartGroup>& groups)
+  {
+    const std::vector<int> axis = this->axes(groups);
+    std::vector<Index> below;
+    for (std::size_t g = 0; g < groups.size(); ++g)
+    {
+      const PartGroup& old = groups[g]; // cells of one part remain sorted
+      for (std::size_t i = old.begin; old.parts > 1 && i < old.end; ++i)
+      {
+        this->Cells[i].place = ordered(this->centre(this->Cells[i].cell, axis[g]));
+      }
+      const auto begin = this->Cells.begin();
+      std::sort(begin + static_cast<std::ptrdiff_t>(old.begin),
+        begin + static_cast<std::ptrdiff_t>(old.end));
+      below.push_back(PartHalves(old.parts, old.total).lowCells);
+    }
+    const std::vector<Key> cuts = this->keysAt(groups, below);
+    std::vector<PartGroup> result;
+    for (std::size_t g = 0; g < groups.size(); ++g)
+    {
+      const PartGroup& old = groups[g];
+      if (old.parts == 1)
+      {
+        result.push_back(old);
+        continue;
+      }
+      const int lowParts = PartHalves(old.parts, old.total).lowParts;
+      const std::size_t middle = old.begin + at(this->cellsBelow(old, cuts[g]));
+      result.push_back({ old.first, lowParts, below[g], old.begin, middle });
+      result.push_back(
+        { old.first + lowParts, old.parts - lowParts, old.total - below[g], middle, old.end });
+    }
+    return result;
+  }
+
+  RankGroup& Group;
+  const MeshFile& Mesh;
+  const std::vector<double>& Points;
+  const std::vector<Index>& Numbers;
+  std::vector<PlacedCell> Cells; ///< in order of the groups
+};
+
+//------------------------------------------------------------------------------
+/// Two numbers: a point and a part that has a cell with it, or a part and one of its ghost cells.
+using Pair = std::array<Index, 2>;
+
+void sortUnique(std::vector<Pair>& pairs)
+{
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+}
+
+/// Adds those that are not there; both are sorted. Returns what is new.
+std::vector<Pair> addNew(std::vector<Pair>& all, const std::vector<Pair>& more)
+{
+  std::vector<Pair> fresh, sum;
+  std::set_difference(more.begin(), more.end(), all.begin(), all.end(), std::back_inserter(fresh));
+  std::merge(all.begin(), all.end(), fresh.begin(), fresh.end(), std::back_inserter(sum));
+  all = std::move(sum);
+  return fresh;
+}
+
+/// Which own cells are ghosts of which part.
+class GhostSearch
+{
+public:
+  GhostSearch(
+    RankGroup& group, const MeshFile& mesh, const PointLinks& links, const std::vector<int>& parts)
+    : Group(group)
+    , Mesh(mesh)
+    , Links(links)
+    , Parts(parts)
+  {
+  }
+
+  /// Pairs of a part and a cell, in their order.
+  std::vector<Pair> ghosts(int layers)
+  {
+    std::vector<Pair> found, reached = layers > 0 ? this->ownPoints() : std::vector<Pair>();
+    for (int layer = 0; layer < layers; ++layer)
+    {
+      std::vector<Pair> more = this->cellsAt(this->tell(std::move(reached), layer == 0));
+      more = addNew(found, more);
+      reached.clear();
+      for (const auto& [part, cell] : more)
+      {
+        for (Index i = this->Mesh.offsets[at(cell)]; i < this->Mesh.offsets[at(cell) + 1]; ++i)
+        {
+          reached.push_back({ this->Mesh.connectivity[at(i)], part });
+        }
+      }
+      sortUnique(reached);
+    }
+    return found;
+  }
+
+private:
+  /// The places that a part has cells with: most have one part only.
+  std::vector<Pair> ownPoints() const
+  {
+    std::vector<Index> first(this->Links.points.size(), -1);
+    std::vector<Pair> pairs;
+    for (std::size_t cell = 0; cell < this->Parts.size(); ++cell)
+    {
+      for (Index i = this->Mesh.offsets[cell]; i < this->Mesh.offsets[cell + 1]; ++i)
+      {
+        const Index place = this->Mesh.connectivity[at(i)];
+        if (first[at(place)] < 0)
+        {
+          first[at(place)] = this->Parts[cell];
+        }
+        else if (first[at(place)] != this->Parts[cell])
+        {
+          pairs.push_back({ place, this->Parts[cell] });
+        }
+      }
+    }
+    for (std::size_t place = 0; place < first.size(); ++place)
+    {
+      pairs.push_back({ static_cast<Index>(place), first[place] });
+    }
+    sortUnique(pairs);
+    return pairs;
+  }
+
+  /// Sends places and parts to the ranks with the points, and from there, where they are new, to
+  /// all ranks with these points. A point with one part at first has no cells of others: these
+  /// pairs are dropped.
+  std::vector<Pair> tell(std::vector<Pair> pairs, bool atFirst)
+  {
+    const int ranks = this->Group.size();
+    std::vector<std::vector<Pair>> sent(at(ranks));
+    for (const auto& [place, part] : pairs)
+    {
+      const int rank = rankOf(this->Links.first, place);
+      sent[at(rank)].push_back({ place - this->Links.first[at(rank)], part });
+    }
+    std::vector<Pair> more;
+    const std::vector<std::vector<Pair>> received = this->Group.exchangeItems(sent);
+    for (std::size_t rank = 0; rank < received.size(); ++rank)
+    {
+      for (const auto& [question, part] : received[rank])
+      {
+        more.push_back({ this->Links.asked[rank][at(question)], part });
+      }
+    }
+    sortUnique(more);
+    if (atFirst)
+    {
+      std::vector<Pair> several;
+      for (std::size_t i = 0; i < more.size(); ++i)
+      {
+        if ((i > 0 && more[i - 1][0] == more[i][0]) ||
+          (i + 1 < more.size() && more[i + 1][0] == more[i][0]))
+        {
+          several.push_back(more[i]);
+        }
+      }
+      more = std::move(several);
+    }
+    const std::vector<Pair> fresh = addNew(this->Reached, more);
+    for (std::size_t rank = 0; rank < sent.size(); ++rank)
+    {
+      sent[rank].clear();
+      const std::vector<Index>& asked = this->Links.asked[rank];
+      auto next = fresh.begin();
+      for (std::size_t question = 0; question < asked.size(); ++question)
+      {
+        for (; next != fresh.end() && (*next)[0] < asked[question]; ++next)
+        {
+        }
+        for (auto pair = next; pair != fresh.end() && (*pair)[0] == asked[question]; ++pair)
+        {
+          sent[rank].push_back({ static_cast<Index>(question), (*pair)[1] });
+        }
+      }
+    }
+    const std::vector<std::vector<Pair>> answers = this->Group.exchangeItems(sent);
+    std::vector<Pair> result; // sorted, as ranks have the points in their order
+    for (std::size_t rank = 0; rank < answers.size(); ++rank)
+    {
+      for (const auto& [question, part] : answers[rank])
+      {
+        result.push_back({ this->Links.first[rank] + question, part });
+      }
+    }
+    return result;
+  }
+
+  /// Own cells that have one of the places, as ghosts of the parts there.
+  std::vector<Pair> cellsAt(const std::vector<Pair>& reached) const
+  {
+    std::vector<Index> begins(this->Links.points.size() + 1, 0);
+    for (const Pair& pair : reached)
+    {
+      ++begins[at(pair[0]) + 1];
+    }
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    std::vector<Pair> result;
+    for (std::size_t cell = 0; cell < this->Parts.size(); ++cell)
+    {
+      for (Index i = this->Mesh.offsets[cell]; i < this->Mesh.offsets[cell + 1]; ++i)
+      {
+        const std::size_t place = at(this->Mesh.connectivity[at(i)]);
+        for (Index r = begins[place]; r < begins[place + 1]; ++r)
+        {
+          if (reached[at(r)][1] != this->Parts[cell])
+          {
+            result.push_back({ reached[at(r)][1], static_cast<Index>(cell) });
+          }
+        }
+      }
+    }
+    sortUnique(result);
+    return result;
+  }
+
+  RankGroup& Group;
+  const MeshFile& Mesh;
+  const PointLinks& Links;
+  const std::vector<int>& Parts;
+  std::vector<Pair> Reached; ///< own points and parts, in their order
+};
+
+//------------------------------------------------------------------------------
+/// Takes the vector out of an object, so that its memory is free before others are made.
+template <class Vector>
+Vector taken(Vector& from)
+{
+  Vector result;
+  result.swap(from);
+  return result;
+}
+
+/// Own points that no cell of any rank has, as numbers in the file, on the first rank.
+std::vector<Index> loosePoints(
+  RankGroup& group, const PointLinks& links, const std::vector<Index>& begins)
+{
+  const Index first = begins[at(group.rank())], count = begins[at(group.rank()) + 1] - first;
+  std::vector<char> used(at(count), 0);
+  for (const std::vector<Index>& some : links.asked)
+  {
+    for (const Index point : some)
+    {
+      used[at(point)] = 1;
+    }
+  }
+  std::vector<std::vector<Index>> sent(at(group.size()));
+  for (Index point = 0; point < count; ++point)
+  {
+    if (!used[at(point)])
+    {
+      sent[0].push_back(first + point);
+    }
+  }
+  std::vector<Index> all;
+  for (const std::vector<Index>& some : group.exchangeItems(sent))
+  {
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+/// The cells of a part, with numbers of points in the file.
+struct PartCells
+{
+  MeshFile mesh;
+  std::vector<Index> numbers;
+  Index owned = 0; ///< the first ones; ghosts follow
+};
+
+PartCells sendCells(RankGroup& group, MeshFile& mesh, const std::vector<Index>& numbers,
+  const std::vector<int>& parts, const std::vector<Pair>& ghosts)
+{
+  // Ghosts are sent with numbers behind all others, so that they are sorted behind own cells.
+  const Index total = group.sum(mesh.numberOfCells());
+  RankRows rows(at(group.size()));
+  for (std::size_t cell = 0; cell < parts.size(); ++cell)
+  {
+    rows[at(parts[cell])].push_back(static_cast<Index>(cell));
+  }
+  std::vector<std::vector<Index>> keys(rows.size());
+  for (std::size_t rank = 0; rank < rows.size(); ++rank)
+  {
+    for (const Index cell : rows[rank])
+    {
+      keys[rank].push_back(numbers[at(cell)]);
+    }
+  }
+  for (const auto& [part, cell] : ghosts)
+  {
+    rows[at(part)].push_back(cell);
+    keys[at(part)].push_back(total + numbers[at(cell)]);
+  }
+  PartCells result;
+  for (const std::vector<Index>& some : group.exchangeItems(taken(keys)))
+  {
+    result.numbers.insert(result.numbers.end(), some.begin(), some.end());
+  }
+  std::vector<Index> order(result.numbers.size());
+  std::iota(order.begin(), order.end(), Index(0));
+  std::sort(order.begin(), order.end(),
+    [&](Index a, Index b) { return result.numbers[at(a)] < result.numbers[at(b)]; });
+
+  const std::vector<unsigned char> types = sendRows(group, mesh.cellTypes, rows, 1);
+  std::vector<Index> begins = { 0 };
+  for (const unsigned char type : types)
+  {
+    begins.push_back(begins.back() + cellNodes(type));
+  }
+  const std::vector<Index> nodes =
+    sendRows(group, taken(mesh.connectivity), rows, 1, &mesh.offsets);
+  taken(mesh.offsets);
+  MeshFile& part = result.mesh;
+  part.cellTypes.reserve(types.size());
+  part.offsets.reserve(begins.size());
+  part.connectivity.reserve(nodes.size());
+  for (const Index cell : order)
+  {
+    part.addCell(types[at(cell)], nodes.data() + begins[at(cell)], cellNodes(types[at(cell)]));
+  }
+  for (MeshArray& array : mesh.cellArrays)
+  {
+    part.cellArrays.push_back(gatherTuples(sendTuples(group, array, rows), order));
+    array = MeshArray();
+  }
+  std::sort(result.numbers.begin(), result.numbers.end());
+  for (Index& number : result.numbers)
+  {
+    result.owned += number < total;
+    number -= number < total ? 0 : total;
+  }
+  return result;
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<Index> rankBegins(RankGroup& group, Index own)
+{
+  std::vector<Index> begins = { 0 };
+  for (const std::vector<Index>& count : group.gatherItems(std::vector<Index>{ own }))
+  {
+    begins.push_back(begins.back() + count[0]);
+  }
+  return begins;
+}
+
+//------------------------------------------------------------------------------
+int rankOf(const std::vector<Index>& begins, Index item)
+{
+  return static_cast<int>(
+    std::upper_bound(begins.begin(), begins.end(), item) - begins.begin() - 1);
+}
+
+//------------------------------------------------------------------------------
+RankRows realignedRows(
+  const RankGroup& group, const std::vector<Index>& from, const std::vector<Index>& to)
+{
+  const std::size_t own = at(group.rank());
+  RankRows rows(at(group.size()));
+  for (std::size_t rank = 0; rank < rows.size(); ++rank)
+  {
+    const Index end = std::min(from[own + 1], to[rank + 1]);
+    for (Index item = std::max(from[own], to[rank]); item < end; ++item)
+    {
+      rows[rank].push_back(item - from[own]);
+    }
+  }
+  return rows;
+}
+
+//------------------------------------------------------------------------------
+MeshArray sendTuples(RankGroup& group, const MeshArray& array, const RankRows& rows)
+{
+  MeshArray result{ array.name, array.components, {} };
+  std::visit([&](const auto& values)
+    { result.values = sendRows(group, values, rows, array.components); },
+    array.values);
+  return result;
+}
+
+//------------------------------------------------------------------------------
+void keepHighestDimension(RankGroup& group, MeshShare& share)
+{
+  const auto kept = static_cast<int>(group.maximum(static_cast<Index>(share.mesh.dimension())));
+  std::size_t cell = 0;
+  for (Index& cells : share.sectionCells)
+  {
+    const Index before = cells;
+    for (Index i = 0; i < before; ++i, ++cell)
+    {
+      cells -= cellDimension(share.mesh.cellTypes[cell]) != kept;
+    }
+  }
+  share.mesh.keepDimension(kept);
+}
+
+//------------------------------------------------------------------------------
+MeshFile exchangeParts(const FileRanges& ranges, MeshShare share, int ghostLayers)
+{
+  RankGroup& group = ranges.group();
+  MeshFile& mesh = share.mesh;
+  const std::vector<Index> begins = rankBegins(group, mesh.numberOfPoints());
+  const std::vector<Index> numbers = cellNumbers(group, share.sectionCells);
+  PartCells cells;
+  std::vector<Index> loose;
+  {
+    const PointLinks links = linkPoints(group, begins, mesh.connectivity);
+    ranges.poll();
+    const std::vector<int> parts =
+      Division(group, mesh, sendRows(group, mesh.points, links.asked, 3), numbers).parts();
+    ranges.poll();
+    const std::vector<Pair> ghosts = GhostSearch(group, mesh, links, parts).ghosts(ghostLayers);
+    ranges.poll();
+    loose = loosePoints(group, links, begins);
+    for (Index& node : mesh.connectivity)
+    {
+      node = links.points[at(node)];
+    }
+    cells = sendCells(group, mesh, numbers, parts, ghosts);
+  }
+  ranges.poll();
+
+  MeshFile part = std::move(cells.mesh);
+  NumberSet used(begins.back());
+  const Index ownNodes = part.offsets[at(cells.owned)];
+  for (const Index point : loose)
+  {
+    used.add(point);
+  }
+  for (const Index point : part.connectivity)
+  {
+    used.add(point);
+  }
+  std::vector<Index> points = used.list();
+  std::optional<MeshArray::Bytes> ghostPoints, ghostCells;
+  for (Index& point : part.connectivity)
+  {
+    point = used.place(point);
+  }
+  if (ghostLayers > 0)
+  {
+    ghostPoints.emplace(points.size(), ghostFlag(true));
+    ghostCells.emplace(part.cellTypes.size(), ghostFlag(true));
+    std::fill_n(ghostCells->begin(), cells.owned, ghostFlag(false));
+    std::for_each_n(part.connectivity.begin(), ownNodes,
+      [&](Index point) { (*ghostPoints)[at(point)] = ghostFlag(false); });
+    for (const Index point : loose)
+    {
+      (*ghostPoints)[at(used.place(point))] = ghostFlag(false);
+    }
+  }
+  const PointLinks links(group, begins, std::move(points));
+  part.points = sendRows(group, taken(mesh.points), links.asked, 3);
+  for (MeshArray& array : mesh.pointArrays)
+  {
+    part.pointArrays.push_back(sendTuples(group, array, links.asked));
+    array = MeshArray();
+  }
+  addPartArrays(part.pointArrays, PartPointIds, links.points, std::move(ghostPoints));
+  addPartArrays(part.cellArrays, PartCellIds, std::move(cells.numbers), std::move(ghostCells));
+  part.fieldArrays = std::move(mesh.fieldArrays);
+  part.fieldStrings = std::move(mesh.fieldStrings);
+  part.warnings = std::move(mesh.warnings);
+  return part;
+}
+}
