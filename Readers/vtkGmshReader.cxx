@@ -3,6 +3,7 @@
 
 #include "FileNames.h"
 #include "GmshFile.h"
+#include "PartExchange.h"
 #include "TextCursor.h"
 
 #include "vtkObjectFactory.h"
@@ -13,6 +14,12 @@ vtkStandardNewMacro(vtkGmshReader);
 tautline::MeshFile vtkGmshReader::ReadMesh()
 {
   return tautline::readGmsh(this->FileName, this->LowerCells);
+}
+
+//------------------------------------------------------------------------------
+tautline::MeshShare vtkGmshReader::ReadShare(const tautline::FileRanges& ranges)
+{
+  return tautline::shareGmsh(ranges, this->FileName, this->LowerCells);
 }
 
 //------------------------------------------------------------------------------

@@ -22,6 +22,10 @@ std::string output;
 MeshShare shareByName(const FileRanges& ranges, const std::string& name, bool lowerCells)
 {
   const std::string extension = splitExtension(name).second;
+  if (extension == "msh")
+  {
+    return shareGmsh(ranges, name, lowerCells);
+  }
   return extension == "mesh" || extension == "sol" ? shareMedit(ranges, name, lowerCells)
                                                    : shareTetGen(ranges, name, lowerCells);
 }
@@ -322,6 +326,8 @@ void testMedit()
   expectSame(name);
   writeText(name, replaced(text, "\n", "\r\n"));
   expectSame(name);
+  writeText(name, replaced(text, "\nTriangles", " Triangles"));
+  expectSame(name);
   writeText(name, replaced(text, "Tetrahedra\n", "Tangents\n2\n1 2\n3 4\nTetrahedra "));
   expectSame(name);
   writeText(name, text);
@@ -333,11 +339,11 @@ void testMedit()
   const std::string head = text.substr(0, middle), rest = text.substr(middle + 1);
   for (const std::string& other : { head + " " + rest, replaced(text, "\n", " "),
          replaced(text, "Tetrahedra\n", "Foo 1 2 Bar 3\n4\nTetrahedra\n"),
-         replaced(text, "\nTriangles", " Triangles"), "\xef\xbb\xbf" + text })
+         replaced(text, "\n\nTriangles", " Triangles"), "\xef\xbb\xbf" + text })
   {
     writeText(name, other);
     TAUTLINE_CHECK(complaint(name).empty());
-    expectWhole(name, "of " + std::to_string(other.size()) + " bytes");
+    expectWhole(name, "laid out in another way");
   }
   for (const std::string& bad :
     { head, head + "\nx " + rest, head + "\n1 " + rest, replaced(text, "\nEnd", "\n"),
@@ -363,6 +369,115 @@ void testMedit()
     "Ridges\n0\nTetrahedra\n1\n1 2 3 4 5\nCorners\n1\n4\nEnd\nVertices\nfoo\n");
   expectSame(name); // fewer cells than ranks
 }
+
+//------------------------------------------------------------------------------
+/// Version 2.2, with numbers of nodes and elements that a function gives, and data of both.
+std::string gmsh2(const MeshFile& mesh, const std::function<Index(Index)>& number)
+{
+  std::ostringstream text;
+  text.precision(17);
+  text << "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Comments\n1 2\n$EndComments\n"
+       << "$PhysicalNames\n1\n3 2 \"a group\"\n$EndPhysicalNames\n$Nodes\n"
+       << mesh.numberOfPoints() << "\n";
+  for (Index i = 0; i < mesh.numberOfPoints(); ++i)
+  {
+    const double* p = &mesh.points[static_cast<std::size_t>(3 * i)];
+    text << number(i) << " " << p[0] << " " << p[1] << " " << p[2] << "\n";
+  }
+  text << "$EndNodes\n$Elements\n" << mesh.numberOfCells() << "\n";
+  for (Index i = 0; i < mesh.numberOfCells(); ++i)
+  {
+    const auto cell = static_cast<std::size_t>(i);
+    const int dimension = cellDimension(mesh.cellTypes[cell]);
+    text << number(i) << " " << (dimension == 3 ? 4 : dimension) << " 2 " << i % 3 << " " << i % 7;
+    for (Index node = mesh.offsets[cell]; node < mesh.offsets[cell + 1]; ++node)
+    {
+      text << " " << number(mesh.connectivity[static_cast<std::size_t>(node)]);
+    }
+    text << "\n";
+  }
+  text << "$EndElements\n";
+  for (const bool points : { true, false })
+  {
+    const std::string name = points ? "NodeData" : "ElementData";
+    const Index count = (points ? mesh.numberOfPoints() : mesh.numberOfCells()) / 2;
+    for (int step = 0; step < 2; ++step) // the second replaces the first; both have gaps
+    {
+      text << "$" << name << "\n1\n\"some " << name << "\"\n1\n0.5\n3\n"
+           << step << "\n3\n"
+           << count << "\n";
+      for (Index i = count; i > 0; --i)
+      {
+        text << number(2 * i - 1 - step) << " " << i << " " << noise(i) << " -1e-3\n";
+      }
+      text << "$End" << name << "\n";
+    }
+  }
+  return text.str();
+}
+
+void testGmsh()
+{
+  for (const char* name : { "/part.msh", "/cylinder.msh", "/wedges.msh" })
+  {
+    expectSame(data + name);
+  }
+  expectWhole(data + "/part22-binary.msh", "binary");
+  expectWhole(data + "/tent.msh", "of FreeFem++");
+  const std::string name = output + "/ranges.msh";
+  const MeshFile mesh = sample(4);
+  writeGmsh(mesh, name, false);
+  expectSame(name);
+  const std::string blocks = readText(name);
+  const std::string plain = gmsh2(mesh, [](Index i) { return i + 1; });
+  std::vector<std::string> others = { plain, gmsh2(mesh, [](Index i) { return i + 1000000000000; }),
+    gmsh2(mesh, [](Index i) { return 5000 - 3 * i; }),
+    gmsh2(mesh, [](Index i) { return i * i * i; }), replaced(plain, "\n", "\r\n"),
+    interleaved(plain, 7, "\n \t\n"), replaced(blocks, "\n", "\r\n"),
+    interleaved(blocks, 11, "\n") };
+  for (const std::string& text : others)
+  {
+    writeText(name, text);
+    expectSame(name);
+  }
+
+  // read whole: good, but laid out in another way
+  for (const std::string& other : { replaced(plain, "$EndNodes", " $EndNodes"),
+         plain + "\n$Foo\n$Bar\n$EndFoo\n", replaced(blocks, "\n2 \n", " 2 \n") })
+  {
+    writeText(name, other);
+    TAUTLINE_CHECK(complaint(name).empty());
+    expectWhole(name, "laid out in another way");
+  }
+  const std::size_t middle = plain.find('\n', plain.find("$Elements") + 500) + 1;
+  const std::string head = plain.substr(0, middle), rest = plain.substr(middle);
+  for (const std::string& bad : { head, head + "x " + rest, head + "1 4 0 1 2 3 4\n" + rest,
+         replaced(plain, "\n7 ", "\n8 "), replaced(plain, "$EndElements", "$EndElement"),
+         replaced(plain, "2.2 0", "3.0 0"), replaced(plain, "$EndNodes\n", "1 2 3 4\n$EndNodes\n"),
+         replaced(plain, "some NodeData", "some \n"), plain + "1\n", "x\n" + plain,
+         plain.substr(0, plain.rfind("-1e")), replaced(plain, "$Nodes", "$NOD"),
+         blocks.substr(0, blocks.size() / 2), replaced(blocks, "\n9 ", "\n99999 ") })
+  {
+    writeText(name, bad);
+    TAUTLINE_CHECK(!complaint(name).empty());
+    expectWhole(name, complaint(name));
+  }
+  writeText(name,
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n9 0 0 0\n7 1 0 0\n5 0 1 0\n3 0 0 1\n"
+    "$EndNodes\n$Elements\n1\n1 4 2 5 6 3 5 7 9\n$EndElements\n");
+  expectSame(name); // fewer cells than ranks
+  writeText(name,
+    "$MeshFormat\n4.0 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n3 0 0 0 1 1 1 1 42 0\n"
+    "$EndEntities\n$Nodes\n2 5\n1 0 0 2\n9 0 0 0\n7 1 0 0\n3 3 1 3\n5 0 1 0 .1 .2 .3\n"
+    "3 0 0 1 1 1 1\n4 0 0 2 1 1 1\n$EndNodes\n$Elements\n1 2\n3 3 4 2\n1 3 5 7 9\n2 4 5 7 9\n"
+    "$EndElements\n");
+  expectSame(name);
+  writeText(name,
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n1\n5 \"old\"\n$EndPhysicalNames\n"
+    "$Nodes\n4\n9 0 0 0\n7 1 0 0\n5 0 1 0\n3 0 0 1\n"
+    "$EndNodes\n$Elements\n1\n1 4 2 5 6 3 5 7 9\n$EndElements\n");
+  expectWhole(name, "a group without its dimension");
+}
 }
 
 int TestFileRanges(int, char* argv[])
@@ -371,5 +486,6 @@ int TestFileRanges(int, char* argv[])
   output = argv[2];
   testTetGen();
   testMedit();
+  testGmsh();
   return exitCode();
 }
