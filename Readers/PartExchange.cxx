@@ -4,6 +4,7 @@
 #include "MeshPart.h"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <numeric>
 
@@ -582,35 +583,74 @@ PartCells sendCells(RankGroup& group, MeshFile& mesh, const std::vector<Index>& 
     keys[at(part)].push_back(total + numbers[at(cell)]);
   }
   PartCells result;
-  for (const std::vector<Index>& some : group.exchangeItems(taken(keys)))
+  std::vector<Index> senders; // where the cells of each begin
+  keys = group.exchangeItems(taken(keys));
+  for (const std::vector<Index>& some : keys)
   {
+    senders.push_back(static_cast<Index>(result.numbers.size()));
     result.numbers.insert(result.numbers.end(), some.begin(), some.end());
   }
-  std::vector<Index> order(result.numbers.size());
-  std::iota(order.begin(), order.end(), Index(0));
-  std::sort(order.begin(), order.end(),
-    [&](Index a, Index b) { return result.numbers[at(a)] < result.numbers[at(b)]; });
+  taken(keys);
+  std::vector<Index> place(result.numbers.size()); // in the part, of the cells as they arrive
+  {
+    std::vector<Index> order(place.size());
+    std::iota(order.begin(), order.end(), Index(0));
+    std::sort(order.begin(), order.end(),
+      [&](Index a, Index b) { return result.numbers[at(a)] < result.numbers[at(b)]; });
+    for (std::size_t i = 0; i < order.size(); ++i)
+    {
+      place[at(order[i])] = static_cast<Index>(i);
+    }
+  }
 
-  const std::vector<unsigned char> types = sendRows(group, mesh.cellTypes, rows, 1);
-  std::vector<Index> begins = { 0 };
-  for (const unsigned char type : types)
-  {
-    begins.push_back(begins.back() + cellNodes(type));
-  }
-  const std::vector<Index> nodes =
-    sendRows(group, taken(mesh.connectivity), rows, 1, &mesh.offsets);
-  taken(mesh.offsets);
   MeshFile& part = result.mesh;
-  part.cellTypes.reserve(types.size());
-  part.offsets.reserve(begins.size());
-  part.connectivity.reserve(nodes.size());
-  for (const Index cell : order)
+  part.cellTypes.resize(place.size());
+  const std::vector<unsigned char> types = sendRows(group, mesh.cellTypes, rows, 1);
+  for (std::size_t i = 0; i < place.size(); ++i)
   {
-    part.addCell(types[at(cell)], nodes.data() + begins[at(cell)], cellNodes(types[at(cell)]));
+    part.cellTypes[at(place[i])] = types[i];
   }
+  part.offsets.reserve(place.size() + 1);
+  for (const unsigned char type : part.cellTypes)
+  {
+    part.offsets.push_back(part.offsets.back() + cellNodes(type));
+  }
+  part.connectivity.resize(at(part.offsets.back()));
+  std::vector<Index> next = senders;
+  sendRowsTo(group, mesh.connectivity, rows, 1, &mesh.offsets,
+    [&](std::size_t sender, const Index* nodes, std::size_t count)
+    {
+      for (std::size_t i = 0; i < count; ++next[sender])
+      {
+        const Index cell = place[at(next[sender])];
+        const Index size = part.offsets[at(cell) + 1] - part.offsets[at(cell)];
+        std::copy_n(nodes + i, size, part.connectivity.begin() + part.offsets[at(cell)]);
+        i += at(size);
+      }
+    });
+  taken(mesh.connectivity);
+  taken(mesh.offsets);
   for (MeshArray& array : mesh.cellArrays)
   {
-    part.cellArrays.push_back(gatherTuples(sendTuples(group, array, rows), order));
+    MeshArray to = MeshArray::make(
+      array.name, array.components, array.code(), place.size() * at(array.components));
+    std::visit(
+      [&](auto& values)
+      {
+        using Values = std::decay_t<decltype(values)>;
+        const Index width = array.components;
+        next = senders;
+        sendRowsTo(group, std::get<Values>(array.values), rows, width, nullptr,
+          [&](std::size_t sender, const typename Values::value_type* some, std::size_t count)
+          {
+            for (std::size_t i = 0; i < count; i += at(width), ++next[sender])
+            {
+              std::copy_n(some + i, width, values.begin() + width * place[at(next[sender])]);
+            }
+          });
+      },
+      to.values);
+    part.cellArrays.push_back(std::move(to));
     array = MeshArray();
   }
   std::sort(result.numbers.begin(), result.numbers.end());

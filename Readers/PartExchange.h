@@ -15,7 +15,7 @@
 #include "FileRanges.h"
 #include "MeshFile.h"
 
-#include <cstring>
+#include <algorithm>
 
 namespace tautline
 {
@@ -51,36 +51,17 @@ RankRows realignedRows(
   const RankGroup& group, const std::vector<Index>& from, const std::vector<Index>& to);
 
 /**
- * @brief Sends rows of a list to the ranks that `rows` names, some megabytes at a time.
+ * @brief Sends rows of a list to the ranks that `rows` names, some megabytes at a time. Collective.
  * @param width items in a row @param offsets if not null, where each row begins, and the end
- * @return the rows in order of sender, in the order in which each sends them. Collective.
+ * @param take is called as take(sender, items, count) with whole rows, from each sender in the
+ * order in which it sends them
  */
-template <class Item>
-std::vector<Item> sendRows(RankGroup& group, const std::vector<Item>& items, const RankRows& rows,
-  Index width, const std::vector<Index>* offsets = nullptr)
+template <class Item, class Take>
+void sendRowsTo(RankGroup& group, const std::vector<Item>& items, const RankRows& rows, Index width,
+  const std::vector<Index>* offsets, const Take& take)
 {
   constexpr std::size_t atOnce = std::size_t(1) << 23; // bytes to all ranks
-  const auto begin = [&](Index row) { return offsets ? (*offsets)[row] : row * width; };
-  const auto end = [&](Index row) { return offsets ? (*offsets)[row + 1] : (row + 1) * width; };
   const std::size_t perRank = std::max(atOnce / rows.size() / sizeof(Item), std::size_t(1));
-  std::vector<Index> counts;
-  for (const std::vector<Index>& some : rows)
-  {
-    counts.push_back(0);
-    for (const Index row : some)
-    {
-      counts.back() += end(row) - begin(row);
-    }
-  }
-  std::vector<Index> place = group.transpose(std::move(counts));
-  Index total = 0;
-  for (Index& one : place)
-  {
-    const Index count = one;
-    one = total;
-    total += count;
-  }
-  std::vector<Item> received(static_cast<std::size_t>(total));
   std::vector<std::size_t> next(rows.size(), 0);
   for (bool more = true; more;)
   {
@@ -92,22 +73,48 @@ std::vector<Item> sendRows(RankGroup& group, const std::vector<Item>& items, con
       for (; next[rank] < rows[rank].size() && some.size() < perRank; ++next[rank])
       {
         const Index row = rows[rank][next[rank]];
-        some.insert(some.end(), items.begin() + begin(row), items.begin() + end(row));
+        const Index begin = offsets ? (*offsets)[row] : row * width;
+        const Index end = offsets ? (*offsets)[row + 1] : begin + width;
+        some.insert(some.end(), items.begin() + begin, items.begin() + end);
       }
       left = left || next[rank] < rows[rank].size();
       sent[rank] = bytesOf(some);
     }
-    const std::vector<Bytes> arrived = group.exchange(sent);
+    std::vector<Bytes> arrived = group.exchange(sent);
     for (std::size_t rank = 0; rank < rows.size(); ++rank)
     {
-      if (!arrived[rank].empty())
-      {
-        std::memcpy(received.data() + place[rank], arrived[rank].data(), arrived[rank].size());
-        place[rank] += static_cast<Index>(arrived[rank].size() / sizeof(Item));
-      }
+      const std::vector<Item> some = itemsOf<Item>(arrived[rank]);
+      take(rank, some.data(), some.size());
     }
     more = group.any(left);
   }
+}
+
+/// The same; returns the rows in order of sender.
+template <class Item>
+std::vector<Item> sendRows(
+  RankGroup& group, const std::vector<Item>& items, const RankRows& rows, Index width)
+{
+  std::vector<Index> place;
+  for (const std::vector<Index>& some : rows)
+  {
+    place.push_back(static_cast<Index>(some.size()) * width);
+  }
+  place = group.transpose(std::move(place));
+  Index total = 0;
+  for (Index& one : place)
+  {
+    const Index count = one;
+    one = total;
+    total += count;
+  }
+  std::vector<Item> received(static_cast<std::size_t>(total));
+  sendRowsTo(group, items, rows, width, nullptr,
+    [&](std::size_t sender, const Item* some, std::size_t count)
+    {
+      std::copy_n(some, count, received.begin() + place[sender]);
+      place[sender] += static_cast<Index>(count);
+    });
   return received;
 }
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""read_on_ranks.py FILE DATA: for pvbatch on any number of MPI ranks, see test_read_on_ranks.py.
+"""read_on_ranks.py FILE DATA LARGE: for pvbatch on any number of MPI ranks, see test_read_on_ranks.py.
 
 Reads files of each format on all ranks, measures them and optimizes one, and writes counts, statistics and points to
-FILE as JSON.
+FILE as JSON. Files in the folder LARGE are read by ranges; of these, also check sums of all points and arrays.
 """
 
+import hashlib
 import json
 import os
 import sys
@@ -14,7 +15,7 @@ from paraview import servermanager, simple
 from parallel_tools import RANKS, parts, update
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
-FILE, DATA = sys.argv[1:3]
+FILE, DATA, LARGE = sys.argv[1:4]
 results = {"ranks": RANKS}
 
 
@@ -35,6 +36,36 @@ for name in ("cube.1.ele", "part.msh", "cylinder.msh", "house.off"):
     else:
         cells = mesh.GetDataInformation().GetNumberOfCells()
     results[name] = {"cells": cells, "parts": len(found), "mean": mean_quality(mesh)}
+
+
+
+def whole(found: list, name: str, ids: str):
+    """An array of the mesh, from parts that may share some of its points or cells."""
+    values = np.concatenate([part[name] for part in found])
+    if RANKS == 1:
+        return values
+    numbers = np.concatenate([part[ids] for part in found])
+    result = np.zeros((numbers.max() + 1, *values.shape[1:]), values.dtype)
+    result[numbers] = values
+    assert np.array_equal(result[numbers], values), f"the ranks disagree about {name}"
+    assert len(set(numbers.tolist())) == len(result), f"{name} has gaps"
+    return result
+
+
+for name in sorted(os.listdir(LARGE)):
+    if name.endswith((".node", ".sol")):
+        continue
+    mesh = update(simple.OpenDataFile(os.path.join(LARGE, name)))
+    found = parts(mesh, FILE)
+    if not found:  # the file is damaged
+        results[name] = {"parts": 0}
+        continue
+    sums = {"mean": mean_quality(mesh), "parts": len(found), "sizes": [len(part["Reference"]) for part in found]}
+    for array in sorted(set(found[0].files) - {"GlobalPointIds", "GlobalCellIds", "vtkGhostType"}):
+        of_points = len(found[0][array]) == len(found[0]["points"])
+        values = whole(found, array, "GlobalPointIds" if of_points else "GlobalCellIds")
+        sums[array] = hashlib.sha256(np.ascontiguousarray(values).tobytes()).hexdigest()
+    results[name] = sums
 
 mesh = opened("cube.1.ele")
 optimized = OptimizeMesh(Input=mesh, ReproducibleOrder=1)
