@@ -60,7 +60,7 @@ template <class Item, class Take>
 void sendRowsTo(RankGroup& group, const std::vector<Item>& items, const RankRows& rows, Index width,
   const std::vector<Index>* offsets, const Take& take)
 {
-  constexpr std::size_t atOnce = std::size_t(1) << 23; // bytes to all ranks
+  constexpr std::size_t atOnce = std::size_t(1) << 21; // bytes to all ranks
   const std::size_t perRank = std::max(atOnce / rows.size() / sizeof(Item), std::size_t(1));
   std::vector<std::size_t> next(rows.size(), 0);
   for (bool more = true; more;)

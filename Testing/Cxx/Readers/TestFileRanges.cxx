@@ -7,6 +7,7 @@
 #include "MeshPart.h"
 #include "PartExchange.h"
 #include "ThreadRanks.h"
+#include "tautline/Core/Interruption.h"
 
 #include <atomic>
 #include <functional>
@@ -478,6 +479,38 @@ void testGmsh()
     "$EndNodes\n$Elements\n1\n1 4 2 5 6 3 5 7 9\n$EndElements\n");
   expectWhole(name, "a group without its dimension");
 }
+
+//------------------------------------------------------------------------------
+/// A rank that is interrupted leaves none waiting, and none reads the whole file instead.
+void testInterruption()
+{
+  const std::string name = output + "/ranges.msh";
+  writeText(name, gmsh2(sample(4), [](Index i) { return i + 1; }));
+  std::atomic<int> interrupted = 0, errors = 0;
+  onRanks(3,
+    [&](RankGroup& group)
+    {
+      const InterruptScope scope(false);
+      if (group.rank() == 1)
+      {
+        InterruptScope::cancel();
+      }
+      try
+      {
+        const FileRanges ranges(group, 0);
+        exchangeParts(ranges, shareGmsh(ranges, name, true), 1);
+      }
+      catch (const Interrupted&)
+      {
+        ++interrupted;
+      }
+      catch (const Error&)
+      {
+        ++errors;
+      }
+    });
+  TAUTLINE_CHECK(interrupted == 1 && errors == 2);
+}
 }
 
 int TestFileRanges(int, char* argv[])
@@ -487,5 +520,6 @@ int TestFileRanges(int, char* argv[])
   testTetGen();
   testMedit();
   testGmsh();
+  testInterruption();
   return exitCode();
 }
