@@ -5,9 +5,9 @@
  *
  * A rank has the points and the cells of its share, and answers the others' questions about them.
  * Coordinates of a cell's nodes are fetched from the ranks that have the points; the cells are
- * divided by recursive bisection, where the ranks count the cells below a cut and bisect for it;
- * then cells, ghost cells and points go to the parts, a few megabytes at a time. A rank needs
- * memory for its share and its part, and two bits per point of the whole mesh.
+ * divided by recursive bisection (PartDivision.h); then cells, ghost cells and points go to the
+ * parts, a few megabytes at a time. A rank needs memory for its share and its part, and two bits
+ * per point of the whole mesh.
  */
 #ifndef tautline_PartExchange_h
 #define tautline_PartExchange_h
@@ -60,7 +60,7 @@ template <class Item, class Take>
 void sendRowsTo(RankGroup& group, const std::vector<Item>& items, const RankRows& rows, Index width,
   const std::vector<Index>* offsets, const Take& take)
 {
-  constexpr std::size_t atOnce = std::size_t(1) << 21; // bytes to all ranks
+  constexpr std::size_t atOnce = std::size_t(1) << 22; // bytes to all ranks
   const std::size_t perRank = std::max(atOnce / rows.size() / sizeof(Item), std::size_t(1));
   std::vector<std::size_t> next(rows.size(), 0);
   for (bool more = true; more;)

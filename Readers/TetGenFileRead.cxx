@@ -2,10 +2,8 @@
 #include "TetGenFile.h"
 
 #include "FileNames.h"
-#include "FileRanges.h"
 #include "FileSet.h"
-#include "PartExchange.h"
-#include "TextCursor.h"
+#include "TetGenRecords.h"
 
 #include <algorithm>
 #include <array>
@@ -14,28 +12,15 @@
 
 namespace tautline
 {
+using namespace tetgen;
+
+namespace tetgen
+{
 namespace
 {
-constexpr char Comment = '#';
 constexpr Index Largest = std::numeric_limits<int>::max();
 constexpr Index Smallest = std::numeric_limits<int>::min();
-
-/// The header of the vertices.
-struct NodeHeader
-{
-  Index count = 0;
-  int dimension = 3;
-  Index attributes = 0;
-  bool markers = false;
-};
-
-/// Vertices and how other files number them.
-struct NodeList
-{
-  NodeHeader header;
-  Index base = 0; ///< number of the first vertex, 0 or 1
-  Index last() const { return this->base + this->header.count - 1; }
-};
+}
 
 NodeHeader readNodeHeader(TextCursor& cursor)
 {
@@ -102,7 +87,6 @@ bool isIntegral(const MeshArray& array)
       [](double v) { return std::abs(v) < Exact && v == std::floor(v); });
 }
 
-/// References become whole numbers where all of them are, on all ranks of a group if there is one.
 void makeIntegral(std::vector<MeshArray>& arrays, RankGroup* group)
 {
   for (MeshArray& array : arrays)
@@ -133,7 +117,6 @@ void readNumber(TextCursor& cursor, const char* what, Index expected)
   }
 }
 
-/// The number of the first record, 0 or 1; leaves the cursor before it.
 Index peekBase(TextCursor& cursor, const char* what)
 {
   const char* start = cursor.place();
@@ -146,8 +129,6 @@ Index peekBase(TextCursor& cursor, const char* what)
   return base;
 }
 
-/// The vertices from `first` on, as the points of a mesh that has none. `file` has the names of
-/// attributes.
 void readNodeRecords(TextCursor& cursor, const FileContent& file, const NodeList& nodes,
   Index first, Index count, MeshFile& mesh)
 {
@@ -246,13 +227,6 @@ void readCorners(
   }
 }
 
-/// The header of the elements, and the number of the first.
-struct ElementHeader
-{
-  Index count = 0, nodes = 0, attributes = 0, base = 0;
-  unsigned char type = 0;
-};
-
 ElementHeader readElementHeader(TextCursor& cursor, const NodeHeader& nodes)
 {
   ElementHeader header;
@@ -269,7 +243,6 @@ ElementHeader readElementHeader(TextCursor& cursor, const NodeHeader& nodes)
   return header;
 }
 
-/// The elements from `first` on, as the only cells of a mesh; Reference is a double.
 void readElementRecords(TextCursor& cursor, const FileContent& file, const ElementHeader& header,
   const NodeList& nodes, Index first, Index count, MeshFile& mesh)
 {
@@ -324,16 +297,6 @@ void addMarkers(MeshFile& mesh, std::vector<Index> markers, bool present)
   }
 }
 
-/// The header of faces (3 or 6 nodes) or edges (2 or 3) with an optional marker, what the first of
-/// them tells about all, and its number.
-struct BoundaryHeader
-{
-  bool faces = false, markers = false;
-  Index count = 0, base = 0;
-  unsigned char type = 0;
-  Index nodes() const { return cellNodes(this->type); }
-};
-
 BoundaryHeader readBoundaryHeader(TextCursor& cursor, bool faces, bool quadraticMesh)
 {
   BoundaryHeader header;
@@ -358,7 +321,6 @@ BoundaryHeader readBoundaryHeader(TextCursor& cursor, bool faces, bool quadratic
   return header;
 }
 
-/// The faces or edges from `first` on; numbers of neighbours are skipped.
 void readBoundaryRecords(TextCursor& cursor, const BoundaryHeader& header, const NodeList& nodes,
   Index first, Index count, MeshFile& mesh)
 {
@@ -398,9 +360,8 @@ void readBoundary(const FileContent& file, const NodeList& nodes, bool faces, Me
 //------------------------------------------------------------------------------
 MeshFile readTetGenComplex(const FileContent& file, const std::string& stem, bool smesh);
 
-namespace
+namespace tetgen
 {
-/// A vertex cell of each of the points from `first` on.
 void addVertexCells(MeshFile& mesh, Index first, Index count)
 {
   std::vector<Index> all(static_cast<std::size_t>(count));
@@ -450,159 +411,6 @@ MeshFile readTetGen(const std::string& name, bool lowerCells)
     mesh.keepHighestDimension();
   }
   return mesh;
-}
-
-namespace
-{
-/// One of the files of a set, as the ranks read it: the header by all, then ranges.
-class SharedFile
-{
-public:
-  SharedFile(const FileRanges& ranges, const std::string& name, SetCheck& set)
-    : Ranges(ranges)
-    , Name(name)
-    , Head(ranges.head(name))
-    , HeadCursor(this->Head, Comment)
-  {
-    const FileContent tail = ranges.tail(name);
-    ranges.together([&] { set.add(tail); });
-  }
-
-  /// What `read` finds with a cursor at the begin of the file. There must be records: nothing is
-  /// gained by dividing none.
-  template <class Header, class Read>
-  Header readHeader(const Read& read, Index Header::*base)
-  {
-    return this->Ranges.agreed(
-      [&]
-      {
-        Header header = read(this->HeadCursor);
-        header.*base = peekBase(this->HeadCursor, "number of the first record");
-        return header;
-      });
-  }
-
-  /// Calls read(cursor, file, first, count) for the own ones of the records after the header.
-  template <class Read>
-  void records(Index count, const Read& read)
-  {
-    const Index begin = this->HeadCursor.place() - this->Head.begin();
-    const Index end = this->Ranges.agreed([&] { return fileSize(this->Name); });
-    const LineShare lines = this->Ranges.lines(this->Name, begin, end, Comment, count);
-    this->Ranges.together(
-      [&]
-      {
-        TextCursor cursor(lines.text, Comment);
-        read(cursor, this->Head, lines.first, lines.count);
-      });
-  }
-
-private:
-  const FileRanges& Ranges;
-  std::string Name;
-  FileContent Head;
-  TextCursor HeadCursor;
-};
-
-NodeList shareNodes(
-  const FileRanges& ranges, const std::string& name, SetCheck& set, MeshFile& mesh)
-{
-  SharedFile file(ranges, name, set);
-  const auto nodes = file.readHeader(
-    [](TextCursor& cursor) { return NodeList{ readNodeHeader(cursor) }; }, &NodeList::base);
-  file.records(nodes.header.count,
-    [&](TextCursor& cursor, const FileContent& head, Index first, Index count)
-    {
-      readNodeRecords(cursor, head, nodes, first, count, mesh);
-      cursor.expectFileEnd("vertex");
-    });
-  return nodes;
-}
-
-/// @return the type of the elements
-unsigned char shareElements(const FileRanges& ranges, const std::string& name, SetCheck& set,
-  const NodeList& nodes, MeshFile& mesh)
-{
-  SharedFile file(ranges, name, set);
-  const auto header =
-    file.readHeader([&](TextCursor& cursor) { return readElementHeader(cursor, nodes.header); },
-      &ElementHeader::base);
-  file.records(header.count,
-    [&](TextCursor& cursor, const FileContent& head, Index first, Index count)
-    { readElementRecords(cursor, head, header, nodes, first, count, mesh); });
-  makeIntegral(mesh.cellArrays, &ranges.group());
-  return header.type;
-}
-
-/// @return the type of the faces or edges
-unsigned char shareBoundary(const FileRanges& ranges, const std::string& name, SetCheck& set,
-  const NodeList& nodes, bool faces, bool quadraticMesh, MeshFile& mesh)
-{
-  SharedFile file(ranges, name, set);
-  const auto header = file.readHeader([&](TextCursor& cursor)
-    { return readBoundaryHeader(cursor, faces, quadraticMesh); },
-    &BoundaryHeader::base);
-  file.records(header.count,
-    [&](TextCursor& cursor, const FileContent&, Index first, Index count)
-    { readBoundaryRecords(cursor, header, nodes, first, count, mesh); });
-  return header.type;
-}
-}
-
-//------------------------------------------------------------------------------
-MeshShare shareTetGen(const FileRanges& ranges, const std::string& name, bool lowerCells)
-{
-  const auto [stem, extension] = splitExtension(name);
-  ranges.require(extension == "node" || extension == "ele" || extension == "face" ||
-    extension == "edge"); // others are lists of facets, which are read whole
-  const std::string names[] = { stem + ".node", stem + ".ele", stem + ".face", stem + ".edge" };
-  const bool elements = ranges.exists(names[1]);
-  const bool withLower = lowerCells || !elements;
-  const bool faces = ranges.exists(names[2]) && withLower;
-  const bool edges = ranges.exists(names[3]) && withLower;
-  ranges.require((elements || extension != "ele") && (faces || !withLower || extension != "face") &&
-    (edges || !withLower || extension != "edge"));
-  ranges.expectLarge({ names[0], names[elements ? 1 : faces ? 2 : edges ? 3 : 0] });
-
-  MeshShare share;
-  MeshFile& mesh = share.mesh;
-  SetCheck set;
-  const NodeList nodes = shareNodes(ranges, names[0], set, mesh);
-  bool quadratic = false;
-  const auto endSection = [&]
-  {
-    const Index before =
-      std::accumulate(share.sectionCells.begin(), share.sectionCells.end(), Index(0));
-    share.sectionCells.push_back(mesh.numberOfCells() - before);
-  };
-  if (elements)
-  {
-    quadratic = cellNodes(shareElements(ranges, names[1], set, nodes, mesh)) > 4;
-    endSection();
-  }
-  if (faces)
-  {
-    const unsigned char type = shareBoundary(ranges, names[2], set, nodes, true, quadratic, mesh);
-    quadratic = quadratic || (!elements && cellNodes(type) > 4);
-    endSection();
-  }
-  if (edges)
-  {
-    shareBoundary(ranges, names[3], set, nodes, false, quadratic, mesh);
-    endSection();
-  }
-  if (!elements && !faces && !edges)
-  {
-    const std::vector<Index> begins = rankBegins(ranges.group(), mesh.numberOfPoints());
-    addVertexCells(
-      mesh, begins[static_cast<std::size_t>(ranges.group().rank())], mesh.numberOfPoints());
-    endSection();
-  }
-  if (!lowerCells)
-  {
-    keepHighestDimension(ranges.group(), share);
-  }
-  return share;
 }
 
 namespace
