@@ -223,7 +223,8 @@ void OptimizerSetup::setSurfaceTolerance(const OptimizerSettings& settings)
 void OptimizerSetup::findLeaving(const OptimizerSettings& settings, const InputBlock& block)
 {
   if (!settings.leaveSurface || !(this->Options.surfaceTolerance > 0) ||
-    !(this->Options.improveWorst > 0) || !this->slidesOnModel(settings))
+    !(this->Options.improveWorst > 0) || !this->slidesOnModel(settings) || this->HasGeometry ||
+    this->Options.limits)
   {
     return;
   }

@@ -35,8 +35,8 @@ OptimizerSetup::OptimizerSetup(const OptimizerSettings& settings, const InputBlo
   this->setFixed(settings, block);
   this->setFeatures(settings, block);
   this->setSurfaceTolerance(settings);
-  this->findLeaving(settings, block);
   this->setLimits(settings, block);
+  this->findLeaving(settings, block);
   this->setObjectives(settings, block);
 }
 

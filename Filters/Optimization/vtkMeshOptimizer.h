@@ -427,8 +427,8 @@ public:
    * SurfaceTolerance above 0: points of the boundary near the worst elements, corners and points of
    * curves too, may leave the surface within that tolerance, where sliding does not improve these
    * elements any more. Points on interfaces, fixed points and those given as corner or curve
-   * points (array at index 5) do not leave; with limits of the displacement, none does. The summary
-   * says how many did. The default is on.
+   * points (array at index 5) do not leave; with a Geometry or limits of the displacement, none
+   * does. The summary says how many did. The default is on.
    */
   vtkSetMacro(LeaveSurface, bool);
   vtkGetMacro(LeaveSurface, bool);

@@ -203,7 +203,7 @@ def optimize(
         box, 0 to 1; 0: any distance.
     leave_surface: with the preset "worst element" and the boundary "on surface", whether points of the boundary near
         the worst elements, corners too, may leave the surface within surface_tolerance, where sliding does not improve
-        these elements any more.
+        these elements any more. Needs keep_features and a surface_tolerance above 0; not with a geometry or limits.
     show_features: whether the result has the point array `FeatureKind` (0 within a patch, 1 on a curve, 2 corner) and
         the point and cell array `PatchId`.
     feature_kinds: kinds of the points instead of those found: 0, 1, 2, or -1 as found; one per point, or the name of a

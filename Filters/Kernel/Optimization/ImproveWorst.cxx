@@ -103,7 +103,7 @@ Objective judgedBy(OptimizationProblem& problem)
 }
 
 //------------------------------------------------------------------------------
-void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
+bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
   const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report)
 {
   problem.shareTolerance(1.0);
@@ -115,11 +115,12 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
   double worst = problem.worstMovable(judged); // elements that cannot move do not count
   if (!std::isfinite(worst) || metricInfo(judged.metric).direction == Direction::Neutral)
   {
-    return;
+    return false;
   }
   const auto better = [=](double a, double b) { return larger ? a > b : a < b; };
   const double sign = isLarger(problem.options().objectives[0].metric) ? -1 : 1;
-  const double bound = start.mean[0] + sign * limits.allowance * std::abs(start.mean[0]);
+  const double mean = limits.mean.value_or(start.mean[0]);
+  const double bound = mean + sign * limits.allowance * std::abs(mean);
 
   SimplexMesh& simplices = problem.simplices();
   const std::size_t size = VertexStride * static_cast<std::size_t>(simplices.freeVertices());
@@ -159,7 +160,7 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
       std::copy_n(simplices.coordinates(), size, best.begin());
       if (!report(now) || (limits.onlyAsInput && !guard.worse(worst)))
       {
-        return;
+        return false;
       }
     }
     else
@@ -179,12 +180,13 @@ void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
       {
         if (objectives.fast() || ++power == std::end(powers))
         {
-          return;
+          return false;
         }
         pull = 1.0;
         lowered = false;
       }
     }
   }
+  return problem.outOfTime();
 }
 }

@@ -8,6 +8,8 @@
 
 #include "QualityGuard.h"
 
+#include <optional>
+
 namespace tautline
 {
 /// How far to go.
@@ -15,6 +17,8 @@ struct WorstLimits
 {
   /// How much the mean of the first objective's metric may get worse, as a fraction of it.
   double allowance = 0.0;
+  /// The mean it counts from; not set: that at the start.
+  std::optional<double> mean;
   /// Stop as soon as no element is worse than the worst one of the input.
   bool onlyAsInput = false;
 };
@@ -27,8 +31,9 @@ struct WorstLimits
  * with several corners, and other metrics than the inverse mean ratio, take its p-mean in place of
  * the second sum.
  * @param report called after each round that improved the mesh; returns false to stop
+ * @return whether the time limit ended it
  */
-TAUTLINE_KERNEL_EXPORT void improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
+TAUTLINE_KERNEL_EXPORT bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
   const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report);
 }
 #endif

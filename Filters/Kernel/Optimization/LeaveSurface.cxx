@@ -16,12 +16,15 @@ constexpr int layers = 2;
 /// A round that improves the worst value by less than this fraction of it is the last.
 constexpr double worthwhile = 5e-3;
 
-/// The elements whose values are near the worst one, of those that have a point which can move.
+/// Flags of the valid elements whose values are near the worst one, of those that have a point which
+/// can move.
 std::vector<char> worstElements(const OptimizationProblem& problem, const Objective& judged,
   const std::vector<unsigned char>& movable, double& worst)
 {
   const Mesh& mesh = problem.moving();
   const MeshView& view = mesh.view();
+  std::vector<signed char> validity(view.numberOfCells);
+  mesh.classifyCells(validity.data(), problem.options().threads);
   std::vector<double> q(view.numberOfCells);
   evaluateMetric(mesh, judged.metric, judged.evaluation, q.data());
   const bool larger = metricInfo(judged.metric).direction == Direction::LargerIsBetter;
@@ -35,7 +38,7 @@ std::vector<char> worstElements(const OptimizationProblem& problem, const Object
     {
       const Index cell = block.cell(i);
       const Index* node = view.connectivity + view.offsets[cell];
-      if (std::isfinite(q[cell]) &&
+      if (validity[cell] == Valid && std::isfinite(q[cell]) &&
         std::any_of(node, node + t.nodes, [&](Index p) { return movable[p] != 0; }))
       {
         candidates[cell] = 1;
@@ -72,14 +75,26 @@ void spread(const MeshView& view, std::vector<char>& elements, std::vector<unsig
 }
 
 //------------------------------------------------------------------------------
-Index leaveSurface(const Mesh& mesh, OptimizationProblem& problem, const QualityGuard& guard,
-  double allowance, const Stopwatch& clock,
+Index LeavingResult::count(const std::vector<double>& coordinates) const
+{
+  Index count = 0;
+  for (std::size_t i = 0; i < this->points.size(); ++i)
+  {
+    const double* was = &this->onSurface[3 * i];
+    count += !std::equal(was, was + 3, &coordinates[3 * this->points[i]]);
+  }
+  return count;
+}
+
+//------------------------------------------------------------------------------
+LeavingResult leaveSurface(const Mesh& mesh, OptimizationProblem& problem,
+  const QualityGuard& guard, const WorstLimits& limits, const Stopwatch& clock,
   const std::function<bool(OptimizationProblem&, const IterationRecord&)>& report)
 {
   const MeshView& view = mesh.view();
   OptimizeOptions options = problem.options();
   problem.store();
-  std::vector<double> onSurface = problem.points(); // of a loose point, where it was last
+  LeavingResult result;
   const std::vector<unsigned char> fixed(options.fixed, options.fixed + view.numberOfPoints);
   std::vector<unsigned char> movable(view.numberOfPoints), loose(view.numberOfPoints, 0);
   for (Index p = 0; p < view.numberOfPoints; ++p)
@@ -87,14 +102,10 @@ Index leaveSurface(const Mesh& mesh, OptimizationProblem& problem, const Quality
     movable[p] = !fixed[p] || options.leaving[p];
   }
   const Objective& judged = guard.judged();
-  const double mean = problem.record(0).mean[0];
-  const bool largerMean =
-    metricInfo(options.objectives[0].metric).direction == Direction::LargerIsBetter;
-  const double meanSign = largerMean ? -1 : 1;
   double worst = 0;
   std::vector<char> elements = worstElements(problem, judged, movable, worst);
   const bool some = std::any_of(elements.begin(), elements.end(), [](char e) { return e != 0; });
-  for (int round = 0; some && round < maxRounds && !problem.outOfTime(); ++round)
+  for (int round = 0; some && round < maxRounds && !result.outOfTime && !result.stopped; ++round)
   {
     // Points that have left stay loose, as they are on nothing they could slide on.
     std::vector<unsigned char> near(view.numberOfPoints, 0), held(view.numberOfPoints);
@@ -104,7 +115,9 @@ Index leaveSurface(const Mesh& mesh, OptimizationProblem& problem, const Quality
       if (!loose[p] && near[p] && options.leaving[p])
       {
         loose[p] = 1;
-        std::copy_n(&problem.points()[3 * p], 3, &onSurface[3 * p]);
+        const double* at = &problem.points()[3 * p];
+        result.points.push_back(p);
+        result.onSurface.insert(result.onSurface.end(), at, at + 3);
       }
     }
     for (int layer = 0; layer < layers; ++layer)
@@ -119,30 +132,22 @@ Index leaveSurface(const Mesh& mesh, OptimizationProblem& problem, const Quality
     std::vector<double> points = problem.points();
     OptimizationProblem inner(mesh, options, points, clock);
     inner.loosen(loose);
-    const IterationRecord first = inner.record(0);
-    inner.start(first);
-    const double now = first.mean[0];
-    // What is left of the allowance, as a fraction of the mean there is.
-    const double worsened = meanSign * (now - mean);
-    const double left = std::max(0.0, (allowance * std::abs(mean) - worsened) / std::abs(now));
-    bool going = true;
-    improveWorst(inner, guard, { left, false },
-      [&](const IterationRecord& record) { return going = report(inner, record); });
+    inner.start(inner.record(0));
+    result.outOfTime = improveWorst(inner, guard, limits,
+      [&](const IterationRecord& record)
+      {
+        result.stopped = !report(inner, record);
+        return !result.stopped;
+      });
     inner.store();
     const double before = worst;
     problem.restart(points);
     elements = worstElements(problem, judged, movable, worst);
-    if (!going || std::abs(worst - before) < worthwhile * std::abs(before))
+    if (std::abs(worst - before) < worthwhile * std::abs(before))
     {
       break;
     }
   }
-  Index left = 0;
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    const double* now = &problem.points()[3 * p];
-    left += loose[p] && !std::equal(now, now + 3, &onSurface[3 * p]);
-  }
-  return left;
+  return result;
 }
 }

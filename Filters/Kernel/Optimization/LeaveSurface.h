@@ -10,20 +10,31 @@
 
 namespace tautline
 {
+/// What leaveSurface() did.
+struct LeavingResult
+{
+  std::vector<Index> points;     ///< that may have left
+  std::vector<double> onSurface; ///< 3 each: where these were on the surface last
+  bool stopped = false;          ///< on request
+  bool outOfTime = false;
+
+  /// How many of them are elsewhere.
+  Index count(const std::vector<double>& coordinates) const;
+};
+
 /**
  * @brief Where corners, curves and bends of the surface bound the worst elements, lets the points
  * near these leave it, within OptimizeOptions::surfaceTolerance: those of OptimizeOptions::leaving.
  * Goes on with the elements that are the worst then, until the worst value no longer improves.
- * Points that are far from the worst elements do not move.
+ * Points that are far from the worst elements do not move. Each round prepares the mesh anew.
  * @param mesh where the points were at first, which has the surface
- * @param problem starts there, and ends at the points reached
- * @param allowance see WorstLimits
+ * @param problem starts where it is, and ends at the points reached
+ * @param limits of the whole run; the mean must be set
  * @param report called after each round that improved the mesh, with the problem at that time;
  * returns false to stop
- * @return the number of points that left
  */
-TAUTLINE_KERNEL_EXPORT Index leaveSurface(const Mesh& mesh, OptimizationProblem& problem,
-  const QualityGuard& guard, double allowance, const Stopwatch& clock,
+TAUTLINE_KERNEL_EXPORT LeavingResult leaveSurface(const Mesh& mesh, OptimizationProblem& problem,
+  const QualityGuard& guard, const WorstLimits& limits, const Stopwatch& clock,
   const std::function<bool(OptimizationProblem&, const IterationRecord&)>& report);
 }
 #endif

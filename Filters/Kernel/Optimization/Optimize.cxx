@@ -288,18 +288,47 @@ private:
   OptimizeResult& Result; ///< whose points are those of the problem
 };
 
+/// Lets points leave the surface, see leaveSurface(), unless the result is worse than the input,
+/// which is better already where they are.
+void leaveNearWorst(const Mesh& mesh, OptimizationProblem& problem, const StoppingTest& watch,
+  const IterationRecord& first, const QualityGuard& guard, const WorstLimits& limits,
+  const Stopwatch& clock, OptimizeResult& result, LeavingResult& left)
+{
+  problem.store();
+  const std::vector<double> slid = problem.points();
+  left = leaveSurface(mesh, problem, guard, limits, clock,
+    [&](OptimizationProblem& now, IterationRecord record)
+    {
+      record.iteration = result.history.back().iteration + 1;
+      if (problem.objectives() > 1)
+      {
+        record.objective = problem.scalarizer().value(record.objectives);
+      }
+      return report(now, watch, result, record);
+    });
+  const bool larger = guard.holdsObjective() &&
+    isLarger(problem.options().scalarization, problem.scalarizer(), problem.record(0), first);
+  if (larger || guard.violated(problem))
+  {
+    problem.restart(slid);
+    left.points.clear();
+    IterationRecord record = problem.record(result.history.back().iteration + 1);
+    report(problem, watch, result, record);
+  }
+}
+
 /// Improves the worst element as far as wanted, and at least to that of the input. Stores the
 /// points and measures the elements there.
 QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
-  const StoppingTest& watch, const QualityGuard& guard, const Stopwatch& clock,
-  OptimizeResult& result)
+  const StoppingTest& watch, const IterationRecord& first, const QualityGuard& guard,
+  const Stopwatch& clock, OptimizeResult& result)
 {
   // The metrics of the mean and of the worst element disagree on stretched hexahedra.
   constexpr double ofAnotherMetric = 5;
   const OptimizeOptions& options = problem.options();
   const bool same = worstMetric(problem.moving(), options) == options.objectives[0].metric;
   const double allowance = options.improveWorst * (same ? 1.0 : ofAnotherMetric);
-  bool going = result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit;
+  const bool going = result.reason != StopReason::Aborted && result.reason != StopReason::TimeLimit;
   const bool wanted = going && allowance > 0;
   if (!wanted)
   {
@@ -309,29 +338,33 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
       return state;
     }
   }
+  LeavingResult left;
   if (going)
   {
     problem.store();
-    const bool onlyAsInput = !(allowance > 0);
-    improveWorst(problem, guard, { allowance, onlyAsInput },
+    const bool leaves = wanted && options.leaving && options.surfaceTolerance > 0;
+    WorstLimits limits{ allowance, {}, !wanted };
+    if (leaves)
+    {
+      limits.mean = problem.record(0).mean[0];
+    }
+    bool stopped = false;
+    bool outOfTime = improveWorst(problem, guard, limits,
       [&](IterationRecord record)
       {
         record.iteration = result.history.back().iteration + 1;
-        return going = report(problem, watch, result, record);
+        stopped = !report(problem, watch, result, record);
+        return !stopped;
       });
-    if (going && wanted && options.leaving && options.surfaceTolerance > 0 && !options.limits)
+    if (leaves && !stopped && !outOfTime)
     {
-      result.leftSurface = leaveSurface(mesh, problem, guard, allowance, clock,
-        [&](OptimizationProblem& now, IterationRecord record)
-        {
-          record.iteration = result.history.back().iteration + 1;
-          return going = report(now, watch, result, record);
-        });
+      leaveNearWorst(mesh, problem, watch, first, guard, limits, clock, result, left);
+      stopped = left.stopped;
+      outOfTime = left.outOfTime;
     }
-    if (!going || problem.outOfTime())
-    {
-      result.reason = going ? StopReason::TimeLimit : StopReason::Aborted;
-    }
+    result.reason = stopped ? StopReason::Aborted
+      : outOfTime           ? StopReason::TimeLimit
+                            : result.reason;
   }
   QualityGuard::State state = guard.check(problem);
   if (state.violated)
@@ -341,6 +374,7 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
     report(problem, watch, result, record);
     state = guard.check(problem);
   }
+  result.leftSurface = left.count(problem.points());
   return state;
 }
 
@@ -413,7 +447,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   }
   else
   {
-    state = settleWorst(mesh, problem, watch, guard, clock, result);
+    state = settleWorst(mesh, problem, watch, first, guard, clock, result);
     verify(mesh, problem, first, guard, state, result);
   }
   result.iterations = result.history.back().iteration;

@@ -135,7 +135,7 @@ struct OptimizeOptions
    * @brief One flag per point, or null. With improveWorst and surfaceTolerance: nonzero for points
    * of the boundary of a volume or planar mesh, fixed ones too, that may leave what they slide on,
    * within that tolerance, near the worst elements, where these do not improve otherwise. Not with
-   * limits.
+   * limits or onGeometry.
    */
   const unsigned char* leaving = nullptr;
   /// Whether the model was made of another surface than that of the mesh.

@@ -96,6 +96,11 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
   {
     throw Error("Points that may leave the surface need the flags of the fixed points.");
   }
+  if (options.leaving && (options.limits || options.onGeometry))
+  {
+    throw Error("Points that may leave the surface have no other limits, and no other surface than "
+                "that of the mesh: leave them out.");
+  }
   const bool global = isGlobal(options.optimizer);
   if (options.model && !options.parts)
   {

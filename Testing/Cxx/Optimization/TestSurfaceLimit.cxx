@@ -2,9 +2,11 @@
 // A boundary whose points slide stays within a distance of where it was, and the other way round;
 // so does one whose points may leave it to improve the worst elements.
 #include "Optimizing.h"
+#include "Surfaces.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Mesh/Features.h"
+#include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkPointData.h"
@@ -14,6 +16,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <set>
 
 using namespace tautline;
@@ -214,9 +217,9 @@ void testFilter()
 /// hexahedron there has a larger scaled Jacobian than the sine, as long as the faces are plane.
 constexpr Index side = 4;
 constexpr double tangent = 1.0, unit = 3.0;
-MeshData slantedBlock()
+MeshData slantedBlock(CellType type = CellType::Hexahedron)
 {
-  MeshData data = blockMesh(CellType::Hexahedron, side, side, side);
+  MeshData data = blockMesh(type, side, side, topology(type).dimension == 3 ? side : 0);
   data.transform([](Vec3 p) { return unit * Vec3{ p[0] + p[1] / tangent, p[1], p[2] }; });
   return data;
 }
@@ -352,6 +355,93 @@ void testLeaving()
   TAUTLINE_CHECK_EQUAL(limited.left, Index(0));
 }
 
+/// Planar meshes and simplices, too; points on interfaces stay on them; with a Geometry none leaves.
+void testOtherMeshes()
+{
+  constexpr double tolerance = 0.005;
+  for (CellType type : { CellType::Quadrilateral, CellType::Triangle, CellType::Tetrahedron,
+         CellType::Wedge, CellType::Hexahedron })
+  {
+    const Context context(topology(type).name);
+    const MeshData data = slantedBlock(type);
+    const bool volume = topology(type).dimension == 3, simplex = topology(type).samples == 1;
+    const double diagonal = unit * side * norm({ 1 + 1 / tangent, 1, volume ? 1.0 : 0.0 });
+    const auto grid = toGrid(data);
+    // Two regions, below and above half of the height.
+    vtkNew<vtkDoubleArray> regions;
+    regions->SetName("Regions");
+    const int up = volume ? 2 : 1;
+    for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+    {
+      double low = unit * side;
+      for (Index n = data.offsets[cell]; n < data.offsets[cell + 1]; ++n)
+      {
+        low = std::min(low, data.points[3 * data.connectivity[n] + up]);
+      }
+      regions->InsertNextValue(low > unit * (side / 2 - 0.5));
+    }
+    grid->GetCellData()->AddArray(regions);
+    vtkNew<vtkMeshOptimizer> filter;
+    filter->SetInputData(grid);
+    // Sliding uses up what the mean of tetrahedra may get worse by with the preset.
+    const double allowance = type == CellType::Tetrahedron ? 0.2 : simplex ? 0.01 : 0.05;
+    const bool custom = type == CellType::Tetrahedron;
+    filter->SetPreset(custom ? vtkMeshOptimizer::CUSTOM : vtkMeshOptimizer::WORST_ELEMENT);
+    filter->SetImproveWorst(allowance);
+    filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
+    filter->SetSurfaceTolerance(tolerance);
+    double worst[2], mean[2];
+    for (const bool withRegions : { true, false })
+    {
+      for (int leave = 0; leave < 2; ++leave)
+      {
+        filter->SetLeaveSurface(leave == 1);
+        filter->SetInputArrayToProcess(
+          6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, withRegions ? "Regions" : "");
+        filter->Update();
+        MeshData moved = data;
+        moved.points =
+          toMesh(vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0))).points;
+        std::vector<double> q(data.numberOfCells()), imr(q.size());
+        const Mesh mesh(moved.view());
+        evaluateMetric(
+          mesh, simplex ? Metric::InverseMeanRatio : Metric::ScaledJacobian, {}, q.data());
+        evaluateMetric(mesh, Metric::InverseMeanRatio, {}, imr.data());
+        worst[leave] =
+          simplex ? -*std::max_element(q.begin(), q.end()) : *std::min_element(q.begin(), q.end());
+        mean[leave] =
+          std::accumulate(imr.begin(), imr.end(), 0.0) / static_cast<double>(imr.size());
+        TAUTLINE_CHECK(filter->GetSurfaceError() <= tolerance * diagonal);
+        const std::string summary = filter->GetSummary();
+        const bool left = summary.find("left the surface") != std::string::npos;
+        TAUTLINE_CHECK(withRegions ? !left || leave == 1 : left == (leave == 1));
+        for (Index p = 0; withRegions && p < data.numberOfPoints(); ++p)
+        {
+          if (std::abs(data.point(p)[up] - unit * (side / 2)) < 1e-9)
+          {
+            TAUTLINE_CHECK_NEAR(moved.point(p)[up], unit * (side / 2), 1e-9);
+          }
+        }
+      }
+    }
+    TAUTLINE_CHECK(worst[1] > worst[0] + 0.005);
+    // The allowance of the mean is that of both kinds of rounds together.
+    TAUTLINE_CHECK(mean[1] <= mean[0] * (1 + allowance));
+    if (type == CellType::Hexahedron)
+    {
+      MeshData geometry = cubeSurface(CellType::Quadrilateral, side);
+      geometry.transform(
+        [](Vec3 p) {
+          return unit * side * Vec3{ p[0] + p[1] / tangent, p[1], p[2] };
+        });
+      filter->SetInputDataObject(3, toGrid(geometry));
+      filter->Update();
+      TAUTLINE_CHECK(
+        std::string(filter->GetSummary()).find("left the surface") == std::string::npos);
+    }
+  }
+}
+
 /// A request to stop in the rounds in which points leave is stated as the reason, with the best so
 /// far.
 void testStopping()
@@ -388,6 +478,9 @@ void testStopping()
   // Points that may leave need the flags of those that may not move otherwise.
   options.fixed = nullptr;
   TAUTLINE_CHECK_THROWS(optimize(mesh, options), "flags of the fixed points");
+  options.fixed = fixed.data();
+  options.onGeometry = true;
+  TAUTLINE_CHECK_THROWS(optimize(mesh, options), "no other surface");
 }
 }
 
@@ -396,6 +489,7 @@ int TestSurfaceLimit(int, char*[])
   testLimit();
   testFilter();
   testLeaving();
+  testOtherMeshes();
   testStopping();
   return exitCode();
 }
