@@ -16,8 +16,8 @@ constexpr int layers = 2;
 /// A round that improves the worst value by less than this fraction of it is the last.
 constexpr double worthwhile = 5e-3;
 
-/// Flags of the valid elements whose values are near the worst one, of those that have a point which
-/// can move.
+/// Flags of the valid elements whose values are near the worst one, of those with a point that can
+/// move.
 std::vector<char> worstElements(const OptimizationProblem& problem, const Objective& judged,
   const std::vector<unsigned char>& movable, double& worst)
 {

@@ -355,7 +355,8 @@ void testLeaving()
   TAUTLINE_CHECK_EQUAL(limited.left, Index(0));
 }
 
-/// Planar meshes and simplices, too; points on interfaces stay on them; with a Geometry none leaves.
+/// Planar meshes and simplices, too; points on interfaces stay on them; with a Geometry, none
+/// leaves.
 void testOtherMeshes()
 {
   constexpr double tolerance = 0.005;
