@@ -7,7 +7,7 @@ import numpy as np
 import tautline as tl
 from checks import DATA, OUT, points, refused, run_tests, shell as run
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_INT, vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
+from vtkmodules.vtkCommonDataModel import VTK_QUAD, vtkImageData, vtkMultiBlockDataSet, vtkUnstructuredGrid
 
 BRACKET, TANGLED, PLATE = DATA / "bracket.vtu", DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
 
@@ -191,6 +191,34 @@ def test_best_known():
     known = tl.optimize(BRACKET, ["imr"], reduction=0.5, best_known=0)
     assert "Converged" in known.reason and known.iterations > estimated.iterations
     refused("best_known", tl.optimize, BRACKET, ["imr"], best_known="0")
+
+
+def test_points_that_leave_the_surface():
+    """The acute angle of a sheared square bounds the scaled Jacobian there, unless points leave the boundary."""
+    side = 4
+    corners, mesh = vtkPoints(), vtkUnstructuredGrid()
+    corners.SetDataType(VTK_DOUBLE)
+    for j in range(side + 1):
+        for i in range(side + 1):
+            corners.InsertNextPoint(i + j, j, 0)
+    mesh.SetPoints(corners)
+    for j in range(side):
+        for i in range(side):
+            first = i + j * (side + 1)
+            mesh.InsertNextCell(VTK_QUAD, 4, [first, first + 1, first + side + 2, first + side + 1])
+    tl.write(mesh, OUT / "sheared.vtu")
+    worst = {}
+    for leave in (True, False):
+        result = tl.optimize(mesh, preset="worst element", boundary="on surface", surface_tolerance=0.005,
+                             leave_surface=leave)  # fmt: skip
+        worst[leave] = tl.quality(result.mesh, ["scaled_jacobian"]).values["scaled_jacobian"].min()
+        assert result.surface_error <= 0.005 * mesh.GetLength()
+        assert ("left the surface" in result.summary) == leave, result.summary
+        name = OUT / f"sheared-{leave}.vtu"
+        run("optimize", OUT / "sheared.vtu", "-o", name, "--preset", "worst element", "--boundary", "on surface",
+            "--surface-tolerance", "0.005", "--leave-surface" if leave else "--no-leave-surface")  # fmt: skip
+        assert np.allclose(points(tl.read(name)), points(result.mesh), rtol=0, atol=1e-12)
+    assert worst[True] > worst[False] + 0.005 and abs(worst[False] - np.sqrt(0.5)) < 1e-9, worst
 
 
 def test_points_that_stay():
