@@ -374,19 +374,24 @@ std::vector<double> RankMesh::leastOf(const std::vector<double>& ofPiece, double
     double value;
   };
   std::vector<std::vector<Value>> sent(this->Group.size());
-  std::vector<double> values(mesh.localPoints(), none);
-  for (std::size_t p = 0; p < ofPiece.size(); ++p)
-  {
-    const Index local = mesh.localOfPiece()[p];
-    if (local >= 0 && mesh.owned(local))
+  std::vector<double> values;
+  this->Group.together(
+    [&]
     {
-      values[local] = std::min(values[local], ofPiece[p]);
-    }
-    else if (local >= 0)
-    {
-      sent[mesh.owners()[local]].push_back({ mesh.numbers()[local], ofPiece[p] });
-    }
-  }
+      values.assign(mesh.localPoints(), none);
+      for (std::size_t p = 0; p < ofPiece.size(); ++p)
+      {
+        const Index local = mesh.localOfPiece()[p];
+        if (local >= 0 && mesh.owned(local))
+        {
+          values[local] = std::min(values[local], ofPiece[p]);
+        }
+        else if (local >= 0)
+        {
+          sent[mesh.owners()[local]].push_back({ mesh.numbers()[local], ofPiece[p] });
+        }
+      }
+    });
   for (const auto& list : this->Group.exchangeItems(sent))
   {
     for (const Value& value : list)
@@ -639,11 +644,15 @@ std::string RankMesh::move(vtkPointSet* output, const std::vector<double>& local
       }
     });
   lost = this->Group.sum(lost);
-  if (output)
-  {
-    output->SetPoints(makePoints(points, lost > 0 ? nullptr : like));
-    addDisplacement(output, this->piece().points, points);
-  }
+  this->Group.together(
+    [&]
+    {
+      if (output)
+      {
+        output->SetPoints(makePoints(points, lost > 0 ? nullptr : like));
+        addDisplacement(output, this->piece().points, points);
+      }
+    });
   return lost == 0 ? ""
                    : "The points are given in double precision: in single precision " +
       std::to_string(lost) + " valid elements would not be valid.";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WholeMesh.h"
 
+#include "PointOrder.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Types.h"
 
@@ -622,6 +623,7 @@ WholeMesh assemble(const std::vector<vtkDataSet*>& pieces, const WholeMesh* like
       numbers.push_back(&piece.points);
     }
     whole.mesh = buildMesh(parts, whole.points, whole.cells, numbers);
+    setPointOrder(whole.mesh, like != nullptr);
   }
   if (parts.size() == pieces.size())
   {

@@ -2,6 +2,7 @@
 #include "MovedBoundary.h"
 
 #include "Blocks.h"
+#include "tautline/Deformation/WarpOptions.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 
 #include "vtkCellData.h"
@@ -362,5 +363,16 @@ std::vector<double> tensorsOf(vtkDataArray* regions,
     }
   }
   return result;
+}
+
+//------------------------------------------------------------------------------
+void requireTensor(const double* tensor, Index cell, const char* where)
+{
+  if (!isPositiveSemidefinite(tensor))
+  {
+    throw Error("The coefficients of cell " + text(cell) + " of the " + where +
+      " are not finite or not positive semidefinite: correct the array, or choose other "
+      "Coefficients.");
+  }
 }
 }

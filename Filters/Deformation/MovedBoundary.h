@@ -78,5 +78,8 @@ std::vector<double> tensorsOf(vtkDataArray* array);
 /// 6 per cell, by regions: value, alpha, beta, gamma.
 std::vector<double> tensorsOf(vtkDataArray* regions,
   const std::vector<std::array<double, 4>>& coefficients, const double* otherwise);
+/// Throws Error if the 6 coefficients of a cell are not finite or not positive semidefinite.
+/// @param where "mesh" or "piece", whose cell it is
+void requireTensor(const double* tensor, Index cell, const char* where);
 }
 #endif

@@ -2,6 +2,7 @@
 #include "TargetMatch.h"
 
 #include "MeshAdapter.h"
+#include "PointOrder.h"
 #include "tautline/Mesh/BoundaryParts.h"
 
 #include "vtkCellArray.h"
@@ -20,6 +21,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <sstream>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -39,6 +41,14 @@ Index count(const Flags& flags)
 std::string text(Index n)
 {
   return std::to_string(n);
+}
+
+/// "(0.5, 0, 1)"
+std::string place(const double* p)
+{
+  std::ostringstream stream;
+  stream << '(' << p[0] << ", " << p[1] << ", " << p[2] << ')';
+  return stream.str();
 }
 
 /// Calls visit(a, b) for the edges of all cells of a view; of lines and polygons too.
@@ -97,6 +107,7 @@ public:
     : Request(request)
     , View(request.view->view())
     , Adapter(request.target, request.threads)
+    , Order(commonOrder(request.mesh, request.target))
   {
   }
 
@@ -118,6 +129,7 @@ public:
         text(this->View.numberOfPoints) +
         ": it is not the same mesh. Choose another Correspondence.");
     }
+    this->requireOrder(points);
     if (requested != Correspondence::SameBoundary && points == this->View.numberOfPoints)
     {
       std::vector<Index> ids(points);
@@ -125,15 +137,26 @@ public:
       {
         ids[i] = i;
       }
-      if (requested == Correspondence::SameMesh || this->fits(ids))
+      const bool given = requested == Correspondence::SameMesh && this->Order == PointOrder::Given;
+      if (given || this->fits(ids))
       {
         how = "as the same mesh, point by point";
         return ids;
       }
+      // By ids of its own the target is another mesh to all appearances.
+      if (requested == Correspondence::SameMesh ||
+        (this->Order != PointOrder::Given &&
+          this->target().numberOfCells == this->View.numberOfCells))
+      {
+        throw Error("The target has as many points as the mesh, but not its cells in the "
+                    "order of the global ids, or of the pieces. " +
+          std::string(OrderRemedy));
+      }
     }
     if (requested == Correspondence::SameBoundary || requested == Correspondence::Automatic)
     {
-      std::vector<Index> ids = this->bySurface();
+      std::vector<Index> ids =
+        this->Order == PointOrder::Given ? this->bySurface() : this->bySurfaceIds();
       how = "as the boundary extracted from the mesh";
       if (ids.empty())
       {
@@ -161,10 +184,17 @@ private:
     vtkDataArray* ids = this->Request.ids;
     if (!ids)
     {
-      throw Error("No array of point ids is chosen: choose one of the target's point arrays.");
+      throw Error(NoIdsChosen);
     }
     std::unordered_map<double, Index> numbers;
     vtkDataArray* own = this->Request.mesh->GetPointData()->GetArray(ids->GetName());
+    if (!own && pointOrder(this->Request.mesh) == PointOrder::Coordinates)
+    {
+      throw Error(std::string("The mesh has no array '") + ids->GetName() +
+        "' of its own, and its points were put together from several processes, so that they have "
+        "no numbers that the target could refer to: give the mesh the array, too, or run Generate "
+        "Global Ids before it is cut.");
+    }
     for (Index i = 0; own && i < this->View.numberOfPoints; ++i)
     {
       numbers[own->GetComponent(i, 0)] = i;
@@ -229,32 +259,74 @@ private:
     return this->fits(ids) ? ids : std::vector<Index>();
   }
 
-  /// As ParaView's Extract Surface and Feature Edges number the points of the mesh at rest.
-  std::vector<Index> bySurface()
+  /// The points of the mesh that those of a skin are; may be empty.
+  static std::vector<Index> pointsOf(vtkPolyData* skin)
   {
-    vtkNew<vtkDataSetSurfaceFilter> surface;
-    surface->SetInputData(this->Request.mesh);
-    surface->PassThroughPointIdsOn();
-    surface->Update();
-    vtkPolyData* skin = surface->GetOutput();
+    std::vector<Index> ids;
     vtkDataArray* original = skin->GetPointData()->GetArray(OriginalIds);
-    if (this->isTarget(skin) && original)
+    for (vtkIdType i = 0; original && i < skin->GetNumberOfPoints(); ++i)
     {
-      std::vector<Index> ids(skin->GetNumberOfPoints());
-      for (Index i = 0; i < static_cast<Index>(ids.size()); ++i)
-      {
-        ids[i] = static_cast<Index>(original->GetComponent(i, 0));
-      }
+      ids.push_back(static_cast<Index>(original->GetComponent(i, 0)));
+    }
+    return ids;
+  }
+
+  /// As ParaView's Extract Surface and Feature Edges number the points of the mesh at rest.
+  std::vector<Index> bySurface() const
+  {
+    const auto surface = skinOf(this->Request.mesh);
+    const std::vector<Index> ids =
+      this->isTarget(surface) ? pointsOf(surface) : std::vector<Index>();
+    if (!ids.empty())
+    {
       return ids;
     }
-    vtkNew<vtkFeatureEdges> edges;
-    edges->SetInputData(skin);
-    edges->FeatureEdgesOff();
-    edges->NonManifoldEdgesOff();
-    edges->ColoringOff();
-    edges->Update();
-    return this->isTarget(edges->GetOutput()) ? this->byPlace(edges->GetOutput())
-                                              : std::vector<Index>();
+    const auto edges = rimOf(surface);
+    return this->isTarget(edges) ? this->byPlace(edges) : std::vector<Index>();
+  }
+
+  /// The same boundaries with their points in the order of the mesh, as assemble() leaves them.
+  std::vector<Index> bySurfaceIds()
+  {
+    const auto surface = skinOf(this->Request.mesh);
+    for (const bool whole : { true, false })
+    {
+      std::vector<Index> ids = whole ? pointsOf(surface) : this->byPlace(rimOf(surface));
+      std::sort(ids.begin(), ids.end());
+      if (static_cast<Index>(ids.size()) == this->target().numberOfPoints && this->fits(ids))
+      {
+        return ids;
+      }
+    }
+    return {};
+  }
+
+  /// Throws Error if points would correspond by an order that several processes do not have.
+  void requireOrder(Index points) const
+  {
+    const Correspondence requested = this->Request.correspondence;
+    if (this->Order != PointOrder::Coordinates || requested == Correspondence::ClosestPoint)
+    {
+      return;
+    }
+    bool ordered =
+      requested == Correspondence::SameMesh || requested == Correspondence::SameBoundary;
+    ordered =
+      ordered || points == this->View.numberOfPoints || points == count(*this->Request.projected);
+    if (!ordered) // a skin only if it is needed
+    {
+      const auto surface = skinOf(this->Request.mesh);
+      ordered =
+        points == surface->GetNumberOfPoints() || points == rimOf(surface)->GetNumberOfPoints();
+    }
+    if (ordered)
+    {
+      throw Error("The target's " + text(points) +
+        " points would correspond to those of the mesh by their order, which is not known: mesh "
+        "and target were put together from several processes with other pieces of each, without "
+        "an order of global ids of both. " +
+        OrderRemedy);
+    }
   }
 
   bool isTarget(vtkPolyData* made) const
@@ -291,6 +363,7 @@ private:
   const TargetRequest& Request;
   const MeshView& View;
   MeshAdapter Adapter;
+  PointOrder Order; ///< that points of mesh and target have in common
   std::unordered_set<std::pair<Index, Index>, EdgeHash> Edges;
 };
 
@@ -304,32 +377,13 @@ vtkSmartPointer<vtkDataSet> surfaceOf(vtkDataSet* target, bool ofVolume)
   {
     dimension = std::max(dimension, target->GetCell(i)->GetCellDimension());
   }
-  if (dimension < expected)
+  requireSurface(dimension, ofVolume);
+  if (dimension == expected)
   {
-    throw Error(std::string("The target has no ") + (ofVolume ? "surface" : "curve") +
-      " the boundary could be moved to, and its points do not correspond to those of the mesh: "
-      "give a " +
-      (ofVolume ? "surface" : "curve") + ", or point ids.");
+    return target;
   }
-  vtkSmartPointer<vtkDataSet> result = target;
-  if (dimension > expected)
-  {
-    vtkNew<vtkDataSetSurfaceFilter> surface;
-    surface->SetInputData(target);
-    surface->Update();
-    result = surface->GetOutput();
-  }
-  if (dimension > expected && !ofVolume)
-  {
-    vtkNew<vtkFeatureEdges> edges;
-    edges->SetInputData(result);
-    edges->FeatureEdgesOff();
-    edges->NonManifoldEdgesOff();
-    edges->ColoringOff();
-    edges->Update();
-    result = edges->GetOutput();
-  }
-  return result;
+  const auto skin = skinOf(target);
+  return ofVolume ? skin : rimOf(skin);
 }
 
 void project(const TargetRequest& request, TargetPlaces& places)
@@ -337,7 +391,7 @@ void project(const TargetRequest& request, TargetPlaces& places)
   const MeshView& view = request.view->view();
   const bool ofVolume = request.view->dimension() == Dimension::Volume;
   places.given = *request.projected;
-  Projection found = projected(request.target, ofVolume, view.points, places.given);
+  Projection found = projected(surfaceOf(request.target, ofVolume), view.points, places.given);
   places.displacement = std::move(found.displacement);
   places.how = describeProjection(count(places.given), found.farthest);
 }
@@ -360,10 +414,48 @@ vtkDataArray* chosenTargetIds(vtkDataSet* target, const std::string& name)
 }
 
 //------------------------------------------------------------------------------
-Projection projected(
-  vtkDataSet* target, bool ofVolume, const double* points, const std::vector<unsigned char>& flags)
+vtkSmartPointer<vtkPolyData> skinOf(vtkDataSet* mesh)
 {
-  const auto surface = surfaceOf(target, ofVolume);
+  vtkNew<vtkDataSetSurfaceFilter> surface;
+  surface->SetInputData(mesh);
+  surface->PassThroughPointIdsOn();
+  surface->Update();
+  return surface->GetOutput();
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPolyData> rimOf(vtkPolyData* surface)
+{
+  vtkNew<vtkFeatureEdges> edges;
+  edges->SetInputData(surface);
+  edges->FeatureEdgesOff();
+  edges->NonManifoldEdgesOff();
+  edges->ColoringOff();
+  edges->Update();
+  return edges->GetOutput();
+}
+
+//------------------------------------------------------------------------------
+void requireSurface(int dimension, bool ofVolume)
+{
+  if (dimension < (ofVolume ? 2 : 1))
+  {
+    throw Error(std::string("The target has no ") + (ofVolume ? "surface" : "curve") +
+      " the boundary could be moved to, and its points do not correspond to those of the mesh: "
+      "give a " +
+      (ofVolume ? "surface" : "curve") + ", or point ids.");
+  }
+}
+
+//------------------------------------------------------------------------------
+Projection projected(
+  vtkDataSet* surface, const double* points, const std::vector<unsigned char>& flags)
+{
+  if (surface->GetNumberOfCells() == 0)
+  {
+    throw Error("The target has no boundary that points could be moved to: it is closed. Give a "
+                "curve, or a surface with a boundary.");
+  }
   vtkNew<vtkStaticCellLocator> locator;
   locator->SetDataSet(surface);
   locator->BuildLocator();
@@ -382,8 +474,9 @@ Projection projected(
     locator->FindClosestPoint(points + 3 * i, closest, cell, id, part, squared);
     if (id < 0)
     {
-      throw Error("No point of the target is closest to point " + text(static_cast<Index>(i)) +
-        " of the mesh: are the target's coordinates finite?");
+      throw Error("No point of the target is closest to the point at " + place(points + 3 * i) +
+        " of the mesh: repair the target, which has coordinates that are NaN or infinite, or "
+        "choose another one.");
     }
     for (std::size_t k = 0; k < 3; ++k)
     {
@@ -438,7 +531,7 @@ TargetPlaces placesOf(const TargetRequest& request)
   places.given.assign(points, 0);
   if (request.target->GetNumberOfPoints() == 0)
   {
-    throw Error("The target is empty: choose another one.");
+    throw Error(EmptyTarget);
   }
   std::vector<Index> ids;
   if (request.correspondence != Correspondence::ClosestPoint)

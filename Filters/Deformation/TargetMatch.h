@@ -8,11 +8,14 @@
 
 #include "tautline/Mesh/Mesh.h"
 
+#include "vtkSmartPointer.h"
+
 #include <string>
 #include <vector>
 
 class vtkDataArray;
 class vtkDataSet;
+class vtkPolyData;
 
 namespace tautline
 {
@@ -25,6 +28,18 @@ enum class Correspondence : int
   PointIds = 3,
   ClosestPoint = 4
 };
+
+// Errors.
+constexpr const char* NoTarget =
+  "There is no Target: choose the data set that has the boundary in its new place.";
+constexpr const char* EmptyTarget = "The target is empty: choose another one.";
+constexpr const char* NoIdsChosen =
+  "No array of point ids is chosen: choose one of the target's point arrays.";
+/// What to do where the order of a target's points is not that of the mesh's.
+constexpr const char* OrderRemedy =
+  "Choose Point Ids, an array that both have; or run Generate Global Ids on the mesh in one piece, "
+  "before it is cut and the target is made of it; or let each process have the same pieces of "
+  "both; or choose Closest Point.";
 
 struct TargetRequest
 {
@@ -59,14 +74,20 @@ struct Projection
   double farthest = 0;
 };
 
+/// The boundary of a mesh as ParaView's Extract Surface makes it, with vtkOriginalPointIds.
+vtkSmartPointer<vtkPolyData> skinOf(vtkDataSet* mesh);
+/// The boundary edges of a surface as ParaView's Feature Edges makes them.
+vtkSmartPointer<vtkPolyData> rimOf(vtkPolyData* surface);
+/// Throws Error if the cells of a target have too few dimensions for a boundary to lie on.
+void requireSurface(int dimension, bool ofVolume);
+
 /**
- * @brief The closest points of a target, or of its boundary if it has as many dimensions as the
- * mesh. Throws Error if the target has no surface (curve).
- * @param ofVolume whether it is a volume mesh whose points these are
- * @param points 3 per point
+ * @brief The closest points of a surface, or of a curve for a planar mesh. Throws Error if it has
+ * no cells, and where none is closest, with the place.
+ * @param points 3 per point @param flags one per point: the others do not move
  */
 Projection projected(
-  vtkDataSet* target, bool ofVolume, const double* points, const std::vector<unsigned char>& flags);
+  vtkDataSet* surface, const double* points, const std::vector<unsigned char>& flags);
 
 /// "by projection: N points to the closest point of the target, ..."
 std::string describeProjection(Index points, double farthest);

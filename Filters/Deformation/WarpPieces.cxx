@@ -4,7 +4,7 @@
 #include "Processes.h"
 #include "RankMesh.h"
 #include "RankStatistics.h"
-#include "WholeOnAll.h"
+#include "TargetPieces.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Mesh/BoundaryParts.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
@@ -12,14 +12,13 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
-#include "vtkIdList.h"
-#include "vtkNew.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <unordered_map>
-#include <unordered_set>
+#include <limits>
+#include <memory>
 
 namespace tautline
 {
@@ -31,51 +30,6 @@ struct MovedPoints
   std::vector<Index> ids;
   std::vector<double> places; ///< 3 each
 };
-
-/// Whether points of a target correspond to those of the mesh by ids.
-bool matchesByIds(const WarpSettings& settings)
-{
-  const bool chosen = !settings.targetIds.empty() && settings.targetIds != "None";
-  return settings.correspondence == Correspondence::PointIds ||
-    (settings.correspondence == Correspondence::Automatic && chosen);
-}
-
-/// Whether a piece of the target has the points and cells of a piece of the mesh.
-bool isSamePiece(vtkDataSet* input, vtkDataSet* target)
-{
-  if (!target || target->GetNumberOfPoints() != input->GetNumberOfPoints() ||
-    target->GetNumberOfCells() != input->GetNumberOfCells())
-  {
-    return !target && input->GetNumberOfPoints() == 0;
-  }
-  vtkNew<vtkIdList> a, b;
-  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
-  {
-    input->GetCellPoints(cell, a);
-    target->GetCellPoints(cell, b);
-    if (!std::equal(a->begin(), a->end(), b->begin(), b->end()))
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
-/// Whether each process can find the places of its points; the others match the points of the whole
-/// boundary. On one process.
-bool findsPlaces(const WarpSettings& settings, vtkDataSet* input, vtkDataSet* target)
-{
-  if (settings.correspondence == Correspondence::ClosestPoint)
-  {
-    return true;
-  }
-  if (matchesByIds(settings))
-  {
-    return input->GetNumberOfPoints() == 0 ||
-      input->GetPointData()->GetArray(settings.targetIds.c_str());
-  }
-  return settings.correspondence != Correspondence::SameBoundary && isSamePiece(input, target);
-}
 
 /**
  * @class PieceWarp
@@ -90,16 +44,15 @@ public:
 private:
   DistributedMesh& local() { return this->Whole.mesh(); }
   bool here() const { return this->Piece.input->GetNumberOfPoints() > 0; }
-  Index countOwned(const PointFlags& flags);
+  Index countOwned(const PointFlags& flags)
+  {
+    return tautline::countOwned(this->Group, this->local(), flags);
+  }
   void requireElements();
   PointFlags chosenToMove();
   PointFlags staying();
   void moveByArray();
   void agreeOn(const std::vector<double>& given);
-  template <class PlaceOf>
-  PointFlags moveTo(const PointFlags& matched, const PlaceOf& placeOf);
-  void moveToTarget();
-  void moveByIds(const PointFlags& matched);
   void moveByTransform();
   void findTensors();
   std::vector<double> transformed(double fraction);
@@ -128,17 +81,6 @@ PieceWarp::PieceWarp(
   , Piece(piece)
   , Ids(mesh.pointIds())
 {
-}
-
-//------------------------------------------------------------------------------
-Index PieceWarp::countOwned(const PointFlags& flags)
-{
-  Index count = 0;
-  for (Index p = 0; p < this->local().localPoints(); ++p)
-  {
-    count += flags[p] != 0 && this->local().owned(p);
-  }
-  return this->Group.sum(count);
 }
 
 //------------------------------------------------------------------------------
@@ -263,14 +205,19 @@ void PieceWarp::moveByArray()
 /// must have the same.
 void PieceWarp::agreeOn(const std::vector<double>& given)
 {
-  const Index points = this->Whole.piece().numberOfPoints;
   constexpr double none = std::numeric_limits<double>::infinity();
-  this->Displacement.assign(3 * this->local().localPoints(), 0.0);
+  std::vector<double> component, negative;
+  this->Group.together(
+    [&]
+    {
+      component.resize(this->Whole.piece().numberOfPoints);
+      negative.resize(component.size());
+      this->Displacement.assign(3 * this->local().localPoints(), 0.0);
+    });
   bool differ = false;
   for (int c = 0; c < 3; ++c)
   {
-    std::vector<double> component(points), negative(points);
-    for (Index p = 0; p < points; ++p)
+    for (std::size_t p = 0; p < component.size(); ++p)
     {
       component[p] = given[3 * p + c];
       negative[p] = -component[p];
@@ -288,124 +235,6 @@ void PieceWarp::agreeOn(const std::vector<double>& given)
     throw Error("Points at the same place are treated as one, but have different displacements: "
                 "make them equal, or switch Merge Coincident Points off.");
   }
-}
-
-//------------------------------------------------------------------------------
-/// Moves points of the boundary to places of the target.
-/// @param placeOf a point of the piece; writes its place, or returns false
-/// @return one flag per local point: it has a place
-template <class PlaceOf>
-PointFlags PieceWarp::moveTo(const PointFlags& matched, const PlaceOf& placeOf)
-{
-  const MeshView& piece = this->Whole.piece();
-  std::vector<double> given(3 * piece.numberOfPoints, 0.0);
-  PointFlags placed(piece.numberOfPoints, 0);
-  PointFlags broken = placed;
-  for (Index p = 0; p < piece.numberOfPoints; ++p)
-  {
-    const Index at = this->local().localOfPiece()[p];
-    Vec3 place;
-    if (at < 0 || !matched[at] || !placeOf(p, place))
-    {
-      continue;
-    }
-    const Vec3 d = place - tautline::pointOf(piece, p);
-    placed[p] = 1;
-    broken[p] = !std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2]);
-    std::copy(d.begin(), d.end(), &given[3 * p]);
-  }
-  requireFiniteTarget(this->countOwned(this->Whole.anyOf(broken)));
-  this->agreeOn(given);
-  return this->Whole.anyOf(placed);
-}
-
-//------------------------------------------------------------------------------
-/// By an array of ids that both have. The whole target is on every process.
-void PieceWarp::moveByIds(const PointFlags& matched)
-{
-  const std::string& name = this->Settings.targetIds;
-  const auto target = assembleOnAll(this->Group, this->Piece.target, name);
-  std::unordered_map<double, vtkIdType> numbers;
-  vtkDataArray* ids = nullptr;
-  this->Group.together(
-    [&]
-    {
-      ids = chosenTargetIds(target, name);
-      for (vtkIdType i = 0; i < target->GetNumberOfPoints(); ++i)
-      {
-        numbers[ids->GetComponent(i, 0)] = i;
-      }
-    });
-  vtkDataArray* own = this->Piece.input->GetPointData()->GetArray(name.c_str());
-  std::vector<double> known; // ids that points of the mesh have
-  for (Index p = 0; p < this->Whole.piece().numberOfPoints; ++p)
-  {
-    const double id = own->GetComponent(p, 0);
-    if (numbers.count(id) > 0)
-    {
-      known.push_back(id);
-    }
-  }
-  std::unordered_set<double> all;
-  for (const std::vector<double>& list : this->Group.gatherItems(known))
-  {
-    all.insert(list.begin(), list.end());
-  }
-  Index unknown = 0;
-  for (vtkIdType i = 0; i < target->GetNumberOfPoints(); ++i)
-  {
-    unknown += static_cast<Index>(all.count(ids->GetComponent(i, 0)) == 0);
-  }
-  requireKnownIds(unknown, name, true);
-  const PointFlags placed = this->moveTo(matched,
-    [&](Index p, Vec3& place)
-    {
-      const auto found = numbers.find(own->GetComponent(p, 0));
-      if (found == numbers.end())
-      {
-        return false;
-      }
-      target->GetPoint(found->second, place.data());
-      return true;
-    });
-  this->Correspondence =
-    "by point ids" + describeMatched(this->countOwned(placed), this->countOwned(matched));
-}
-
-//------------------------------------------------------------------------------
-void PieceWarp::moveToTarget()
-{
-  const WarpSettings& set = this->Settings;
-  this->Moved = this->chosenToMove();
-  const PointFlags& matched = set.part == MovedPart::Automatic ? this->Boundary : this->Moved;
-  if (set.correspondence == Correspondence::ClosestPoint)
-  {
-    const auto target = assembleOnAll(this->Group, this->Piece.target, "");
-    Projection found;
-    this->Group.together(
-      [&] {
-        found = projected(target, this->Whole.volume(), this->local().points().data(), this->Moved);
-      });
-    std::transform(found.displacement.begin(), found.displacement.end(), found.displacement.begin(),
-      [&set](double d) { return set.amount * d; });
-    this->Displacement = std::move(found.displacement);
-    this->Correspondence =
-      describeProjection(this->countOwned(this->Moved), this->Group.maximum(found.farthest));
-    return;
-  }
-  if (matchesByIds(set))
-  {
-    this->moveByIds(matched);
-    return;
-  }
-  const PointFlags placed = this->moveTo(matched,
-    [this](Index p, Vec3& place)
-    {
-      this->Piece.target->GetPoint(p, place.data());
-      return true;
-    });
-  this->Correspondence = "as the same mesh, point by point" +
-    describeMatched(this->countOwned(placed), this->countOwned(matched));
 }
 
 //------------------------------------------------------------------------------
@@ -439,26 +268,36 @@ void PieceWarp::moveByTransform()
     Vec3 place;
   };
   this->Moved = this->chosenToMove();
-  std::vector<MovedPoint> own, all;
-  for (Index p = 0; p < this->local().localPoints(); ++p)
-  {
-    if (this->Moved[p] && this->local().owned(p))
+  std::vector<MovedPoint> own;
+  this->Group.together(
+    [&]
     {
-      own.push_back({ this->Ids[p], pointOf(this->local().view(), p) });
-    }
-  }
-  for (const std::vector<MovedPoint>& list : this->Group.gatherItems(own))
-  {
-    all.insert(all.end(), list.begin(), list.end());
-  }
-  std::sort(
-    all.begin(), all.end(), [](const MovedPoint& a, const MovedPoint& b) { return a.id < b.id; });
-  for (const MovedPoint& point : all)
-  {
-    this->Cloud.ids.push_back(point.id);
-    this->Cloud.places.insert(this->Cloud.places.end(), point.place.begin(), point.place.end());
-  }
-  this->Group.together([&] { this->Displacement = this->transformed(1.0); });
+      for (Index p = 0; p < this->local().localPoints(); ++p)
+      {
+        if (this->Moved[p] && this->local().owned(p))
+        {
+          own.push_back({ this->Ids[p], pointOf(this->local().view(), p) });
+        }
+      }
+    });
+  const std::vector<std::vector<MovedPoint>> lists = this->Group.gatherItems(own);
+  this->Group.together(
+    [&]
+    {
+      std::vector<MovedPoint> all;
+      for (const std::vector<MovedPoint>& list : lists)
+      {
+        all.insert(all.end(), list.begin(), list.end());
+      }
+      std::sort(all.begin(), all.end(),
+        [](const MovedPoint& a, const MovedPoint& b) { return a.id < b.id; });
+      for (const MovedPoint& point : all)
+      {
+        this->Cloud.ids.push_back(point.id);
+        this->Cloud.places.insert(this->Cloud.places.end(), point.place.begin(), point.place.end());
+      }
+      this->Displacement = this->transformed(1.0);
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -482,12 +321,11 @@ void PieceWarp::findTensors()
         ? tensorsOf(chosenArray(set.arrays, RegionArray, this->Piece.input, "of regions"),
             set.regions, set.options.tensor.data())
         : tensorsOf(chosenArray(set.arrays, TensorArray, this->Piece.input, "of coefficients"));
-      for (std::size_t i = 0; i < ofPiece.size(); ++i)
+      for (std::size_t cell = 0; 6 * cell < ofPiece.size(); ++cell)
       {
-        if (!this->Whole.skipped()[i / 6] && !std::isfinite(ofPiece[i]))
+        if (!this->Whole.skipped()[cell])
         {
-          throw Error("The coefficients of cell " + std::to_string(i / 6) +
-            " of a piece are not finite: correct the array, or choose other Coefficients.");
+          requireTensor(&ofPiece[6 * cell], static_cast<Index>(cell), "piece");
         }
       }
     });
@@ -548,43 +386,50 @@ void PieceWarp::report(WarpResult& result, WarpFacts& facts, TableRows& history,
   const int threads = this->Settings.options.threads;
   const std::string note =
     this->Whole.move(vtkPointSet::SafeDownCast(this->Piece.output), result.points);
-  const std::vector<double> end = this->Whole.ofPiece(result.points);
-  result.points = {};
-  this->Displacement = {};
-  this->Tensors = {};
-  this->Ids = {};
-  this->Cloud = {};
-  for (PointFlags* flags : { &this->Boundary, &this->Moved, &this->Stay, &this->Prescribed })
-  {
-    *flags = {};
-  }
-  this->Whole.releaseMesh();
   const MeshView& view = this->Whole.piece();
-  Mesh before(view, threads);
-  before.setMirrored(this->Whole.mirrored());
-  const Mesh after = this->Whole.movedPiece(end);
+  std::vector<double> end, values;
+  std::vector<signed char> validity;
+  std::unique_ptr<Mesh> before, after;
+  this->Group.together(
+    [&]
+    {
+      end = this->Whole.ofPiece(result.points);
+      result.points = {};
+      this->Displacement = {};
+      this->Tensors = {};
+      this->Ids = {};
+      this->Cloud = {};
+      for (PointFlags* flags : { &this->Boundary, &this->Moved, &this->Stay, &this->Prescribed })
+      {
+        *flags = {};
+      }
+      this->Whole.releaseMesh();
+      before = std::make_unique<Mesh>(view, threads);
+      before->setMirrored(this->Whole.mirrored());
+      after.reset(new Mesh(this->Whole.movedPiece(end)));
+      validity.resize(view.numberOfCells);
+      values.resize(view.numberOfCells);
+    });
   const int dimension = this->Whole.volume() ? 3 : 2;
   const unsigned char* skip = this->Whole.skipped().data();
-  std::vector<signed char> validity(view.numberOfCells);
-  std::vector<double> values(view.numberOfCells);
   WarpQualities q;
   EvaluationOptions ideal;
   ideal.threads = threads;
   for (const bool moved : { false, true })
   {
-    const Mesh& mesh = moved ? after : before;
-    mesh.classifyCells(validity.data(), threads);
+    const Mesh& mesh = moved ? *after : *before;
+    this->Group.together([&] { mesh.classifyCells(validity.data(), threads); });
     const Measurement m = measureOnRanks(this->Group, mesh, dimension, Metric::InverseMeanRatio,
       ideal, validity.data(), skip, values.data());
     (moved ? q.after : q.before) = { m.worst, m.statistics.mean };
   }
-  this->Group.together([&] { measureSimilarity(after, before, threads, values); });
+  this->Group.together([&] { measureSimilarity(*after, *before, threads, values); });
   const Measurement shape = summarizeOnRanks(
     this->Group, view, dimension, Metric::ShapeSimilarity, validity.data(), skip, values.data());
   q.shape = { shape.worst, shape.statistics.mean };
   q.inverted = shape.counts.inverted + shape.counts.degenerate;
   q.elements = q.inverted + shape.counts.valid;
-  addWarpArrays(this->Piece.output, values, validity);
+  this->Group.together([&] { addWarpArrays(this->Piece.output, values, validity); });
   TableRows unused;
   const bool first = this->Group.rank() == 0; // tables of several processes would be joined
   addWarpReport(result, facts, q, "", { note, this->Whole.notice() }, first ? history : unused,
@@ -608,14 +453,20 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   }
   else if (this->Settings.motion == MotionSource::Target)
   {
-    this->moveToTarget();
+    requireTarget(this->Group, this->Piece.target);
+    this->Moved = this->chosenToMove();
+    const bool all = this->Settings.part == MovedPart::Automatic;
+    PieceMotion motion = moveToTarget(this->Settings, this->Group, this->Whole, this->Piece,
+      this->Moved, all ? this->Boundary : this->Moved);
+    this->Displacement = std::move(motion.displacement);
+    this->Correspondence = std::move(motion.how);
   }
   else
   {
     this->moveByArray();
   }
   this->Stay = this->staying();
-  this->Prescribed = this->Boundary;
+  this->Group.together([&] { this->Prescribed = this->Boundary; });
   WarpFacts facts;
   for (Index p = 0; p < this->local().localPoints(); ++p)
   {
@@ -663,7 +514,8 @@ std::string needOfWholeMesh(const WarpSession& session, vtkDataObject* input, vt
     {
       return "targets with blocks";
     }
-    if (!onAny(other && other->GetNumberOfPoints() > 0) ||
+    // A target that is missing or empty is an error, whoever has the mesh.
+    if (onAny(other && other->GetNumberOfPoints() > 0) &&
       onAny(!findsPlaces(session.settings, own, other)))
     {
       return "targets that are matched to the whole boundary";

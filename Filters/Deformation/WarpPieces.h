@@ -16,7 +16,7 @@ namespace tautline
 {
 class RankMesh;
 
-/// What needs the whole mesh in one place, in the plural, "motions to a target"; "" if each process
+/// What needs the whole mesh in one place, in the plural, "motions over time"; "" if each process
 /// takes its piece.
 /// Collective.
 /// @param input the piece of the mesh @param target of this process, or null

@@ -61,7 +61,7 @@ vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
 {
   if (!target)
   {
-    throw Error("There is no Target: choose the data set that has the boundary in its new place.");
+    throw Error(NoTarget);
   }
   vtkDataSet* only = nullptr;
   int leaves = 0;
@@ -395,6 +395,13 @@ WarpTask WarpSession::task(const InputBlock& block, const RestingMesh& rest, vtk
   else if (set.anisotropic() && set.options.coefficients == WarpCoefficients::PerCell)
   {
     task.tensors = tensorsOf(chosenArray(set.arrays, TensorArray, block.input, "of coefficients"));
+  }
+  // As cells of the input; the warper's are without lines, vertices and the surfaces of volumes.
+  const auto checked = rest.cells.empty() ? task.tensors.size() / 6 : rest.cells.size();
+  for (std::size_t i = 0; i < checked && !task.tensors.empty(); ++i)
+  {
+    const Index cell = rest.cells.empty() ? static_cast<Index>(i) : rest.cells[i];
+    requireTensor(&task.tensors[6 * cell], cell, "mesh");
   }
   return task;
 }

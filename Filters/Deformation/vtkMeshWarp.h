@@ -56,14 +56,19 @@
  * Each process works on its piece. The points are those of one process, to rounding or the
  * tolerance of the linear solver; where a method untangles or optimizes (HYBRID,
  * FEMWARP_UNTANGLING) the order is another than on one process, the elements are as valid, and the
- * points do not depend on the number of processes and the pieces. Matrices are not kept.
+ * points do not depend on the number of processes and the pieces. Not so where the moved boundary
+ * itself inverts elements: how many stay inverted, and the points, may depend on both. Matrices are
+ * not kept.
  *
- * A target is on all processes, where it is matched by CLOSEST_POINT, or by ids of which the mesh
- * has an array of the same name. It may also have pieces with the points and cells of those of the
- * mesh (AUTOMATIC_MATCH, SAME_MESH). With other targets, time steps, HYBRID with UntangleFirst off,
+ * A target stays in pieces where it is matched by ids of which the mesh has an array of the same
+ * name, or, AUTOMATIC_MATCH and SAME_MESH, where its pieces have the points and cells of those of
+ * the mesh; their copies of a point may differ by rounding. Of one that is matched by CLOSEST_POINT
+ * each process gets the surface. With other targets, time steps, HYBRID with UntangleFirst off,
  * composite data and inclined planes, the first process has the whole mesh while it computes and
- * sends the results to the pieces; the summary states why. Ghost cells count as copies; on one
- * process, their points stay.
+ * sends the results to the pieces; the summary states why. Points that correspond by their order
+ * (SAME_MESH, SAME_BOUNDARY, and AUTOMATIC_MATCH where the numbers of points are the same) then
+ * need global ids of both that are those of one mesh; without, it is an error, as what was put
+ * together has lost the order. Ghost cells count as copies; on one process, their points stay.
  *
  * @par Example:
  * @code

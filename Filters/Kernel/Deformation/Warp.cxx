@@ -44,23 +44,11 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options, const WarpRanks&
   refuse(!(options.untanglingBeta >= 0) || !std::isfinite(options.untanglingBeta),
     "Beta must not be negative.");
   refuse(!(options.maximumSeconds >= 0), "The time limit must not be negative.");
-  const auto semidefinite = [](const double* t)
-  {
-    // Minors; rounding of a product of directions may leave them a little below 0.
-    constexpr double rounding = 1e-12;
-    const double size = std::max({ t[0], t[1], t[2] });
-    const double det = t[0] * (t[1] * t[2] - t[4] * t[4]) - t[3] * (t[3] * t[2] - t[4] * t[5]) +
-      t[5] * (t[3] * t[4] - t[1] * t[5]);
-    return std::all_of(t, t + 6, [](double x) { return std::isfinite(x); }) && size >= 0 &&
-      std::min({ t[0], t[1], t[2] }) >= 0 && t[0] * t[1] - t[3] * t[3] >= -rounding * size * size &&
-      t[1] * t[2] - t[4] * t[4] >= -rounding * size * size &&
-      t[0] * t[2] - t[5] * t[5] >= -rounding * size * size && det >= -rounding * size * size * size;
-  };
   const bool anisotropic = isAnisotropic(options.method);
   if (anisotropic && options.coefficients == WarpCoefficients::Manual)
   {
     const SymmetricTensor& t = options.tensor;
-    refuse(!semidefinite(t.data()) || !(std::max({ t[0], t[1], t[2] }) > 0),
+    refuse(!isPositiveSemidefinite(t.data()) || !(std::max({ t[0], t[1], t[2] }) > 0),
       "The coefficients must be finite and positive semidefinite, and not all 0: for example 1, 0, "
       "0 "
       "for a motion along x.");
@@ -71,12 +59,13 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options, const WarpRanks&
       "Coefficients per cell are chosen, but there are none.");
     for (Index i = 0; i < mesh.view().numberOfCells; ++i)
     {
-      if (!semidefinite(options.tensors + 6 * i))
+      if (!isPositiveSemidefinite(options.tensors + 6 * i))
       {
         // The cells of a rank have numbers of its own.
         throw Error("The coefficients of " +
           (ranks.several() ? "a cell" : "cell " + std::to_string(i)) +
-          " are not finite or not positive semidefinite.");
+          " are not finite or not positive semidefinite: correct them, or choose other "
+          "coefficients.");
       }
     }
   }

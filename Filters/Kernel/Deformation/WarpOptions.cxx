@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WarpOptions.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tautline
 {
 namespace
@@ -65,6 +68,19 @@ bool isAnisotropic(WarpMethod method)
 bool untangles(WarpMethod method)
 {
   return traitsOf(method).untangles;
+}
+
+bool isPositiveSemidefinite(const double* t)
+{
+  // Minors; rounding of a product of directions may leave them a little below 0.
+  constexpr double rounding = 1e-12;
+  const double size = std::max({ t[0], t[1], t[2] });
+  const double det = t[0] * (t[1] * t[2] - t[4] * t[4]) - t[3] * (t[3] * t[2] - t[4] * t[5]) +
+    t[5] * (t[3] * t[4] - t[1] * t[5]);
+  return std::all_of(t, t + 6, [](double x) { return std::isfinite(x); }) && size >= 0 &&
+    std::min({ t[0], t[1], t[2] }) >= 0 && t[0] * t[1] - t[3] * t[3] >= -rounding * size * size &&
+    t[1] * t[2] - t[4] * t[4] >= -rounding * size * size &&
+    t[0] * t[2] - t[5] * t[5] >= -rounding * size * size && det >= -rounding * size * size * size;
 }
 
 bool isKnown(WarpCoefficients coefficients)

@@ -41,6 +41,9 @@ TAUTLINE_SOLVERS_EXPORT bool isAnisotropic(WarpMethod method);
 /// Whether a method untangles what its motion inverts.
 TAUTLINE_SOLVERS_EXPORT bool untangles(WarpMethod method);
 
+/// Whether coefficients (xx yy zz xy yz xz) are finite and positive semidefinite, up to rounding.
+TAUTLINE_SOLVERS_EXPORT bool isPositiveSemidefinite(const double* tensor);
+
 /// Where the coefficients of AnisotropicFemwarp and Hybrid come from. The numbers are stable.
 enum class WarpCoefficients : int
 {

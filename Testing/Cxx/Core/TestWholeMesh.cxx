@@ -2,6 +2,7 @@
 // One mesh of its pieces: the same whatever the pieces; with ghost cells, global ids, cracks and
 // points that only ghost cells have; images, surfaces; what cannot be put together.
 #include "Check.h"
+#include "PointOrder.h"
 #include "VtkMeshes.h"
 #include "WholeMesh.h"
 
@@ -202,6 +203,21 @@ void testPartitions()
         const WholeMesh other = assemble(plain(moved), &whole);
         checkNumbers(other, moved);
         TAUTLINE_CHECK_EQUAL(other.mesh->GetPoint(1)[0], -whole.mesh->GetPoint(1)[0]);
+        // What is known of the order of points that were put together.
+        const WholeMesh alone = assemble(plain(moved));
+        const auto given = toGrid(data);
+        const PointOrder order = ids ? PointOrder::ById : PointOrder::Coordinates;
+        TAUTLINE_CHECK(pointOrder(whole.mesh) == order);
+        TAUTLINE_CHECK(pointOrder(other.mesh) == PointOrder::Shared);
+        TAUTLINE_CHECK(commonOrder(whole.mesh, first) == order);
+        TAUTLINE_CHECK(commonOrder(whole.mesh, other.mesh) == PointOrder::ById);
+        TAUTLINE_CHECK(commonOrder(whole.mesh, alone.mesh) == PointOrder::Coordinates);
+        TAUTLINE_CHECK(commonOrder(given, whole.mesh) == PointOrder::Coordinates);
+        TAUTLINE_CHECK(commonOrder(given, given) == PointOrder::Given);
+        given->GetPointData()->SetGlobalIds(whole.mesh->GetPointData()->GetGlobalIds());
+        TAUTLINE_CHECK(commonOrder(given, given) == PointOrder::Given);
+        TAUTLINE_CHECK(commonOrder(given, whole.mesh) == order);
+        TAUTLINE_CHECK(commonOrder(whole.mesh, given) == order);
         TAUTLINE_CHECK(pieces.size() < 3 || !matches({ moved[1], moved[0] }, whole));
       }
     }

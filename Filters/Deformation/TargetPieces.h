@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TargetPieces.h
+ * @brief Motions to a target on processes that each have a piece of the mesh and of the target.
+ */
+#ifndef tautline_TargetPieces_h
+#define tautline_TargetPieces_h
+
+#include "WarpPieces.h"
+#include "tautline/Mesh/DistributedMesh.h"
+
+namespace tautline
+{
+/// A motion of the points here.
+struct PieceMotion
+{
+  std::vector<double> displacement; ///< 3 per local point, at the amount
+  std::string how;                  ///< the correspondence, a sentence
+};
+
+/// The points of all processes whose flag (one per local point) is set. Collective.
+Index countOwned(RankGroup& group, const DistributedMesh& mesh, const PointFlags& flags);
+
+/**
+ * @brief Whether a process can find the places of its points: by ids that it has, by the closest
+ * points, or since the piece of the target has the points and cells of that of the mesh. Else the
+ * points of the whole boundary have to be matched. Not collective.
+ * @param target of this process, or null
+ */
+bool findsPlaces(const WarpSettings& settings, vtkDataSet* input, vtkDataSet* target);
+
+/// Throws Error if the target is missing or empty on all processes. Collective.
+void requireTarget(RankGroup& group, vtkDataSet* piece);
+
+/**
+ * @brief The displacements to the places of a target, where all processes find them. Collective;
+ * throws Error on all processes.
+ * @param moved one flag per local point: those that are projected to the closest point
+ * @param matched those that move otherwise, where the target has a place
+ */
+PieceMotion moveToTarget(const WarpSettings& settings, RankGroup& group, RankMesh& mesh,
+  const WarpPiece& piece, const PointFlags& moved, const PointFlags& matched);
+}
+#endif

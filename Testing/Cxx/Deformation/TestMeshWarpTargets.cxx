@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Motions of Warp Mesh to a target on processes: by ids, by the closest points, in the pieces of
+// the mesh or in others; what has lost the order of its points is refused.
+#include "WarpingRanks.h"
+
+#include "vtkCellArray.h"
+#include "vtkDataSetSurfaceFilter.h"
+#include "vtkPolyData.h"
+
+using namespace tautline;
+
+namespace
+{
+/// The mesh with the hole turned and stretched, and the points' ids.
+vtkSmartPointer<vtkUnstructuredGrid> targetOf(
+  const RankPart& part, double middle, double angle, bool numbered = false)
+{
+  auto grid = numbered ? numberedGridOf(part) : gridOf(part);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+  {
+    Vec3 p = tautline::pointOf(grid, i);
+    const double x = p[0] - middle, y = p[1] - middle;
+    if (std::max(std::abs(x), std::abs(y)) < 1)
+    {
+      p[0] = middle + 1.2 * (std::cos(angle) * x - std::sin(angle) * y);
+      p[1] = middle + std::sin(angle) * x + std::cos(angle) * y;
+    }
+    points->InsertNextPoint(p.data());
+  }
+  grid->SetPoints(points);
+  return grid;
+}
+
+vtkSmartPointer<vtkDoubleArray> idsOf(const RankPart& part)
+{
+  return arrayOf("number", static_cast<Index>(part.pointOf.size()), 1,
+    [&part](Index i, int) { return 1000.0 + static_cast<double>(part.pointOf[i]); });
+}
+
+/// Motions to a target: the pieces of the mesh, or other pieces and ids, or a surface.
+void testTargets(vtkMPIController* controller, const MeshData& whole, double middle)
+{
+  const Context context("target");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  constexpr double angle = 0.3;
+  const auto all = [](Index) { return 0; };
+  const RankPart entire = partOf(whole, 0, all);
+  const RankPart nothing = partOf(whole, 1, all);
+  const struct
+  {
+    const char* name;
+    int correspondence, part;
+    Cut cut;         ///< of the target
+    const char* ids; ///< or none
+    const char* how; ///< in the summary
+    bool gathered;
+    bool numbered; ///< whether mesh and target have global ids
+  } cases[] = {
+    { "same pieces", vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::AUTOMATIC_PART, Cut::Random,
+      nullptr, "as the same mesh, point by point: ", false, false },
+    { "same mesh", vtkMeshWarp::SAME_MESH, vtkMeshWarp::INNER_BOUNDARIES, Cut::Random, nullptr,
+      "as the same mesh, point by point: ", false, false },
+    { "ids, cut otherwise", vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::AUTOMATIC_PART, Cut::Slabs,
+      "number", "by point ids: ", false, false },
+    { "ids, on the first", vtkMeshWarp::POINT_IDS, vtkMeshWarp::INNER_BOUNDARIES, Cut::FirstOnly,
+      "number", "by point ids: ", false, false },
+    { "closest, cut otherwise", vtkMeshWarp::CLOSEST_POINT, vtkMeshWarp::INNER_BOUNDARIES,
+      Cut::Slabs, nullptr, "by projection: ", false, false },
+    { "closest, on the first", vtkMeshWarp::CLOSEST_POINT, vtkMeshWarp::INNER_BOUNDARIES,
+      Cut::FirstOnly, nullptr, "by projection: ", false, false },
+    { "closest, same pieces", vtkMeshWarp::CLOSEST_POINT, vtkMeshWarp::WHOLE_BOUNDARY, Cut::Random,
+      nullptr, "by projection: ", false, false },
+    { "closest, by global ids", vtkMeshWarp::CLOSEST_POINT, vtkMeshWarp::INNER_BOUNDARIES,
+      Cut::Slabs, nullptr, "by projection: ", false, true },
+    { "same mesh, on the first", vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::AUTOMATIC_PART,
+      Cut::FirstOnly, nullptr, "as the same mesh, point by point: ", true, true },
+    { "same mesh, cut otherwise", vtkMeshWarp::SAME_MESH, vtkMeshWarp::INNER_BOUNDARIES, Cut::Slabs,
+      nullptr, "as the same mesh, point by point: ", true, true },
+  };
+  for (const auto& one : cases)
+  {
+    const Context inner(one.name);
+    const auto setTo = [&](const RankPart& part, const RankPart& other)
+    {
+      return [&one, &part, &other, middle](vtkMeshWarp* filter)
+      {
+        auto* input = vtkUnstructuredGrid::SafeDownCast(filter->GetInputDataObject(0, 0));
+        input->GetPointData()->AddArray(idsOf(part));
+        const auto target = targetOf(other, middle, angle, one.numbered);
+        target->GetPointData()->AddArray(idsOf(other));
+        filter->SetMotion(vtkMeshWarp::TARGET);
+        filter->SetInputData(1, target);
+        filter->SetMethod(vtkMeshWarp::FEMWARP);
+        filter->SetAmount(0.8);
+        filter->SetCorrespondence(one.correspondence);
+        filter->SetMovedPart(one.part);
+        filter->SetTargetIds(one.ids);
+      };
+    };
+    vtkNew<vtkMeshWarp> serial, filter;
+    const std::vector<double> expected =
+      alone(controller, whole, setTo(entire, entire), serial.Get());
+    TAUTLINE_CHECK(farthest(expected, whole.points) > 0.05);
+    const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
+    const RankPart other = partOf(whole, rank, cutBy(whole, one.cut, size), one.cut == Cut::Slabs);
+    const std::vector<double> here =
+      pointsOf(whole, part, setTo(part, other), filter.Get(), one.numbered);
+    TAUTLINE_CHECK_EQUAL(contains(filter->GetSummary(), "put together"), one.gathered);
+    TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
+    const std::string summary = serial->GetSummary();
+    const std::size_t at = summary.find(one.how);
+    TAUTLINE_CHECK(at != std::string::npos);
+    const std::string line = summary.substr(at, summary.find('\n', at) - at);
+    TAUTLINE_CHECK(contains(filter->GetSummary(), line));
+  }
+}
+
+/// Targets whose pieces are not those of the mesh to the last bit, or not at all.
+void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double middle)
+{
+  const Context context("other pieces");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  constexpr double angle = 0.3;
+  const RankPart entire = partOf(whole, 0, [](Index) { return 0; });
+  const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
+  const auto setTo = [&](vtkUnstructuredGrid* target, int correspondence)
+  {
+    return [=](vtkMeshWarp* filter)
+    {
+      filter->SetMotion(vtkMeshWarp::TARGET);
+      filter->SetInputData(1, target);
+      filter->SetMethod(vtkMeshWarp::FEMWARP);
+      filter->SetCorrespondence(correspondence);
+      filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
+    };
+  };
+  const auto shifted = [&](const RankPart& of, double shift)
+  {
+    const auto target = targetOf(of, middle, angle);
+    for (vtkIdType i = 0; i < target->GetNumberOfPoints(); ++i)
+    {
+      const Vec3 p = tautline::pointOf(target, i) + Vec3{ shift, -shift, 0 };
+      target->GetPoints()->SetPoint(i, p.data());
+    }
+    return target;
+  };
+  {
+    const Context inner("rounding at seams");
+    constexpr double rounding = 1e-15;
+    vtkNew<vtkMeshWarp> serial, filter;
+    const std::vector<double> expected = alone(controller, whole,
+      setTo(targetOf(entire, middle, angle), vtkMeshWarp::SAME_MESH), serial.Get());
+    const auto target = shifted(part, rank * rounding);
+    const std::vector<double> here =
+      pointsOf(whole, part, setTo(target, vtkMeshWarp::SAME_MESH), filter.Get());
+    TAUTLINE_CHECK(!contains(filter->GetSummary(), "put together"));
+    TAUTLINE_CHECK(farthest(here, expected) <= 1e-12);
+    TAUTLINE_CHECK(farthest(here, whole.points) > 0.05);
+    // The copies of a point on several processes are in one place, bitwise.
+    for (const double sign : { 1.0, -1.0 })
+    {
+      std::vector<double> mine(here), most(here.size());
+      std::transform(mine.begin(), mine.end(), mine.begin(),
+        [sign](double x) { return x == HUGE_VAL ? -HUGE_VAL : sign * x; });
+      controller->AllReduce(
+        mine.data(), most.data(), static_cast<vtkIdType>(most.size()), vtkCommunicator::MAX_OP);
+      for (std::size_t i = 0; i < here.size(); ++i)
+      {
+        TAUTLINE_CHECK(here[i] == HUGE_VAL || mine[i] == most[i]);
+      }
+    }
+  }
+  {
+    const Context inner("same pieces, put together");
+    const auto gathers = [&](vtkUnstructuredGrid* target)
+    {
+      return [target, &setTo](vtkMeshWarp* filter)
+      {
+        setTo(target, vtkMeshWarp::SAME_MESH)(filter);
+        filter->SetMethod(vtkMeshWarp::HYBRID);
+        filter->UntangleFirstOff();
+      };
+    };
+    vtkNew<vtkMeshWarp> serial, filter;
+    const auto target = targetOf(part, middle, angle);
+    const auto all = targetOf(entire, middle, angle);
+    const auto set = gathers(all);
+    vtkMultiProcessController::SetGlobalController(nullptr);
+    const std::vector<double> expected = pointsOf(whole, entire, set, serial.Get(), true);
+    vtkMultiProcessController::SetGlobalController(controller);
+    const std::vector<double> here = pointsOf(whole, part, gathers(target), filter.Get(), true);
+    TAUTLINE_CHECK(contains(filter->GetSummary(), "put together"));
+    TAUTLINE_CHECK(contains(filter->GetSummary(), "as the same mesh, point by point: "));
+    TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
+  }
+  const auto refused = [&](const char* name, vtkUnstructuredGrid* grid, vtkUnstructuredGrid* target,
+                         int correspondence, const char* message)
+  {
+    const Context inner(name);
+    vtkNew<vtkMeshWarp> filter;
+    filter->SetInputData(grid);
+    setTo(target, correspondence)(filter);
+    Messages messages(filter);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has(message));
+    TAUTLINE_CHECK_EQUAL(
+      vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPoints(), 0);
+  };
+  const auto grid = gridOf(part);
+  constexpr double apart = 0.5;
+  refused("torn", grid, shifted(part, rank * apart), vtkMeshWarp::AUTOMATIC_MATCH,
+    "the target has different places");
+  const char* unknown = "without an order of global ids of both";
+  for (const Cut cut : { Cut::Slabs, Cut::FirstOnly })
+  {
+    const RankPart other = partOf(whole, rank, cutBy(whole, cut, size));
+    const auto target = targetOf(other, middle, angle);
+    for (const int match :
+      { vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::SAME_MESH, vtkMeshWarp::SAME_BOUNDARY })
+    {
+      refused("no order", grid, target, match, unknown);
+    }
+    refused("ids of the target alone", grid, targetOf(other, middle, angle, true),
+      vtkMeshWarp::AUTOMATIC_MATCH, unknown);
+    // Ids that are others than the mesh has.
+    const auto others = targetOf(other, middle, angle, true);
+    vtkDataArray* ids = others->GetPointData()->GetGlobalIds();
+    for (vtkIdType i = 0; i < ids->GetNumberOfTuples(); ++i)
+    {
+      const double id = ids->GetComponent(i, 0); // every two are interchanged
+      ids->SetComponent(i, 0, std::fmod(id, 2) == 0 ? id + 1 : id - 1);
+    }
+    for (const int match : { vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::SAME_MESH })
+    {
+      refused("other ids", numberedGridOf(part), others, match,
+        cut == Cut::Slabs ? "but not its cells" : unknown);
+    }
+  }
+  vtkNew<vtkUnstructuredGrid> empty;
+  refused("missing", grid, nullptr, vtkMeshWarp::AUTOMATIC_MATCH, "There is no Target");
+  refused("empty", grid, empty, vtkMeshWarp::AUTOMATIC_MATCH, "The target is empty");
+}
+
+/// The boundary of a mesh, cut otherwise: by global ids, or by numbers of points.
+void testBoundaryInPieces(vtkMPIController* controller, const MeshData& whole, double middle)
+{
+  const Context context("boundary in pieces");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const RankPart entire = partOf(whole, 0, [](Index) { return 0; });
+  const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Slabs, size));
+  vtkNew<vtkDataSetSurfaceFilter> surface;
+  surface->SetInputData(targetOf(entire, middle, 0.3, true));
+  surface->PassThroughPointIdsOn();
+  surface->Update();
+  vtkNew<vtkPolyData> mine; // every so many cells, with all points
+  mine->CopyStructure(surface->GetOutput());
+  mine->GetPointData()->ShallowCopy(surface->GetOutput()->GetPointData());
+  vtkNew<vtkCellArray> cells;
+  for (vtkIdType i = rank; i < surface->GetOutput()->GetNumberOfCells(); i += size)
+  {
+    cells->InsertNextCell(surface->GetOutput()->GetCell(i));
+  }
+  mine->SetPolys(cells);
+  const auto setTo = [](vtkPolyData* target, int correspondence, const char* ids)
+  {
+    return [=](vtkMeshWarp* filter)
+    {
+      filter->SetMotion(vtkMeshWarp::TARGET);
+      filter->SetInputData(1, target);
+      filter->SetMethod(vtkMeshWarp::FEMWARP);
+      filter->SetCorrespondence(correspondence);
+      filter->SetTargetIds(ids);
+    };
+  };
+  for (const char* ids : { static_cast<const char*>(nullptr), "vtkOriginalPointIds" })
+  {
+    for (const int match : { vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::SAME_BOUNDARY })
+    {
+      const Context inner(ids ? ids : "global ids");
+      vtkNew<vtkMeshWarp> serial, filter;
+      const std::vector<double> expected =
+        alone(controller, whole, setTo(surface->GetOutput(), match, ids), serial.Get());
+      const std::vector<double> here =
+        pointsOf(whole, part, setTo(mine, match, ids), filter.Get(), true);
+      TAUTLINE_CHECK(farthest(expected, whole.points) > 0.05);
+      TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
+      TAUTLINE_CHECK(contains(filter->GetSummary(), "put together"));
+      const bool byIds = ids && match == vtkMeshWarp::AUTOMATIC_MATCH;
+      TAUTLINE_CHECK(contains(filter->GetSummary(),
+        byIds ? "by point ids: " : "as the boundary extracted from the mesh: "));
+    }
+    // Without ids one process has an order, and several have not.
+    mine->GetPointData()->SetGlobalIds(nullptr);
+    for (const int match : { vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::SAME_BOUNDARY })
+    {
+      vtkNew<vtkMeshWarp> filter;
+      filter->SetInputData(gridOf(part));
+      setTo(mine, match, ids)(filter);
+      Messages messages(filter);
+      filter->Update();
+      TAUTLINE_CHECK(messages.has(ids && match == vtkMeshWarp::AUTOMATIC_MATCH
+          ? "no numbers that the target could refer to"
+          : "without an order of global ids of both"));
+    }
+    mine->GetPointData()->SetGlobalIds(surface->GetOutput()->GetPointData()->GetGlobalIds());
+  }
+}
+
+/// A defect of the target on one process is an error on all.
+void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double middle)
+{
+  const Context context("wrong target");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Slabs, size));
+  for (const bool byIds : { false, true })
+  {
+    const auto grid = gridOf(part);
+    grid->GetPointData()->AddArray(idsOf(part));
+    const auto target = targetOf(part, middle, 0.3);
+    const auto ids = idsOf(part);
+    if (rank == size - 1)
+    {
+      // Not at the seam, where the other process has the point, too.
+      vtkIdType far = 0;
+      for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+      {
+        far = tautline::pointOf(grid, i)[0] > tautline::pointOf(grid, far)[0] ? i : far;
+      }
+      byIds ? ids->SetValue(far, -7) : target->GetPoints()->GetData()->SetComponent(far, 0, NAN);
+    }
+    target->GetPointData()->AddArray(ids);
+    vtkNew<vtkMeshWarp> filter;
+    filter->SetInputData(grid);
+    filter->SetInputData(1, target);
+    filter->SetMotion(vtkMeshWarp::TARGET);
+    filter->SetMethod(vtkMeshWarp::FEMWARP);
+    filter->SetTargetIds(byIds ? "number" : nullptr);
+    Messages messages(filter);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has(byIds ? "has 1 values that are no values of the mesh's array"
+                                      : "coordinates that are NaN or infinite"));
+  }
+}
+
+void testAll(vtkMPIController* controller)
+{
+  const MeshData planar = blockWithHole(CellType::Triangle);
+  const MeshData volume = blockWithHole(CellType::Tetrahedron);
+  testTargets(controller, planar, 3.5);
+  testTargets(controller, volume, 2.5);
+  testOtherPieces(controller, planar, 3.5);
+  testOtherPieces(controller, volume, 2.5);
+  testBoundaryInPieces(controller, volume, 2.5);
+  testWrongTarget(controller, volume, 2.5);
+}
+}
+
+//------------------------------------------------------------------------------
+int TestMeshWarpTargets(int argc, char* argv[])
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  testAll(controller);
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  controller->Finalize();
+  return exitCode();
+}
