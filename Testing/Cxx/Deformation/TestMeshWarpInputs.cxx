@@ -558,7 +558,18 @@ void testRefusals()
   refused(grid, "The array 'c' has 2 components");
   grid->GetCellData()->AddArray(
     arrayOf("c", data.numberOfCells(), 3, [](Index, int) { return -1; }));
-  refused(grid, "not positive semidefinite");
+  refused(grid, "cell 0 of the mesh are not finite or not positive semidefinite: correct");
+  // The cell of the input, with a vertex, too.
+  MeshData more = data;
+  more.types.insert(more.types.begin(), VTK_VERTEX);
+  more.connectivity.insert(more.connectivity.begin(), 0);
+  std::for_each(more.offsets.begin(), more.offsets.end(), [](Index& at) { ++at; });
+  more.offsets.insert(more.offsets.begin(), 0);
+  const auto withVertex = toGrid(more);
+  withVertex->GetPointData()->ShallowCopy(grid->GetPointData());
+  const auto values = [](Index i, int) { return i == 0 || i == 4 ? -1 : 1; };
+  withVertex->GetCellData()->AddArray(arrayOf("c", more.numberOfCells(), 3, values));
+  refused(withVertex, "The coefficients of cell 4 of the mesh");
   filter->SetCoefficients(vtkMeshWarp::PER_REGION);
   refused(grid, "No array of regions is chosen");
 

@@ -238,6 +238,13 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
         cut == Cut::Slabs ? "but not its cells" : unknown);
     }
   }
+  if (topology(static_cast<CellType>(whole.types[0])).dimension == 2)
+  {
+    // The surface of a volume has no boundary that a planar mesh could go to.
+    const MeshData volume = blockWithHole(CellType::Tetrahedron);
+    const auto closed = toGrid(partOf(volume, rank, cutBy(volume, Cut::Slabs, size)).data);
+    refused("closed", grid, closed, vtkMeshWarp::CLOSEST_POINT, "it is closed");
+  }
   vtkNew<vtkUnstructuredGrid> empty;
   refused("missing", grid, nullptr, vtkMeshWarp::AUTOMATIC_MATCH, "There is no Target");
   refused("empty", grid, empty, vtkMeshWarp::AUTOMATIC_MATCH, "The target is empty");
@@ -291,6 +298,15 @@ void testBoundaryInPieces(vtkMPIController* controller, const MeshData& whole, d
       TAUTLINE_CHECK(contains(filter->GetSummary(),
         byIds ? "by point ids: " : "as the boundary extracted from the mesh: "));
     }
+    // The cells of a surface are what they are; with ids, and below without.
+    vtkNew<vtkMeshWarp> one, several;
+    const std::vector<double> closest = alone(controller, whole,
+      setTo(surface->GetOutput(), vtkMeshWarp::CLOSEST_POINT, nullptr), one.Get());
+    const std::vector<double> found =
+      pointsOf(whole, part, setTo(mine, vtkMeshWarp::CLOSEST_POINT, nullptr), several.Get());
+    TAUTLINE_CHECK(farthest(closest, whole.points) > 0.05);
+    TAUTLINE_CHECK(farthest(found, closest) <= 1e-10);
+    TAUTLINE_CHECK(!contains(several->GetSummary(), "put together"));
     // Without ids one process has an order, and several have not.
     mine->GetPointData()->SetGlobalIds(nullptr);
     for (const int match : { vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::SAME_BOUNDARY })
@@ -306,6 +322,66 @@ void testBoundaryInPieces(vtkMPIController* controller, const MeshData& whole, d
     }
     mine->GetPointData()->SetGlobalIds(surface->GetOutput()->GetPointData()->GetGlobalIds());
   }
+}
+
+/// A crack within a piece of the target is a part of its surface, a seam is not.
+void testCrack(vtkMPIController* controller)
+{
+  const Context context("crack");
+  const int rank = controller->GetLocalProcessId();
+  MeshData whole = blockMesh(CellType::Hexahedron, 2, 1, 1);
+  for (Index i = 0; i < whole.numberOfPoints(); ++i)
+  {
+    constexpr double scale = 0.1;
+    whole.setPoint(i, scale * whole.point(i) + Vec3{ 1.02, 0.45, 0.45 });
+  }
+  // Cubes from x = 0 to 1 and 1 to 2 with their own points, and one from 2 to 3 elsewhere.
+  const auto targetIn = [](const std::vector<double>& starts)
+  {
+    MeshData data;
+    for (const double start : starts)
+    {
+      const auto first = static_cast<Index>(data.points.size() / 3);
+      const MeshData cube = blockMesh(CellType::Hexahedron, 1, 1, 1);
+      for (Index i = 0; i < cube.numberOfPoints(); ++i)
+      {
+        const Vec3 p = cube.point(i) + Vec3{ start, 0, 0 };
+        data.points.insert(data.points.end(), p.begin(), p.end());
+      }
+      std::vector<Index> nodes(cube.connectivity.begin(), cube.connectivity.end());
+      std::transform(
+        nodes.begin(), nodes.end(), nodes.begin(), [first](Index n) { return n + first; });
+      data.addCell(static_cast<int>(cube.types[0]), nodes);
+    }
+    return toGrid(data);
+  };
+  const auto setTo = [](vtkUnstructuredGrid* target)
+  {
+    return [target](vtkMeshWarp* filter)
+    {
+      filter->SetMotion(vtkMeshWarp::TARGET);
+      filter->SetInputData(1, target);
+      filter->SetMethod(vtkMeshWarp::FEMWARP);
+      filter->SetCorrespondence(vtkMeshWarp::CLOSEST_POINT);
+      filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
+      filter->SetAmount(0.1);
+    };
+  };
+  const auto here = rank == 0 ? targetIn({ 0, 1 })
+    : rank == 1               ? targetIn({ 2 })
+                              : vtkSmartPointer<vtkUnstructuredGrid>::New();
+  const RankPart part = partOf(whole, rank, [](Index cell) { return static_cast<int>(cell); });
+  vtkNew<vtkMeshWarp> filter;
+  pointsOf(whole, part, setTo(here), filter.Get());
+  // The face at x = 1, 0.22 from the last points; the sides of the cubes are 0.45 away.
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "the farthest of them 0.22"));
+  // Two processes that have the same face have it in the inside.
+  const auto apart = rank == 0 ? targetIn({ 0 })
+    : rank == 1                ? targetIn({ 1 })
+                               : vtkSmartPointer<vtkUnstructuredGrid>::New();
+  vtkNew<vtkMeshWarp> inside;
+  pointsOf(whole, part, setTo(apart), inside.Get());
+  TAUTLINE_CHECK(contains(inside->GetSummary(), "the farthest of them 0.45"));
 }
 
 /// A defect of the target on one process is an error on all.
@@ -353,6 +429,7 @@ void testAll(vtkMPIController* controller)
   testOtherPieces(controller, planar, 3.5);
   testOtherPieces(controller, volume, 2.5);
   testBoundaryInPieces(controller, volume, 2.5);
+  testCrack(controller);
   testWrongTarget(controller, volume, 2.5);
 }
 }
