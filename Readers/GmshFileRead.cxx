@@ -220,6 +220,12 @@ void readSections(GmshInput& input)
     }
     else if (section == "NodeData" || section == "ElementData")
     {
+      if (!(section == "NodeData" ? nodes : elements))
+      {
+        cursor.failAt(place,
+          word + " comes before $" + section.substr(0, section.size() - 4) +
+            "s: move it behind that section");
+      }
       readData(input, section == "NodeData");
     }
     else if (section == "Nodes" || section == "Elements")
