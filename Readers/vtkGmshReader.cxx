@@ -23,6 +23,12 @@ tautline::MeshShare vtkGmshReader::ReadShare(const tautline::FileRanges& ranges)
 }
 
 //------------------------------------------------------------------------------
+bool vtkGmshReader::HasRanges(const std::string& extension) const
+{
+  return extension.empty() || extension == "msh";
+}
+
+//------------------------------------------------------------------------------
 int vtkGmshReader::CanReadFile(const char* name)
 {
   const std::string extension = tautline::splitExtension(name).second;

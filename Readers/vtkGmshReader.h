@@ -32,6 +32,7 @@ protected:
   ~vtkGmshReader() override = default;
   tautline::MeshFile ReadMesh() override;
   tautline::MeshShare ReadShare(const tautline::FileRanges& ranges) override;
+  bool HasRanges(const std::string& extension) const override;
 
 private:
   vtkGmshReader(const vtkGmshReader&) = delete;

@@ -23,6 +23,12 @@ tautline::MeshShare vtkMeditReader::ReadShare(const tautline::FileRanges& ranges
 }
 
 //------------------------------------------------------------------------------
+bool vtkMeditReader::HasRanges(const std::string& extension) const
+{
+  return extension.empty() || extension == "mesh" || extension == "sol";
+}
+
+//------------------------------------------------------------------------------
 int vtkMeditReader::CanReadFile(const char* name)
 {
   const std::string extension = tautline::splitExtension(name).second;

@@ -32,6 +32,7 @@ protected:
   ~vtkMeditReader() override = default;
   tautline::MeshFile ReadMesh() override;
   tautline::MeshShare ReadShare(const tautline::FileRanges& ranges) override;
+  bool HasRanges(const std::string& extension) const override;
 
 private:
   vtkMeditReader(const vtkMeditReader&) = delete;

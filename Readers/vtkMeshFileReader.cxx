@@ -2,6 +2,7 @@
 #include "vtkMeshFileReader.h"
 
 #include "ExecutionScope.h"
+#include "FileNames.h"
 #include "FileRanges.h"
 #include "MeshFileAdapter.h"
 #include "MeshPart.h"
@@ -39,6 +40,12 @@ tautline::PartRequest requestedPart(vtkInformation* info)
     request.ghostLayers = std::max(info->Get(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS()), 0);
   }
   return request;
+}
+
+std::string noMemory(const std::string& file, const std::bad_alloc& error)
+{
+  return file + ": " +
+    tautline::errorText(error, "read it where there is more, or a part of the mesh");
 }
 }
 
@@ -93,35 +100,62 @@ tautline::MeshShare vtkMeshFileReader::ReadShare(const tautline::FileRanges&)
 }
 
 //------------------------------------------------------------------------------
+bool vtkMeshFileReader::HasRanges(const std::string&) const
+{
+  return false;
+}
+
+//------------------------------------------------------------------------------
+/// Without a file name a rank does not know, and takes part.
+bool vtkMeshFileReader::MayHaveRanges() const
+{
+  return this->HasRanges(
+    this->FileName ? tautline::splitExtension(this->FileName).second : std::string());
+}
+
+//------------------------------------------------------------------------------
 bool vtkMeshFileReader::Agrees(
   tautline::RankGroup& group, const tautline::PartRequest& request) const
 {
-  const std::string asked = std::string(this->GetClassName()) + "\n" + this->FileName + "\n" +
-    std::to_string(this->LowerCells) + std::to_string(request.ghostLayers);
+  const std::string asked = std::string(this->GetClassName()) + "\n" +
+    (this->FileName ? this->FileName : "") + "\n" + std::to_string(this->LowerCells) +
+    std::to_string(request.ghostLayers);
   const std::vector<tautline::Bytes> all =
     group.allGather(tautline::Bytes(asked.begin(), asked.end()));
   const bool same = std::all_of(
     all.begin(), all.end(), [&](const tautline::Bytes& other) { return other == all[0]; });
-  return !group.any(!same || request.part != group.rank());
+  const bool named = this->FileName && this->FileName[0];
+  return !group.any(!same || !named || request.part != group.rank());
 }
 
 //------------------------------------------------------------------------------
 tautline::MeshFile vtkMeshFileReader::ReadPartOfWhole(const tautline::PartRequest& request)
 {
   constexpr double readingShare = 0.8;
-  tautline::MeshFile mesh = [&]
+  if (!this->FileName || !this->FileName[0])
   {
-    const tautline::ProgressStep progress(this, 0.0, readingShare);
-    return this->ReadMesh();
-  }();
-  return request.parts > 1 ? tautline::partOf(mesh, request) : mesh;
+    throw tautline::Error("no file name");
+  }
+  try
+  {
+    tautline::MeshFile mesh = [&]
+    {
+      const tautline::ProgressStep progress(this, 0.0, readingShare);
+      return this->ReadMesh();
+    }();
+    return request.parts > 1 ? tautline::partOf(mesh, request) : mesh;
+  }
+  catch (const std::bad_alloc& error)
+  {
+    throw tautline::Error(noMemory(this->FileName, error));
+  }
 }
 
 //------------------------------------------------------------------------------
 tautline::MeshFile vtkMeshFileReader::ReadPart(const tautline::PartRequest& request)
 {
   const std::unique_ptr<tautline::RankGroup> group =
-    request.parts > 1 ? tautline::tryProcessGroup() : nullptr;
+    request.parts > 1 && this->MayHaveRanges() ? tautline::tryProcessGroup() : nullptr;
   if (!group || group->size() != request.parts || !this->Agrees(*group, request))
   {
     return this->ReadPartOfWhole(request);
@@ -135,7 +169,10 @@ tautline::MeshFile vtkMeshFileReader::ReadPart(const tautline::PartRequest& requ
       const tautline::ProgressStep progress(this, 0.0, readingShare);
       return this->ReadShare(ranges);
     }();
-    return tautline::exchangeParts(ranges, std::move(share), request.ghostLayers);
+    tautline::MeshFile part =
+      tautline::exchangeParts(ranges, std::move(share), request.ghostLayers);
+    this->ReadByRanges = true;
+    return part;
   }
   catch (const tautline::UnusualFile&)
   {
@@ -149,15 +186,12 @@ tautline::MeshFile vtkMeshFileReader::ReadPart(const tautline::PartRequest& requ
 int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
 {
   this->ErrorText.clear();
+  this->ReadByRanges = false;
   this->SetErrorCode(vtkErrorCode::NoError);
   vtkDataObject* output = vtkDataObject::GetData(outputs);
   output->Initialize();
   try
   {
-    if (!this->FileName || !this->FileName[0])
-    {
-      throw tautline::Error("no file name");
-    }
     tautline::MeshFile mesh = this->ReadPart(requestedPart(outputs->GetInformationObject(0)));
     for (const std::string& warning : mesh.warnings)
     {
@@ -178,8 +212,7 @@ int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
   }
   catch (const std::bad_alloc& error)
   {
-    this->ErrorText = std::string(this->FileName) + ": " +
-      tautline::errorText(error, "read it where there is more, or a part of the mesh");
+    this->ErrorText = noMemory(this->FileName, error);
   }
   if (!this->ErrorText.empty())
   {
@@ -197,4 +230,5 @@ void vtkMeshFileReader::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
   os << indent << "LowerCells: " << this->LowerCells << "\n";
+  os << indent << "ReadByRanges: " << this->ReadByRanges << "\n";
 }

@@ -19,6 +19,11 @@
  * files of less than 1 MiB, formats and variants that do not state so in their class, files with an
  * error, and text with another layout than a record per line.
  *
+ * A request for piece r of n on rank r of n ranks is therefore collective: all ranks must execute
+ * the reader, with files of the same extension, or they wait for each other. (Other differences
+ * between them, and a rank without a file name, are noticed: each then reads what it is told to.)
+ * Formats and extensions that are never read by ranges do not communicate, nor do other pieces.
+ *
  * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkOffReader vtkMeshFileWriter
  */
 #ifndef vtkMeshFileReader_h
@@ -71,6 +76,11 @@ public:
   const char* GetErrorText() const { return this->ErrorText.c_str(); }
 
   /**
+   * Whether the file that was read last was read by ranges; the same on all ranks.
+   */
+  vtkGetMacro(ReadByRanges, bool);
+
+  /**
    * Whether the extension and the first bytes are those of a file of this format.
    */
   virtual int CanReadFile(const char* name) = 0;
@@ -92,6 +102,10 @@ protected:
   /// Reads this rank's share of it; throws UnusualFile, on all ranks, where it must be read whole.
   /// That is what it does unless a subclass overrides it.
   virtual tautline::MeshShare ReadShare(const tautline::FileRanges& ranges);
+  /// Whether ReadShare() can read files with that extension (in lower case; empty: without a name),
+  /// if they are laid out for it. Else ranks do not communicate. False unless a subclass overrides
+  /// it.
+  virtual bool HasRanges(const std::string& extension) const;
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   virtual int RequestData(vtkInformationVector* outputs);
@@ -103,8 +117,10 @@ private:
   tautline::MeshFile ReadPart(const tautline::PartRequest& request);
   tautline::MeshFile ReadPartOfWhole(const tautline::PartRequest& request);
   bool Agrees(tautline::RankGroup& group, const tautline::PartRequest& request) const;
+  bool MayHaveRanges() const;
 
   std::string ErrorText;
+  bool ReadByRanges = false;
 
   vtkMeshFileReader(const vtkMeshFileReader&) = delete;
   void operator=(const vtkMeshFileReader&) = delete;

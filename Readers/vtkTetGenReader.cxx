@@ -22,6 +22,13 @@ tautline::MeshShare vtkTetGenReader::ReadShare(const tautline::FileRanges& range
 }
 
 //------------------------------------------------------------------------------
+bool vtkTetGenReader::HasRanges(const std::string& extension) const
+{
+  return extension.empty() || extension == "node" || extension == "ele" || extension == "face" ||
+    extension == "edge";
+}
+
+//------------------------------------------------------------------------------
 int vtkTetGenReader::CanReadFile(const char* name)
 {
   const std::string extension = tautline::splitExtension(name).second;

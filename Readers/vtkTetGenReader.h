@@ -35,6 +35,7 @@ protected:
   ~vtkTetGenReader() override = default;
   tautline::MeshFile ReadMesh() override;
   tautline::MeshShare ReadShare(const tautline::FileRanges& ranges) override;
+  bool HasRanges(const std::string& extension) const override;
 
 private:
   vtkTetGenReader(const vtkTetGenReader&) = delete;
