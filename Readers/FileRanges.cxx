@@ -6,6 +6,7 @@
 #include "tautline/Core/Interruption.h"
 
 #include <algorithm>
+#include <array>
 #include <exception>
 #include <new>
 
@@ -15,11 +16,9 @@ namespace tautline
 {
 namespace
 {
-constexpr Index ReadAtOnce = Index(1) << 20; // bytes, of what is only searched
-constexpr Index HeadBytes = 65536;           // as readColumnNames() searches
-constexpr Index TailBytes = 4096;            // the last line, and blanks after it
-constexpr std::size_t MostStarts = 100000;   // lines with keywords
-constexpr char ByteOrderMark = '\xef';       // its first byte
+constexpr Index LongestLine = Index(1) << 20; // bytes
+constexpr Index TailBytes = 4096;             // the last line, and blanks after it
+constexpr char ByteOrderMark = '\xef';        // its first byte
 
 /// What became of a rank's work, from the least to the worst.
 enum Outcome : Index
@@ -35,35 +34,28 @@ enum Outcome : Index
   throw FileError(name + ": " + problem);
 }
 
-/// Where the first line at or after a place begins; `end` if none does before it.
-Index lineBegin(const std::string& name, Index place, Index begin, Index end)
+/// The size and the time of modification.
+std::array<Index, 3> stateOf(const std::string& name)
 {
-  if (place <= begin || place >= end)
+  struct stat status;
+  if (stat(name.c_str(), &status) != 0 || !S_ISREG(status.st_mode))
   {
-    return std::clamp(place, begin, end);
+    unusual(name, "is not a regular file");
   }
-  const Index stop = std::min(end, place - 1 + ReadAtOnce);
-  const FileContent bytes(name, place - 1, stop);
-  const char* newline = std::find(bytes.begin(), bytes.end(), '\n');
-  if (newline == bytes.end() && stop < end)
-  {
-    unusual(name, "a line is too long");
-  }
-  return newline == bytes.end() ? end : place + (newline - bytes.begin());
+  return { static_cast<Index>(status.st_size), static_cast<Index>(status.st_mtim.tv_sec),
+    static_cast<Index>(status.st_mtim.tv_nsec) };
 }
 
-/// The bytes of the lines that begin in a rank's share of a range.
-std::pair<Index, Index> shareOf(
-  const RankGroup& group, const std::string& name, Index begin, Index end)
+/// FNV-1a of 64 bits.
+std::uint64_t hashOf(std::string_view text)
 {
-  const auto at = [&](int rank)
+  constexpr std::uint64_t begin = 0xcbf29ce484222325u, prime = 0x100000001b3u;
+  std::uint64_t hash = begin;
+  for (const char c : text)
   {
-    const Index length = end - begin, ranks = group.size();
-    // not length * rank / ranks, which may overflow
-    const Index place = begin + length / ranks * rank + length % ranks * rank / ranks;
-    return lineBegin(name, place, begin, end);
-  };
-  return { at(group.rank()), at(group.rank() + 1) };
+    hash = (hash ^ static_cast<unsigned char>(c)) * prime;
+  }
+  return hash;
 }
 
 Index countRecords(const FileContent& text, char comment)
@@ -80,9 +72,9 @@ Index countRecords(const FileContent& text, char comment)
 }
 
 //------------------------------------------------------------------------------
-FileRanges::FileRanges(RankGroup& group, Index smallSet)
+FileRanges::FileRanges(RankGroup& group, const RangeLimits& limits)
   : Group(group)
-  , Small(smallSet)
+  , Limits(limits)
 {
 }
 
@@ -147,19 +139,35 @@ void FileRanges::poll() const
 }
 
 //------------------------------------------------------------------------------
+void FileRanges::expectSame(std::string_view found) const
+{
+  const std::vector<std::vector<std::uint64_t>> all =
+    this->Group.gatherItems(std::vector<std::uint64_t>{ hashOf(found) });
+  this->require(
+    std::all_of(all.begin(), all.end(), [&](const auto& other) { return other == all[0]; }));
+}
+
+//------------------------------------------------------------------------------
 void FileRanges::expectLarge(const std::vector<std::string>& names) const
 {
-  std::vector<Index> sizes;
   Index total = 0;
-  for (const std::string& name : names)
-  {
-    const Index size = this->agreed([&] { return fileSize(name); });
-    sizes.push_back(size);
-    total += size;
-  }
-  const std::vector<std::vector<Index>> all = this->Group.gatherItems(sizes);
-  this->require(total >= this->Small &&
-    std::all_of(all.begin(), all.end(), [&](const auto& other) { return other == all[0]; }));
+  const std::string found = this->agreed(
+    [&]
+    {
+      std::string states;
+      for (const std::string& name : names)
+      {
+        const std::array<Index, 3> state = stateOf(name);
+        total += state[0];
+        for (const Index number : state)
+        {
+          states += std::to_string(number) + " ";
+        }
+      }
+      return states;
+    });
+  this->expectSame(found);
+  this->require(total >= this->Limits.smallSet);
 }
 
 //------------------------------------------------------------------------------
@@ -173,24 +181,66 @@ bool FileRanges::exists(const std::string& name) const
 //------------------------------------------------------------------------------
 FileContent FileRanges::head(const std::string& name) const
 {
-  return this->agreed([&] { return firstLines(name, 0, fileSize(name)); });
+  FileContent lines = this->agreed([&] { return firstLines(name, 0, fileSize(name)); });
+  this->expectSame(viewOf(lines));
+  return lines;
 }
 
 //------------------------------------------------------------------------------
 FileContent FileRanges::tail(const std::string& name) const
 {
-  return this->agreed(
+  FileContent end = this->agreed(
     [&]
     {
       const Index size = fileSize(name);
       FileContent bytes(name, std::max<Index>(0, size - TailBytes), size);
-      if (std::string_view(bytes.begin(), static_cast<std::size_t>(bytes.end() - bytes.begin()))
-            .find_first_not_of(" \t\r\n") == std::string_view::npos)
+      if (viewOf(bytes).find_first_not_of(" \t\r\n") == std::string_view::npos)
       {
         unusual(name, "the last line is far from the end");
       }
       return bytes;
     });
+  this->expectSame(viewOf(end));
+  return end;
+}
+
+//------------------------------------------------------------------------------
+/// Where the first line at or after a place begins; `end` if none does before it.
+Index FileRanges::lineBegin(const std::string& name, Index place, Index begin, Index end) const
+{
+  if (place <= begin || place >= end)
+  {
+    return std::clamp(place, begin, end);
+  }
+  for (Index from = place - 1, stop = from; from < end; from = stop)
+  {
+    stop = std::min(end, from + this->Limits.readAtOnce);
+    const FileContent bytes(name, from, stop);
+    const char* newline = std::find(bytes.begin(), bytes.end(), '\n');
+    if (newline != bytes.end())
+    {
+      return from + (newline - bytes.begin()) + 1;
+    }
+    if (stop - place >= LongestLine)
+    {
+      unusual(name, "a line is too long");
+    }
+  }
+  return end;
+}
+
+//------------------------------------------------------------------------------
+/// The bytes of the lines that begin in a rank's share of a range.
+std::pair<Index, Index> FileRanges::shareOf(const std::string& name, Index begin, Index end) const
+{
+  const auto at = [&](int rank)
+  {
+    const Index length = end - begin, ranks = this->Group.size();
+    // not length * rank / ranks, which may overflow
+    const Index place = begin + length / ranks * rank + length % ranks * rank / ranks;
+    return this->lineBegin(name, place, begin, end);
+  };
+  return { at(this->Group.rank()), at(this->Group.rank() + 1) };
 }
 
 //------------------------------------------------------------------------------
@@ -199,7 +249,7 @@ LineShare FileRanges::lines(const std::string& name, Index begin, Index end, cha
   LineShare share = this->agreed(
     [&]
     {
-      const auto [from, to] = shareOf(this->Group, name, begin, end);
+      const auto [from, to] = this->shareOf(name, begin, end);
       LineShare result{ FileContent(name, from, to) };
       if (from < to && *result.text.begin() == ByteOrderMark)
       {
@@ -227,36 +277,33 @@ LineShare FileRanges::lines(
 }
 
 //------------------------------------------------------------------------------
-std::vector<Index> FileRanges::lineStarts(const std::string& name, bool (*accept)(char)) const
+std::vector<Index> FileRanges::lineStarts(
+  const std::string& name, bool (*accept)(std::string_view line)) const
 {
+  constexpr std::string_view blanks = " \t\r";
+  const auto most = static_cast<std::size_t>(this->Limits.starts);
   const std::vector<Index> own = this->agreed(
     [&]
     {
       std::vector<Index> starts;
-      const auto [from, to] = shareOf(this->Group, name, 0, fileSize(name));
-      for (Index begin = from, end = from; begin < to; begin = end)
+      const auto [from, to] = this->shareOf(name, 0, fileSize(name));
+      for (Index begin = from, end = from; begin < to && starts.size() <= most; begin = end)
       {
         throwIfInterrupted();
-        end = lineBegin(name, begin + ReadAtOnce, begin, to);
+        end = this->lineBegin(name, begin + this->Limits.readAtOnce, begin, to);
         const FileContent text(name, begin, end);
-        for (const char* line = text.begin(); line < text.end();)
+        for (const char* line = text.begin(); line < text.end() && starts.size() <= most;)
         {
-          const char* word = line;
-          while (word < text.end() && (*word == ' ' || *word == '\t' || *word == '\r'))
-          {
-            ++word;
-          }
-          if (word < text.end() && accept(*word))
-          {
-            starts.push_back(begin + (word - text.begin()));
-          }
           const void* newline =
-            std::memchr(word, '\n', static_cast<std::size_t>(text.end() - word));
-          line = newline ? static_cast<const char*>(newline) + 1 : text.end();
-        }
-        if (starts.size() > MostStarts)
-        {
-          unusual(name, "too many keywords");
+            std::memchr(line, '\n', static_cast<std::size_t>(text.end() - line));
+          const char* lineEnd = newline ? static_cast<const char*>(newline) : text.end();
+          const std::string_view all(line, static_cast<std::size_t>(lineEnd - line));
+          const std::size_t first = all.find_first_not_of(blanks);
+          if (first != all.npos && accept(all.substr(first)))
+          {
+            starts.push_back(begin + (line - text.begin()) + static_cast<Index>(first));
+          }
+          line = newline ? lineEnd + 1 : text.end();
         }
       }
       return starts;
@@ -266,29 +313,35 @@ std::vector<Index> FileRanges::lineStarts(const std::string& name, bool (*accept
   {
     all.insert(all.end(), starts.begin(), starts.end());
   }
+  this->require(all.size() <= most);
   return all;
 }
 
 //------------------------------------------------------------------------------
 Index fileSize(const std::string& name)
 {
-  struct stat status;
-  if (stat(name.c_str(), &status) != 0 || !S_ISREG(status.st_mode))
-  {
-    unusual(name, "is not a regular file");
-  }
-  return static_cast<Index>(status.st_size);
+  return stateOf(name)[0];
 }
 
 //------------------------------------------------------------------------------
-FileContent firstLines(const std::string& name, Index begin, Index end)
+FileContent firstLines(const std::string& name, Index begin, Index end, Index most)
 {
-  FileContent bytes(name, begin, std::min(end, begin + HeadBytes));
-  if (end - begin <= HeadBytes)
+  FileContent bytes(name, begin, std::min(end, begin + most));
+  if (end - begin <= most)
   {
     return bytes;
   }
-  std::string_view text(bytes.begin(), static_cast<std::size_t>(HeadBytes));
+  const std::string_view text = viewOf(bytes);
   return FileContent(name, text.substr(0, text.rfind('\n') + 1));
+}
+
+//------------------------------------------------------------------------------
+void expectColumns(const std::string& name, const LineShare& lines, Index columns)
+{
+  const Index bytes = lines.text.end() - lines.text.begin() + 1; // the last line may have no end
+  if (lines.count > bytes / (2 * std::max<Index>(columns, 1)))
+  {
+    unusual(name, "lines are too short for their columns");
+  }
 }
 }

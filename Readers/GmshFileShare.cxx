@@ -2,6 +2,7 @@
 #include "FileRanges.h"
 #include "GmshFile.h"
 #include "PartExchange.h"
+#include "SharedTags.h"
 
 #include <algorithm>
 #include <limits>
@@ -12,133 +13,12 @@ namespace tautline
 namespace
 {
 constexpr char NoComment = '\0';
-constexpr Index MostBetween = 4096; // bytes of blank lines between sections
+constexpr Index MostBetween = 4096; // bytes of blank lines between sections, and of keywords
 
 std::size_t at(Index i)
 {
   return static_cast<std::size_t>(i);
 }
-
-/// A number of a node or element and its position.
-struct TagPlace
-{
-  Index tag, place;
-  bool operator<(const TagPlace& other) const { return this->tag < other.tag; }
-};
-
-/**
- * @brief Finds the positions of numbers that the ranks have. Those that are not consecutive are
- * divided evenly, from the least to the largest; each rank answers for its share. Methods are
- * collective and throw UnusualFile.
- */
-class SharedTags
-{
-public:
-  /// @param tags of the own ones; ranks in their order have consecutive positions
-  SharedTags(const FileRanges& ranges, const std::vector<Index>& tags)
-    : Ranges(ranges)
-    , Begins(rankBegins(ranges.group(), static_cast<Index>(tags.size())))
-  {
-    RankGroup& group = ranges.group();
-    const Index begin = this->Begins[at(group.rank())];
-    Index low = std::numeric_limits<Index>::max(), high = 0;
-    for (const Index tag : tags)
-    {
-      low = std::min(low, tag);
-      high = std::max(high, tag);
-    }
-    this->High = group.maximum(high);
-    this->Low = ~group.maximum(~low); // the complement of the least is the largest
-    ranges.require(this->Low >= 0);   // as their differences must be numbers
-    bool consecutive = true;
-    for (std::size_t i = 0; i < tags.size(); ++i)
-    {
-      consecutive = consecutive && tags[i] - this->Low == begin + static_cast<Index>(i);
-    }
-    this->Consecutive = !group.any(!consecutive);
-    if (this->Consecutive)
-    {
-      return;
-    }
-    std::vector<std::vector<TagPlace>> sent(at(group.size()));
-    for (std::size_t i = 0; i < tags.size(); ++i)
-    {
-      sent[this->rankOfTag(tags[i])].push_back({ tags[i], begin + static_cast<Index>(i) });
-    }
-    for (const std::vector<TagPlace>& some : group.exchangeItems(sent))
-    {
-      this->Own.insert(this->Own.end(), some.begin(), some.end());
-    }
-    std::sort(this->Own.begin(), this->Own.end());
-    const auto twice = [](const TagPlace& a, const TagPlace& b) { return a.tag == b.tag; };
-    ranges.require(
-      std::adjacent_find(this->Own.begin(), this->Own.end(), twice) == this->Own.end());
-  }
-
-  /// Where the positions of each rank begin, and the end.
-  const std::vector<Index>& begins() const { return this->Begins; }
-
-  /// Replaces numbers by positions; all must be known.
-  void find(std::vector<Index>& tags) const
-  {
-    bool known = true;
-    if (this->Consecutive)
-    {
-      for (Index& tag : tags)
-      {
-        known = known && tag >= this->Low && tag <= this->High;
-        tag -= this->Low;
-      }
-      this->Ranges.require(known);
-      return;
-    }
-    std::vector<Index> asked = tags;
-    std::sort(asked.begin(), asked.end());
-    asked.erase(std::unique(asked.begin(), asked.end()), asked.end());
-    this->Ranges.require(
-      asked.empty() || (asked.front() >= this->Low && asked.back() <= this->High));
-    RankGroup& group = this->Ranges.group();
-    std::vector<std::vector<Index>> questions(at(group.size()));
-    for (const Index tag : asked)
-    {
-      questions[this->rankOfTag(tag)].push_back(tag);
-    }
-    questions = group.exchangeItems(questions);
-    for (std::vector<Index>& some : questions)
-    {
-      for (Index& tag : some)
-      {
-        const auto found = std::lower_bound(this->Own.begin(), this->Own.end(), TagPlace{ tag, 0 });
-        const bool here = found != this->Own.end() && found->tag == tag;
-        known = known && here;
-        tag = here ? found->place : 0;
-      }
-    }
-    this->Ranges.require(known);
-    std::vector<Index> places; // in order of the numbers, as the ranks have them in order
-    for (const std::vector<Index>& some : group.exchangeItems(questions))
-    {
-      places.insert(places.end(), some.begin(), some.end());
-    }
-    for (Index& tag : tags)
-    {
-      tag = places[at(std::lower_bound(asked.begin(), asked.end(), tag) - asked.begin())];
-    }
-  }
-
-private:
-  std::size_t rankOfTag(Index tag) const
-  {
-    const Index width = (this->High - this->Low) / this->Ranges.group().size() + 1;
-    return at((tag - this->Low) / width);
-  }
-
-  const FileRanges& Ranges;
-  std::vector<Index> Begins;
-  Index Low = 0, High = 0;
-  bool Consecutive = false;
-  std::vector<TagPlace> Own; ///< that this rank answers for, in order of the numbers
-};
 
 /// A section: its name, and the bytes between the lines that begin and end it.
 struct Section
@@ -150,7 +30,7 @@ struct Section
 /// The keyword that is a line by itself, from its '$' on, and where the next line begins.
 std::pair<std::string, Index> keywordLine(const std::string& name, Index start, Index size)
 {
-  const FileContent text = firstLines(name, start, size);
+  const FileContent text = firstLines(name, start, size, MostBetween);
   TextCursor cursor(text);
   const std::string word(cursor.word());
   if (!cursor.lineIsOver() || (start > 0 && *FileContent(name, start - 1, start).begin() != '\n'))
@@ -173,11 +53,13 @@ void expectBlank(const std::string& name, Index begin, Index end)
 /// All sections, $MeshFormat first.
 std::vector<Section> findSections(const FileRanges& ranges, const std::string& name)
 {
-  const std::vector<Index> starts = ranges.lineStarts(name, [](char c) { return c == '$'; });
-  return ranges.agreed(
+  const std::vector<Index> starts =
+    ranges.lineStarts(name, [](std::string_view line) { return line[0] == '$'; });
+  std::string found;
+  std::vector<Section> sections = ranges.agreed(
     [&]
     {
-      std::vector<Section> sections;
+      std::vector<Section> all;
       const Index size = fileSize(name);
       Index end = 0;
       for (std::size_t i = 0; i + 1 < starts.size(); i += 2)
@@ -190,7 +72,8 @@ std::vector<Section> findSections(const FileRanges& ranges, const std::string& n
         {
           throw FileError(name + ": sections in an unusual order");
         }
-        sections.push_back({ word.substr(1), begin, starts[i + 1], next });
+        all.push_back({ word.substr(1), begin, starts[i + 1], next });
+        found += word + " " + std::to_string(begin) + " " + std::to_string(next) + " ";
         end = next;
       }
       if (starts.size() % 2 != 0 || starts.empty())
@@ -198,8 +81,10 @@ std::vector<Section> findSections(const FileRanges& ranges, const std::string& n
         throw FileError(name + ": a section does not end");
       }
       expectBlank(name, end, size);
-      return sections;
+      return all;
     });
+  ranges.expectSame(found);
+  return sections;
 }
 
 /// A block of version 4 and the line that it begins at, of those after the header of its section.
@@ -287,10 +172,12 @@ private:
   /// Small sections.
   void readByAll(const Section& section)
   {
+    const FileContent text =
+      this->Ranges.agreed([&] { return FileContent(this->Name, section.begin, section.next); });
+    this->Ranges.expectSame(viewOf(text));
     this->Ranges.together(
       [&]
       {
-        const FileContent text(this->Name, section.begin, section.next);
         GmshInput in = this->input(text);
         if (section.name == "MeshFormat")
         {
@@ -323,10 +210,12 @@ private:
   template <class Read>
   auto header(const Section& section, const Read& read) const
   {
+    const FileContent text = this->Ranges.agreed(
+      [&] { return firstLines(this->Name, section.begin, section.end, HeadBytes); });
+    this->Ranges.expectSame(viewOf(text));
     return this->Ranges.agreed(
       [&]
       {
-        const FileContent text = firstLines(this->Name, section.begin, section.end);
         GmshInput in = this->input(text);
         auto result = read(in);
         return std::pair(result, section.begin + (in.cursor.place() - text.begin()));
@@ -483,7 +372,9 @@ private:
     const std::vector<Index> from = rankBegins(this->group(), static_cast<Index>(tags.size())),
                              to = rankBegins(this->group(), static_cast<Index>(points.size() / 3));
     this->Ranges.require(from.back() == to.back());
-    tags = sendRows(this->group(), tags, realignedRows(this->group(), from, to), 1);
+    const RankRows rows =
+      this->Ranges.agreed([&] { return realignedRows(this->group(), from, to); });
+    tags = sendRows(this->Ranges, tags, rows, 1);
     this->setNodes(std::move(points), tags);
   }
 
@@ -543,15 +434,20 @@ private:
     const LineShare lines =
       this->Ranges.lines(this->Name, begin, section.end, NoComment, header.count);
     const auto components = at(header.components);
-    std::vector<Index> tags(at(lines.count));
-    std::vector<double> values(at(lines.count) * components);
+    // a value of each point or element needs them
+    this->Ranges.require(points ? this->Nodes.has_value() : !this->Share.sectionCells.empty());
+    std::vector<Index> tags;
+    std::vector<double> values;
     this->parse(lines,
-      [&](GmshInput& in)
+      [&, &header = header](GmshInput& in)
       {
+        expectColumns(this->Name, lines, 1 + header.components);
+        tags.resize(at(lines.count));
+        values.resize(tags.size() * components);
         for (std::size_t i = 0; i < tags.size(); ++i)
         {
           tags[i] = readGmshDataNumber(in);
-          readGmshDataValues(in, static_cast<Index>(components), &values[i * components]);
+          readGmshDataValues(in, header.components, &values[i * components]);
           in.cursor.countRecord();
         }
       });
@@ -560,7 +456,6 @@ private:
       this->Elements.emplace(this->Ranges, this->ElementTags);
     }
     const std::optional<SharedTags>& known = points ? this->Nodes : this->Elements;
-    this->Ranges.require(known.has_value());
     known->find(tags);
 
     MeshFile& mesh = this->Share.mesh;
@@ -584,13 +479,18 @@ private:
         this->Budget -= size;
         return result;
       });
-    RankRows rows(at(this->group().size()));
-    for (std::size_t i = 0; i < tags.size(); ++i)
-    {
-      rows[at(rankOf(begins, tags[i]))].push_back(static_cast<Index>(i));
-    }
-    tags = sendRows(this->group(), tags, rows, 1);
-    values = sendRows(this->group(), values, rows, static_cast<Index>(components));
+    const RankRows rows = this->Ranges.agreed(
+      [&]
+      {
+        RankRows result(at(this->group().size()));
+        for (std::size_t i = 0; i < tags.size(); ++i)
+        {
+          result[at(rankOf(begins, tags[i]))].push_back(static_cast<Index>(i));
+        }
+        return result;
+      });
+    tags = sendRows(this->Ranges, tags, rows, 1);
+    values = sendRows(this->Ranges, values, rows, static_cast<Index>(components));
     auto& to = std::get<MeshArray::Doubles>(array.values);
     const Index first = begins[at(this->group().rank())];
     for (std::size_t i = 0; i < tags.size(); ++i)
@@ -619,7 +519,7 @@ MeshShare shareGmsh(const FileRanges& ranges, const std::string& name, bool lowe
   MeshShare share = SharedReader(ranges, name).read();
   if (!lowerCells)
   {
-    keepHighestDimension(ranges.group(), share);
+    keepHighestDimension(ranges, share);
   }
   return share;
 }

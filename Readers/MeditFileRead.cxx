@@ -366,7 +366,7 @@ void continueArrays(SolutionArrays& result, std::vector<MeshArray>& to)
     const auto same = std::find_if(to.begin(), to.end(),
       [&](const MeshArray& other)
       {
-        return other.name == array.name && other.size() == array.size() &&
+        return other.name == array.name && other.components == array.components &&
           other.code() == array.code();
       });
     if (same != to.end())

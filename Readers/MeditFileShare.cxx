@@ -27,6 +27,23 @@ struct SharedSection
   Index begin = 0, end = 0;
 };
 
+constexpr Index SectionHeadBytes = 4096;
+
+/// Whether a line begins with the keyword of a section, rather than with a value that is no number.
+bool beginsSection(std::string_view line)
+{
+  if (!std::isalpha(static_cast<unsigned char>(line[0])))
+  {
+    return false;
+  }
+  std::string word;
+  for (const char c : line.substr(0, line.find_first_of(" \t\r#")))
+  {
+    word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return word != "inf" && word != "infinity" && word.substr(0, word.find('(')) != "nan";
+}
+
 /// Reads what comes before the records of a section, which is `first` in its file or not.
 SharedSection readSectionHead(const FileContent& text, bool first, bool solution)
 {
@@ -67,30 +84,50 @@ SharedSection readSectionHead(const FileContent& text, bool first, bool solution
   return section;
 }
 
+/// All that a rank knows of a section.
+std::string describe(const SharedSection& section)
+{
+  std::string text = section.name;
+  for (const Index number :
+    { section.count, Index(section.dimension), Index(section.known), section.begin, section.end })
+  {
+    text += " " + std::to_string(number);
+  }
+  for (const Field& field : section.fields)
+  {
+    text += " " + std::to_string(field.type);
+  }
+  return text + "\n";
+}
+
 /// The sections of a file up to End; Dimension comes first, and none twice.
 std::vector<SharedSection> findSections(
   const FileRanges& ranges, const std::string& name, bool solution)
 {
-  const std::vector<Index> starts = ranges.lineStarts(
-    name, [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; });
+  const std::vector<Index> starts = ranges.lineStarts(name, beginsSection);
+  std::string all;
   std::vector<SharedSection> sections = ranges.agreed(
     [&]
     {
       std::vector<SharedSection> found;
-      for (std::size_t i = 0; i + 1 < starts.size(); ++i)
+      const Index size = fileSize(name);
+      for (std::size_t i = 0; i < starts.size(); ++i)
       {
-        found.push_back(
-          readSectionHead(firstLines(name, starts[i], starts[i + 1]), i == 0, solution));
-        found.back().begin += starts[i];
-        found.back().end = starts[i + 1];
-        const FileContent next = firstLines(name, starts[i + 1], fileSize(name));
-        if (TextCursor(next, Comment).word() == "End")
+        const Index end = i + 1 < starts.size() ? starts[i + 1] : size;
+        const FileContent text = firstLines(name, starts[i], end, SectionHeadBytes);
+        if (i > 0 && TextCursor(text, Comment).word() == "End")
         {
           return found;
         }
+        SharedSection section = readSectionHead(text, i == 0, solution);
+        section.begin += starts[i];
+        section.end = end;
+        all += describe(section);
+        found.push_back(std::move(section));
       }
       throw FileError(name + ": no keyword End");
     });
+  ranges.expectSame(all);
   int dimensions = 0;
   bool inOrder = true;
   for (const SharedSection& section : sections)
@@ -121,15 +158,16 @@ void skipShared(const FileRanges& ranges, const std::string& name, const SharedS
     });
 }
 
-/// Calls read(cursor, count) for a rank's records of a section.
+/// Calls read(cursor, count) for a rank's records of a section, of at least so many columns.
 template <class Read>
-void shareRecords(
-  const FileRanges& ranges, const std::string& name, const SharedSection& section, const Read& read)
+void shareRecords(const FileRanges& ranges, const std::string& name, const SharedSection& section,
+  Index columns, const Read& read)
 {
   const LineShare lines = ranges.lines(name, section.begin, section.end, Comment, section.count);
   ranges.together(
     [&]
     {
+      expectColumns(name, lines, columns);
       TextCursor cursor(lines.text, Comment);
       read(cursor, lines.count);
       cursor.expectFileEnd("record");
@@ -154,24 +192,32 @@ void shareList(const FileRanges& ranges, const std::string& name, const SharedSe
   ranges.require(ranges.group().sum(static_cast<Index>(ids.size())) == section.count);
 }
 
-/// Sends numbers of points or cells to the ranks that have these.
-/// @param rankAndPlace the rank of a number, and which of its points or cells it is
-template <class RankAndPlace>
+/// Sends numbers of points or cells to the ranks that have these, and returns the own ones, counted
+/// from the first own point or cell.
 std::vector<Index> sendNumbers(
-  RankGroup& group, const std::vector<Index>& numbers, const RankAndPlace& rankAndPlace)
+  const FileRanges& ranges, const std::vector<Index>& begins, const std::vector<Index>& numbers)
 {
-  std::vector<std::vector<Index>> sent(static_cast<std::size_t>(group.size()));
-  for (const Index number : numbers)
-  {
-    const auto [rank, place] = rankAndPlace(number);
-    sent[static_cast<std::size_t>(rank)].push_back(place);
-  }
-  std::vector<Index> own;
-  for (const std::vector<Index>& some : group.exchangeItems(sent))
-  {
-    own.insert(own.end(), some.begin(), some.end());
-  }
-  return own;
+  std::vector<std::vector<Index>> sent(begins.size() - 1);
+  ranges.together(
+    [&]
+    {
+      for (const Index number : numbers)
+      {
+        const auto rank = static_cast<std::size_t>(rankOf(begins, number));
+        sent[rank].push_back(number - begins[rank]);
+      }
+    });
+  sent = sendLists(ranges, sent);
+  return ranges.agreed(
+    [&]
+    {
+      std::vector<Index> own;
+      for (const std::vector<Index>& some : sent)
+      {
+        own.insert(own.end(), some.begin(), some.end());
+      }
+      return own;
+    });
 }
 
 /// Which ranks have the cells: numbers begin at 0 for each section.
@@ -181,7 +227,6 @@ using SectionBegins = std::map<unsigned char, std::vector<Index>>;
 void shareLists(const FileRanges& ranges, const std::vector<Index>& pointBegins,
   const SectionBegins& cellBegins, Contents& contents)
 {
-  RankGroup& group = ranges.group();
   for (auto& [name, numbers] : contents.lists)
   {
     const bool points = name == "Corners" || name == "RequiredVertices";
@@ -189,12 +234,7 @@ void shareLists(const FileRanges& ranges, const std::vector<Index>& pointBegins,
       points ? pointBegins : cellBegins.at(name == "RequiredTriangles" ? FileTriangle : FileLine);
     ranges.require(std::all_of(
       numbers.begin(), numbers.end(), [&](Index number) { return number < begins.back(); }));
-    numbers = sendNumbers(group, numbers,
-      [&](Index number)
-      {
-        const int rank = rankOf(begins, number);
-        return std::pair(rank, number - begins[static_cast<std::size_t>(rank)]);
-      });
+    numbers = sendNumbers(ranges, begins, numbers);
   }
 }
 
@@ -218,7 +258,7 @@ void shareSolution(const FileRanges& ranges, const std::string& name,
     const MeditSection* cells = findSolution(section.name);
     if (!points && !cells)
     {
-      shareRecords(ranges, name, section, [](TextCursor&, Index) {});
+      shareRecords(ranges, name, section, 1, [](TextCursor&, Index) {});
       continue;
     }
     const std::vector<Index>& begins = points ? pointBegins : cellBegins.at(cells->type);
@@ -226,7 +266,12 @@ void shareSolution(const FileRanges& ranges, const std::string& name,
     SolutionArrays read, result;
     const auto arrays = [&](std::size_t tuples)
     { return solutionArrays(head, section.fields, arrayTitle(points), tuples); };
-    shareRecords(ranges, name, section,
+    Index columns = 0;
+    for (const Field& field : section.fields)
+    {
+      columns += field.values(dimension);
+    }
+    shareRecords(ranges, name, section, columns,
       [&](TextCursor& cursor, Index count)
       {
         read = arrays(static_cast<std::size_t>(count));
@@ -237,7 +282,8 @@ void shareSolution(const FileRanges& ranges, const std::string& name,
     const Index count = read.arrays.empty()
       ? 0
       : static_cast<Index>(read.arrays[0].size()) / read.arrays[0].components;
-    const RankRows rows = realignedRows(group, rankBegins(group, count), begins);
+    const std::vector<Index> from = rankBegins(group, count);
+    const RankRows rows = ranges.agreed([&] { return realignedRows(group, from, begins); });
     std::vector<MeshArray>& to = points ? pointArrays : cellArrays;
     continueArrays(result, to);
     const std::size_t first = points
@@ -247,13 +293,13 @@ void shareSolution(const FileRanges& ranges, const std::string& name,
           mesh.cellTypes.begin());
     for (std::size_t i = 0; i < read.arrays.size(); ++i)
     {
-      const MeshArray values = sendTuples(group, read.arrays[i], rows);
+      const MeshArray values = sendTuples(ranges, read.arrays[i], rows);
       std::visit(
-        [&](const auto& from)
+        [&](const auto& some)
         {
-          using Values = std::decay_t<decltype(from)>;
+          using Values = std::decay_t<decltype(some)>;
           auto& all = std::get<Values>(result.arrays[i].values);
-          std::copy(from.begin(), from.end(),
+          std::copy(some.begin(), some.end(),
             all.begin() + static_cast<std::ptrdiff_t>(first) * values.components);
         },
         values.values);
@@ -271,9 +317,10 @@ MeshShare shareMedit(const FileRanges& ranges, const std::string& name, bool low
   const auto [stem, extension] = splitExtension(name);
   const std::string meshName = extension == "sol" ? stem + ".mesh" : name;
   const std::string solutionName = stem + ".sol";
-  ranges.expectLarge({ meshName });
   const bool solution = ranges.exists(solutionName);
   ranges.require(solution || extension != "sol");
+  ranges.expectLarge(
+    solution ? std::vector<std::string>{ meshName, solutionName } : std::vector{ meshName });
   SetCheck set;
   const FileContent tail = ranges.tail(meshName);
   ranges.together([&] { set.add(tail); });
@@ -298,6 +345,7 @@ MeshShare shareMedit(const FileRanges& ranges, const std::string& name, bool low
     }
     ranges.require(!cells || contents.points >= 0);
     shareRecords(ranges, meshName, section,
+      1 + (cells ? cellNodes(cells->type) : contents.dimension),
       [&](TextCursor& cursor, Index count)
       {
         if (section.name == "Vertices")
@@ -332,7 +380,7 @@ MeshShare shareMedit(const FileRanges& ranges, const std::string& name, bool low
   }
   if (!lowerCells)
   {
-    keepHighestDimension(group, share);
+    keepHighestDimension(ranges, share);
   }
   std::vector<MeshArray>& arrays = share.mesh.cellArrays;
   for (auto array = arrays.begin(); array != arrays.end();)

@@ -54,18 +54,23 @@ class Division
 {
 public:
   /// @param points coordinates of the places that the connectivity has
-  Division(RankGroup& group, const MeshFile& mesh, const std::vector<double>& points,
+  Division(const FileRanges& ranges, const MeshFile& mesh, const std::vector<double>& points,
     const std::vector<Index>& numbers)
-    : Group(group)
+    : Ranges(ranges)
+    , Group(ranges.group())
     , Mesh(mesh)
     , Points(points)
     , Numbers(numbers)
-    , Cells(numbers.size())
   {
-    for (std::size_t i = 0; i < this->Cells.size(); ++i)
-    {
-      this->Cells[i].cell = static_cast<Index>(i);
-    }
+    ranges.together(
+      [&]
+      {
+        this->Cells.resize(numbers.size());
+        for (std::size_t i = 0; i < this->Cells.size(); ++i)
+        {
+          this->Cells[i].cell = static_cast<Index>(i);
+        }
+      });
   }
 
   /// The part of each own cell.
@@ -78,15 +83,19 @@ public:
     {
       groups = this->halve(groups);
     }
-    std::vector<int> result(this->Cells.size());
-    for (const PartGroup& g : groups)
-    {
-      for (std::size_t i = g.begin; i < g.end; ++i)
+    return this->Ranges.agreed(
+      [&]
       {
-        result[at(this->Cells[i].cell)] = g.first;
-      }
-    }
-    return result;
+        std::vector<int> result(this->Cells.size());
+        for (const PartGroup& g : groups)
+        {
+          for (std::size_t i = g.begin; i < g.end; ++i)
+          {
+            result[at(this->Cells[i].cell)] = g.first;
+          }
+        }
+        return result;
+      });
   }
 
 private:
@@ -227,6 +236,7 @@ private:
     return result;
   }
 
+  const FileRanges& Ranges;
   RankGroup& Group;
   const MeshFile& Mesh;
   const std::vector<double>& Points;
@@ -236,9 +246,9 @@ private:
 }
 
 //------------------------------------------------------------------------------
-std::vector<int> divideCells(RankGroup& group, const MeshFile& mesh,
+std::vector<int> divideCells(const FileRanges& ranges, const MeshFile& mesh,
   const std::vector<double>& points, const std::vector<Index>& numbers)
 {
-  return Division(group, mesh, points, numbers).parts();
+  return Division(ranges, mesh, points, numbers).parts();
 }
 }

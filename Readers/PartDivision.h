@@ -10,9 +10,8 @@
 #ifndef tautline_PartDivision_h
 #define tautline_PartDivision_h
 
+#include "FileRanges.h"
 #include "MeshFile.h"
-
-#include "tautline/Core/RankGroup.h"
 
 namespace tautline
 {
@@ -22,7 +21,7 @@ namespace tautline
  * @param points x y z of the points that the connectivity has
  * @param numbers of the own cells in the file, ascending
  */
-std::vector<int> divideCells(RankGroup& group, const MeshFile& mesh,
+std::vector<int> divideCells(const FileRanges& ranges, const MeshFile& mesh,
   const std::vector<double>& points, const std::vector<Index>& numbers);
 }
 #endif

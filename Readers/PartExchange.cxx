@@ -67,19 +67,24 @@ struct PointLinks
   std::vector<Index> first;  ///< of the points, per rank that has them; one more
   RankRows asked;            ///< per rank: own points that it needs, counted from the first own one
 
-  PointLinks(RankGroup& group, const std::vector<Index>& begins, std::vector<Index> needed)
+  PointLinks(const FileRanges& ranges, const std::vector<Index>& begins, std::vector<Index> needed)
     : points(std::move(needed))
   {
-    std::vector<std::vector<Index>> questions;
-    for (int rank = 0; rank < group.size(); ++rank)
-    {
-      const auto from = std::lower_bound(points.begin(), points.end(), begins[at(rank)]);
-      const auto to = std::lower_bound(from, points.end(), begins[at(rank) + 1]);
-      this->first.push_back(from - points.begin());
-      questions.emplace_back(from, to);
-    }
-    this->first.push_back(static_cast<Index>(points.size()));
-    this->asked = group.exchangeItems(questions);
+    const RankGroup& group = ranges.group();
+    RankRows questions;
+    ranges.together(
+      [&]
+      {
+        for (int rank = 0; rank < group.size(); ++rank)
+        {
+          const auto from = std::lower_bound(points.begin(), points.end(), begins[at(rank)]);
+          const auto to = std::lower_bound(from, points.end(), begins[at(rank) + 1]);
+          this->first.push_back(from - points.begin());
+          questions.emplace_back(from, to);
+        }
+        this->first.push_back(static_cast<Index>(points.size()));
+      });
+    this->asked = sendLists(ranges, questions);
     for (std::vector<Index>& some : this->asked)
     {
       for (Index& point : some)
@@ -92,39 +97,49 @@ struct PointLinks
 
 /// The points of cells; their connectivity becomes places in it.
 PointLinks linkPoints(
-  RankGroup& group, const std::vector<Index>& begins, std::vector<Index>& connectivity)
+  const FileRanges& ranges, const std::vector<Index>& begins, std::vector<Index>& connectivity)
 {
-  NumberSet used(begins.back());
-  for (const Index point : connectivity)
-  {
-    used.add(point);
-  }
-  std::vector<Index> points = used.list();
-  for (Index& point : connectivity)
-  {
-    point = used.place(point);
-  }
-  return PointLinks(group, begins, std::move(points));
+  return PointLinks(ranges, begins,
+    ranges.agreed(
+      [&]
+      {
+        NumberSet used(begins.back());
+        for (const Index point : connectivity)
+        {
+          used.add(point);
+        }
+        std::vector<Index> points = used.list();
+        for (Index& point : connectivity)
+        {
+          point = used.place(point);
+        }
+        return points;
+      }));
 }
 
 /// Numbers of the own cells in the file.
-std::vector<Index> cellNumbers(RankGroup& group, const std::vector<Index>& sectionCells)
+std::vector<Index> cellNumbers(const FileRanges& ranges, const std::vector<Index>& sectionCells)
 {
-  const std::vector<std::vector<Index>> all = group.gatherItems(sectionCells);
-  std::vector<Index> numbers;
-  Index next = 0;
-  for (std::size_t section = 0; section < sectionCells.size(); ++section)
-  {
-    for (std::size_t rank = 0; rank < all.size(); ++rank)
+  const std::vector<std::vector<Index>> all = ranges.group().gatherItems(sectionCells);
+  return ranges.agreed(
+    [&]
     {
-      for (Index i = 0; static_cast<int>(rank) == group.rank() && i < all[rank][section]; ++i)
+      const std::size_t own = at(ranges.group().rank());
+      std::vector<Index> numbers;
+      Index next = 0;
+      for (std::size_t section = 0; section < sectionCells.size(); ++section)
       {
-        numbers.push_back(next + i);
+        for (std::size_t rank = 0; rank < all.size(); ++rank)
+        {
+          for (Index i = 0; rank == own && i < all[rank][section]; ++i)
+          {
+            numbers.push_back(next + i);
+          }
+          next += all[rank][section];
+        }
       }
-      next += all[rank][section];
-    }
-  }
-  return numbers;
+      return numbers;
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -151,9 +166,9 @@ std::vector<Pair> addNew(std::vector<Pair>& all, const std::vector<Pair>& more)
 class GhostSearch
 {
 public:
-  GhostSearch(
-    RankGroup& group, const MeshFile& mesh, const PointLinks& links, const std::vector<int>& parts)
-    : Group(group)
+  GhostSearch(const FileRanges& ranges, const MeshFile& mesh, const PointLinks& links,
+    const std::vector<int>& parts)
+    : Ranges(ranges)
     , Mesh(mesh)
     , Links(links)
     , Parts(parts)
@@ -163,20 +178,28 @@ public:
   /// Pairs of a part and a cell, in their order.
   std::vector<Pair> ghosts(int layers)
   {
-    std::vector<Pair> found, reached = layers > 0 ? this->ownPoints() : std::vector<Pair>();
+    std::vector<Pair> found, reached;
     for (int layer = 0; layer < layers; ++layer)
     {
-      std::vector<Pair> more = this->cellsAt(this->tell(std::move(reached), layer == 0));
-      more = addNew(found, more);
-      reached.clear();
-      for (const auto& [part, cell] : more)
-      {
-        for (Index i = this->Mesh.offsets[at(cell)]; i < this->Mesh.offsets[at(cell) + 1]; ++i)
+      std::vector<std::vector<Pair>> told = this->Ranges.agreed(
+        [&] { return this->forOwners(layer == 0 ? this->ownPoints() : std::move(reached)); });
+      told = sendLists(this->Ranges, told);
+      told = this->Ranges.agreed([&] { return this->answers(told, layer == 0); });
+      told = sendLists(this->Ranges, told);
+      this->Ranges.together(
+        [&]
         {
-          reached.push_back({ this->Mesh.connectivity[at(i)], part });
-        }
-      }
-      sortUnique(reached);
+          const std::vector<Pair> more = addNew(found, this->cellsAt(this->places(told)));
+          reached.clear();
+          for (const auto& [part, cell] : more)
+          {
+            for (Index i = this->Mesh.offsets[at(cell)]; i < this->Mesh.offsets[at(cell) + 1]; ++i)
+            {
+              reached.push_back({ this->Mesh.connectivity[at(i)], part });
+            }
+          }
+          sortUnique(reached);
+        });
     }
     return found;
   }
@@ -210,20 +233,24 @@ private:
     return pairs;
   }
 
-  /// Sends places and parts to the ranks with the points, and from there, where they are new, to
-  /// all ranks with these points. A point with one part at first has no cells of others: these
-  /// pairs are dropped.
-  std::vector<Pair> tell(std::vector<Pair> pairs, bool atFirst)
+  /// Places and parts, for the ranks with the points.
+  std::vector<std::vector<Pair>> forOwners(const std::vector<Pair>& pairs) const
   {
-    const int ranks = this->Group.size();
-    std::vector<std::vector<Pair>> sent(at(ranks));
+    std::vector<std::vector<Pair>> sent(this->Links.asked.size());
     for (const auto& [place, part] : pairs)
     {
       const int rank = rankOf(this->Links.first, place);
       sent[at(rank)].push_back({ place - this->Links.first[at(rank)], part });
     }
+    return sent;
+  }
+
+  /// Of what a rank is told about its points, what is new, for all ranks with these points. A point
+  /// with one part at first has no cells of others: these pairs are dropped.
+  std::vector<std::vector<Pair>> answers(
+    const std::vector<std::vector<Pair>>& received, bool atFirst)
+  {
     std::vector<Pair> more;
-    const std::vector<std::vector<Pair>> received = this->Group.exchangeItems(sent);
     for (std::size_t rank = 0; rank < received.size(); ++rank)
     {
       for (const auto& [question, part] : received[rank])
@@ -246,9 +273,9 @@ private:
       more = std::move(several);
     }
     const std::vector<Pair> fresh = addNew(this->Reached, more);
+    std::vector<std::vector<Pair>> sent(received.size());
     for (std::size_t rank = 0; rank < sent.size(); ++rank)
     {
-      sent[rank].clear();
       const std::vector<Index>& asked = this->Links.asked[rank];
       auto next = fresh.begin();
       for (std::size_t question = 0; question < asked.size(); ++question)
@@ -262,8 +289,13 @@ private:
         }
       }
     }
-    const std::vector<std::vector<Pair>> answers = this->Group.exchangeItems(sent);
-    std::vector<Pair> result; // sorted, as ranks have the points in their order
+    return sent;
+  }
+
+  /// The places and parts of answers, sorted, as ranks have the points in their order.
+  std::vector<Pair> places(const std::vector<std::vector<Pair>>& answers) const
+  {
+    std::vector<Pair> result;
     for (std::size_t rank = 0; rank < answers.size(); ++rank)
     {
       for (const auto& [question, part] : answers[rank])
@@ -302,7 +334,7 @@ private:
     return result;
   }
 
-  RankGroup& Group;
+  const FileRanges& Ranges;
   const MeshFile& Mesh;
   const PointLinks& Links;
   const std::vector<int>& Parts;
@@ -319,33 +351,45 @@ Vector taken(Vector& from)
   return result;
 }
 
-/// Own points that no cell of any rank has, as numbers in the file, on the first rank.
-std::vector<Index> loosePoints(
-  RankGroup& group, const PointLinks& links, const std::vector<Index>& begins)
+/// The items of all lists.
+std::vector<Index> joined(const std::vector<std::vector<Index>>& lists)
 {
-  const Index first = begins[at(group.rank())], count = begins[at(group.rank()) + 1] - first;
-  std::vector<char> used(at(count), 0);
-  for (const std::vector<Index>& some : links.asked)
-  {
-    for (const Index point : some)
-    {
-      used[at(point)] = 1;
-    }
-  }
-  std::vector<std::vector<Index>> sent(at(group.size()));
-  for (Index point = 0; point < count; ++point)
-  {
-    if (!used[at(point)])
-    {
-      sent[0].push_back(first + point);
-    }
-  }
   std::vector<Index> all;
-  for (const std::vector<Index>& some : group.exchangeItems(sent))
+  for (const std::vector<Index>& some : lists)
   {
     all.insert(all.end(), some.begin(), some.end());
   }
   return all;
+}
+
+/// Own points that no cell of any rank has, as numbers in the file, on the first rank.
+std::vector<Index> loosePoints(
+  const FileRanges& ranges, const PointLinks& links, const std::vector<Index>& begins)
+{
+  const std::size_t own = at(ranges.group().rank());
+  const RankRows sent = ranges.agreed(
+    [&]
+    {
+      const Index first = begins[own], count = begins[own + 1] - first;
+      std::vector<char> used(at(count), 0);
+      for (const std::vector<Index>& some : links.asked)
+      {
+        for (const Index point : some)
+        {
+          used[at(point)] = 1;
+        }
+      }
+      RankRows rows(links.asked.size());
+      for (Index point = 0; point < count; ++point)
+      {
+        if (!used[at(point)])
+        {
+          rows[0].push_back(first + point);
+        }
+      }
+      return rows;
+    });
+  return ranges.agreed([&, all = sendLists(ranges, sent)] { return joined(all); });
 }
 
 /// The cells of a part, with numbers of points in the file.
@@ -356,65 +400,71 @@ struct PartCells
   Index owned = 0; ///< the first ones; ghosts follow
 };
 
-PartCells sendCells(RankGroup& group, MeshFile& mesh, const std::vector<Index>& numbers,
+PartCells sendCells(const FileRanges& ranges, MeshFile& mesh, const std::vector<Index>& numbers,
   const std::vector<int>& parts, const std::vector<Pair>& ghosts)
 {
   // Ghosts are sent with numbers behind all others, so that they are sorted behind own cells.
-  const Index total = group.sum(mesh.numberOfCells());
-  RankRows rows(at(group.size()));
-  for (std::size_t cell = 0; cell < parts.size(); ++cell)
-  {
-    rows[at(parts[cell])].push_back(static_cast<Index>(cell));
-  }
+  const Index total = ranges.group().sum(mesh.numberOfCells());
+  RankRows rows(at(ranges.group().size()));
   std::vector<std::vector<Index>> keys(rows.size());
-  for (std::size_t rank = 0; rank < rows.size(); ++rank)
-  {
-    for (const Index cell : rows[rank])
+  ranges.together(
+    [&]
     {
-      keys[rank].push_back(numbers[at(cell)]);
-    }
-  }
-  for (const auto& [part, cell] : ghosts)
-  {
-    rows[at(part)].push_back(cell);
-    keys[at(part)].push_back(total + numbers[at(cell)]);
-  }
+      for (std::size_t cell = 0; cell < parts.size(); ++cell)
+      {
+        rows[at(parts[cell])].push_back(static_cast<Index>(cell));
+        keys[at(parts[cell])].push_back(numbers[cell]);
+      }
+      for (const auto& [part, cell] : ghosts)
+      {
+        rows[at(part)].push_back(cell);
+        keys[at(part)].push_back(total + numbers[at(cell)]);
+      }
+    });
+  keys = sendLists(ranges, taken(keys));
   PartCells result;
   std::vector<Index> senders; // where the cells of each begin
-  keys = group.exchangeItems(taken(keys));
-  for (const std::vector<Index>& some : keys)
-  {
-    senders.push_back(static_cast<Index>(result.numbers.size()));
-    result.numbers.insert(result.numbers.end(), some.begin(), some.end());
-  }
-  taken(keys);
-  std::vector<Index> place(result.numbers.size()); // in the part, of the cells as they arrive
-  {
-    std::vector<Index> order(place.size());
-    std::iota(order.begin(), order.end(), Index(0));
-    std::sort(order.begin(), order.end(),
-      [&](Index a, Index b) { return result.numbers[at(a)] < result.numbers[at(b)]; });
-    for (std::size_t i = 0; i < order.size(); ++i)
+  std::vector<Index> place;   // in the part, of the cells as they arrive
+  ranges.together(
+    [&]
     {
-      place[at(order[i])] = static_cast<Index>(i);
-    }
-  }
+      Index begin = 0;
+      for (const std::vector<Index>& some : keys)
+      {
+        senders.push_back(begin);
+        begin += static_cast<Index>(some.size());
+      }
+      result.numbers = joined(taken(keys));
+      place.resize(result.numbers.size());
+      std::vector<Index> order(place.size());
+      std::iota(order.begin(), order.end(), Index(0));
+      std::sort(order.begin(), order.end(),
+        [&](Index a, Index b) { return result.numbers[at(a)] < result.numbers[at(b)]; });
+      for (std::size_t i = 0; i < order.size(); ++i)
+      {
+        place[at(order[i])] = static_cast<Index>(i);
+      }
+    });
 
   MeshFile& part = result.mesh;
-  part.cellTypes.resize(place.size());
-  const std::vector<unsigned char> types = sendRows(group, mesh.cellTypes, rows, 1);
-  for (std::size_t i = 0; i < place.size(); ++i)
-  {
-    part.cellTypes[at(place[i])] = types[i];
-  }
-  part.offsets.reserve(place.size() + 1);
-  for (const unsigned char type : part.cellTypes)
-  {
-    part.offsets.push_back(part.offsets.back() + cellNodes(type));
-  }
-  part.connectivity.resize(at(part.offsets.back()));
+  const std::vector<unsigned char> types = sendRows(ranges, mesh.cellTypes, rows, 1);
+  ranges.together(
+    [&]
+    {
+      part.cellTypes.resize(place.size());
+      for (std::size_t i = 0; i < place.size(); ++i)
+      {
+        part.cellTypes[at(place[i])] = types[i];
+      }
+      part.offsets.reserve(place.size() + 1);
+      for (const unsigned char type : part.cellTypes)
+      {
+        part.offsets.push_back(part.offsets.back() + cellNodes(type));
+      }
+      part.connectivity.resize(at(part.offsets.back()));
+    });
   std::vector<Index> next = senders;
-  sendRowsTo(group, mesh.connectivity, rows, 1, &mesh.offsets,
+  sendRowsTo(ranges, mesh.connectivity, rows, 1, &mesh.offsets,
     [&](std::size_t sender, const Index* nodes, std::size_t count)
     {
       for (std::size_t i = 0; i < count; ++next[sender])
@@ -429,15 +479,19 @@ PartCells sendCells(RankGroup& group, MeshFile& mesh, const std::vector<Index>& 
   taken(mesh.offsets);
   for (MeshArray& array : mesh.cellArrays)
   {
-    MeshArray to = MeshArray::make(
-      array.name, array.components, array.code(), place.size() * at(array.components));
+    MeshArray to = ranges.agreed(
+      [&]
+      {
+        return MeshArray::make(
+          array.name, array.components, array.code(), place.size() * at(array.components));
+      });
     std::visit(
       [&](auto& values)
       {
         using Values = std::decay_t<decltype(values)>;
         const Index width = array.components;
         next = senders;
-        sendRowsTo(group, std::get<Values>(array.values), rows, width, nullptr,
+        sendRowsTo(ranges, std::get<Values>(array.values), rows, width, nullptr,
           [&](std::size_t sender, const typename Values::value_type* some, std::size_t count)
           {
             for (std::size_t i = 0; i < count; i += at(width), ++next[sender])
@@ -496,19 +550,20 @@ RankRows realignedRows(
 }
 
 //------------------------------------------------------------------------------
-MeshArray sendTuples(RankGroup& group, const MeshArray& array, const RankRows& rows)
+MeshArray sendTuples(const FileRanges& ranges, const MeshArray& array, const RankRows& rows)
 {
   MeshArray result{ array.name, array.components, {} };
   std::visit([&](const auto& values)
-    { result.values = sendRows(group, values, rows, array.components); },
+    { result.values = sendRows(ranges, values, rows, array.components); },
     array.values);
   return result;
 }
 
 //------------------------------------------------------------------------------
-void keepHighestDimension(RankGroup& group, MeshShare& share)
+void keepHighestDimension(const FileRanges& ranges, MeshShare& share)
 {
-  const auto kept = static_cast<int>(group.maximum(static_cast<Index>(share.mesh.dimension())));
+  const auto kept =
+    static_cast<int>(ranges.group().maximum(static_cast<Index>(share.mesh.dimension())));
   std::size_t cell = 0;
   for (Index& cells : share.sectionCells)
   {
@@ -518,73 +573,81 @@ void keepHighestDimension(RankGroup& group, MeshShare& share)
       cells -= cellDimension(share.mesh.cellTypes[cell]) != kept;
     }
   }
-  share.mesh.keepDimension(kept);
+  ranges.together([&] { share.mesh.keepDimension(kept); });
 }
 
 //------------------------------------------------------------------------------
 MeshFile exchangeParts(const FileRanges& ranges, MeshShare share, int ghostLayers)
 {
-  RankGroup& group = ranges.group();
   MeshFile& mesh = share.mesh;
-  const std::vector<Index> begins = rankBegins(group, mesh.numberOfPoints());
-  const std::vector<Index> numbers = cellNumbers(group, share.sectionCells);
+  const std::vector<Index> begins = rankBegins(ranges.group(), mesh.numberOfPoints());
+  const std::vector<Index> numbers = cellNumbers(ranges, share.sectionCells);
   PartCells cells;
   std::vector<Index> loose;
   {
-    const PointLinks links = linkPoints(group, begins, mesh.connectivity);
+    const PointLinks links = linkPoints(ranges, begins, mesh.connectivity);
     ranges.poll();
     const std::vector<int> parts =
-      divideCells(group, mesh, sendRows(group, mesh.points, links.asked, 3), numbers);
+      divideCells(ranges, mesh, sendRows(ranges, mesh.points, links.asked, 3), numbers);
     ranges.poll();
-    const std::vector<Pair> ghosts = GhostSearch(group, mesh, links, parts).ghosts(ghostLayers);
+    const std::vector<Pair> ghosts = GhostSearch(ranges, mesh, links, parts).ghosts(ghostLayers);
     ranges.poll();
-    loose = loosePoints(group, links, begins);
+    loose = loosePoints(ranges, links, begins);
     for (Index& node : mesh.connectivity)
     {
       node = links.points[at(node)];
     }
-    cells = sendCells(group, mesh, numbers, parts, ghosts);
+    cells = sendCells(ranges, mesh, numbers, parts, ghosts);
   }
   ranges.poll();
 
   MeshFile part = std::move(cells.mesh);
-  NumberSet used(begins.back());
-  const Index ownNodes = part.offsets[at(cells.owned)];
-  for (const Index point : loose)
-  {
-    used.add(point);
-  }
-  for (const Index point : part.connectivity)
-  {
-    used.add(point);
-  }
-  std::vector<Index> points = used.list();
   std::optional<MeshArray::Bytes> ghostPoints, ghostCells;
-  for (Index& point : part.connectivity)
-  {
-    point = used.place(point);
-  }
-  if (ghostLayers > 0)
-  {
-    ghostPoints.emplace(points.size(), ghostFlag(true));
-    ghostCells.emplace(part.cellTypes.size(), ghostFlag(true));
-    std::fill_n(ghostCells->begin(), cells.owned, ghostFlag(false));
-    std::for_each_n(part.connectivity.begin(), ownNodes,
-      [&](Index point) { (*ghostPoints)[at(point)] = ghostFlag(false); });
-    for (const Index point : loose)
-    {
-      (*ghostPoints)[at(used.place(point))] = ghostFlag(false);
-    }
-  }
-  const PointLinks links(group, begins, std::move(points));
-  part.points = sendRows(group, taken(mesh.points), links.asked, 3);
+  const PointLinks links(ranges, begins,
+    ranges.agreed(
+      [&]
+      {
+        NumberSet used(begins.back());
+        const Index ownNodes = part.offsets[at(cells.owned)];
+        for (const Index point : loose)
+        {
+          used.add(point);
+        }
+        for (const Index point : part.connectivity)
+        {
+          used.add(point);
+        }
+        std::vector<Index> points = used.list();
+        for (Index& point : part.connectivity)
+        {
+          point = used.place(point);
+        }
+        if (ghostLayers > 0)
+        {
+          ghostPoints.emplace(points.size(), ghostFlag(true));
+          ghostCells.emplace(part.cellTypes.size(), ghostFlag(true));
+          std::fill_n(ghostCells->begin(), cells.owned, ghostFlag(false));
+          std::for_each_n(part.connectivity.begin(), ownNodes,
+            [&](Index point) { (*ghostPoints)[at(point)] = ghostFlag(false); });
+          for (const Index point : loose)
+          {
+            (*ghostPoints)[at(used.place(point))] = ghostFlag(false);
+          }
+        }
+        return points;
+      }));
+  part.points = sendRows(ranges, taken(mesh.points), links.asked, 3);
   for (MeshArray& array : mesh.pointArrays)
   {
-    part.pointArrays.push_back(sendTuples(group, array, links.asked));
+    part.pointArrays.push_back(sendTuples(ranges, array, links.asked));
     array = MeshArray();
   }
-  addPartArrays(part.pointArrays, PartPointIds, links.points, std::move(ghostPoints));
-  addPartArrays(part.cellArrays, PartCellIds, std::move(cells.numbers), std::move(ghostCells));
+  ranges.together(
+    [&]
+    {
+      addPartArrays(part.pointArrays, PartPointIds, links.points, std::move(ghostPoints));
+      addPartArrays(part.cellArrays, PartCellIds, std::move(cells.numbers), std::move(ghostCells));
+    });
   part.fieldArrays = std::move(mesh.fieldArrays);
   part.fieldStrings = std::move(mesh.fieldStrings);
   part.warnings = std::move(mesh.warnings);

@@ -7,13 +7,18 @@
  * Coordinates of a cell's nodes are fetched from the ranks that have the points; the cells are
  * divided by recursive bisection (PartDivision.h); then cells, ghost cells and points go to the
  * parts, a few megabytes at a time. A rank needs memory for its share and its part, and two bits
- * per point of the whole mesh.
+ * per point of the whole mesh. The first rank has all points without a cell, as part 0 has them.
+ *
+ * What takes memory in proportion to the mesh is done in FileRanges::together(), so that no rank
+ * waits for another that has none.
  */
 #ifndef tautline_PartExchange_h
 #define tautline_PartExchange_h
 
 #include "FileRanges.h"
 #include "MeshFile.h"
+
+#include "tautline/Core/Interruption.h"
 
 #include <algorithm>
 
@@ -33,9 +38,10 @@ struct MeshShare
 };
 
 /// Removes the cells below the largest dimension of any rank. Collective.
-void keepHighestDimension(RankGroup& group, MeshShare& share);
+void keepHighestDimension(const FileRanges& ranges, MeshShare& share);
 
-/// Part `rank` of as many as there are ranks, as partOf() gives it. Collective.
+/// Part `rank` of as many as there are ranks, as partOf() gives it. Collective; throws Error on all
+/// ranks where one has too little memory or is interrupted.
 TAUTLINEREADERS_EXPORT MeshFile exchangeParts(
   const FileRanges& ranges, MeshShare share, int ghostLayers);
 
@@ -51,56 +57,125 @@ RankRows realignedRows(
   const RankGroup& group, const std::vector<Index>& from, const std::vector<Index>& to);
 
 /**
- * @brief Sends rows of a list to the ranks that `rows` names, some megabytes at a time. Collective.
+ * @brief Sends items to all ranks in rounds, of limits().sendAtOnce bytes of each sender and at
+ * least an item for each rank that it has some for. Collective. No other memory in proportion to
+ * the items is taken, so that it runs out where all ranks notice.
+ * @param fill fill(rank, most, items) appends the next items for a rank until there are `most` or
+ * none is left, and returns whether any is left. It is called for each rank at first.
+ * @param take take(sender, items, count) gets them in the order in which they were filled in
+ */
+template <class Item, class Fill, class Take>
+void sendInRounds(const FileRanges& ranges, const Fill& fill, const Take& take)
+{
+  RankGroup& group = ranges.group();
+  const auto budget = static_cast<std::size_t>(ranges.limits().sendAtOnce) / sizeof(Item);
+  std::vector<char> left(static_cast<std::size_t>(group.size()), 1);
+  std::vector<Bytes> sent(left.size()), arrived(left.size());
+  const auto takeArrived = [&]
+  {
+    for (std::size_t rank = 0; rank < arrived.size(); ++rank)
+    {
+      const std::vector<Item> some = itemsOf<Item>(arrived[rank]);
+      take(rank, some.data(), some.size());
+    }
+  };
+  for (bool more = true; more;)
+  {
+    ranges.together(
+      [&]
+      {
+        throwIfInterrupted();
+        takeArrived();
+        const auto receivers = static_cast<std::size_t>(std::count(left.begin(), left.end(), 1));
+        const std::size_t most =
+          std::max(budget / std::max<std::size_t>(receivers, 1), std::size_t(1));
+        for (std::size_t rank = 0; rank < left.size(); ++rank)
+        {
+          std::vector<Item> some;
+          left[rank] = left[rank] && fill(rank, most, some);
+          sent[rank] = bytesOf(some);
+        }
+      });
+    arrived = group.exchange(sent);
+    more = group.any(std::count(left.begin(), left.end(), 1) > 0);
+  }
+  ranges.together(takeArrived);
+}
+
+/// Sends each rank a list, and returns the lists of each. Collective.
+template <class Item>
+std::vector<std::vector<Item>> sendLists(
+  const FileRanges& ranges, const std::vector<std::vector<Item>>& lists)
+{
+  std::vector<Index> counts;
+  for (const std::vector<Item>& list : lists)
+  {
+    counts.push_back(static_cast<Index>(list.size()));
+  }
+  counts = ranges.group().transpose(std::move(counts));
+  std::vector<std::vector<Item>> received(lists.size());
+  ranges.together(
+    [&]
+    {
+      for (std::size_t rank = 0; rank < received.size(); ++rank)
+      {
+        received[rank].reserve(static_cast<std::size_t>(counts[rank]));
+      }
+    });
+  std::vector<std::size_t> next(lists.size(), 0);
+  sendInRounds<Item>(
+    ranges,
+    [&](std::size_t rank, std::size_t most, std::vector<Item>& some)
+    {
+      const std::vector<Item>& list = lists[rank];
+      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(next[rank]);
+      next[rank] += std::min(most, list.size() - next[rank]);
+      some.assign(begin, list.begin() + static_cast<std::ptrdiff_t>(next[rank]));
+      return next[rank] < list.size();
+    },
+    [&](std::size_t sender, const Item* some, std::size_t count)
+    { received[sender].insert(received[sender].end(), some, some + count); });
+  return received;
+}
+
+/**
+ * @brief Sends rows of a list to the ranks that `rows` names. Collective.
  * @param width items in a row @param offsets if not null, where each row begins, and the end
  * @param take is called as take(sender, items, count) with whole rows, from each sender in the
  * order in which it sends them
  */
 template <class Item, class Take>
-void sendRowsTo(RankGroup& group, const std::vector<Item>& items, const RankRows& rows, Index width,
-  const std::vector<Index>* offsets, const Take& take)
+void sendRowsTo(const FileRanges& ranges, const std::vector<Item>& items, const RankRows& rows,
+  Index width, const std::vector<Index>* offsets, const Take& take)
 {
-  constexpr std::size_t atOnce = std::size_t(1) << 22; // bytes to all ranks
-  const std::size_t perRank = std::max(atOnce / rows.size() / sizeof(Item), std::size_t(1));
   std::vector<std::size_t> next(rows.size(), 0);
-  for (bool more = true; more;)
-  {
-    bool left = false;
-    std::vector<Bytes> sent(rows.size());
-    for (std::size_t rank = 0; rank < rows.size(); ++rank)
+  sendInRounds<Item>(
+    ranges,
+    [&](std::size_t rank, std::size_t most, std::vector<Item>& some)
     {
-      std::vector<Item> some;
-      for (; next[rank] < rows[rank].size() && some.size() < perRank; ++next[rank])
+      for (; next[rank] < rows[rank].size() && some.size() < most; ++next[rank])
       {
         const Index row = rows[rank][next[rank]];
         const Index begin = offsets ? (*offsets)[row] : row * width;
         const Index end = offsets ? (*offsets)[row + 1] : begin + width;
         some.insert(some.end(), items.begin() + begin, items.begin() + end);
       }
-      left = left || next[rank] < rows[rank].size();
-      sent[rank] = bytesOf(some);
-    }
-    std::vector<Bytes> arrived = group.exchange(sent);
-    for (std::size_t rank = 0; rank < rows.size(); ++rank)
-    {
-      const std::vector<Item> some = itemsOf<Item>(arrived[rank]);
-      take(rank, some.data(), some.size());
-    }
-    more = group.any(left);
-  }
+      return next[rank] < rows[rank].size();
+    },
+    take);
 }
 
 /// The same; returns the rows in order of sender.
 template <class Item>
 std::vector<Item> sendRows(
-  RankGroup& group, const std::vector<Item>& items, const RankRows& rows, Index width)
+  const FileRanges& ranges, const std::vector<Item>& items, const RankRows& rows, Index width)
 {
   std::vector<Index> place;
   for (const std::vector<Index>& some : rows)
   {
     place.push_back(static_cast<Index>(some.size()) * width);
   }
-  place = group.transpose(std::move(place));
+  place = ranges.group().transpose(std::move(place));
   Index total = 0;
   for (Index& one : place)
   {
@@ -108,8 +183,9 @@ std::vector<Item> sendRows(
     one = total;
     total += count;
   }
-  std::vector<Item> received(static_cast<std::size_t>(total));
-  sendRowsTo(group, items, rows, width, nullptr,
+  std::vector<Item> received;
+  ranges.together([&] { received.resize(static_cast<std::size_t>(total)); });
+  sendRowsTo(ranges, items, rows, width, nullptr,
     [&](std::size_t sender, const Item* some, std::size_t count)
     {
       std::copy_n(some, count, received.begin() + place[sender]);
@@ -119,6 +195,6 @@ std::vector<Item> sendRows(
 }
 
 /// The same for the tuples of an array.
-MeshArray sendTuples(RankGroup& group, const MeshArray& array, const RankRows& rows);
+MeshArray sendTuples(const FileRanges& ranges, const MeshArray& array, const RankRows& rows);
 }
 #endif

@@ -87,15 +87,23 @@ bool isIntegral(const MeshArray& array)
       [](double v) { return std::abs(v) < Exact && v == std::floor(v); });
 }
 
-void makeIntegral(std::vector<MeshArray>& arrays, RankGroup* group)
+void makeIntegral(std::vector<MeshArray>& arrays, const FileRanges* ranges)
 {
   for (MeshArray& array : arrays)
   {
     const bool integral = isIntegral(array);
-    if (group ? !group->any(!integral) : integral)
+    const auto convert = [&]
     {
       const auto& doubles = std::get<MeshArray::Doubles>(array.values);
       array.values = MeshArray::Integers(doubles.begin(), doubles.end());
+    };
+    if (ranges && !ranges->group().any(!integral))
+    {
+      ranges->together(convert);
+    }
+    else if (!ranges && integral)
+    {
+      convert();
     }
   }
 }

@@ -43,9 +43,10 @@ public:
       });
   }
 
-  /// Calls read(cursor, file, first, count) for the own ones of the records after the header.
+  /// Calls read(cursor, file, first, count) for the own ones of the records after the header, of so
+  /// many columns each.
   template <class Read>
-  void records(Index count, const Read& read)
+  void records(Index count, Index columns, const Read& read)
   {
     const Index begin = this->HeadCursor.place() - this->Head.begin();
     const Index end = this->Ranges.agreed([&] { return fileSize(this->Name); });
@@ -53,6 +54,7 @@ public:
     this->Ranges.together(
       [&]
       {
+        expectColumns(this->Name, lines, columns);
         TextCursor cursor(lines.text, Comment);
         read(cursor, this->Head, lines.first, lines.count);
       });
@@ -71,7 +73,8 @@ NodeList shareNodes(
   SharedFile file(ranges, name, set);
   const auto nodes = file.readHeader(
     [](TextCursor& cursor) { return NodeList{ readNodeHeader(cursor) }; }, &NodeList::base);
-  file.records(nodes.header.count,
+  const NodeHeader& header = nodes.header;
+  file.records(header.count, 1 + header.dimension + header.attributes + header.markers,
     [&](TextCursor& cursor, const FileContent& head, Index first, Index count)
     {
       readNodeRecords(cursor, head, nodes, first, count, mesh);
@@ -88,10 +91,10 @@ unsigned char shareElements(const FileRanges& ranges, const std::string& name, S
   const auto header =
     file.readHeader([&](TextCursor& cursor) { return readElementHeader(cursor, nodes.header); },
       &ElementHeader::base);
-  file.records(header.count,
+  file.records(header.count, 1 + header.nodes + header.attributes,
     [&](TextCursor& cursor, const FileContent& head, Index first, Index count)
     { readElementRecords(cursor, head, header, nodes, first, count, mesh); });
-  makeIntegral(mesh.cellArrays, &ranges.group());
+  makeIntegral(mesh.cellArrays, &ranges);
   return header.type;
 }
 
@@ -103,7 +106,7 @@ unsigned char shareBoundary(const FileRanges& ranges, const std::string& name, S
   const auto header = file.readHeader([&](TextCursor& cursor)
     { return readBoundaryHeader(cursor, faces, quadraticMesh); },
     &BoundaryHeader::base);
-  file.records(header.count,
+  file.records(header.count, 1 + header.nodes() + header.markers,
     [&](TextCursor& cursor, const FileContent&, Index first, Index count)
     { readBoundaryRecords(cursor, header, nodes, first, count, mesh); });
   return header.type;
@@ -123,12 +126,21 @@ MeshShare shareTetGen(const FileRanges& ranges, const std::string& name, bool lo
   const bool edges = ranges.exists(names[3]) && withLower;
   ranges.require((elements || extension != "ele") && (faces || !withLower || extension != "face") &&
     (edges || !withLower || extension != "edge"));
-  ranges.expectLarge({ names[0], names[elements ? 1 : faces ? 2 : edges ? 3 : 0] });
+  std::vector<std::string> set = { names[0] };
+  const bool read[] = { elements, faces, edges };
+  for (std::size_t i = 0; i < std::size(read); ++i)
+  {
+    if (read[i])
+    {
+      set.push_back(names[i + 1]);
+    }
+  }
+  ranges.expectLarge(set);
 
   MeshShare share;
   MeshFile& mesh = share.mesh;
-  SetCheck set;
-  const NodeList nodes = shareNodes(ranges, names[0], set, mesh);
+  SetCheck check;
+  const NodeList nodes = shareNodes(ranges, names[0], check, mesh);
   bool quadratic = false;
   const auto endSection = [&]
   {
@@ -138,30 +150,34 @@ MeshShare shareTetGen(const FileRanges& ranges, const std::string& name, bool lo
   };
   if (elements)
   {
-    quadratic = cellNodes(shareElements(ranges, names[1], set, nodes, mesh)) > 4;
+    quadratic = cellNodes(shareElements(ranges, names[1], check, nodes, mesh)) > 4;
     endSection();
   }
   if (faces)
   {
-    const unsigned char type = shareBoundary(ranges, names[2], set, nodes, true, quadratic, mesh);
+    const unsigned char type = shareBoundary(ranges, names[2], check, nodes, true, quadratic, mesh);
     quadratic = quadratic || (!elements && cellNodes(type) > 4);
     endSection();
   }
   if (edges)
   {
-    shareBoundary(ranges, names[3], set, nodes, false, quadratic, mesh);
+    shareBoundary(ranges, names[3], check, nodes, false, quadratic, mesh);
     endSection();
   }
   if (!elements && !faces && !edges)
   {
     const std::vector<Index> begins = rankBegins(ranges.group(), mesh.numberOfPoints());
-    addVertexCells(
-      mesh, begins[static_cast<std::size_t>(ranges.group().rank())], mesh.numberOfPoints());
+    ranges.together(
+      [&]
+      {
+        addVertexCells(
+          mesh, begins[static_cast<std::size_t>(ranges.group().rank())], mesh.numberOfPoints());
+      });
     endSection();
   }
   if (!lowerCells)
   {
-    keepHighestDimension(ranges.group(), share);
+    keepHighestDimension(ranges, share);
   }
   return share;
 }

@@ -6,10 +6,9 @@
 #ifndef tautline_TetGenRecords_h
 #define tautline_TetGenRecords_h
 
+#include "FileRanges.h"
 #include "MeshFile.h"
 #include "TextCursor.h"
-
-#include "tautline/Core/RankGroup.h"
 
 namespace tautline
 {
@@ -71,8 +70,8 @@ void readElementRecords(TextCursor& cursor, const FileContent& file, const Eleme
 void readBoundaryRecords(TextCursor& cursor, const BoundaryHeader& header, const NodeList& nodes,
   Index first, Index count, MeshFile& mesh);
 
-/// References become whole numbers where all of them are, on all ranks of a group if there is one.
-void makeIntegral(std::vector<MeshArray>& arrays, RankGroup* group);
+/// References become whole numbers where all of them are, on all ranks if there are some.
+void makeIntegral(std::vector<MeshArray>& arrays, const FileRanges* ranges);
 /// A vertex cell of each of the points from `first` on.
 void addVertexCells(MeshFile& mesh, Index first, Index count);
 }
