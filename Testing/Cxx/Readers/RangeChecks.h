@@ -56,31 +56,37 @@ inline std::vector<MeshFile> readRanges(const std::string& name, bool lowerCells
   return unusual == 0 ? parts : std::vector<MeshFile>();
 }
 
+/// Arrays in the same order; several may have the same name.
+inline bool inOrder(const std::vector<MeshArray>& a, const std::vector<MeshArray>& b)
+{
+  bool equal = a.size() == b.size();
+  for (std::size_t i = 0; equal && i < a.size(); ++i)
+  {
+    equal = contains({ b[i] }, { a[i] });
+  }
+  return equal;
+}
+
 /// Everything equal, and arrays in the same order.
 inline bool identical(const MeshFile& a, const MeshFile& b)
 {
-  const auto names = [](const MeshFile& mesh)
+  const auto strings = [](const MeshFile& mesh)
   {
     std::string all;
-    for (const auto* arrays : { &mesh.pointArrays, &mesh.cellArrays, &mesh.fieldArrays })
+    for (const MeshStrings& list : mesh.fieldStrings)
     {
-      for (const MeshArray& array : *arrays)
-      {
-        all += array.name + "|";
-      }
-      all += "\n";
-    }
-    for (const MeshStrings& strings : mesh.fieldStrings)
-    {
-      all += strings.name + "|";
-      for (const std::string& value : strings.values)
+      all += list.name + "|";
+      for (const std::string& value : list.values)
       {
         all += value + "|";
       }
     }
     return all;
   };
-  return same(a, b) && names(a) == names(b) && a.warnings == b.warnings;
+  return same(a.points, b.points) && a.cellTypes == b.cellTypes && a.offsets == b.offsets &&
+    a.connectivity == b.connectivity && inOrder(a.pointArrays, b.pointArrays) &&
+    inOrder(a.cellArrays, b.cellArrays) && inOrder(a.fieldArrays, b.fieldArrays) &&
+    strings(a) == strings(b) && a.warnings == b.warnings;
 }
 
 /// Parts of 2 to 5 ranks by ranges and by reading the whole file.

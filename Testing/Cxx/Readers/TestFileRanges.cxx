@@ -5,6 +5,9 @@
 #include "RangeChecks.h"
 #include "tautline/Core/Interruption.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 using namespace tautline;
 
 namespace
@@ -55,6 +58,9 @@ void testTetGen()
     expectWhole(name, complaint(name));
   }
   withElements(elements);
+  writeText(name, replaced(nodes, " 3 4 1\n", " 3 10000 0\n")); // columns that no line has
+  TAUTLINE_CHECK(!complaint(name).empty());
+  expectWhole(name, complaint(name));
   writeText(name, otherMark(nodes)); // of another write
   expectWhole(name);
   std::remove(name.c_str());
@@ -154,9 +160,23 @@ void testMedit()
     "MeshVersionFormatted 2\nDimension\n3\nVertices\n4\n0 0 0 1\n1 0 0 2\n0 1 0 3\n0 0 1 4\n"
     "Ridges\n0\nTetrahedra\n1\n1 2 3 4 5\nCorners\n1\n4\nEnd\nVertices\nfoo\n");
   expectSame(name); // fewer cells than ranks
+  writeText(name,
+    "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 1\n1 0 0 2\n0 1 0 3\n0 0 1 4\n"
+    "Tetrahedra\n1\n1 2 3 4 5\nTriangles\n1\n1 2 3 4\nEnd\n");
+  writeText(solution, // arrays of one name, which cannot be one
+    "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n4\n1 1\nnan\nINF\ninfinity\nNaN\n"
+    "SolAtTetrahedra\n1\n1 1\n7\nSolAtTriangles\n1\n1 2\n1 2 3\nEnd\n");
+  expectSame(name);
 }
 
 //------------------------------------------------------------------------------
+/// A file with a section of data without values before another section.
+std::string before(std::string text, const std::string& section, const std::string& other)
+{
+  const std::string end = "$End" + section.substr(1) + "\n";
+  return text.insert(text.find(other + "\n"), section + "\n1\n\"none\"\n1\n0\n3\n0\n1\n0\n" + end);
+}
+
 void testGmsh()
 {
   for (const char* name : { "/part.msh", "/cylinder.msh", "/wedges.msh" })
@@ -183,7 +203,14 @@ void testGmsh()
   }
 
   // read whole: good, but laid out in another way
-  for (const std::string& other : { replaced(plain, "$EndNodes", " $EndNodes"),
+  std::string unknown; // sections, in two halves of the file and more than ranks look at
+  for (Index i = 0; i < RangeLimits().starts / 4 + 1; ++i)
+  {
+    unknown += "$Foo\n$EndFoo\n";
+  }
+  writeText(name, replaced(plain, "$Nodes", unknown + "$Nodes") + unknown);
+  expectSame(name, { 0, 1 << 20, 1 << 20, 2 * RangeLimits().starts });
+  for (const std::string& other : { readText(name), replaced(plain, "$EndNodes", " $EndNodes"),
          plain + "\n$Foo\n$Bar\n$EndFoo\n", replaced(blocks, "\n2 \n", " 2 \n") })
   {
     writeText(name, other);
@@ -195,9 +222,12 @@ void testGmsh()
   for (const std::string& bad : { head, head + "x " + rest, head + "1 4 0 1 2 3 4\n" + rest,
          replaced(plain, "\n7 ", "\n8 "), replaced(plain, "$EndElements", "$EndElement"),
          replaced(plain, "2.2 0", "3.0 0"), replaced(plain, "$EndNodes\n", "1 2 3 4\n$EndNodes\n"),
-         replaced(plain, "some NodeData", "some \n"), plain + "1\n", "x\n" + plain,
-         plain.substr(0, plain.rfind("-1e")), replaced(plain, "$Nodes", "$NOD"),
-         blocks.substr(0, blocks.size() / 2), replaced(blocks, "\n9 ", "\n99999 ") })
+         replaced(plain, "some NodeData", "some \n"),
+         replaced(plain, "\n3\n0\n3\n", "\n3\n0\n1000\n"), // components that no line has
+         before(plain, "$ElementData", "$Elements"), before(plain, "$NodeData", "$Nodes"),
+         plain + "1\n", "x\n" + plain, plain.substr(0, plain.rfind("-1e")),
+         replaced(plain, "$Nodes", "$NOD"), blocks.substr(0, blocks.size() / 2),
+         replaced(blocks, "\n9 ", "\n99999 ") })
   {
     writeText(name, bad);
     TAUTLINE_CHECK(!complaint(name).empty());
@@ -218,6 +248,76 @@ void testGmsh()
     "$Nodes\n4\n9 0 0 0\n7 1 0 0\n5 0 1 0\n3 0 0 1\n"
     "$EndNodes\n$Elements\n1\n1 4 2 5 6 3 5 7 9\n$EndElements\n");
   expectWhole(name, "a group without its dimension");
+}
+
+//------------------------------------------------------------------------------
+/// Whether all of three ranks notice that the first of them has another file.
+bool noticed(const std::function<void(const FileRanges&, const std::string& name)>& read,
+  const std::string& name, const std::string& other)
+{
+  constexpr int ranks = 3;
+  std::atomic<int> unusual = 0;
+  onRanks(ranks,
+    [&](RankGroup& group)
+    {
+      try
+      {
+        read(FileRanges(group, { 0 }), group.rank() == 0 ? other : name);
+      }
+      catch (const UnusualFile&)
+      {
+        ++unusual;
+      }
+    });
+  TAUTLINE_CHECK(unusual == 0 || unusual == ranks);
+  return unusual == ranks;
+}
+
+/// Files that differ between the ranks, as copies on their machines may.
+void testDifferences()
+{
+  const std::string name = output + "/ranges.msh", other = output + "/other.msh";
+  const auto write = [&](const std::string& file, const std::string& text, time_t seconds)
+  {
+    writeText(file, text);
+    const timespec times[2] = { { seconds, 0 }, { seconds, 0 } };
+    TAUTLINE_CHECK(utimensat(AT_FDCWD, file.c_str(), times, 0) == 0);
+  };
+  const auto large = [](const FileRanges& ranges, const std::string& file)
+  { ranges.expectLarge({ file }); };
+  const auto share = [](const FileRanges& ranges, const std::string& file)
+  { exchangeParts(ranges, shareByName(ranges, file, true), 1); };
+  const std::string text = gmsh2(sample(2), [](Index i) { return i + 1; }) + "$Foo\n1 2\n$EndFoo\n";
+  write(name, text, 5);
+  write(other, text, 5);
+  TAUTLINE_CHECK(!noticed(large, name, other) && !noticed(share, name, other));
+  write(other, text, 6);
+  TAUTLINE_CHECK(noticed(large, name, other) && noticed(share, name, other));
+  write(other, text + " ", 5);
+  TAUTLINE_CHECK(noticed(large, name, other) && noticed(share, name, other));
+  // other sections, counts and fields in as many bytes
+  for (const char* change : { "$Foo\n|$Bar\n", "\n3\n0\n3\n|\n3\n7\n3\n", "\"a group|\"a troop" })
+  {
+    const std::string both(change);
+    const std::string from = both.substr(0, both.find('|')), to = both.substr(both.find('|') + 1);
+    TAUTLINE_CHECK(text.find(from) != std::string::npos);
+    write(
+      other, replaced(replaced(text, from, to), "EndFoo", from[1] == 'F' ? "EndBar" : "EndFoo"), 5);
+    TAUTLINE_CHECK(!noticed(large, name, other) && noticed(share, name, other));
+  }
+  const std::string mesh = output + "/ranges.mesh", copy = output + "/other.mesh";
+  const std::string medit = "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 1\n1 0 0 2\n"
+                            "0 1 0 3\n0 0 1 4\nNormals\n1\n0 0 1\nTetrahedra\n1\n1 2 3 4 5\nEnd\n";
+  std::remove((output + "/ranges.sol").c_str());
+  write(mesh, medit, 5);
+  write(copy, replaced(medit, "Normals", "Numbers"), 5);
+  TAUTLINE_CHECK(noticed(
+    [](const FileRanges& ranges, const std::string& file)
+    {
+      ranges.expectLarge({ file });
+      shareMedit(ranges, file, true);
+    },
+    mesh, copy));
 }
 
 //------------------------------------------------------------------------------
@@ -260,6 +360,7 @@ int TestFileRanges(int, char* argv[])
   testTetGen();
   testMedit();
   testGmsh();
+  testDifferences();
   testInterruption();
   return exitCode();
 }

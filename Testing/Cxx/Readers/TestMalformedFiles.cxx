@@ -119,6 +119,10 @@ void testOtherMessages()
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 94 0 "
     "1\n$EndElements\n",
     "bad.msh:10: an element of type 94");
+  expect("msh",
+    "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$ElementData\n1\n\"a\"\n"
+    "0\n3\n0\n1\n0\n$EndElementData\n$Elements\n1\n1 15 0 1\n$EndElements\n",
+    "bad.msh:8: $ElementData comes before $Elements: move it behind that section");
   expect("msh", "$MeshFormat\n2.2 1 8\n\1", "the file ends before the byte order");
   expect("msh", "1 2\n", "this is no .msh file");
   expect("msh", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n1 2 9 0\n",
