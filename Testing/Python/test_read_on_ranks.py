@@ -82,10 +82,33 @@ def run(script: str, ranks: int) -> dict:
     return found
 
 
+def check_requests(ranks: int) -> None:
+    """Which files the ranks read by ranges, and that none waits for a rank that does not take part."""
+    result, text = run_with_output("requests_on_ranks.py", ranks, str(DATA), str(LARGE), symmetric=True)
+    of_ranks = result["found"]
+    by_ranges = {name for name, read in of_ranks[0].items() if read.get("ranges")}
+    assert by_ranges == set(large), (by_ranges, text)
+    for name, read in of_ranks[0].items():
+        assert all(other[name]["ranges"] == read["ranges"] for other in of_ranks), name
+    for name in large:
+        cells = [read[name]["cells"] for read in of_ranks]
+        assert sum(cells) == 6 * EDGE**3 and max(cells) - min(cells) <= 1, (name, cells)
+    for name in damaged:
+        assert all(f":{DAMAGED_LINE}: " in read[name]["message"] for read in of_ranks), (name, of_ranks)
+    assert len({read["first piece"]["cells"] for read in of_ranks}) == 1
+    assert of_ranks[0]["no name"] == {"ranges": False, "cells": 0, "message": "no file name"}, of_ranks[0]["no name"]
+    for read in of_ranks[1:]:
+        assert read["no name"] == {**read["large2.msh"], "ranges": False}, read["no name"]
+    for name, read in of_ranks[-1]["alone"].items():
+        assert read["cells"] > 0 and not read["message"], (name, read)
+
+
 write_large()
 damaged = sorted(path.name for path in LARGE.glob("damaged-*") if path.suffix not in {".node", ".sol"})
 large = sorted(path.name for path in LARGE.glob("large*") if path.suffix not in {".node", ".sol"})
 assert len(damaged) == len(large) == 4, (damaged, large)
+for ranks in (2, 3):
+    check_requests(ranks)
 one = run("read_on_ranks.py", 1)
 for ranks in (1, 2, 3):
     found = one if ranks == 1 else run("read_on_ranks.py", ranks)
