@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """requests_on_ranks.py FILE DATA LARGE: for pvbatch --sym on any number of MPI ranks, see test_read_on_ranks.py.
 
-Reads the files of the folder LARGE and some of DATA with each rank asking for its piece, and writes to FILE as JSON what
-each rank found: whether files were read by ranges, cells, messages. Then only some ranks ask, or not all for their piece.
+Reads the files of the folder LARGE and some of DATA with each rank asking for its piece, and writes to FILE as JSON
+what each rank found: whether files were read by ranges, cells, messages. Then only some ranks ask, or not all for their
+piece.
 """
 
 import json
