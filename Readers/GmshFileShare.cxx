@@ -314,15 +314,20 @@ private:
             begin += 1 + perRecord * block.size;
           }
         });
-      for (const std::vector<SharedBlock>& some : this->group().gatherItems(found))
-      {
-        for (const SharedBlock& one : some)
+      const std::vector<std::vector<SharedBlock>> all = this->group().gatherItems(found);
+      this->Ranges.together(
+        [&]
         {
-          blocks.push_back(one);
-          next = one.line + 1 + perRecord * one.block.size;
-          records += one.block.size;
-        }
-      }
+          for (const std::vector<SharedBlock>& some : all)
+          {
+            for (const SharedBlock& one : some)
+            {
+              blocks.push_back(one);
+              next = one.line + 1 + perRecord * one.block.size;
+              records += one.block.size;
+            }
+          }
+        });
     }
     this->Ranges.require(static_cast<Index>(blocks.size()) == header.blocks &&
       records == header.count && next == lines.total);

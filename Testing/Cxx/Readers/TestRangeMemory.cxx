@@ -6,6 +6,10 @@
 #include "RangeChecks.h"
 #include "SharedTags.h"
 
+#include "vtkGmshReader.h"
+#include "vtkNew.h"
+#include "vtkObject.h"
+
 #include <cstdlib>
 #include <new>
 
@@ -105,6 +109,25 @@ void testFailures()
     std::cout << name << ": " << failures << " failures of memory\n";
     TAUTLINE_CHECK(failures > fewest);
   }
+}
+
+/// Who reads the whole file gets the message of the reader: more processes do not help.
+void testWhole()
+{
+  const std::string name = writeSamples(8)[0];
+  vtkNew<vtkGmshReader> reader;
+  reader->SetFileName(name.c_str());
+  vtkObject::GlobalWarningDisplayOff();
+  largeBeforeFailure = 0;
+  reader->UpdatePiece(1, 3, 1);
+  largeBeforeFailure = NeverFails;
+  vtkObject::GlobalWarningDisplayOn();
+  TAUTLINE_CHECK(hasFailed);
+  TAUTLINE_CHECK(reader->GetErrorText() ==
+    name + ": Not enough memory: read it where there is more, or a part of the mesh.");
+  TAUTLINE_CHECK(!reader->GetReadByRanges());
+  reader->UpdatePiece(0, 3, 1);
+  TAUTLINE_CHECK(std::string(reader->GetErrorText()).empty());
 }
 
 //------------------------------------------------------------------------------
@@ -219,6 +242,7 @@ int TestRangeMemory(int, char* argv[])
 {
   data = argv[1];
   output = argv[2];
+  testWhole();
   testTags();
   testColumns();
   testRounds();
