@@ -76,6 +76,7 @@ void sendInRounds(const FileRanges& ranges, const Fill& fill, const Take& take)
     for (std::size_t rank = 0; rank < arrived.size(); ++rank)
     {
       const std::vector<Item> some = itemsOf<Item>(arrived[rank]);
+      arrived[rank] = Bytes();
       take(rank, some.data(), some.size());
     }
   };
@@ -97,6 +98,7 @@ void sendInRounds(const FileRanges& ranges, const Fill& fill, const Take& take)
         }
       });
     arrived = group.exchange(sent);
+    std::fill(sent.begin(), sent.end(), Bytes());
     more = group.any(std::count(left.begin(), left.end(), 1) > 0);
   }
   ranges.together(takeArrived);
