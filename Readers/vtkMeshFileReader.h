@@ -16,8 +16,8 @@
  *
  * In all other cases a rank reads the whole file, in memory for the whole mesh, and keeps its part:
  * the same one, exactly. These are pieces without MPI or of another number than there are ranks,
- * files of less than 1 MiB, formats and variants that do not state so in their class, files with an
- * error, and text with another layout than a record per line.
+ * sets of files of less than 1 MiB, formats and variants that do not state so in their class, files
+ * with an error, and text with another layout than a record per line.
  *
  * A request for piece r of n on rank r of n ranks is therefore collective: all ranks must execute
  * the reader, with files of the same extension, or they wait for each other. (Other differences
