@@ -421,7 +421,9 @@ void LinearSolverState::runSolver(Vec b, Vec x, LinearSolution& solution)
       petsc(PCGetFailedReason(pc, &why));
       solution.message = explain(why);
     }
-    if (this->Options.ritzValues)
+    // Where conjugate gradients break down, PETSc's record lacks the last iteration, and its loop
+    // over what is there instead may not end.
+    if (this->Options.ritzValues && (reason > 0 || reason == KSP_DIVERGED_ITS))
     {
       this->ritzValues(solution);
     }
