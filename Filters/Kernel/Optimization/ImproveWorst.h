@@ -17,10 +17,10 @@ struct WorstLimits
 {
   /// How much the mean of the first objective's metric may get worse, as a fraction of it.
   double allowance = 0.0;
-  /// The mean it counts from; not set: that at the start.
-  std::optional<double> mean;
   /// Stop as soon as no element is worse than the worst one of the input.
   bool onlyAsInput = false;
+  /// The mean that the allowance counts from; not set: that at the start.
+  std::optional<double> mean = std::nullopt;
 };
 
 /**

@@ -343,7 +343,7 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
   {
     problem.store();
     const bool leaves = wanted && options.leaving && options.surfaceTolerance > 0;
-    WorstLimits limits{ allowance, {}, !wanted };
+    WorstLimits limits{ allowance, !wanted };
     if (leaves)
     {
       limits.mean = problem.record(0).mean[0];
