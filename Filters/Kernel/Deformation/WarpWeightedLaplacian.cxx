@@ -10,11 +10,21 @@
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
+#include <sstream>
 
 namespace tautline
 {
 namespace
 {
+/// @param why what the solver says, or ""
+[[noreturn]] void throwUnsolved(double tolerance, const std::string& why)
+{
+  std::ostringstream text;
+  text << "the linear system of weighted Laplacian smoothing could not be solved to " << tolerance
+       << "; raise the tolerance or choose another method" << why;
+  throw Error(text.str());
+}
+
 using Matrix = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 
 constexpr int NewtonSteps = 50;
@@ -268,8 +278,7 @@ bool solve(const Matrix& matrix, const Eigen::MatrixXd& right, double tolerance,
       }
       if (++runs > MaxRuns)
       {
-        throw Error("the linear system of weighted Laplacian smoothing could not be solved to " +
-          std::to_string(tolerance) + "; raise the tolerance or choose another method");
+        throwUnsolved(tolerance, "");
       }
       const Eigen::VectorXd start = x;
       restartAlike();
@@ -546,9 +555,7 @@ std::vector<double> warpByWeightedLaplacian(
     }
     if (!solved)
     {
-      throw Error("the linear system of weighted Laplacian smoothing could not be solved to " +
-        std::to_string(options.tolerance) + "; raise the tolerance or choose another method (" +
-        system->failure() + ")");
+      throwUnsolved(options.tolerance, " (" + system->failure() + ")");
     }
     for (Index i = 0; i < n; ++i)
     {
