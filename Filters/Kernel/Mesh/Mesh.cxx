@@ -4,10 +4,7 @@
 #include "CellExtent.h"
 #include "tautline/Core/Parallel.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <atomic>
-#include <limits>
 #include <numeric>
 #include <sstream>
 
@@ -15,9 +12,6 @@ namespace tautline
 {
 namespace
 {
-/// A mesh is planar when no vertex leaves its plane by more than this fraction of the diagonal.
-constexpr double planarTolerance = 1e-6;
-
 std::string cellMessage(Index cell, const std::string& what)
 {
   return "Cell " + std::to_string(cell) + " " + what;
@@ -113,52 +107,6 @@ void checkConnectivity(const MeshView& view, const std::vector<CellBlock>& block
     }
   }
 }
-
-/// Calls visit(p) for the finite nodes of the cells, once per cell.
-template <class Visit>
-void forEachCorner(const MeshView& view, const std::vector<CellBlock>& blocks, const Visit& visit)
-{
-  for (const CellBlock& block : blocks)
-  {
-    const int nodes = topology(block.type).nodes;
-    for (Index i = 0; i < block.count; ++i)
-    {
-      const Index* node = view.connectivity + view.offsets[block.cell(i)];
-      for (int k = 0; k < nodes; ++k)
-      {
-        const Vec3 p = pointOf(view, node[k]);
-        if (std::isfinite(p[0] + p[1] + p[2]))
-        {
-          visit(p);
-        }
-      }
-    }
-  }
-}
-
-/// The principal direction in which the corners extend least, and their mean.
-Vec3 leastExtent(const MeshView& view, const std::vector<CellBlock>& blocks, const Vec3& middle,
-  double diagonal, Vec3& center)
-{
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Index count = 0;
-  forEachCorner(view, blocks,
-    [&](const Vec3& p)
-    {
-      const Vec3 r = (1.0 / diagonal) * (p - middle);
-      const Eigen::Vector3d v(r[0], r[1], r[2]);
-      moments += v * v.transpose();
-      sum += v;
-      ++count;
-    });
-  const Eigen::Vector3d mean = sum / static_cast<double>(count);
-  moments = moments / static_cast<double>(count) - mean * mean.transpose();
-  const Eigen::Vector3d n =
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvectors().col(0);
-  center = middle + diagonal * Vec3{ mean[0], mean[1], mean[2] };
-  return { n[0], n[1], n[2] };
-}
 }
 
 //------------------------------------------------------------------------------
@@ -191,82 +139,6 @@ Mesh::Mesh(const MeshView& view, int threads)
   {
     this->findPlane();
   }
-}
-
-//------------------------------------------------------------------------------
-void Mesh::findPlane()
-{
-  const MeshView& view = this->View;
-  // Principal directions of the corners of the cells; unused and non-finite points do not count.
-  Vec3 low, high;
-  low.fill(std::numeric_limits<double>::max());
-  high.fill(-std::numeric_limits<double>::max());
-  forEachCorner(view, this->Blocks,
-    [&](const Vec3& p)
-    {
-      for (int c = 0; c < 3; ++c)
-      {
-        low[c] = std::min(low[c], p[c]);
-        high[c] = std::max(high[c], p[c]);
-      }
-    });
-  if (low[0] > high[0])
-  {
-    return;
-  }
-  const Vec3 extent = high - low;
-  // Scaled by a power of two, so that squares neither overflow nor vanish.
-  const double unit = unitOfExtent(std::max({ extent[0], extent[1], extent[2] }));
-  const double diagonal = unit * norm((1 / unit) * extent);
-  if (!(diagonal > 0) || !std::isfinite(diagonal))
-  {
-    return;
-  }
-
-  int axis = -1;
-  for (int c = 0; c < 3; ++c)
-  {
-    // A plane at right angles to an axis is taken exactly, without rounding in the frame.
-    if (extent[c] <= planarTolerance * diagonal)
-    {
-      axis = c;
-    }
-  }
-  Vec3 normal = { 0, 0, 0 };
-  if (axis >= 0)
-  {
-    normal[axis] = 1.0;
-  }
-  else
-  {
-    const Vec3 middle = 0.5 * (low + high);
-    Vec3 center;
-    normal = leastExtent(view, this->Blocks, middle, diagonal, center);
-    double farthest = 0.0;
-    forEachCorner(view, this->Blocks,
-      [&](const Vec3& p) { farthest = std::max(farthest, std::abs(dot(p - center, normal))); });
-    if (farthest > planarTolerance * diagonal)
-    {
-      return;
-    }
-  }
-
-  int largest = 0;
-  for (int c = 1; c < 3; ++c)
-  {
-    largest = std::abs(normal[c]) > std::abs(normal[largest]) ? c : largest;
-  }
-  if (normal[largest] < 0)
-  {
-    normal = -1.0 * normal;
-  }
-  Vec3 first = { 0, 0, 0 };
-  first[(largest + 1) % 3] = 1.0;
-  first -= dot(first, normal) * normal;
-  first = (1.0 / norm(first)) * first;
-  this->Dim = Dimension::Planar;
-  this->Normal = normal;
-  this->Frame = { first, cross(normal, first) };
 }
 
 //------------------------------------------------------------------------------

@@ -48,6 +48,14 @@ enum class Dimension
   Volume   ///< 3D cells
 };
 
+/// The space that the cells of a mesh fill.
+struct MeshSpace
+{
+  Dimension dimension = Dimension::None;
+  Vec3 normal = { 0, 0, 0 };                                        ///< see Mesh::normal()
+  std::array<Vec3, 2> frame = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 } }; ///< see Mesh::frame()
+};
+
 /// Whether an element is valid; the values of the cell array `Validity`.
 enum Validity : signed char
 {
@@ -120,6 +128,16 @@ public:
   const MeshView& view() const { return this->View; }
   const std::vector<CellBlock>& blocks() const { return this->Blocks; }
   Dimension dimension() const { return this->Dim; }
+
+  MeshSpace space() const { return { this->Dim, this->Normal, this->Frame }; }
+  /// Makes the mesh a piece of one that fills a space, see spaceOnRanks(): cells of the piece are
+  /// measured as they are in the whole, though they may lie in a plane and others not.
+  void setSpace(const MeshSpace& space)
+  {
+    this->Dim = space.dimension;
+    this->Normal = space.normal;
+    this->Frame = space.frame;
+  }
 
   /// Cells no block holds (vertices, lines, polygons, polyhedra, ...).
   Index unsupportedCells() const { return this->Unsupported; }

@@ -3,6 +3,7 @@
 
 #include "CellOrder.h"
 #include "FacetTable.h"
+#include "PartSign.h"
 #include "tautline/Core/UnionFind.h"
 
 #include <utility>
@@ -11,80 +12,6 @@ namespace tautline
 {
 namespace
 {
-/**
- * Signed area or volume of a cell with its faces cut into triangles about their centres, so that
- * the sum over a mesh whose cells agree depends on its boundary only, however tangled its inside.
- * With one origin for all cells, the contributions of an inner edge or face cancel exactly.
- */
-double signedSize(const Mesh& mesh, const CellTopology& t, const Index* node, const Vec3& origin)
-{
-  const MeshView& view = mesh.view();
-  Vec3 p[MaxNodes];
-  for (int k = 0; k < t.nodes; ++k)
-  {
-    p[k] = pointOf(view, node[k]) - origin;
-  }
-  if (t.dimension == 2)
-  {
-    Vec3 area = { 0, 0, 0 };
-    for (int k = 0; k < t.nodes; ++k)
-    {
-      area += cross(p[k], p[(k + 1) % t.nodes]);
-    }
-    return 0.5 * dot(mesh.normal(), area);
-  }
-  double sum = 0;
-  for (int f = 0; f < t.faces; ++f)
-  {
-    const int size = t.faceSizes[f];
-    Vec3 center = { 0, 0, 0 };
-    for (int k = 0; k < size; ++k)
-    {
-      center += (1.0 / size) * p[t.faceNodes[f][k]];
-    }
-    for (int k = 0; k < size; ++k)
-    {
-      sum += dot(center, cross(p[t.faceNodes[f][k]], p[t.faceNodes[f][(k + 1) % size]])) / 6;
-    }
-  }
-  return sum;
-}
-
-/// A finite point that sizes are measured from, so that they do not suffer from a distant origin.
-Vec3 finitePoint(const MeshView& view)
-{
-  Vec3 point = { 0, 0, 0 };
-  for (Index i = 0; i < view.numberOfPoints; ++i)
-  {
-    point = pointOf(view, i);
-    if (std::isfinite(dot(point, point)))
-    {
-      break;
-    }
-  }
-  return point;
-}
-
-/// What decides which way round a connected part is.
-struct PartSign
-{
-  double sum = 0, magnitude = 0;
-  Index majority = 0; // positive less inverted cells
-
-  void add(double size, int validity)
-  {
-    this->sum += size;
-    this->magnitude += std::abs(size);
-    this->majority += validity; // 1, 0 or -1
-  }
-  bool reversed(double sign) const
-  {
-    constexpr double rounding = 1e-9;
-    return std::abs(this->sum) > rounding * this->magnitude ? sign * this->sum < 0
-                                                            : this->majority < 0;
-  }
-};
-
 /// Counts the parts, which `sets` has by cell, and those that are reversed: the signed size of a
 /// part decides, tangled or not; where it is lost to rounding (a vertex far out), the majority.
 void countParts(const Mesh& mesh, const signed char* validity, UnionFind& sets, Orientation& result)

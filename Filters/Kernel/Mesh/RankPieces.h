@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file RankPieces.h
+ * @brief What is known of a mesh in pieces on several ranks that stay where they are: its plane,
+ * its orientation, and which points and cells of another mesh are the same.
+ */
+#ifndef tautline_RankPieces_h
+#define tautline_RankPieces_h
+
+#include "Mesh.h"
+#include "tautline/Core/RankGroup.h"
+
+#include <vector>
+
+namespace tautline
+{
+/// A piece of a mesh. A rank may have none, one or several; all arrays are borrowed.
+struct RankPiece
+{
+  const Mesh* mesh = nullptr;
+  /// One flag per cell, nonzero for a copy of a cell of another piece (ghost); or null.
+  const unsigned char* ghosts = nullptr;
+  /// One id per point, the same for the same point; or null, for all pieces: points with the same
+  /// coordinates (0 and -0 are equal) are one.
+  const Index* globalIds = nullptr;
+};
+
+/**
+ * @brief The space that the whole mesh fills, as Mesh finds it of a mesh in one piece. Collective.
+ *
+ * A piece of a surface in space may be flat, and one of a volume mesh may have triangles only: with
+ * Mesh::setSpace() it is measured as a part of the whole.
+ */
+TAUTLINE_KERNEL_EXPORT MeshSpace spaceOnRanks(
+  RankGroup& group, const std::vector<RankPiece>& pieces);
+
+/**
+ * @brief Mesh::orientation() of the whole mesh. Collective.
+ *
+ * Only what is on the boundary of the pieces is sent, and only if there are valid and inverted
+ * cells. Points at the same place are one, without global ids also those of a crack.
+ * @param pieces with Mesh::setSpace() of the whole
+ * @param validity as Mesh::classifyCells() gives it, of each piece
+ */
+TAUTLINE_KERNEL_EXPORT Orientation orientationOnRanks(RankGroup& group,
+  const std::vector<RankPiece>& pieces, const std::vector<const signed char*>& validity);
+
+/**
+ * @brief Where the points of a mesh are in another one with the same points and cells, whose pieces
+ * are others. Collective.
+ *
+ * Points correspond by the global ids if both meshes have some, else by their coordinates. No rank
+ * gets the pieces of another: each point and cell has a rank that gets what all have of it.
+ *
+ * Throws Error, on all ranks, if the points or cells of the meshes differ, a cell lists its points
+ * in another order, or one id is at two places. Ghost cells of `mesh` need a counterpart, those of
+ * `other` do not count.
+ * @return for each piece of `mesh` the coordinates of its points in `other`
+ */
+TAUTLINE_KERNEL_EXPORT std::vector<std::vector<double>> pointsInOther(
+  RankGroup& group, const std::vector<RankPiece>& mesh, const std::vector<RankPiece>& other);
+}
+#endif

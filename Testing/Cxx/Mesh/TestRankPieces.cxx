@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The plane and the orientation of a mesh in pieces are those of the whole, however it is cut, and
+// points of a mesh are found in another one that is cut otherwise.
+#include "Blocks.h"
+#include "Check.h"
+#include "ThreadRanks.h"
+#include "tautline/Mesh/CellOrder.h"
+#include "tautline/Mesh/RankPieces.h"
+
+#include <algorithm>
+
+using namespace tautline;
+
+namespace
+{
+constexpr int MostRanks = 7;
+
+void flip(MeshData& data, Index cell)
+{
+  reverseCell(cornerType(data.types[cell]), &data.connectivity[data.offsets[cell]]);
+}
+
+/// Two blocks side by side, apart from each other.
+MeshData twoBlocks(CellType type)
+{
+  const MeshData block = jittered(type, 4, 0.2);
+  MeshData both;
+  for (const double shift : { 0.0, 6.0 })
+  {
+    const Index first = both.numberOfPoints();
+    for (Index p = 0; p < block.numberOfPoints(); ++p)
+    {
+      both.addPoint(block.point(p) + Vec3{ shift, 0, 0 });
+    }
+    for (Index cell = 0; cell < block.numberOfCells(); ++cell)
+    {
+      std::vector<Index> nodes;
+      for (Index n = block.offsets[cell]; n < block.offsets[cell + 1]; ++n)
+      {
+        nodes.push_back(first + block.connectivity[n]);
+      }
+      both.addCell(static_cast<int>(block.types[cell]), nodes);
+    }
+  }
+  return both;
+}
+
+/// Calls check(group, part, piece) for all cuts, numbers of ranks, with and without ids.
+template <class Check>
+void forEachCut(const MeshData& whole, const Check& check)
+{
+  for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
+  {
+    for (int ranks = 1; ranks <= MostRanks; ranks += ranks > 2 ? 2 : 1)
+    {
+      for (const bool ids : { false, true })
+      {
+        const Context context("cut " + std::to_string(static_cast<int>(cut)) + ", " +
+          std::to_string(ranks) + (ids ? " ranks, ids" : " ranks"));
+        const auto rankOf = cutBy(whole, cut, ranks);
+        onRanks(ranks,
+          [&](RankGroup& group)
+          {
+            const RankPart part = partOf(whole, group.rank(), rankOf, cut != Cut::Random);
+            class Mesh mesh(part.data.view());
+            const RankPiece piece = { &mesh, part.ghosts.data(),
+              ids ? part.pointOf.data() : nullptr };
+            check(group, part, mesh, piece);
+          });
+      }
+    }
+  }
+}
+
+void testOrientation(const char* name, const MeshData& whole, Orientation::State state)
+{
+  const Context context(name);
+  const class Mesh mesh(whole.view());
+  const std::vector<signed char> validity = validityOf(mesh);
+  const Orientation one = mesh.orientation(validity.data());
+  TAUTLINE_CHECK_EQUAL(one.state, state);
+  forEachCut(whole,
+    [&](RankGroup& group, const RankPart& part, class Mesh& own, const RankPiece& piece)
+    {
+      const MeshSpace space = spaceOnRanks(group, { piece });
+      TAUTLINE_CHECK_EQUAL(static_cast<int>(space.dimension), static_cast<int>(mesh.dimension()));
+      TAUTLINE_CHECK(norm(space.normal - mesh.normal()) < 1e-12);
+      TAUTLINE_CHECK(norm(space.frame[0] - mesh.frame()[0]) < 1e-12);
+      own.setSpace(space);
+      const std::vector<signed char> here = validityOf(own);
+      for (std::size_t cell = 0; cell < here.size(); ++cell)
+      {
+        TAUTLINE_CHECK_EQUAL(here[cell], validity[part.cellOf[cell]]);
+      }
+      const Orientation found = orientationOnRanks(group, { piece }, { here.data() });
+      TAUTLINE_CHECK_EQUAL(found.state, one.state);
+      TAUTLINE_CHECK_EQUAL(found.positiveCells, one.positiveCells);
+      TAUTLINE_CHECK_EQUAL(found.negativeCells, one.negativeCells);
+      TAUTLINE_CHECK_EQUAL(found.disagreeing, one.disagreeing);
+      TAUTLINE_CHECK_EQUAL(found.parts, one.parts);
+      TAUTLINE_CHECK_EQUAL(found.reversedParts, one.reversedParts);
+    });
+}
+
+void testOrientations(CellType type)
+{
+  const Context context(topology(type).name);
+  const MeshData plain = jittered(type, 4, 0.2);
+  testOrientation("plain", plain, Orientation::Consistent);
+  testOrientation("tangled", jittered(type, 4, 1.2), Orientation::Consistent);
+  MeshData reversed = jittered(type, 4, 1.2);
+  for (Index cell = 0; cell < reversed.numberOfCells(); ++cell)
+  {
+    flip(reversed, cell);
+  }
+  testOrientation("reversed and tangled", reversed, Orientation::Reversed);
+  MeshData mixed = plain;
+  flip(mixed, mixed.numberOfCells() / 2);
+  testOrientation("one cell flipped", mixed, Orientation::Mixed);
+  MeshData blocks = twoBlocks(type);
+  for (Index cell = blocks.numberOfCells() / 2; cell < blocks.numberOfCells(); ++cell)
+  {
+    flip(blocks, cell);
+  }
+  testOrientation("one of two blocks reversed", blocks, Orientation::Mixed);
+}
+
+/// Planes and surfaces, of which a piece may be flat.
+void testSpaces()
+{
+  const auto onto = [](const std::function<Vec3(const Vec3&)>& place)
+  {
+    MeshData data = jittered(CellType::Triangle, 6, 0.2);
+    data.transform(place);
+    return data;
+  };
+  testOrientation("inclined",
+    onto(
+      [](const Vec3& p) {
+        return Vec3{ p[0] - p[1], p[0] + p[1], 0.5 * p[0] + 0.1 * p[1] };
+      }),
+    Orientation::Consistent);
+  testOrientation("across y",
+    onto(
+      [](const Vec3& p) {
+        return Vec3{ p[1], 2.0, p[0] };
+      }),
+    Orientation::Consistent);
+  testOrientation("a roof",
+    onto(
+      [](const Vec3& p) {
+        return Vec3{ p[0], p[1], std::abs(p[0] - 3) };
+      }),
+    Orientation::Consistent);
+  testOrientation("curved",
+    onto(
+      [](const Vec3& p) {
+        return Vec3{ p[0], p[1], 0.1 * p[0] * p[1] };
+      }),
+    Orientation::Consistent);
+  // Triangles beside tetrahedra: a piece may have no other cells.
+  MeshData volume = jittered(CellType::Tetrahedron, 3, 0.1);
+  const Index p = volume.numberOfPoints() - 1;
+  volume.addCell(CellType::Triangle, std::vector<Index>{ 0, 1, p });
+  testOrientation("a volume with a triangle", volume, Orientation::Consistent);
+}
+
+Vec3 moved(const Vec3& p)
+{
+  return { 2 * p[1], -p[0] * p[0], p[2] + 0.5 };
+}
+
+std::string problemOf(const std::function<void()>& work)
+{
+  try
+  {
+    work();
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+/// Pieces of a mesh whose points have moved, against pieces that are cut otherwise.
+void testMatch(CellType type)
+{
+  const Context context(topology(type).name);
+  const MeshData first = jittered(type, 3, 0.2);
+  MeshData second = first;
+  second.transform(moved);
+  for (int ranks = 1; ranks <= MostRanks; ++ranks)
+  {
+    const auto slabs = cutBy(first, Cut::Slabs, ranks), random = cutBy(first, Cut::Random, ranks);
+    onRanks(ranks,
+      [&](RankGroup& group)
+      {
+        const RankPart a = partOf(first, group.rank(), slabs, true);
+        const RankPart b = partOf(second, group.rank(), random, ranks % 2 == 1);
+        const class Mesh was(a.data.view()), is(b.data.view());
+        const RankPiece before = { &was, a.ghosts.data(), a.pointOf.data() };
+        const RankPiece after = { &is, b.ghosts.data(), b.pointOf.data() };
+        const auto found = pointsInOther(group, { after }, { before });
+        TAUTLINE_CHECK_EQUAL(found.size(), std::size_t(1));
+        for (std::size_t p = 0; p < b.pointOf.size(); ++p)
+        {
+          const Vec3 place = first.point(b.pointOf[p]);
+          TAUTLINE_CHECK(std::equal(place.begin(), place.end(), &found[0][3 * p]));
+        }
+        // Without ids, points that have not moved are found.
+        const RankPart c = partOf(first, group.rank(), random, false);
+        const class Mesh same(c.data.view());
+        const auto unmoved = pointsInOther(
+          group, { { &same, nullptr, nullptr } }, { { &was, a.ghosts.data(), nullptr } });
+        TAUTLINE_CHECK(unmoved[0] == c.data.points);
+        const auto problem = [&](const RankPiece& one, const RankPiece& other)
+        { return problemOf([&] { pointsInOther(group, { one }, { other }); }); };
+        const std::string lacking =
+          problem({ &is, b.ghosts.data(), nullptr }, { &was, a.ghosts.data(), nullptr });
+        TAUTLINE_CHECK(lacking.find("Generate Global Ids") != std::string::npos);
+        // An id that the other mesh has not, on one rank: an error on all.
+        std::vector<Index> wrong = b.pointOf;
+        const bool here = std::find(wrong.begin(), wrong.end(), Index(5)) != wrong.end();
+        std::replace(wrong.begin(), wrong.end(), Index(5), Index(50000));
+        TAUTLINE_CHECK(group.any(here));
+        const std::string unknown = problem({ &is, b.ghosts.data(), wrong.data() }, before);
+        TAUTLINE_CHECK(unknown.find("global id 50000, the first has not") != std::string::npos);
+        // A cell that lists its points in another order, on one rank.
+        RankPart turned = b;
+        if (group.rank() == ranks - 1 && turned.data.numberOfCells() > 0)
+        {
+          flip(turned.data, turned.data.numberOfCells() - 1);
+        }
+        const bool any = group.any(group.rank() == ranks - 1 && b.data.numberOfCells() > 0);
+        const class Mesh other(turned.data.view());
+        const std::string order = problem({ &other, b.ghosts.data(), b.pointOf.data() }, before);
+        TAUTLINE_CHECK_EQUAL(order.find("in this order") != std::string::npos, any);
+        // Cells that one mesh has twice, as they are not marked as ghosts.
+        const std::string twice = problem(after, { &was, nullptr, a.pointOf.data() });
+        TAUTLINE_CHECK_EQUAL(twice.find(" cells, the second ") != std::string::npos, ranks > 1);
+      });
+  }
+}
+}
+
+int TestRankPieces(int, char*[])
+{
+  for (const CellTopology& t : topologies())
+  {
+    testOrientations(t.type);
+  }
+  testSpaces();
+  testMatch(CellType::Triangle);
+  testMatch(CellType::Hexahedron);
+  return exitCode();
+}
