@@ -630,36 +630,6 @@ bool isGathered(vtkAlgorithm* algorithm, GatheredResult result)
 }
 
 //------------------------------------------------------------------------------
-int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits, GatheredResult result,
-  const InputRules& rules, vtkInformation* request, vtkInformationVector** inputs,
-  vtkInformationVector* outputs, const std::function<int()>& work)
-{
-  const auto execute = [&] { return processInScope(algorithm, limits, request, outputs, work); };
-  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || !isGathered(algorithm, result))
-  {
-    return execute();
-  }
-  std::string problem;
-  for (int port = 0; port < algorithm->GetNumberOfInputPorts() && problem.empty(); ++port)
-  {
-    vtkDataObject* data = vtkDataObject::GetData(inputs[port], 0);
-    problem = data ? inputProblem(data, rules) : "";
-  }
-  problem = firstProblem(problem);
-  if (problem.empty())
-  {
-    return executeGathered(
-      algorithm, request, inputs, outputs, { result, 0, nullptr, nullptr }, execute);
-  }
-  vtkErrorWithObjectMacro(algorithm, << problem);
-  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
-  {
-    emptyOutput(outputs->GetInformationObject(port));
-  }
-  return 0;
-}
-
-//------------------------------------------------------------------------------
 void emptyOutput(vtkInformation* info)
 {
   vtkDataObject* output = vtkDataObject::GetData(info);

@@ -118,9 +118,21 @@ TAUTLINECORE_EXPORT void emptyOutput(vtkInformation* info);
  * @brief ProcessRequest() of a filter that does not derive from vtkTautlineAlgorithm:
  * processInScope(), on several processes within executeGathered() after the inputs are checked.
  * @param work the ProcessRequest() of the superclass
+ * @param takesPieces whether, instead, each process takes its piece of the mesh in this execution:
+ * work() is then called on all of them at once. Collective, with the same answer everywhere. Empty:
+ * no.
  */
 TAUTLINECORE_EXPORT int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits,
   GatheredResult result, const InputRules& rules, vtkInformation* request,
-  vtkInformationVector** inputs, vtkInformationVector* outputs, const std::function<int()>& work);
+  vtkInformationVector** inputs, vtkInformationVector* outputs, const std::function<int()>& work,
+  const std::function<bool()>& takesPieces = {});
+
+/**
+ * @brief Takes the pieces of a mesh: the answer for processGathered(). What fails, on all
+ * processes, is left to the execution to report.
+ * @param error gets the message, or ""
+ * @return whether they are taken, or there is an error
+ */
+TAUTLINECORE_EXPORT bool takeOrFail(std::string& error, const std::function<bool()>& take);
 }
 #endif
