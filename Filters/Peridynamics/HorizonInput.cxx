@@ -16,10 +16,20 @@
 #include "vtkPointData.h"
 #include "vtkUnstructuredGrid.h"
 
+#include <map>
 #include <string>
 
 namespace tautline
 {
+//------------------------------------------------------------------------------
+void throwNoTriangles(Index count, const CellTopology& type)
+{
+  throw Error("the mesh has " + std::to_string(count) + " cells that are no triangles (" +
+    type.name +
+    "): run Tetrahedralize first, which cuts them into triangles, or for a volume take a slice or "
+    "its surface");
+}
+
 //------------------------------------------------------------------------------
 HorizonInput::HorizonInput(
   vtkDataSet* input, vtkDataArray* region, double layerValue, bool mergePoints, int threads)
@@ -40,11 +50,7 @@ HorizonInput::HorizonInput(
   {
     if (block.type != CellType::Triangle && block.count > 0)
     {
-      throw Error("the mesh has " + std::to_string(block.count) + " cells that are no triangles (" +
-        topology(block.type).name +
-        "): run Tetrahedralize first, which cuts them into triangles, or for a volume take a slice "
-        "or "
-        "its surface");
+      throwNoTriangles(block.count, topology(block.type));
     }
     triangles = block.type == CellType::Triangle ? &block : triangles;
   }
@@ -64,9 +70,8 @@ HorizonInput::HorizonInput(
   }
   requireDistinctCells(mesh);
   requireOrdinaryScale(view, "A nonlocal model");
-  this->Frame = mesh.frame();
   const Vec3 first = pointOf(view, view.connectivity[view.offsets[triangles->cell(0)]]);
-  this->Offset = dot(first, mesh.normal()) * mesh.normal();
+  static_cast<HorizonPlane&>(*this) = HorizonPlane(mesh.space(), first);
   this->Mesh.points.resize(static_cast<std::size_t>(2 * view.numberOfPoints));
   for (Index i = 0; i < view.numberOfPoints; ++i)
   {
@@ -88,19 +93,27 @@ HorizonInput::HorizonInput(
 }
 
 //------------------------------------------------------------------------------
-std::array<double, 2> HorizonInput::project(const Vec3& p) const
+HorizonInput::HorizonInput(
+  const HorizonPlane& plane, const std::vector<NumberedTriangle>& triangles)
+  : HorizonPlane(plane)
 {
-  return { dot(p, this->Frame[0]), dot(p, this->Frame[1]) };
-}
-
-Vec3 HorizonInput::liftVector(double x, double y) const
-{
-  return x * this->Frame[0] + y * this->Frame[1];
-}
-
-Vec3 HorizonInput::lift(double x, double y) const
-{
-  return this->liftVector(x, y) + this->Offset;
+  std::map<Index, Index> numbers;
+  for (const NumberedTriangle& triangle : triangles)
+  {
+    this->Cells.push_back(static_cast<vtkIdType>(triangle.cell));
+    this->Mesh.layer.push_back(0);
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      const auto [known, fresh] =
+        numbers.emplace(triangle.points[k], static_cast<Index>(numbers.size()));
+      this->Mesh.triangles.push_back(known->second);
+      if (fresh)
+      {
+        const auto p = this->project(triangle.places[k]);
+        this->Mesh.points.insert(this->Mesh.points.end(), p.begin(), p.end());
+      }
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -23,9 +23,49 @@ class vtkInformation;
 
 namespace tautline
 {
-class HorizonInput
+/// Throws Error for cells that are no triangles.
+[[noreturn]] void throwNoTriangles(Index count, const CellTopology& type);
+
+/// A plane in space, with coordinates in it.
+class HorizonPlane
 {
 public:
+  HorizonPlane() = default;
+  /// @param place in the plane
+  HorizonPlane(const MeshSpace& space, const Vec3& place)
+    : Frame(space.frame)
+    , Offset(dot(place, space.normal) * space.normal)
+  {
+  }
+  /// A place in the plane, in space.
+  Vec3 lift(double x, double y) const { return this->liftVector(x, y) + this->Offset; }
+  /// A direction in the plane, in space.
+  Vec3 liftVector(double x, double y) const { return x * this->Frame[0] + y * this->Frame[1]; }
+  /// Coordinates in the plane of a point or, without the plane's place, of a direction in space.
+  std::array<double, 2> project(const Vec3& p) const
+  {
+    return { dot(p, this->Frame[0]), dot(p, this->Frame[1]) };
+  }
+
+private:
+  std::array<Vec3, 2> Frame = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 } };
+  Vec3 Offset = { 0, 0, 0 }; ///< normal to the plane
+};
+
+/// A triangle of a larger mesh.
+struct NumberedTriangle
+{
+  Index cell; ///< its number there
+  std::array<Index, 3> points;
+  std::array<Vec3, 3> places;
+};
+
+class HorizonInput : public HorizonPlane
+{
+public:
+  /// Takes triangles of a larger mesh; points have numbers in the order in which they occur.
+  HorizonInput(const HorizonPlane& plane, const std::vector<NumberedTriangle>& triangles);
+
   /**
    * @brief Takes the triangles of a planar mesh; points keep their numbers.
    *
@@ -49,20 +89,12 @@ public:
   const std::vector<Index>& representative() const { return this->Representative; }
   /// The cell a triangle is.
   vtkIdType cell(Index triangle) const { return this->Cells[static_cast<std::size_t>(triangle)]; }
-  /// A place in the plane, in space.
-  Vec3 lift(double x, double y) const;
-  /// A direction in the plane, in space.
-  Vec3 liftVector(double x, double y) const;
-  /// Coordinates in the plane of a point or, without the plane's place, of a direction in space.
-  std::array<double, 2> project(const Vec3& p) const;
 
 private:
   HorizonMesh Mesh;
   std::vector<vtkIdType> Cells;
   std::vector<Index> Representative;
   std::string Notice;
-  std::array<Vec3, 2> Frame;
-  Vec3 Offset; ///< normal to the plane
 };
 
 /**

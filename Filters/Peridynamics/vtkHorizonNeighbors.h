@@ -9,7 +9,7 @@
  *
  * @par Input:
  * Any vtkDataSet of triangles in a plane. The data sets of composite data are one mesh, whose cells
- * `CellId` counts through. A mesh in pieces is gathered.
+ * `CellId` counts through.
  *
  * @par Output port 0 `Triangles`:
  * vtkPolyData: the triangles that meet the disc. Cell arrays: `Case` (int), 1 all three corners
@@ -25,6 +25,16 @@
  *
  * A centre off the plane is projected to it.
  *
+ * @par Several processes:
+ * Each finds the triangles of its piece that meet the disc, and the first process has the outputs.
+ * `CellId` counts through the cells in the order of their global ids, if all pieces have some; else
+ * in that of the global ids of their points, or of the places of these, x first; a mesh that one
+ * process has keeps its order. Without global ids of points those at the same place are one. A mesh
+ * with inverted triangles or ones that are listed in opposite orders, with cells of other types
+ * than triangles, vertices and lines, in a plane that is not at right angles to an axis, with
+ * coordinates of extreme size, of quadratic cells or in blocks is put together on the first
+ * process.
+ *
  * @sa tautline::intersectDisc (tautline/Peridynamics/Horizon.h), vtkPeridynamicStiffness
  */
 
@@ -33,6 +43,14 @@
 
 #include "TautlinePeridynamicsModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
+
+#include <memory> // for Pieces
+#include <string> // for PieceError
+
+namespace tautline
+{
+class HorizonPieces;
+}
 
 class TAUTLINEPERIDYNAMICS_EXPORT vtkHorizonNeighbors : public vtkPolyDataAlgorithm
 {
@@ -62,7 +80,7 @@ public:
 
 protected:
   vtkHorizonNeighbors();
-  ~vtkHorizonNeighbors() override = default;
+  ~vtkHorizonNeighbors() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
 
@@ -70,8 +88,14 @@ private:
   vtkHorizonNeighbors(const vtkHorizonNeighbors&) = delete;
   void operator=(const vtkHorizonNeighbors&) = delete;
 
+  void CheckHorizon();
+
   double Center[3] = { 0.5, 0.5, 0.0 };
   double Horizon = 0.2;
+
+  // Of an execution on several processes:
+  std::unique_ptr<tautline::HorizonPieces> Pieces; ///< null: gathered
+  std::string PieceError;                          ///< why there are no pieces, or ""
 };
 
 #endif

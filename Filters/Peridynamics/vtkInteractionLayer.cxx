@@ -3,6 +3,7 @@
 
 #include "HorizonInput.h"
 #include "GatheredExecution.h"
+#include "LayerPieces.h"
 #include "ProgressStep.h"
 #include "ValidateInput.h"
 
@@ -26,35 +27,11 @@
 
 vtkStandardNewMacro(vtkInteractionLayer);
 
-namespace
-{
-/// Copies arrays: rows `from(i)` of the input, zeros where that is negative.
-void passData(vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkIdType count,
-  const std::function<vtkIdType(vtkIdType)>& from)
-{
-  for (int a = 0; a < input->GetNumberOfArrays(); ++a)
-  {
-    vtkDataArray* array = input->GetArray(a);
-    if (!array)
-    {
-      continue;
-    }
-    auto copy = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
-    copy->SetName(array->GetName());
-    copy->SetNumberOfComponents(array->GetNumberOfComponents());
-    copy->SetNumberOfTuples(count);
-    copy->Fill(0.0);
-    for (vtkIdType i = 0; i < count; ++i)
-    {
-      if (from(i) >= 0)
-      {
-        copy->SetTuple(i, from(i), array);
-      }
-    }
-    output->AddArray(copy);
-  }
-}
-}
+//------------------------------------------------------------------------------
+vtkInteractionLayer::vtkInteractionLayer() = default;
+
+//------------------------------------------------------------------------------
+vtkInteractionLayer::~vtkInteractionLayer() = default;
 
 //------------------------------------------------------------------------------
 int vtkInteractionLayer::FillInputPortInformation(int, vtkInformation* info)
@@ -69,9 +46,24 @@ int vtkInteractionLayer::FillInputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkInteractionLayer::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return tautline::processGathered(this, { this->TimeLimit, nullptr },
-    tautline::GatheredResult::NewMesh, { true, this->Threads }, request, inputs, outputs,
-    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
+  return tautline::processGathered(
+    this, { this->TimeLimit, nullptr }, tautline::GatheredResult::NewMesh, { true, this->Threads },
+    request, inputs, outputs,
+    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); },
+    [&]
+    {
+      return tautline::takeOrFail(this->PieceError,
+        [&]
+        {
+          this->Pieces = tautline::HorizonPieces::take(
+            vtkDataObject::GetData(inputs[0]), this->MergeCoincidentPoints, this->Threads);
+          if (this->Pieces && !tautline::canSurround(*this->Pieces))
+          {
+            this->Pieces.reset();
+          }
+          return this->Pieces != nullptr;
+        });
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -79,18 +71,13 @@ int vtkInteractionLayer::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
+  const std::unique_ptr<tautline::HorizonPieces> pieces = std::move(this->Pieces);
   try
   {
-    tautline::validateInput(vtkDataObject::GetData(inputVector[0]), { true, this->Threads });
-    const vtkSmartPointer<vtkDataSet> input =
-      tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
-    if (input->GetNumberOfCells() == 0)
+    if (!this->PieceError.empty())
     {
-      tautline::warnOfEmptyInput(this, vtkDataObject::GetData(inputVector[0]), "cells");
-      return 1;
+      throw tautline::Error(this->PieceError);
     }
-    const tautline::HorizonInput taken(
-      input, nullptr, 0.0, this->MergeCoincidentPoints, this->Threads);
     tautline::InteractionLayerOptions options;
     options.width = this->Width;
     options.elementSize = this->ElementSize;
@@ -101,6 +88,23 @@ int vtkInteractionLayer::RequestData(
       return !this->GetAbortExecute();
     };
     const tautline::ProgressStep progress(this, 0.0, 0.9);
+    if (pieces)
+    {
+      tautline::addLayerToPieces(*pieces,
+        vtkDataSet::SafeDownCast(vtkDataObject::GetData(inputVector[0])), options, this->TimeLimit,
+        output);
+      return 1;
+    }
+    tautline::validateInput(vtkDataObject::GetData(inputVector[0]), { true, this->Threads });
+    const vtkSmartPointer<vtkDataSet> input =
+      tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
+    if (input->GetNumberOfCells() == 0)
+    {
+      tautline::warnOfEmptyInput(this, vtkDataObject::GetData(inputVector[0]), "cells");
+      return 1;
+    }
+    const tautline::HorizonInput taken(
+      input, nullptr, 0.0, this->MergeCoincidentPoints, this->Threads);
     const tautline::HorizonMesh made = tautline::addInteractionLayer(taken.mesh(), options);
 
     vtkNew<vtkPoints> points;
@@ -118,7 +122,7 @@ int vtkInteractionLayer::RequestData(
     }
     output->SetPoints(points);
     vtkNew<vtkIntArray> reference;
-    reference->SetName("Reference");
+    reference->SetName(tautline::ReferenceArray);
     output->Allocate(static_cast<vtkIdType>(made.numberOfTriangles()));
     for (tautline::Index t = 0; t < made.numberOfTriangles(); ++t)
     {
@@ -126,16 +130,16 @@ int vtkInteractionLayer::RequestData(
         static_cast<vtkIdType>(made.triangles[3 * t + 1]),
         static_cast<vtkIdType>(made.triangles[3 * t + 2]) };
       output->InsertNextCell(VTK_TRIANGLE, 3, ids);
-      reference->InsertNextValue(made.layer[t] ? 2 : 1);
+      reference->InsertNextValue(made.layer[t] ? tautline::LayerValue : tautline::DomainValue);
     }
     const vtkIdType oldPoints = input->GetNumberOfPoints();
     const auto oldTriangles = static_cast<vtkIdType>(taken.mesh().numberOfTriangles());
-    passData(input->GetPointData(), output->GetPointData(), points->GetNumberOfPoints(),
+    tautline::passData(input->GetPointData(), output->GetPointData(), points->GetNumberOfPoints(),
       [&](vtkIdType i) { return i < oldPoints ? i : -1; });
-    passData(input->GetCellData(), output->GetCellData(), reference->GetNumberOfTuples(),
+    tautline::passData(input->GetCellData(), output->GetCellData(), reference->GetNumberOfTuples(),
       [&](vtkIdType i) { return i < oldTriangles ? taken.cell(i) : -1; });
     output->GetCellData()->AddArray(reference);
-    output->GetCellData()->SetActiveScalars("Reference");
+    output->GetCellData()->SetActiveScalars(tautline::ReferenceArray);
   }
   catch (const std::exception& error)
   {

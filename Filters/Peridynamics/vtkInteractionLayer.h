@@ -11,7 +11,7 @@
  *
  * @par Input:
  * Any vtkDataSet of triangles in a plane. Other cells but vertices and lines are refused. The data
- * sets of composite data are one mesh. A mesh in pieces is gathered.
+ * sets of composite data are one mesh.
  *
  * @par Output:
  * vtkUnstructuredGrid: the triangles of the input, in their order, then those of the interaction
@@ -24,6 +24,15 @@
  * Elements of the interaction layer are about equally large (ElementSize). Where the boundary's
  * edges are much longer or shorter than that, elements next to it are flat, which does not affect
  * the matrix in exact discretization.
+ *
+ * @par Several processes:
+ * Each keeps its piece, without ghost cells, and adds the triangles of the layer that are nearest
+ * to its boundary. The first process gets the edges of the boundary of the whole mesh and computes
+ * the layer. Without global ids of points, and with MergeCoincidentPoints, those at the same place
+ * are one. A mesh with inverted or degenerate triangles or ones that are listed in opposite orders,
+ * with cells of other types than triangles, vertices and lines, in a plane that is not at right
+ * angles to an axis, with coordinates of extreme size, of quadratic cells, in blocks, or without
+ * MergeCoincidentPoints and global ids is put together on the first process.
  *
  * @par Example:
  * @code
@@ -45,6 +54,14 @@
 #include "TautlinePeridynamicsModule.h" // for export macro
 #include "vtkTautlineSetRange.h"        // for the setters
 #include "vtkUnstructuredGridAlgorithm.h"
+
+#include <memory> // for Pieces
+#include <string> // for PieceError
+
+namespace tautline
+{
+class HorizonPieces;
+}
 
 class TAUTLINEPERIDYNAMICS_EXPORT vtkInteractionLayer : public vtkUnstructuredGridAlgorithm
 {
@@ -102,8 +119,8 @@ public:
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
 
 protected:
-  vtkInteractionLayer() = default;
-  ~vtkInteractionLayer() override = default;
+  vtkInteractionLayer();
+  ~vtkInteractionLayer() override;
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   double TimeLimit = 600.0;
@@ -116,6 +133,10 @@ private:
   double ElementSize = 0.0;
   int Threads = 0;
   bool MergeCoincidentPoints = true;
+
+  // Of an execution on several processes:
+  std::unique_ptr<tautline::HorizonPieces> Pieces; ///< null: gathered
+  std::string PieceError;                          ///< why there are no pieces, or ""
 };
 
 #endif

@@ -9,6 +9,7 @@
 #include "tautline/Geometry/SegmentDistance.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <numeric>
 
@@ -22,11 +23,7 @@ constexpr double Jitter = 0.02; // of lattice points, in element sizes: no four 
 constexpr double MaxPoints = 5e6;
 constexpr double BytesPerPoint = 300; // of the lattice, with its triangulation
 
-struct Edge
-{
-  Vec2 a = {}, b = {}; ///< the mesh is on the left
-  Index first, second; ///< point numbers
-};
+using Edge = BoundaryEdge;
 
 std::vector<Edge> boundaryEdges(const PlanarTriangles& mesh)
 {
@@ -116,15 +113,11 @@ void proceed(const InteractionLayerOptions& options, double fraction)
 }
 
 /// Points of the lattice around the mesh that become part of the interaction layer.
-std::vector<Vec2> latticePoints(const PlanarTriangles& mesh, const std::vector<Edge>& edges,
-  double size, const InteractionLayerOptions& options)
+std::vector<Vec2> latticePoints(
+  const LayerBoundary& boundary, double size, const InteractionLayerOptions& options)
 {
-  Vec2 low = { 1e300, 1e300 }, high = { -1e300, -1e300 };
-  for (Index t = 0; t < mesh.size(); ++t)
-  {
-    low = { std::min(low[0], mesh.low[t][0]), std::min(low[1], mesh.low[t][1]) };
-    high = { std::max(high[0], mesh.high[t][0]), std::max(high[1], mesh.high[t][1]) };
-  }
+  const std::vector<Edge>& edges = boundary.edges;
+  const Vec2 &low = boundary.low, &high = boundary.high;
   const double reach = options.width + Margin * size, rise = 0.5 * std::sqrt(3.0) * size;
   const Vec2 from = { low[0] - reach, low[1] - reach };
   const double columns = std::ceil((high[0] + reach - from[0]) / size) + 1.0;
@@ -251,35 +244,62 @@ struct LayerPoints
 };
 
 /// Removes the points from `first` on that no triangle has.
-void removeUnused(HorizonMesh& mesh, Index first)
+void removeUnused(LayerTriangles& layer, Index first)
 {
   constexpr Index unused = -1, used = -2;
-  std::vector<Index> newId(mesh.numberOfPoints(), unused);
+  std::vector<Index> newId(layer.points.size() / 2, unused);
   std::iota(newId.begin(), newId.begin() + first, Index(0));
-  for (const Index id : mesh.triangles)
+  for (const auto& triangle : layer.triangles)
   {
-    newId[id] = newId[id] < 0 ? used : newId[id];
+    for (const Index id : triangle)
+    {
+      newId[id] = newId[id] < 0 ? used : newId[id];
+    }
   }
   Index next = first;
-  for (Index i = first; i < mesh.numberOfPoints(); ++i)
+  for (std::size_t i = first; i < newId.size(); ++i)
   {
     if (newId[i] == used)
     {
-      mesh.points[2 * next] = mesh.points[2 * i];
-      mesh.points[2 * next + 1] = mesh.points[2 * i + 1];
+      layer.points[2 * next] = layer.points[2 * i];
+      layer.points[2 * next + 1] = layer.points[2 * i + 1];
       newId[i] = next++;
     }
   }
-  mesh.points.resize(2 * next);
-  if (!mesh.givenPoints.empty())
+  layer.points.resize(2 * next);
+  for (auto& triangle : layer.triangles)
   {
-    mesh.givenPoints.resize(next);
-  }
-  for (Index& id : mesh.triangles)
-  {
-    id = newId[id];
+    for (Index& id : triangle)
+    {
+      id = newId[id];
+    }
   }
 }
+}
+
+//------------------------------------------------------------------------------
+LayerTriangles surroundByLayer(
+  const LayerBoundary& boundary, const InteractionLayerOptions& options)
+{
+  checkOptions(options);
+  const std::vector<Edge>& edges = boundary.edges;
+  const double size = options.elementSize > 0.0 ? options.elementSize : meanLength(edges);
+  LayerPoints local(edges);
+  LayerTriangles layer;
+  layer.boundary = local.globalOf;
+  proceed(options, 0.05);
+  for (const Vec2 p : latticePoints(boundary, size, options))
+  {
+    local.add(-1, p);
+  }
+  proceed(options, 0.5);
+  const std::vector<std::array<Index, 3>> all = constrainedDelaunay(local.points, local.segments);
+  proceed(options, 0.8);
+  std::copy_if(all.begin(), all.end(), std::back_inserter(layer.triangles),
+    [&](const auto& t) { return local.isLayer(t, edges, options.width); });
+  layer.points = std::move(local.points);
+  removeUnused(layer, local.boundaryPoints);
+  return layer;
 }
 
 //------------------------------------------------------------------------------
@@ -287,30 +307,25 @@ HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerO
 {
   checkOptions(options);
   const PlanarTriangles triangles(mesh);
-  const std::vector<Edge> edges = boundaryEdges(triangles);
-  const double size = options.elementSize > 0.0 ? options.elementSize : meanLength(edges);
-  LayerPoints local(edges);
-  HorizonMesh result = mesh;
-  proceed(options, 0.05);
-  for (const Vec2 p : latticePoints(triangles, edges, size, options))
+  LayerBoundary boundary;
+  boundary.edges = boundaryEdges(triangles);
+  for (Index t = 0; t < triangles.size(); ++t)
   {
-    local.add(result.numberOfPoints(), p);
-    result.points.push_back(p[0]);
-    result.points.push_back(p[1]);
+    Vec2 &low = boundary.low, &high = boundary.high;
+    low = { std::min(low[0], triangles.low[t][0]), std::min(low[1], triangles.low[t][1]) };
+    high = { std::max(high[0], triangles.high[t][0]), std::max(high[1], triangles.high[t][1]) };
   }
-  proceed(options, 0.5);
-  const std::vector<std::array<Index, 3>> all = constrainedDelaunay(local.points, local.segments);
-  proceed(options, 0.8);
-  for (const auto& t : all)
+  const LayerTriangles layer = surroundByLayer(boundary, options);
+  HorizonMesh result = mesh;
+  const auto shared = static_cast<Index>(layer.boundary.size());
+  const Index first = result.numberOfPoints() - shared; // of new points
+  result.points.insert(result.points.end(), layer.points.begin() + 2 * shared, layer.points.end());
+  for (const auto& t : layer.triangles)
   {
-    if (!local.isLayer(t, edges, options.width))
-    {
-      continue;
-    }
     for (int k = 0; k < 3; ++k)
     {
-      const int turned = triangles.flipped ? (3 - k) % 3 : k;
-      result.triangles.push_back(local.globalOf[t[turned]]);
+      const Index id = t[triangles.flipped ? (3 - k) % 3 : k];
+      result.triangles.push_back(id < shared ? layer.boundary[id] : first + id);
     }
     result.layer.push_back(1);
   }
@@ -318,7 +333,6 @@ HorizonMesh addInteractionLayer(const HorizonMesh& mesh, const InteractionLayerO
   {
     result.givenPoints.resize(result.numberOfPoints(), 1);
   }
-  removeUnused(result, mesh.numberOfPoints());
   return result;
 }
 }

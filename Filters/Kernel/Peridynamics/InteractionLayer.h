@@ -10,6 +10,7 @@
 #include "Horizon.h"
 #include "tautline/SolversExport.h"
 
+#include <array>
 #include <functional>
 
 namespace tautline
@@ -40,5 +41,35 @@ struct InteractionLayerOptions
  */
 TAUTLINE_SOLVERS_EXPORT HorizonMesh addInteractionLayer(
   const HorizonMesh& mesh, const InteractionLayerOptions& options);
+
+/// An edge of the boundary of a mesh.
+struct BoundaryEdge
+{
+  Vec2 a = {}, b = {}; ///< the mesh is on the left
+  Index first, second; ///< point numbers
+};
+
+/// What a layer depends on of the mesh that it surrounds.
+struct LayerBoundary
+{
+  std::vector<BoundaryEdge> edges;
+  Vec2 low = { 1e300, 1e300 }, high = { -1e300, -1e300 }; ///< the box around the triangles
+};
+
+/// A layer without the mesh.
+struct LayerTriangles
+{
+  std::vector<double> points;                  ///< x y each: those of the boundary, then new ones
+  std::vector<Index> boundary;                 ///< the numbers of those of the boundary
+  std::vector<std::array<Index, 3>> triangles; ///< counter-clockwise
+};
+
+/**
+ * @brief The triangles that addInteractionLayer() adds to a mesh with this boundary: for a mesh on
+ * several ranks, none of which has the whole.
+ * @param boundary the edges in the order of their triangles: other orders change the last digits
+ */
+TAUTLINE_SOLVERS_EXPORT LayerTriangles surroundByLayer(
+  const LayerBoundary& boundary, const InteractionLayerOptions& options);
 }
 #endif

@@ -24,7 +24,7 @@ struct PlanarTriangles
   bool flipped = false; ///< corners 1 and 2 of every triangle are exchanged
 
   /// Throws Error for a mesh that cannot be integrated over.
-  explicit PlanarTriangles(const HorizonMesh& mesh);
+  TAUTLINE_SOLVERS_EXPORT explicit PlanarTriangles(const HorizonMesh& mesh);
   Index size() const { return static_cast<Index>(this->triangles.size()); }
   Vec2 corner(Index t, int k) const { return this->points[this->triangles[t][k]]; }
 };

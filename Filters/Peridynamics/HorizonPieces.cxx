@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "HorizonPieces.h"
+
+#include "Blocks.h"
+#include "Processes.h"
+#include "tautline/Mesh/RankPieces.h"
+
+#include "vtkCellData.h"
+#include "vtkCellType.h"
+#include "vtkDataArray.h"
+#include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
+#include "vtkPointData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+namespace
+{
+/// Cells that are left out, and come before the triangles in a mesh that is put together.
+bool isVertexOrLine(unsigned char type)
+{
+  return type == VTK_VERTEX || type == VTK_POLY_VERTEX || type == VTK_LINE || type == VTK_POLY_LINE;
+}
+
+std::array<Index, 3> sortedCorners(const MeshView& view, Index triangle)
+{
+  const Index* corner = view.connectivity + view.offsets[triangle];
+  std::array<Index, 3> sorted = { corner[0], corner[1], corner[2] };
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<HorizonPieces> HorizonPieces::take(
+  vtkDataObject* input, bool mergePoints, int threads)
+{
+  std::unique_ptr<HorizonPieces> result(new HorizonPieces);
+  result->Pieces =
+    takePieces(result->Group, input, threads, mergePoints, Redistribution::None, nullptr);
+  if (!result->Pieces)
+  {
+    return nullptr;
+  }
+  result->requireTriangles();
+  if (!result->isRegular())
+  {
+    return nullptr;
+  }
+  const Mesh local(result->view(), threads);
+  const RankPiece piece = { &local, nullptr, nullptr };
+  const MeshSpace space = spaceOnRanks(*result->Group, { piece });
+  const std::array<double, 6>& box = result->Pieces->mesh().bounds();
+  result->Plane = HorizonPlane(space, { box[0], box[1], box[2] });
+  result->order(vtkDataSet::SafeDownCast(input));
+  return result;
+}
+
+//------------------------------------------------------------------------------
+/// Throws Error for cells of other types, of which the whole mesh has some.
+void HorizonPieces::requireTriangles() const
+{
+  const MeshView& piece = this->Pieces->piece();
+  std::array<Index, NumberOfCellTypes> counts{};
+  for (Index cell = 0; cell < piece.numberOfCells; ++cell)
+  {
+    const int type = topologyIndex(cornerType(piece.cellTypes[cell]));
+    counts[std::max(type, 0)] += type >= 0 && !this->Pieces->skipped()[cell];
+  }
+  for (int type = 0; type < NumberOfCellTypes; ++type)
+  {
+    const Index count = this->Group->sum(counts[type]);
+    if (topologies()[type].type != CellType::Triangle && count > 0)
+    {
+      throwNoTriangles(count, topologies()[type]);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+bool HorizonPieces::isRegular() const
+{
+  const MeshView& piece = this->Pieces->piece();
+  const MeshView& local = this->view();
+  bool regular = this->Pieces->inverted() == 0;
+  for (Index cell = 0; cell < piece.numberOfCells; ++cell)
+  {
+    const unsigned char type = piece.cellTypes[cell];
+    regular = regular && (cornerType(type) == CellType::Triangle || isVertexOrLine(type));
+  }
+  // Triangles with the same corners are next to each other.
+  for (Index cell = 1; cell < local.numberOfCells; ++cell)
+  {
+    regular = regular && sortedCorners(local, cell) != sortedCorners(local, cell - 1);
+  }
+  return !this->Group->any(!regular);
+}
+
+//------------------------------------------------------------------------------
+/// Finds what orders the triangles.
+void HorizonPieces::order(vtkDataSet* input)
+{
+  const MeshView& piece = this->Pieces->piece();
+  const std::vector<unsigned char>& owned = this->Pieces->mesh().ownedCells();
+  for (Index cell = 0; cell < this->view().numberOfCells; ++cell)
+  {
+    if (owned[cell])
+    {
+      this->Owned.push_back(cell);
+    }
+  }
+  this->PointIds = this->Pieces->pointIds();
+  vtkUnsignedCharArray* ghosts = input->GetCellGhostArray();
+  Index before = 0;
+  for (Index cell = 0; cell < piece.numberOfCells; ++cell)
+  {
+    const bool copy = ghosts && (ghosts->GetValue(cell) & vtkDataSetAttributes::DUPLICATECELL);
+    before += isVertexOrLine(piece.cellTypes[cell]) && !copy;
+  }
+  this->Before = this->Group->sum(before);
+  vtkDataArray* given = input->GetCellData()->GetGlobalIds();
+  const Index filled = this->Group->sum(static_cast<Index>(piece.numberOfPoints > 0));
+  this->Single = filled == 1;
+  if (!this->Single && this->Group->any(piece.numberOfCells > 0 && !given))
+  {
+    return;
+  }
+  std::vector<double> ids(piece.numberOfCells);
+  for (Index cell = 0; cell < piece.numberOfCells; ++cell)
+  {
+    ids[cell] = this->Single ? static_cast<double>(cell) : given->GetComponent(cell, 0);
+  }
+  const std::vector<double> local = this->Pieces->ofCells(ids, 1);
+  this->CellIds.assign(local.begin(), local.end());
+}
+
+//------------------------------------------------------------------------------
+TriangleKey HorizonPieces::keyOf(Index triangle) const
+{
+  if (this->Single || !this->CellIds.empty())
+  {
+    return { this->CellIds[triangle], 0, 0 };
+  }
+  const Index* corner = this->view().connectivity + this->view().offsets[triangle];
+  TriangleKey key;
+  std::transform(
+    corner, corner + 3, key.begin(), [this](Index point) { return this->PointIds[point]; });
+  std::sort(key.begin(), key.end());
+  return key;
+}
+
+//------------------------------------------------------------------------------
+std::vector<Index> HorizonPieces::cellNumbers(const std::vector<TriangleKey>& keys) const
+{
+  const bool first = this->Group->rank() == 0;
+  std::vector<Index> numbers(keys.size(), 0);
+  if (this->Single)
+  {
+    std::transform(
+      keys.begin(), keys.end(), numbers.begin(), [](const TriangleKey& key) { return key[0]; });
+    return numbers;
+  }
+  // How many triangles of this process come before each.
+  for (const Index triangle : this->Owned)
+  {
+    const auto next = std::upper_bound(keys.begin(), keys.end(), this->keyOf(triangle));
+    if (next != keys.end())
+    {
+      ++numbers[next - keys.begin()];
+    }
+  }
+  for (std::size_t i = 1; i < numbers.size(); ++i)
+  {
+    numbers[i] += numbers[i - 1];
+  }
+  std::vector<std::vector<Index>> sent(this->Group->size());
+  sent[0] = std::move(numbers);
+  numbers.assign(keys.size(), this->Before);
+  for (const std::vector<Index>& ofRank : this->Group->exchangeItems(sent))
+  {
+    for (std::size_t i = 0; first && i < ofRank.size(); ++i)
+    {
+      numbers[i] += ofRank[i];
+    }
+  }
+  return numbers;
+}
+
+//------------------------------------------------------------------------------
+bool havePointIds(vtkDataObject* input)
+{
+  bool have = true;
+  forEachLeaf(input,
+    [&have](unsigned int, vtkDataSet* data)
+    { have = have && (data->GetNumberOfPoints() == 0 || data->GetPointData()->GetGlobalIds()); });
+  return minimumOverProcesses(have ? 1 : 0) == 1;
+}
+}
