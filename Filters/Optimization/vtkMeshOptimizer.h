@@ -54,7 +54,7 @@
  * surfaces in space, inclined planes and blocks; boundaries that slide on curved surfaces or on a
  * geometry; regions, feature kinds and features that are shown; targets of a reference mesh
  * (PRESERVE_SHAPE); the templates P_MEAN and MAXIMUM; steps that improve the worst element
- * (WORST_ELEMENT); rescaled untangling objectives. Animation is refused on several processes.
+ * (WORST_ELEMENT). Animation is refused on several processes.
  *
  * @par Example:
  * @code

@@ -94,13 +94,13 @@ for scattered in (0, 1):  # (scripts of sources import into this module: not "ra
         together = OptimizeMesh(Input=cube(4, 0.3, scattered), ReproducibleOrder=1, Preset=CUSTOM, Optimizer=optimizer)
         note(f"{name} {scattered}", together)
         results[f"{name} {scattered}"]["history"] = table(together, 1, "Objective")
+    both = OptimizeMesh(Input=cube(4, 0.42, scattered), ReproducibleOrder=1, Preset=CUSTOM, Beta=0.01)
+    both.NumberOfObjectives = 2
+    both.Metric1, both.Metric2 = "Untangling beta", "Inverse mean ratio"
+    note(f"rescaled {scattered}", both)
     note(f"untangle {scattered}", UntangleMesh(Input=cube(5, 0.45, scattered), ReproducibleOrder=1))
 
 for cut in CUTS:
-    both = OptimizeMesh(Input=cut_cube(4, 0.42, cut, ids=True), Preset=CUSTOM, Beta=0.01)
-    both.NumberOfObjectives = 2
-    both.Metric1, both.Metric2 = "Untangling beta", "Inverse mean ratio"
-    note(f"rescaled {cut}", both)
     note(f"turned {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, TURN, ids=True)))
     note(f"broken {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, BREAK, ids=True)))
 

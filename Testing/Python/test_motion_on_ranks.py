@@ -9,7 +9,6 @@ GLOBAL = ("L-BFGS", "Newton-CG")
 DIVISIONS = {"k-d Tree": ".", "PT-Scotch": " by PT-Scotch."}  # and what the summary ends with
 # What is gathered, and the reason that the summary states.
 GATHERED = {
-    "rescaled": "rescaled untangling objectives need the whole mesh.",
     "turned": "neighbouring cells list their points in opposite orders.",
     "broken": " has a coordinate that is not finite: remove its cells first, by Threshold or Clean to Grid.",
 }
@@ -37,7 +36,7 @@ one = run("motion_on_ranks.py", 1)
 assert one["ranks"] == 1
 history = one["optimize 0"]["history"]
 assert len(history) > 3 and history[-1] < 0.9 * history[0], history
-assert one["rescaled slabs"]["inverted"][0] > one["rescaled slabs"]["inverted"][1]
+assert one["rescaled 0"]["inverted"][0] > one["rescaled 0"]["inverted"][1]
 assert one["untangle 0"]["inverted"][0] > one["untangle 0"]["inverted"][1]
 for name in GLOBAL:
     found = one[f"{name} 0"]["history"]
@@ -46,7 +45,7 @@ for ranks in (1, 2, 3, 4):
     found = one if ranks == 1 else run("motion_on_ranks.py", ranks)
     assert found["ranks"] == ranks
     check_gathered(ranks, found, one)
-    for name in ("optimize", *DIVISIONS, "slide", "untangle", *GLOBAL):
+    for name in ("optimize", *DIVISIONS, "slide", "rescaled", "untangle", *GLOBAL):
         expected = one["optimize 0" if name in DIVISIONS else f"{name} 0"]
         for cut in (0, 1):
             case = found[f"{name} {cut}"]

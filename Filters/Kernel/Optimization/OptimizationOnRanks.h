@@ -46,6 +46,7 @@ private:
   void untangle();
   bool stage();
   void makeProblem();
+  void rescaleUntangling();
   StopReason sweep(Slowness* slow, bool& failed, bool& repaired) override;
   // All vertices at once: GlobalOnRanks.cxx.
   const RankRows& rows();

@@ -91,12 +91,7 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
       this->leaveOut(validity);
     }
   }
-  this->rescaleUntangling();
-  const auto weighted = [](const std::vector<double>& w) { return !w.empty(); };
-  if (!this->AllFast && std::any_of(this->Weights.begin(), this->Weights.end(), weighted))
-  {
-    this->Terms.assign(this->Terms.size(), LocalTerm()); // weights of cells differ by objective
-  }
+  this->rescaleUntangling(this->Part ? std::vector<double>() : this->largestValues());
 }
 
 //------------------------------------------------------------------------------
@@ -300,37 +295,44 @@ bool OptimizationProblem::someRepaired() const
 }
 
 //------------------------------------------------------------------------------
-void OptimizationProblem::rescaleUntangling()
+std::vector<double> OptimizationProblem::largestValues() const
 {
   const bool untangles = std::any_of(this->Resolved.begin(), this->Resolved.end(),
     [](const Objective& o) { return o.metric == Metric::UntangleBeta; });
   if (!this->Options.rescaleUntangling || this->Resolved.size() < 2 || !untangles)
   {
-    return;
+    return {};
   }
-  const Index cells = this->Moving->view().numberOfCells;
-  std::vector<double> q(cells);
-  // The largest element values of the other objectives are what the untangling ones have to exceed.
-  const auto largest = [&](const Objective& objective)
-  {
-    evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
-    double result = 0;
-    for (double value : q)
-    {
-      result = std::max(result, std::abs(value));
-    }
-    return result;
-  };
-  double others = 0;
+  std::vector<double> result, q(this->Moving->view().numberOfCells);
   for (const Objective& objective : this->Resolved)
   {
-    others =
-      objective.metric == Metric::UntangleBeta ? others : std::max(others, largest(objective));
+    evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
+    double largest = 0;
+    for (double value : q)
+    {
+      largest = std::max(largest, std::abs(value));
+    }
+    result.push_back(largest);
   }
-  for (std::size_t i = 0; i < this->Resolved.size(); ++i)
+  return result;
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::rescaleUntangling(const std::vector<double>& largest)
+{
+  // The largest element values of the other objectives are what the untangling ones have to exceed.
+  const auto untangles = [this](std::size_t i)
+  { return this->Resolved[i].metric == Metric::UntangleBeta; };
+  double others = 0;
+  for (std::size_t i = 0; i < largest.size(); ++i)
+  {
+    others = untangles(i) ? others : std::max(others, largest[i]);
+  }
+  const Index cells = this->Moving->view().numberOfCells;
+  for (std::size_t i = 0; i < largest.size(); ++i)
   {
     Objective& objective = this->Resolved[i];
-    const double own = objective.metric == Metric::UntangleBeta ? largest(objective) : 0.0;
+    const double own = untangles(i) ? largest[i] : 0.0;
     if (!(own > 0) || own > others)
     {
       continue;
@@ -340,13 +342,18 @@ void OptimizationProblem::rescaleUntangling()
     const double factor = margin * others / own;
     const double weight =
       objective.objectiveTemplate == ObjectiveTemplate::SumOfSquares ? factor * factor : factor;
-    this->Weights[i].resize(cells);
-    for (Index cell = 0; cell < cells; ++cell)
+    std::vector<double> weights(cells, weight);
+    for (Index cell = 0; cell < cells && objective.elementWeights; ++cell)
     {
-      this->Weights[i][cell] =
-        weight * (objective.elementWeights ? objective.elementWeights[cell] : 1.0);
+      weights[cell] *= objective.elementWeights[cell];
     }
+    this->Weights[i] = std::move(weights);
     objective.elementWeights = this->Weights[i].data();
+  }
+  const auto weighted = [](const std::vector<double>& w) { return !w.empty(); };
+  if (!this->AllFast && std::any_of(this->Weights.begin(), this->Weights.end(), weighted))
+  {
+    this->Terms.assign(this->Terms.size(), LocalTerm()); // weights of cells differ by objective
   }
 }
 

@@ -48,6 +48,14 @@ public:
   std::vector<unsigned char> closedForms() const;
   /// Evaluates those with a flag of 0 by their metrics, as some other part of the mesh needs it.
   void keepClosedForms(const std::vector<unsigned char>& flags);
+  /**
+   * @brief The largest absolute element value of each objective where the points are, if untangling
+   * objectives are to be rescaled, else empty. Of a part of a mesh, to be followed by
+   * rescaleUntangling() with those of the whole.
+   */
+  std::vector<double> largestValues() const;
+  /// See OptimizeOptions::rescaleUntangling.
+  void rescaleUntangling(const std::vector<double>& largest);
   const Scalarizer& scalarizer() const { return *this->TheScalarizer; }
   Scalarizer& scalarizer() { return *this->TheScalarizer; }
   /// The objective sums, made on first use.
@@ -87,7 +95,6 @@ private:
   void makeSurface();
   LocalTerm fastTerm(const Objective& objective) const;
   void leaveOut(std::vector<signed char> validity);
-  void rescaleUntangling();
   Index invalidSimplices() const;
   void summarizeSimplices(IterationRecord& record) const;
   void summarizeCells(IterationRecord& record);

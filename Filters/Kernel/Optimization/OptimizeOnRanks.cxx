@@ -137,6 +137,14 @@ void OptimizationOnRanks::makeProblem()
       {
         this->Problem = std::make_unique<OptimizationProblem>(
           *this->Start, this->Options, this->Points, this->Clock, &frame);
+      }
+    });
+  this->rescaleUntangling();
+  this->Group.together(
+    [&]
+    {
+      if (this->Problem)
+      {
         closed = this->Problem->closedForms();
         const bool weighted = std::any_of(this->Problem->resolved().begin(),
           this->Problem->resolved().end(), [](const Objective& o) { return o.elementWeights; });
@@ -177,6 +185,29 @@ void OptimizationOnRanks::makeProblem()
     count += free[p] && this->TheMesh.owned(p);
   }
   this->Result.freeVertices = this->Group.sum(count);
+}
+
+//------------------------------------------------------------------------------
+/// By the largest element values of all ranks.
+void OptimizationOnRanks::rescaleUntangling()
+{
+  std::vector<double> largest;
+  this->Group.together(
+    [&] { largest = this->Problem ? this->Problem->largestValues() : std::vector<double>(); });
+  const Index count = this->Group.maximum(static_cast<Index>(largest.size()));
+  largest.resize(static_cast<std::size_t>(count), 0.0);
+  for (double& value : largest)
+  {
+    value = this->Group.maximum(value);
+  }
+  this->Group.together(
+    [&]
+    {
+      if (this->Problem)
+      {
+        this->Problem->rescaleUntangling(largest);
+      }
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -545,19 +576,13 @@ NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& options)
     return { "steps that improve the worst element",
       "set Improve Worst to 0, or choose the preset Best Shape" };
   }
-  bool untangles = false;
   for (const Objective& objective : options.objectives)
   {
-    untangles = untangles || objective.metric == Metric::UntangleBeta;
     if (objective.objectiveTemplate == ObjectiveTemplate::PowerMean ||
       objective.objectiveTemplate == ObjectiveTemplate::Maximum)
     {
       return { "the templates p-Mean and Maximum", "choose a sum" };
     }
-  }
-  if (untangles && options.objectives.size() > 1 && options.rescaleUntangling)
-  {
-    return { "rescaled untangling objectives", "switch Rescale Untangling off" };
   }
   return {};
 }

@@ -22,8 +22,8 @@ TAUTLINE_KERNEL_EXPORT NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& op
 
 /**
  * @brief Throws Error for options that need the whole mesh in one place, by name and with the
- * remedy: the templates p-mean and maximum, points that slide on curved surfaces, rescaling of
- * untangling objectives, improvement of the worst element.
+ * remedy: the templates p-mean and maximum, points that slide on curved surfaces, improvement
+ * of the worst element.
  */
 TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
 

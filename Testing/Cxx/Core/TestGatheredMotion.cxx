@@ -81,15 +81,6 @@ void testSettings(vtkMPIController* controller)
       filter->SetInputArrayToProcess(
         FeatureKinds, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "kinds");
     });
-  testGathered<vtkMeshOptimizer>("rescaled untangling", controller,
-    jittered(CellType::Tetrahedron, SizeOfBlock, 0.42),
-    "rescaled untangling objectives need the whole mesh",
-    [](vtkMeshOptimizer* filter, const RankPart&)
-    {
-      filter->AddObjectiveByName("untangle_beta");
-      filter->AddObjectiveByName("imr");
-      filter->SetBeta(0.01);
-    });
 }
 
 /// Pieces that do not fit, and what one process can do.

@@ -105,6 +105,21 @@ void testOptimizer(vtkMPIController* controller)
       filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "limits");
     },
     checkOptimizer);
+  // Inverted elements everywhere: the largest values of the parts differ.
+  testFilter<vtkMeshOptimizer>(
+    "rescaled untangling", controller, jittered(CellType::Tetrahedron, 5, 0.5),
+    [](vtkMeshOptimizer* filter)
+    {
+      filter->AddObjectiveByName("untangle_beta");
+      filter->AddObjectiveByName("imr");
+      filter->SetBeta(0.01);
+    },
+    [](vtkMeshOptimizer* serial, vtkMeshOptimizer* ranks, int rank)
+    {
+      TAUTLINE_CHECK(serial->GetInvertedBefore() > 10);
+      TAUTLINE_CHECK(serial->GetInvertedAfter() < serial->GetInvertedBefore());
+      checkOptimizer(serial, ranks, rank);
+    });
   testFilter<vtkMeshOptimizer>(
     "two objectives, tangled", controller, jittered(CellType::Tetrahedron, 5, 0.42),
     [](vtkMeshOptimizer* filter) { filter->SetPreset(vtkMeshOptimizer::UNIFORM_SIZE); },
