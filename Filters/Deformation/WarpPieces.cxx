@@ -521,7 +521,7 @@ std::string needOfWholeMesh(const WarpSession& session, vtkDataObject* input, vt
       return "targets that are matched to the whole boundary";
     }
   }
-  return warpsOnRanks(session.settings.options) ? "" : "rescaled untangling objectives";
+  return "";
 }
 
 //------------------------------------------------------------------------------

@@ -390,13 +390,6 @@ struct Warper::Local
 };
 
 //------------------------------------------------------------------------------
-bool warpsOnRanks(const WarpOptions& options)
-{
-  // The untangling metric of (4.24) is rescaled by the whole mesh.
-  return options.method != WarpMethod::Hybrid || options.untangleFirst;
-}
-
-//------------------------------------------------------------------------------
 Warper::Warper(const Mesh& mesh, const WarpOptions& options)
   : Impl(std::make_unique<Implementation>(mesh, options))
 {
@@ -408,12 +401,6 @@ Warper::Warper(DistributedMesh& mesh, bool mirrored, std::vector<Index> ids,
   mesh.group().together(
     [&]
     {
-      if (!warpsOnRanks(options))
-      {
-        throw Error(
-          "Hybrid without Untangle First needs the mesh in one place: gather it on one process, "
-          "or switch Untangle First on.");
-      }
       if (!options.prescribed && mesh.localPoints() > 0)
       {
         throw Error("The prescribed points of a mesh on several ranks must be given.");

@@ -23,12 +23,6 @@
 namespace tautline
 {
 /**
- * @brief Whether a mesh on several ranks is deformed by these options: all but Hybrid with
- * untangleFirst off, which needs the mesh in one place.
- */
-TAUTLINE_SOLVERS_EXPORT bool warpsOnRanks(const WarpOptions& options);
-
-/**
  * @class tautline::Warper
  * @brief Deforms a mesh; keeps matrices, preconditioners and former solutions for the next
  * boundary position.
@@ -45,7 +39,7 @@ public:
   Warper(const Mesh& mesh, const WarpOptions& options);
 
   /**
-   * @brief The same for a mesh on several ranks, see warpsOnRanks(). Collective, as warp() is then:
+   * @brief The same for a mesh on several ranks. Collective, as warp() is then:
    * points, displacements and flags are those of the local points, and a prescribed point is one,
    * with the same displacement, on all ranks that have it. The numbers of the result are those of
    * the whole mesh. Untangling and optimization are those of untangleOnRanks() and

@@ -365,6 +365,40 @@ int WarpStep::untangle(
 }
 
 //------------------------------------------------------------------------------
+/// Of the elements of the whole initial mesh.
+double WarpStep::meanSize() const
+{
+  const WarpRanks& ranks = this->Parts.ranks();
+  const Index cells = this->Initial.view().numberOfCells;
+  std::vector<double> sizes(cells), own;
+  double sum = 0;
+  Index count = 0;
+  ranks.together(
+    [&]
+    {
+      if (cells > 0)
+      {
+        evaluateMetric(this->Initial, Metric::Size, EvaluationOptions(), sizes.data());
+      }
+      for (Index cell = 0; cell < cells; ++cell)
+      {
+        if (ranks.ownsCell(cell))
+        {
+          own.push_back(std::abs(sizes[cell]));
+          sum += own.back();
+        }
+      }
+      count = static_cast<Index>(own.size());
+    });
+  if (ranks.several())
+  {
+    sum = ranks.mesh().group().orderlessSum(own);
+    count = ranks.sum(count);
+  }
+  return sum / std::max<double>(1.0, static_cast<double>(count));
+}
+
+//------------------------------------------------------------------------------
 int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,
   std::vector<double>& points) const
 {
@@ -412,15 +446,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   else
   {
     other.metric = Metric::UntangleBeta;
-    std::vector<double> sizes(mesh.view().numberOfCells);
-    evaluateMetric(this->Initial, Metric::Size, EvaluationOptions(), sizes.data());
-    double sum = 0;
-    for (double size : sizes)
-    {
-      sum += std::abs(size);
-    }
-    other.evaluation.parameters.beta =
-      options.untanglingBeta * sum / std::max<double>(1.0, static_cast<double>(sizes.size()));
+    other.evaluation.parameters.beta = options.untanglingBeta * this->meanSize();
   }
   StoppingCriteria& stop = optimization.stopping;
   if (options.maximumSeconds > 0)

@@ -66,6 +66,7 @@ private:
   };
   int optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,
     std::vector<double>& points) const;
+  double meanSize() const;
   WarpQuality record(const char* stage, double amount, int iterations, const double* points,
     WarpControl& control) const;
 

@@ -218,15 +218,18 @@ void testConverged(vtkMPIController* controller, const MeshData& whole, double d
 }
 
 /// What is put together still, with the points of one process: the summary states it.
-void testPutTogether(vtkMPIController* controller, const MeshData& whole)
+void testPutTogether(vtkMPIController* controller)
 {
   const Context context("put together");
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  MeshData whole = blockWithHole(CellType::Triangle);
+  // In a plane that is at right angles to no axis.
+  whole.transform([](const Vec3& p) { return Vec3{ p[0], 0.8 * p[1], 0.6 * p[1] }; });
   const auto set = [](vtkMeshWarp* filter)
   {
-    turn(filter, 20);
-    filter->SetMethod(vtkMeshWarp::HYBRID);
-    filter->UntangleFirstOff();
+    filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
+    filter->SetTranslation(0.3, 0, 0);
+    filter->SetMethod(vtkMeshWarp::FEMWARP);
   };
   vtkNew<vtkMeshWarp> serial, filter, onFirst;
   vtkMultiProcessController::SetGlobalController(nullptr);
@@ -237,8 +240,9 @@ void testPutTogether(vtkMPIController* controller, const MeshData& whole)
   const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
   const std::vector<double> here = pointsOf(whole, part, set, filter.Get(), true);
   TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
-  const std::string sentence = "The mesh was put together on the first process: rescaled "
-                               "untangling objectives need the whole mesh.";
+  TAUTLINE_CHECK(farthest(here, whole.points) > 0.1);
+  const std::string sentence = "The mesh was put together on the first process: it is a surface in "
+                               "space, or in a plane that is not at right angles to an axis.";
   TAUTLINE_CHECK(contains(filter->GetSummary(), sentence));
   // All of it is in one place from the start.
   pointsOf(whole, partOf(whole, rank, all), set, onFirst.Get(), true);
@@ -343,7 +347,7 @@ void testPieces(vtkMPIController* controller)
       });
   }
   testWrong(controller, volume);
-  testPutTogether(controller, volume);
+  testPutTogether(controller);
   const auto setTo = [](int method, double angle)
   {
     return [method, angle](vtkMeshWarp* filter)
@@ -361,6 +365,19 @@ void testPieces(vtkMPIController* controller)
       "untangled", controller, *mesh, true, false, setTo(vtkMeshWarp::FEMWARP_UNTANGLING, 90));
     testValid("followed", controller, *mesh, true, mesh == &volume,
       setTo(vtkMeshWarp::FEMWARP_UNTANGLING, 170));
+    // (4.24) as it stands: its untangling metric is rescaled by the largest values of all.
+    for (const double beta : { 0.0, 0.1 })
+    {
+      const Context inner("beta " + std::to_string(beta));
+      const auto literal = [beta](vtkMeshWarp* filter)
+      {
+        turn(filter, 90);
+        filter->SetMethod(vtkMeshWarp::HYBRID);
+        filter->UntangleFirstOff();
+        filter->SetUntanglingBeta(beta);
+      };
+      testValid("literal hybrid", controller, *mesh, true, false, literal);
+    }
     testConverged(controller, *mesh, 20);
   }
 }

@@ -172,29 +172,6 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
       }
     }
   }
-  {
-    const Context inner("same pieces, put together");
-    const auto gathers = [&](vtkUnstructuredGrid* target)
-    {
-      return [target, &setTo](vtkMeshWarp* filter)
-      {
-        setTo(target, vtkMeshWarp::SAME_MESH)(filter);
-        filter->SetMethod(vtkMeshWarp::HYBRID);
-        filter->UntangleFirstOff();
-      };
-    };
-    vtkNew<vtkMeshWarp> serial, filter;
-    const auto target = targetOf(part, middle, angle);
-    const auto all = targetOf(entire, middle, angle);
-    const auto set = gathers(all);
-    vtkMultiProcessController::SetGlobalController(nullptr);
-    const std::vector<double> expected = pointsOf(whole, entire, set, serial.Get(), true);
-    vtkMultiProcessController::SetGlobalController(controller);
-    const std::vector<double> here = pointsOf(whole, part, gathers(target), filter.Get(), true);
-    TAUTLINE_CHECK(contains(filter->GetSummary(), "put together"));
-    TAUTLINE_CHECK(contains(filter->GetSummary(), "as the same mesh, point by point: "));
-    TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
-  }
   const auto refused = [&](const char* name, vtkUnstructuredGrid* grid, vtkUnstructuredGrid* target,
                          int correspondence, const char* message)
   {
