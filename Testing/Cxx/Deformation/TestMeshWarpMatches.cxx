@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Warp Mesh to a target: which of its points belong to which, and the closest ones.
+#include "WarpingMeshes.h"
+
+#include "vtkDataSetSurfaceFilter.h"
+#include "vtkFeatureEdges.h"
+#include "vtkLineSource.h"
+#include "vtkMultiBlockDataSet.h"
+#include "vtkSphereSource.h"
+#include "vtkTransform.h"
+#include "vtkTransformFilter.h"
+
+using namespace tautline;
+
+namespace
+{
+constexpr auto OnPoints = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+
+/// The boundary turned and shifted, given in every possible way: the same result, and the summary
+/// names the way.
+void testTargets()
+{
+  for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
+  {
+    const Context context(topology(type).name);
+    const bool flat = type == CellType::Triangle;
+    const MeshData data = shuffled(holedBlock(type, 5), 11);
+    auto grid = toGrid(data);
+    grid->GetPointData()->AddArray(arrayOf(
+      "id", data.numberOfPoints(), 1, [](Index i, int) { return 1000.0 - 3.0 * double(i); }));
+    vtkNew<vtkTransform> transform;
+    transform->Translate(0.25, 0.125, flat ? 0 : 0.5);
+    transform->Scale(1.25, 0.75, 1);
+    const auto moved = [&transform](vtkDataSet* what)
+    {
+      vtkNew<vtkTransformFilter> filter;
+      filter->SetInputData(what);
+      filter->SetTransform(transform);
+      filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
+      filter->Update();
+      return vtkSmartPointer<vtkPointSet>(filter->GetOutput());
+    };
+    MeshData expected = data;
+    expected.transform(
+      [&transform](Vec3 p)
+      {
+        transform->TransformPoint(p.data(), p.data());
+        return p;
+      });
+    vtkNew<vtkMeshWarp> filter;
+    Messages messages(filter);
+    filter->SetInputData(grid);
+    filter->SetMotion(vtkMeshWarp::TARGET);
+    filter->SetMethod(vtkMeshWarp::FEMWARP);
+    const auto check = [&](vtkDataSet* target, const char* how)
+    {
+      const Context inner(how);
+      filter->SetInputData(1, target);
+      filter->Update();
+      TAUTLINE_CHECK(messages.empty());
+      messages.clear();
+      TAUTLINE_CHECK(contains(filter->GetSummary(), how));
+      TAUTLINE_CHECK(distance(withPointsOf(data, meshOf(filter)), expected) < 1e-10);
+    };
+    check(moved(grid), "as the same mesh");
+    vtkNew<vtkDataSetSurfaceFilter> surface;
+    surface->SetInputData(grid);
+    surface->PassThroughPointIdsOn();
+    surface->Update();
+    check(moved(surface->GetOutput()), "as the boundary extracted from the mesh");
+    vtkNew<vtkFeatureEdges> edges;
+    if (flat)
+    {
+      edges->SetInputConnection(surface->GetOutputPort());
+      edges->Update();
+      check(moved(edges->GetOutput()), "as the boundary extracted from the mesh");
+    }
+
+    // The points alone, of those that move; and the boundary's cells among all points.
+    const auto boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+    vtkNew<vtkPolyData> cloud, inMesh;
+    vtkNew<vtkPoints> places;
+    places->SetDataTypeToDouble();
+    for (Index i = 0; i < data.numberOfPoints(); ++i)
+    {
+      if (boundary[i])
+      {
+        places->InsertNextPoint(data.point(i).data());
+      }
+    }
+    cloud->SetPoints(places);
+    filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
+    check(moved(cloud), "by the order of the points that move");
+    filter->SetCorrespondence(vtkMeshWarp::SAME_BOUNDARY);
+    check(moved(cloud), "by the order of the points that move");
+    filter->SetMovedPart(vtkMeshWarp::AUTOMATIC_PART);
+    filter->Update(); // that is the hole where nothing else distinguishes the parts
+    TAUTLINE_CHECK(messages.has("choose another Correspondence"));
+    messages.clear();
+    filter->SetCorrespondence(vtkMeshWarp::AUTOMATIC_MATCH);
+
+    // By ids: numbers of points, or values of the array of the same name.
+    vtkPolyData* skin = surface->GetOutput();
+    filter->SetTargetIds("vtkOriginalPointIds");
+    check(moved(skin), "by point ids");
+    filter->SetTargetIds("id");
+    check(moved(skin), "by point ids");
+    skin->GetPointData()->GetArray("id")->SetComponent(3, 0, -7);
+    filter->SetInputData(1, moved(skin));
+    filter->Update();
+    TAUTLINE_CHECK(
+      messages.has("has 1 values that are no values of the mesh's array of that name"));
+    filter->SetTargetIds("missing");
+    filter->Update();
+    TAUTLINE_CHECK(messages.has("The target has no point array 'missing'"));
+    messages.clear();
+    filter->SetTargetIds("None");
+    filter->SetCorrespondence(vtkMeshWarp::POINT_IDS);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has("No array of point ids is chosen"));
+    filter->SetCorrespondence(vtkMeshWarp::SAME_MESH);
+    filter->Update();
+    TAUTLINE_CHECK(flat || messages.has("it is not the same mesh"));
+  }
+}
+
+/// The boundary goes to the closest point; the summary has the maximum distance.
+void testProjection()
+{
+  const Index n = 5;
+  const MeshData data = holedBlock(CellType::Tetrahedron, n);
+  const std::vector<int> parts = partsOf(data, n);
+  vtkNew<vtkSphereSource> sphere;
+  sphere->SetCenter(2.5, 2.5, 2.5);
+  sphere->SetRadius(1);
+  sphere->SetThetaResolution(60);
+  sphere->SetPhiResolution(60);
+  sphere->Update();
+  vtkNew<vtkMeshWarp> filter;
+  Messages messages(filter);
+  filter->SetInputData(toGrid(data));
+  filter->SetMotion(vtkMeshWarp::TARGET);
+  filter->SetInputConnection(1, sphere->GetOutputPort());
+  filter->Update();
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(filter->GetInverted(), 0);
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    const Vec3 p = pointOf(meshOf(filter), i), c = { 2.5, 2.5, 2.5 };
+    TAUTLINE_CHECK(parts[i] != 2 || std::abs(norm(p - c) - 1) < 3e-3);
+    TAUTLINE_CHECK(parts[i] != 1 || p == data.point(i));
+  }
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "by projection: 8 points"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "the farthest of them 0.13")); // 1 - sqrt(3) / 2
+  TAUTLINE_CHECK_NEAR(
+    value(filter->GetStatistics(), "Largest displacement"), 1 - std::sqrt(0.75), 3e-3);
+
+  // A block of one data set is that data set; a volume stands for its surface.
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(1, toGrid(movedBlock(CellType::Hexahedron, 5, 0)));
+  filter->SetInputConnection(1, nullptr);
+  filter->SetInputData(1, blocks);
+  filter->SetCorrespondence(vtkMeshWarp::CLOSEST_POINT);
+  filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
+  filter->SetAmount(0.25);
+  filter->Update();
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "the farthest of them 2.0"));
+  TAUTLINE_CHECK_NEAR(value(filter->GetStatistics(), "Largest displacement"), 0.5, 1e-12);
+  blocks->SetBlock(2, toGrid(data));
+  filter->Update();
+  TAUTLINE_CHECK(messages.has("The target has several blocks and the mesh has none"));
+  messages.clear();
+
+  // In the plane it is a curve.
+  const MeshData square = blockMesh(CellType::Triangle, 4, 4, 0);
+  vtkNew<vtkLineSource> line;
+  line->SetPoint1(4.5, -1, 0);
+  line->SetPoint2(4.5, 5, 0);
+  line->Update();
+  vtkNew<vtkMeshWarp> planar;
+  Messages others(planar);
+  auto grid = toGrid(square);
+  grid->GetPointData()->AddArray(arrayOf("right", square.numberOfPoints(), 1,
+    [&](Index i, int) { return double(square.point(i)[0] == 4); }));
+  planar->SetInputData(grid);
+  planar->SetMotion(vtkMeshWarp::TARGET);
+  planar->SetMethod(vtkMeshWarp::FEMWARP);
+  planar->SetMovedPart(vtkMeshWarp::ARRAY_VALUES);
+  planar->SetInputArrayToProcess(1, 0, 0, OnPoints, "right");
+  planar->SetInputData(1, line->GetOutput());
+  planar->Update();
+  TAUTLINE_CHECK(others.empty());
+  for (Index i = 0; i < square.numberOfPoints(); ++i)
+  {
+    const Vec3 p = square.point(i), q = pointOf(meshOf(planar), i);
+    TAUTLINE_CHECK(p[0] < 4 || norm(q - p - Vec3{ 0.5, 0, 0 }) < 1e-7);
+    TAUTLINE_CHECK(p[0] > 0 || q == p);
+  }
+  vtkNew<vtkPolyData> cloud;
+  vtkNew<vtkPoints> one;
+  one->InsertNextPoint(0, 0, 0);
+  cloud->SetPoints(one);
+  planar->SetInputData(1, cloud);
+  planar->Update();
+  TAUTLINE_CHECK(others.has("The target has no curve the boundary could be moved to"));
+  others.clear();
+  vtkNew<vtkPolyData> nothing;
+  planar->SetInputData(1, nothing);
+  planar->Update();
+  TAUTLINE_CHECK(others.has("The target is empty"));
+  others.clear();
+  planar->SetInputData(1, nullptr);
+  planar->Update();
+  TAUTLINE_CHECK(others.has("There is no Target"));
+}
+}
+
+//------------------------------------------------------------------------------
+int TestMeshWarpMatches(int, char*[])
+{
+  testTargets();
+  testProjection();
+  return exitCode();
+}

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Warp Mesh over time steps: from the first or from the one before, and what is kept.
+#include "WarpingMeshes.h"
+
+#include "vtkInformation.h"
+#include "vtkInformationVector.h"
+#include "vtkObjectFactory.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
+#include "vtkUnstructuredGridAlgorithm.h"
+
+using namespace tautline;
+
+namespace
+{
+constexpr auto OnPoints = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+
+/// A mesh whose points move with time: the hole turns, and inner points jump about; displacements
+/// from time 0.
+class MovingMesh : public vtkUnstructuredGridAlgorithm
+{
+public:
+  static MovingMesh* New();
+  vtkTypeMacro(MovingMesh, vtkUnstructuredGridAlgorithm);
+
+  MeshData Data;
+  std::vector<int> Parts;
+  std::vector<double> Times = { 0, 1, 2, 3, 4 };
+  double Degrees = 12; ///< per unit of time
+  bool Moves = true;   ///< or only its array of displacements does
+  bool Grows = false;  ///< from time 2 on it has another cell
+  int Executions = 0;
+
+protected:
+  MovingMesh() { this->SetNumberOfInputPorts(0); }
+
+  int RequestInformation(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector) override
+  {
+    using Pipeline = vtkStreamingDemandDrivenPipeline;
+    vtkInformation* info = outputVector->GetInformationObject(0);
+    const double range[2] = { this->Times.front(), this->Times.back() };
+    info->Set(Pipeline::TIME_STEPS(), this->Times.data(), static_cast<int>(this->Times.size()));
+    info->Set(Pipeline::TIME_RANGE(), range, 2);
+    return 1;
+  }
+
+  int RequestData(
+    vtkInformation*, vtkInformationVector**, vtkInformationVector* outputVector) override
+  {
+    vtkInformation* info = outputVector->GetInformationObject(0);
+    const double asked = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
+    const double time =
+      *std::prev(std::upper_bound(this->Times.begin() + 1, this->Times.end(), asked));
+    const double angle = time * this->Degrees * 3.14159265358979323846 / 180;
+    MeshData now = this->Data;
+    for (Index i = 0; i < now.numberOfPoints(); ++i)
+    {
+      const Vec3 d = this->Data.point(i) - Vec3{ 3.5, 3.5, 0 };
+      const Vec3 turned = { 3.5 + std::cos(angle) * d[0] - std::sin(angle) * d[1],
+        3.5 + std::sin(angle) * d[0] + std::cos(angle) * d[1], 0 };
+      now.setPoint(i,
+        this->Parts[i] == 2     ? turned
+          : this->Parts[i] == 0 ? this->Data.point(i) + Vec3{ 0.2 * time, 0, 0 }
+                                : this->Data.point(i));
+    }
+    if (this->Grows && time >= 2)
+    {
+      now.addCell(CellType::Triangle, std::vector<Index>{ 0, 1, 2 });
+    }
+    auto grid = toGrid(this->Moves ? now : this->Data);
+    grid->GetPointData()->AddArray(arrayOf("d", now.numberOfPoints(), 3,
+      [&](Index i, int k) { return now.point(i)[k] - this->Data.point(i)[k]; }));
+    vtkUnstructuredGrid::GetData(outputVector)->ShallowCopy(grid);
+    ++this->Executions;
+    return 1;
+  }
+};
+vtkStandardNewMacro(MovingMesh);
+
+vtkSmartPointer<MovingMesh> movingMesh()
+{
+  auto source = vtkSmartPointer<MovingMesh>::New();
+  source->Data = holedBlock(CellType::Triangle, 7);
+  source->Parts = partsOf(source->Data, 7);
+  return source;
+}
+
+/// Any order of times gives the same meshes, from the first or from the one before; the latter
+/// differ from the former.
+void testTimeSteps()
+{
+  for (int motion : { vtkMeshWarp::TIME_STEPS, vtkMeshWarp::DISPLACEMENT, vtkMeshWarp::TARGET })
+  {
+    const Context context("motion " + std::to_string(motion));
+    std::map<int, std::map<double, std::vector<double>>> found; // by start and time
+    for (int start : { vtkMeshWarp::FIRST_STEP, vtkMeshWarp::PREVIOUS_STEP })
+    {
+      auto source = movingMesh();
+      source->Moves = motion != vtkMeshWarp::DISPLACEMENT;
+      vtkNew<vtkMeshWarp> filter;
+      Messages messages(filter);
+      filter->SetMotion(motion);
+      filter->SetStartFrom(start);
+      filter->SetMethod(vtkMeshWarp::FEMWARP);
+      filter->SetInputArrayToProcess(0, 0, 0, OnPoints, "d");
+      if (motion == vtkMeshWarp::TARGET)
+      {
+        filter->SetInputData(0, toGrid(source->Data));
+        filter->SetInputConnection(1, source->GetOutputPort());
+      }
+      else
+      {
+        filter->SetInputConnection(source->GetOutputPort());
+      }
+      for (double time : { 3.0, 0.0, 1.0, 4.0, 2.5, 3.0, 1.0, 4.0 })
+      {
+        filter->UpdateTimeStep(time);
+        TAUTLINE_CHECK(messages.empty());
+        const auto points = withPointsOf(source->Data, meshOf(filter)).points;
+        TAUTLINE_CHECK_EQUAL(filter->GetInverted(), 0);
+        auto& known = found[start][std::floor(time)];
+        TAUTLINE_CHECK(known.empty() || known == points);
+        known = points;
+        const double angle = std::floor(time) * source->Degrees * 3.14159265358979323846 / 180;
+        for (Index i = 0; i < source->Data.numberOfPoints(); ++i)
+        {
+          const Vec3 p = source->Data.point(i), d = p - Vec3{ 3.5, 3.5, 0 };
+          const Vec3 turned = { 3.5 + std::cos(angle) * d[0] - std::sin(angle) * d[1],
+            3.5 + std::sin(angle) * d[0] + std::cos(angle) * d[1], 0 };
+          const Vec3 expected = source->Parts[i] == 2 ? turned : p;
+          TAUTLINE_CHECK(
+            source->Parts[i] == 0 || norm(pointOf(meshOf(filter), i) - expected) < 1e-12);
+        }
+      }
+      if (start == vtkMeshWarp::PREVIOUS_STEP)
+      {
+        TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetPointData(), "Displacement", 0), 0);
+        // Another amount begins again; and all of that is what fresh filters find.
+        filter->SetAmount(0.5);
+        filter->UpdateTimeStep(2.0);
+        vtkNew<vtkMeshWarp> fresh;
+        fresh->SetMotion(motion);
+        fresh->SetStartFrom(start);
+        fresh->SetMethod(vtkMeshWarp::FEMWARP);
+        fresh->SetAmount(0.5);
+        fresh->SetInputArrayToProcess(0, 0, 0, OnPoints, "d");
+        for (int port : { 0, 1 })
+        {
+          if (filter->GetNumberOfInputConnections(port) > 0)
+          {
+            fresh->SetInputConnection(port, filter->GetInputConnection(port, 0));
+          }
+        }
+        fresh->UpdateTimeStep(2.0);
+        TAUTLINE_CHECK(withPointsOf(source->Data, meshOf(filter)).points ==
+          withPointsOf(source->Data, meshOf(fresh)).points);
+        // Another motion upstream does, too.
+        source->Degrees = 5;
+        source->Modified();
+        filter->SetAmount(1);
+        filter->UpdateTimeStep(2.0);
+        fresh->SetAmount(1);
+        fresh->UpdateTimeStep(2.0);
+        TAUTLINE_CHECK(withPointsOf(source->Data, meshOf(filter)).points ==
+          withPointsOf(source->Data, meshOf(fresh)).points);
+      }
+    }
+    double difference = 0;
+    for (std::size_t i = 0; i < found[0][4].size(); ++i)
+    {
+      difference = std::max(difference, std::abs(found[0][4][i] - found[1][4][i]));
+    }
+    TAUTLINE_CHECK(difference > 1e-3 && difference < 1);
+    TAUTLINE_CHECK(found[0][0] == found[1][0]);
+    double step = 0;
+    for (std::size_t i = 0; i < found[0][1].size(); ++i)
+    {
+      step = std::max(step, std::abs(found[0][1][i] - found[1][1][i]));
+    }
+    TAUTLINE_CHECK(step < 1e-13); // the first step is the same
+  }
+}
+
+/// Matrices are kept over time; times in between are read once; a mesh that changes its cells is
+/// refused.
+void testTimeCosts()
+{
+  auto source = movingMesh();
+  vtkNew<vtkMeshWarp> filter;
+  Messages messages(filter);
+  filter->SetInputConnection(source->GetOutputPort());
+  filter->SetMotion(vtkMeshWarp::TIME_STEPS);
+  filter->SetMethod(vtkMeshWarp::FEMWARP);
+  filter->UpdateTimeStep(1);
+  TAUTLINE_CHECK_EQUAL(source->Executions, 2); // the first, and this
+  filter->UpdateTimeStep(2);
+  TAUTLINE_CHECK_EQUAL(source->Executions, 3);
+  TAUTLINE_CHECK_EQUAL(filter->GetReused(), 1);
+  filter->SetStartFrom(vtkMeshWarp::PREVIOUS_STEP);
+  filter->UpdateTimeStep(4);
+  const int after = source->Executions;
+  filter->UpdateTimeStep(2);
+  TAUTLINE_CHECK_EQUAL(source->Executions, after + 1);
+  TAUTLINE_CHECK(messages.empty());
+  source->Grows = true;
+  source->Modified();
+  filter->UpdateTimeStep(1);
+  TAUTLINE_CHECK(messages.empty());
+  filter->UpdateTimeStep(4);
+  TAUTLINE_CHECK(messages.has("only its points may change over time"));
+  messages.clear();
+  source->Grows = false;
+  source->Modified();
+  filter->UpdateTimeStep(4);
+  TAUTLINE_CHECK(messages.empty());
+
+  // Another source, made before: its first step counts, not that of the one before.
+  auto older = movingMesh();
+  older->Degrees = -20;
+  auto newer = movingMesh();
+  vtkNew<vtkMeshWarp> switched, direct;
+  for (vtkMeshWarp* each : { switched.Get(), direct.Get() })
+  {
+    each->SetMotion(vtkMeshWarp::TIME_STEPS);
+    each->SetMethod(vtkMeshWarp::FEMWARP);
+  }
+  newer->Data.points[0] -= 0.25;
+  newer->Modified();
+  switched->SetInputConnection(newer->GetOutputPort());
+  switched->UpdateTimeStep(3);
+  switched->SetInputConnection(older->GetOutputPort());
+  direct->SetInputConnection(older->GetOutputPort());
+  switched->UpdateTimeStep(2);
+  direct->UpdateTimeStep(2);
+  TAUTLINE_CHECK(withPointsOf(older->Data, meshOf(switched)).points ==
+    withPointsOf(older->Data, meshOf(direct)).points);
+
+  vtkNew<vtkMeshWarp> without;
+  Messages others(without);
+  without->SetInputData(toGrid(source->Data));
+  without->SetMotion(vtkMeshWarp::TIME_STEPS);
+  without->Update();
+  TAUTLINE_CHECK(others.has("The input has no time steps"));
+}
+}
+
+//------------------------------------------------------------------------------
+int TestMeshWarpTimeSteps(int, char*[])
+{
+  testTimeSteps();
+  testTimeCosts();
+  return exitCode();
+}
