@@ -28,6 +28,7 @@
 #include <new>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace
 {
@@ -142,6 +143,12 @@ vtkTypeBool vtkTautlineAlgorithm::ProcessRequest(
 int vtkTautlineAlgorithm::ExecuteData(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
+  if (!this->UpstreamProblem.empty())
+  {
+    request->Remove(vtkStreamingDemandDrivenPipeline::CONTINUE_EXECUTING());
+    this->ClearResult();
+    return this->Fail(outputs, std::exchange(this->UpstreamProblem, ""));
+  }
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
   if (!this->TakesComposite(MeshPort) && !vtkDataSet::SafeDownCast(input))
   {
@@ -222,8 +229,10 @@ int vtkTautlineAlgorithm::ModifyRequest(vtkInformation* request, int when)
 {
   const bool update = when == vtkExecutive::BeforeForward &&
     request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) && this->GetNumberOfInputPorts() > 0 &&
-    tautline::severalProcesses() &&
-    (this->ExecutesOnAllProcesses() || this->GetGatheredResult() != tautline::GatheredResult::None);
+    (this->ExecutesAgain() ||
+      (tautline::severalProcesses() &&
+        (this->ExecutesOnAllProcesses() ||
+          this->GetGatheredResult() != tautline::GatheredResult::None)));
   return update ? this->UpdateInputs(request) : this->Superclass::ModifyRequest(request, when);
 }
 
@@ -290,6 +299,11 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
   const std::string problem = tautline::firstProblem(failed
       ? "An input could not be computed, see the error of the filter or reader before this one."
       : "");
+  if (!problem.empty() && this->ExecutesAgain())
+  {
+    this->UpstreamProblem = problem; // the inputs count as up to date
+    return 1;
+  }
   if (!problem.empty())
   {
     this->ClearResult();

@@ -149,6 +149,12 @@ protected:
   /// Override it and call that of the superclass, which exchanges the summary.
   virtual void ExchangeResult(tautline::ResultStream& stream);
 
+  /**
+   * Whether the execution to come is a further one for the same request (CONTINUE_EXECUTING): if an
+   * input then fails, this filter is executed and fails, as VTK would ask it forever. Default: no.
+   */
+  virtual bool ExecutesAgain() const { return false; }
+
   /// Seconds for an execution; 0, the default, is no limit.
   virtual double GetExecutionSeconds() const;
 
@@ -232,6 +238,7 @@ private:
   std::vector<int> SelectionPorts;
   vtkMTimeType FailedInputs = 0;   ///< the time of inputs that could not be computed, or 0
   std::vector<double> FailedSteps; ///< the time step that was requested of each then
+  std::string UpstreamProblem;     ///< of a further execution, which reports it
   std::chrono::steady_clock::time_point Start; ///< of the execution
   bool Best = false;                           ///< whether HaveBest() was called in this execution
 };

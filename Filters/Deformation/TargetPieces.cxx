@@ -11,11 +11,9 @@
 #include "vtkPointData.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <functional>
-#include <limits>
 
 namespace tautline
 {
@@ -72,27 +70,6 @@ bool matchesByIds(const WarpSettings& settings)
     (settings.correspondence == Correspondence::Automatic && chosen);
 }
 
-/// Whether a piece of the target has the points and cells of a piece of the mesh.
-bool isSamePiece(vtkDataSet* input, vtkDataSet* target)
-{
-  if (!target || target->GetNumberOfPoints() != input->GetNumberOfPoints() ||
-    target->GetNumberOfCells() != input->GetNumberOfCells())
-  {
-    return !target && input->GetNumberOfPoints() == 0;
-  }
-  vtkNew<vtkIdList> a, b;
-  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
-  {
-    input->GetCellPoints(cell, a);
-    target->GetCellPoints(cell, b);
-    if (!std::equal(a->begin(), a->end(), b->begin(), b->end()))
-    {
-      return false;
-    }
-  }
-  return true;
-}
-
 /**
  * @class TargetPieces
  * @brief A motion to a target, on processes.
@@ -112,99 +89,45 @@ public:
 
 private:
   DistributedMesh& local() { return this->Whole.mesh(); }
-  void takeLeast(const std::vector<double>& given);
   template <class PlaceOf>
-  PointFlags moveTo(const PointFlags& matched, const PlaceOf& placeOf);
+  PieceMotion moveTo(const PointFlags& matched, const PlaceOf& placeOf);
+  PieceMotion moveToClosest(const PointFlags& moved);
   std::vector<FoundPlace> placesById(Index& unknown);
-  void moveByIds(const PointFlags& matched);
+  PieceMotion moveByIds(const PointFlags& matched);
 
   const WarpSettings& Settings;
   RankGroup& Group;
   RankMesh& Whole;
   const WarpPiece& Piece;
-  PieceMotion Motion;
 };
 
 //------------------------------------------------------------------------------
-/// The displacements of local points from those of the piece's. Pieces may differ by rounding: of
-/// each component the least, which does not depend on the processes. Pieces that differ by more do
-/// not correspond to those of the mesh.
-/// @param given infinite where no place is given
-void TargetPieces::takeLeast(const std::vector<double>& given)
+/// Moves points of the boundary to places of the target. Pieces may differ by rounding; those that
+/// differ by more do not correspond to those of the mesh.
+/// @param placeOf a point of the piece; writes its place, or returns false
+template <class PlaceOf>
+PieceMotion TargetPieces::moveTo(const PointFlags& matched, const PlaceOf& placeOf)
 {
-  constexpr double none = std::numeric_limits<double>::infinity();
   constexpr double torn = 1e-3; // of the size of the mesh; rounding of single precision is 1e-7
-  std::vector<double> component, negative;
-  this->Group.together(
-    [&]
+  const MeshView& piece = this->Whole.piece();
+  PieceMotion motion = motionOfPieces(this->Group, this->Whole, matched, this->Settings.amount,
+    [&](Index p, Vec3& d)
     {
-      component.resize(this->Whole.piece().numberOfPoints);
-      negative.resize(component.size());
-      this->Motion.displacement.assign(3 * this->local().localPoints(), 0.0);
+      const bool has = placeOf(p, d);
+      d = d - tautline::pointOf(piece, p);
+      return has;
     });
-  double farthest = 0;
-  for (int c = 0; c < 3; ++c)
-  {
-    for (std::size_t p = 0; p < component.size(); ++p)
-    {
-      component[p] = given[3 * p + c];
-      negative[p] = component[p] == none ? none : -component[p];
-    }
-    const std::vector<double> least = this->Whole.leastOf(component, none);
-    const std::vector<double> most = this->Whole.leastOf(negative, none);
-    for (Index p = 0; p < this->local().localPoints(); ++p)
-    {
-      if (least[p] != none)
-      {
-        farthest = std::max(farthest, -most[p] - least[p]);
-        this->Motion.displacement[3 * p + c] = this->Settings.amount * least[p];
-      }
-    }
-  }
-  farthest = this->Group.maximum(farthest);
-  const std::array<double, 6>& box = this->local().bounds();
-  if (farthest > torn * norm({ box[3] - box[0], box[4] - box[1], box[5] - box[2] }))
+  requireFiniteTarget(motion.broken);
+  if (motion.farthest > torn * diagonalOf(this->local()))
   {
     throw Error("For points that several pieces of the mesh have, the target has different places, "
                 "up to " +
-      std::to_string(farthest) +
+      std::to_string(motion.farthest) +
       " apart: its pieces are not those of the mesh with the same points. " + OrderRemedy);
   }
-}
-
-//------------------------------------------------------------------------------
-/// Moves points of the boundary to places of the target.
-/// @param placeOf a point of the piece; writes its place, or returns false
-/// @return one flag per local point: it has a place
-template <class PlaceOf>
-PointFlags TargetPieces::moveTo(const PointFlags& matched, const PlaceOf& placeOf)
-{
-  const MeshView& piece = this->Whole.piece();
-  std::vector<double> given;
-  PointFlags placed, broken;
-  this->Group.together(
-    [&]
-    {
-      given.assign(3 * piece.numberOfPoints, std::numeric_limits<double>::infinity());
-      placed.assign(piece.numberOfPoints, 0);
-      broken = placed;
-      for (Index p = 0; p < piece.numberOfPoints; ++p)
-      {
-        const Index at = this->local().localOfPiece()[p];
-        Vec3 place;
-        if (at < 0 || !matched[at] || !placeOf(p, place))
-        {
-          continue;
-        }
-        const Vec3 d = place - tautline::pointOf(piece, p);
-        placed[p] = 1;
-        broken[p] = !std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2]);
-        std::copy(d.begin(), d.end(), &given[3 * p]);
-      }
-    });
-  requireFiniteTarget(countOwned(this->Group, this->local(), this->Whole.anyOf(broken)));
-  this->takeLeast(given);
-  return this->Whole.anyOf(placed);
+  motion.how = describeMatched(countOwned(this->Group, this->local(), motion.given),
+    countOwned(this->Group, this->local(), matched));
+  return motion;
 }
 
 //------------------------------------------------------------------------------
@@ -303,69 +226,82 @@ std::vector<FoundPlace> TargetPieces::placesById(Index& unknown)
 
 //------------------------------------------------------------------------------
 /// By an array of ids that both have.
-void TargetPieces::moveByIds(const PointFlags& matched)
+PieceMotion TargetPieces::moveByIds(const PointFlags& matched)
 {
   Index unknown = 0;
   const std::vector<FoundPlace> found = this->placesById(unknown);
   requireKnownIds(unknown, this->Settings.targetIds, true);
   auto next = found.begin(); // points are visited in their order
-  const PointFlags placed = this->moveTo(matched,
+  PieceMotion motion = this->moveTo(matched,
     [&](Index p, Vec3& place)
     {
       next = std::find_if(next, found.end(), [p](const FoundPlace& one) { return one.point >= p; });
       const bool has = next != found.end() && next->point == p;
-      place = has ? next->place : place;
+      place = has ? next->place : Vec3{ 0, 0, 0 };
       return has;
     });
-  this->Motion.how = "by point ids" +
-    describeMatched(countOwned(this->Group, this->local(), placed),
-      countOwned(this->Group, this->local(), matched));
+  motion.how = "by point ids" + motion.how;
+  return motion;
+}
+
+//------------------------------------------------------------------------------
+PieceMotion TargetPieces::moveToClosest(const PointFlags& moved)
+{
+  const auto surface = targetSurfaceOnAll(this->Group, this->Piece.target, this->Whole.volume());
+  Projection found;
+  this->Group.together([&] { found = projected(surface, this->local().points().data(), moved); });
+  PieceMotion motion;
+  motion.displacement = std::move(found.displacement);
+  for (double& d : motion.displacement)
+  {
+    d *= this->Settings.amount;
+  }
+  motion.how = describeProjection(
+    countOwned(this->Group, this->local(), moved), this->Group.maximum(found.farthest));
+  return motion;
 }
 
 //------------------------------------------------------------------------------
 PieceMotion TargetPieces::run(const PointFlags& moved, const PointFlags& matched)
 {
-  const WarpSettings& set = this->Settings;
-  vtkDataSet* piece = this->Piece.target;
-  if (set.correspondence == Correspondence::ClosestPoint)
+  if (this->Settings.correspondence == Correspondence::ClosestPoint)
   {
-    const auto surface = targetSurfaceOnAll(this->Group, piece, this->Whole.volume());
-    Projection found;
-    this->Group.together([&] { found = projected(surface, this->local().points().data(), moved); });
-    std::transform(found.displacement.begin(), found.displacement.end(), found.displacement.begin(),
-      [&set](double d) { return set.amount * d; });
-    this->Motion.displacement = std::move(found.displacement);
-    this->Motion.how = describeProjection(
-      countOwned(this->Group, this->local(), moved), this->Group.maximum(found.farthest));
-    return std::move(this->Motion);
+    return this->moveToClosest(moved);
   }
-  if (matchesByIds(set))
+  if (matchesByIds(this->Settings))
   {
-    this->moveByIds(matched);
-    return std::move(this->Motion);
+    return this->moveByIds(matched);
   }
-  const PointFlags placed = this->moveTo(matched,
+  PieceMotion motion = this->moveTo(matched,
     [this](Index p, Vec3& place)
     {
       this->Piece.target->GetPoint(p, place.data());
       return true;
     });
-  this->Motion.how = "as the same mesh, point by point" +
-    describeMatched(countOwned(this->Group, this->local(), placed),
-      countOwned(this->Group, this->local(), matched));
-  return std::move(this->Motion);
+  motion.how = "as the same mesh, point by point" + motion.how;
+  return motion;
 }
 }
 
 //------------------------------------------------------------------------------
-Index countOwned(RankGroup& group, const DistributedMesh& mesh, const PointFlags& flags)
+bool haveSameCells(vtkDataSet* piece, vtkDataSet* other)
 {
-  Index count = 0;
-  for (Index p = 0; p < mesh.localPoints(); ++p)
+  if (!other || other->GetNumberOfPoints() != piece->GetNumberOfPoints() ||
+    other->GetNumberOfCells() != piece->GetNumberOfCells())
   {
-    count += flags[p] != 0 && mesh.owned(p);
+    return !other && piece->GetNumberOfPoints() == 0;
   }
-  return group.sum(count);
+  vtkNew<vtkIdList> a, b;
+  for (vtkIdType cell = 0; cell < piece->GetNumberOfCells(); ++cell)
+  {
+    piece->GetCellPoints(cell, a);
+    other->GetCellPoints(cell, b);
+    if (!std::equal(a->begin(), a->end(), b->begin(), b->end()))
+    {
+      return false;
+    }
+  }
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -380,7 +316,7 @@ bool findsPlaces(const WarpSettings& settings, vtkDataSet* input, vtkDataSet* ta
     return input->GetNumberOfPoints() == 0 ||
       input->GetPointData()->GetArray(settings.targetIds.c_str());
   }
-  return settings.correspondence != Correspondence::SameBoundary && isSamePiece(input, target);
+  return settings.correspondence != Correspondence::SameBoundary && haveSameCells(input, target);
 }
 
 //------------------------------------------------------------------------------

@@ -6,20 +6,13 @@
 #ifndef tautline_TargetPieces_h
 #define tautline_TargetPieces_h
 
+#include "PieceMotion.h"
 #include "WarpPieces.h"
-#include "tautline/Mesh/DistributedMesh.h"
 
 namespace tautline
 {
-/// A motion of the points here.
-struct PieceMotion
-{
-  std::vector<double> displacement; ///< 3 per local point, at the amount
-  std::string how;                  ///< the correspondence, a sentence
-};
-
-/// The points of all processes whose flag (one per local point) is set. Collective.
-Index countOwned(RankGroup& group, const DistributedMesh& mesh, const PointFlags& flags);
+/// Whether a piece has as many points as another and the same cells; null is empty. Not collective.
+bool haveSameCells(vtkDataSet* piece, vtkDataSet* other);
 
 /**
  * @brief Whether a process can find the places of its points: by ids that it has, by the closest

@@ -38,7 +38,7 @@ struct MovedPoints
 class PieceWarp
 {
 public:
-  PieceWarp(const WarpSettings& settings, RankGroup& group, RankMesh& mesh, const WarpPiece& piece);
+  PieceWarp(WarpSession& session, RankGroup& group, RankMesh& mesh, const WarpPiece& piece);
   void run(TableRows& history, TableRows& statistics, WarpTotals& totals);
 
 private:
@@ -51,19 +51,25 @@ private:
   void requireElements();
   PointFlags chosenToMove();
   PointFlags staying();
+  void findMotion();
   void moveByArray();
-  void agreeOn(const std::vector<double>& given);
+  void moveOverTime();
   void moveByTransform();
+  void prescribe(WarpFacts& facts);
   void findTensors();
   std::vector<double> transformed(double fraction);
+  WarpResult resultOfStep();
+  WarpResult warpFromPrevious(const WarpResult& previous);
   WarpResult warp();
+  WarpResult run(const std::vector<double>& displacement);
   void report(WarpResult& result, WarpFacts& facts, TableRows& history, TableRows& statistics,
     WarpTotals& totals);
 
+  WarpSession& Session;
   const WarpSettings& Settings;
   RankGroup& Group;
   RankMesh& Whole;
-  const WarpPiece& Piece;
+  const WarpPiece& Piece; ///< at this time step; the mesh is that of the first
   std::vector<Index> Ids; ///< per local point
   PointFlags Boundary, Moved, Stay, Prescribed;
   std::vector<double> Displacement; ///< 3 per local point, at the amount
@@ -73,9 +79,9 @@ private:
 };
 
 //------------------------------------------------------------------------------
-PieceWarp::PieceWarp(
-  const WarpSettings& settings, RankGroup& group, RankMesh& mesh, const WarpPiece& piece)
-  : Settings(settings)
+PieceWarp::PieceWarp(WarpSession& session, RankGroup& group, RankMesh& mesh, const WarpPiece& piece)
+  : Session(session)
+  , Settings(session.settings)
   , Group(group)
   , Whole(mesh)
   , Piece(piece)
@@ -178,6 +184,7 @@ PointFlags PieceWarp::staying()
 }
 
 //------------------------------------------------------------------------------
+/// Of points that are one all pieces must have the same displacement.
 void PieceWarp::moveByArray()
 {
   const Index points = this->Whole.piece().numberOfPoints;
@@ -188,7 +195,7 @@ void PieceWarp::moveByArray()
       PointFlags boundary(points, 0);
       for (Index p = 0; p < points; ++p)
       {
-        const Index at = this->Whole.mesh().localOfPiece()[p];
+        const Index at = this->local().localOfPiece()[p];
         boundary[p] = at >= 0 && this->Boundary[at];
       }
       if (this->here())
@@ -197,44 +204,50 @@ void PieceWarp::moveByArray()
           displacementsOf(displacementArray(this->Settings.arrays, this->Piece.input), boundary);
       }
     });
-  this->agreeOn(given);
-}
-
-//------------------------------------------------------------------------------
-/// The displacements of local points from those of the piece's. Of points that are one all pieces
-/// must have the same.
-void PieceWarp::agreeOn(const std::vector<double>& given)
-{
-  constexpr double none = std::numeric_limits<double>::infinity();
-  std::vector<double> component, negative;
-  this->Group.together(
-    [&]
-    {
-      component.resize(this->Whole.piece().numberOfPoints);
-      negative.resize(component.size());
-      this->Displacement.assign(3 * this->local().localPoints(), 0.0);
-    });
-  bool differ = false;
-  for (int c = 0; c < 3; ++c)
-  {
-    for (std::size_t p = 0; p < component.size(); ++p)
-    {
-      component[p] = given[3 * p + c];
-      negative[p] = -component[p];
-    }
-    const std::vector<double> least = this->Whole.leastOf(component, none);
-    const std::vector<double> most = this->Whole.leastOf(negative, none);
-    for (Index p = 0; p < this->local().localPoints(); ++p)
-    {
-      differ = differ || least[p] != -most[p];
-      this->Displacement[3 * p + c] = this->Settings.amount * least[p];
-    }
-  }
-  if (this->Group.any(differ))
+  PieceMotion motion =
+    motionOfPieces(this->Group, this->Whole, this->Boundary, this->Settings.amount,
+      [&given](Index p, Vec3& d)
+      {
+        std::copy_n(&given[3 * p], 3, d.begin());
+        return true;
+      });
+  if (motion.farthest > 0)
   {
     throw Error("Points at the same place are treated as one, but have different displacements: "
                 "make them equal, or switch Merge Coincident Points off.");
   }
+  this->Displacement = std::move(motion.displacement);
+}
+
+//------------------------------------------------------------------------------
+/// The boundary goes to where it is at this time step.
+void PieceWarp::moveOverTime()
+{
+  if (this->Session.times.empty())
+  {
+    throw Error(NoTimeSteps);
+  }
+  const MeshView& piece = this->Whole.piece();
+  PieceMotion motion =
+    motionOfPieces(this->Group, this->Whole, this->Boundary, this->Settings.amount,
+      [&](Index p, Vec3& d)
+      {
+        this->Piece.input->GetPoint(p, d.data());
+        d = d - tautline::pointOf(piece, p);
+        return true;
+      });
+  if (motion.broken > 0)
+  {
+    throw Error("The displacements of " + std::to_string(motion.broken) +
+      " prescribed points are NaN or infinite.");
+  }
+  constexpr double rounding = 1e-6; // of the size of the mesh: single precision has 1e-7
+  if (motion.farthest > rounding * diagonalOf(this->local()))
+  {
+    throw Error("Points at the same place are treated as one, but have different positions at this "
+                "time step: make them equal, or switch Merge Coincident Points off.");
+  }
+  this->Displacement = std::move(motion.displacement);
 }
 
 //------------------------------------------------------------------------------
@@ -333,10 +346,89 @@ void PieceWarp::findTensors()
 }
 
 //------------------------------------------------------------------------------
+/// The displacements and the points that are prescribed, with those that stay.
+void PieceWarp::prescribe(WarpFacts& facts)
+{
+  this->Stay = this->staying();
+  this->Group.together([&] { this->Prescribed = this->Boundary; });
+  for (Index p = 0; p < this->local().localPoints(); ++p)
+  {
+    double* d = &this->Displacement[3 * p];
+    if (this->Stay[p])
+    {
+      this->Prescribed[p] = 1;
+      std::fill_n(d, 3, 0.0);
+    }
+    const double length = norm({ d[0], d[1], d[2] });
+    facts.movedPoints += length > 0 && this->local().owned(p);
+    facts.largestDisplacement = std::max(facts.largestDisplacement, length);
+  }
+  facts.movedPoints = this->Group.sum(facts.movedPoints);
+  facts.largestDisplacement = this->Group.maximum(facts.largestDisplacement);
+  facts.boundaryPoints = this->countOwned(this->Prescribed);
+}
+
+//------------------------------------------------------------------------------
+/// The result at this time step, see WarpSession::warp().
+WarpResult PieceWarp::resultOfStep()
+{
+  if (!this->Session.sequence() || !this->Settings.fromPreviousStep)
+  {
+    return this->warp();
+  }
+  WarpBlock& kept = this->Session.ownPiece();
+  const int step = this->Session.current;
+  const auto done = kept.frames.find(step), before = kept.frames.find(step - 1);
+  if (done != kept.frames.end())
+  {
+    WarpResult result = done->second;
+    result.points = localPoints(this->Group, this->Whole, done->second.points);
+    return result;
+  }
+  WarpResult result =
+    before == kept.frames.end() ? this->warp() : this->warpFromPrevious(before->second);
+  const Index most = this->Group.maximum(3 * this->Whole.piece().numberOfPoints);
+  this->Group.together(
+    [&]
+    {
+      limitFrames(kept, static_cast<std::size_t>(most));
+      WarpResult& frame = kept.frames[step];
+      frame = result;
+      frame.points = this->Whole.ofPiece(result.points);
+    });
+  return result;
+}
+
+//------------------------------------------------------------------------------
+/// As WarpSession::warpFromPrevious().
+WarpResult PieceWarp::warpFromPrevious(const WarpResult& previous)
+{
+  DistributedMesh& mesh = this->local();
+  std::vector<double> points = localPoints(this->Group, this->Whole, previous.points);
+  if (countInvalidOnRanks(mesh, this->Whole.mirrored(), points, this->Settings.options.threads) > 0)
+  {
+    WarpResult result = this->run(this->Displacement);
+    result.message += (result.message.empty() ? "" : " ") + std::string(PreviousInvalid);
+    return result;
+  }
+  std::vector<double> rise;
+  this->Group.together(
+    [&]
+    {
+      rise = this->Displacement;
+      for (std::size_t i = 0; i < rise.size(); ++i)
+      {
+        rise[i] += mesh.points()[i] - points[i];
+      }
+    });
+  const PlacedPoints placed(mesh, std::move(points));
+  return this->run(rise);
+}
+
+//------------------------------------------------------------------------------
 WarpResult PieceWarp::warp()
 {
-  const WarpSettings& set = this->Settings;
-  const bool transform = set.motion == MotionSource::Transform;
+  const bool transform = this->Settings.motion == MotionSource::Transform;
   const auto zero = [](const std::vector<double>& values)
   { return std::all_of(values.begin(), values.end(), [](double d) { return d == 0; }); };
   bool rests = false;
@@ -355,6 +447,14 @@ WarpResult PieceWarp::warp()
     result.history[0].stage = "rest";
     return result;
   }
+  return this->run(this->Displacement);
+}
+
+//------------------------------------------------------------------------------
+/// From where the points of the mesh are.
+WarpResult PieceWarp::run(const std::vector<double>& displacement)
+{
+  const WarpSettings& set = this->Settings;
   WarpOptions options = set.options;
   options.prescribed = this->Prescribed.data();
   options.tensors = this->Tensors.empty() ? nullptr : this->Tensors.data();
@@ -362,17 +462,17 @@ WarpResult PieceWarp::warp()
   options.progress = [&set](double fraction) { return set.progress(0, fraction); };
   Warper warper(
     this->local(), this->Whole.mirrored(), this->Ids, Processes().communicator(), options);
-  if (!transform)
+  if (set.motion != MotionSource::Transform)
   {
-    return warper.warp(this->Displacement.data());
+    return warper.warp(displacement.data());
   }
   return warper.warp(
-    [this](double part, double* displacement)
+    [this](double part, double* to)
     {
       const std::vector<double> d = this->transformed(part);
       for (std::size_t i = 0; i < d.size(); ++i)
       {
-        displacement[i] = this->Stay[i / 3] ? 0.0 : d[i];
+        to[i] = this->Stay[i / 3] ? 0.0 : d[i];
       }
     });
 }
@@ -437,6 +537,34 @@ void PieceWarp::report(WarpResult& result, WarpFacts& facts, TableRows& history,
 }
 
 //------------------------------------------------------------------------------
+void PieceWarp::findMotion()
+{
+  switch (this->Settings.motion)
+  {
+    case MotionSource::Displacement:
+      this->moveByArray();
+      break;
+    case MotionSource::TimeSteps:
+      this->moveOverTime();
+      break;
+    case MotionSource::Transform:
+      this->moveByTransform();
+      break;
+    case MotionSource::Target:
+    {
+      requireTarget(this->Group, this->Piece.target);
+      this->Moved = this->chosenToMove();
+      const bool all = this->Settings.part == MovedPart::Automatic;
+      PieceMotion motion = moveToTarget(this->Settings, this->Group, this->Whole, this->Piece,
+        this->Moved, all ? this->Boundary : this->Moved);
+      this->Displacement = std::move(motion.displacement);
+      this->Correspondence = std::move(motion.how);
+      break;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& totals)
 {
   const Stopwatch clock;
@@ -447,44 +575,15 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
     throw Error(
       "The mesh has no boundary (it is closed), so there is nothing its points could follow.");
   }
-  if (this->Settings.motion == MotionSource::Transform)
-  {
-    this->moveByTransform();
-  }
-  else if (this->Settings.motion == MotionSource::Target)
-  {
-    requireTarget(this->Group, this->Piece.target);
-    this->Moved = this->chosenToMove();
-    const bool all = this->Settings.part == MovedPart::Automatic;
-    PieceMotion motion = moveToTarget(this->Settings, this->Group, this->Whole, this->Piece,
-      this->Moved, all ? this->Boundary : this->Moved);
-    this->Displacement = std::move(motion.displacement);
-    this->Correspondence = std::move(motion.how);
-  }
-  else
-  {
-    this->moveByArray();
-  }
-  this->Stay = this->staying();
-  this->Group.together([&] { this->Prescribed = this->Boundary; });
+  this->findMotion();
   WarpFacts facts;
-  for (Index p = 0; p < this->local().localPoints(); ++p)
-  {
-    double* d = &this->Displacement[3 * p];
-    if (this->Stay[p])
-    {
-      this->Prescribed[p] = 1;
-      std::fill_n(d, 3, 0.0);
-    }
-    const double length = norm({ d[0], d[1], d[2] });
-    facts.movedPoints += length > 0 && this->local().owned(p);
-    facts.largestDisplacement = std::max(facts.largestDisplacement, length);
-  }
-  facts.movedPoints = this->Group.sum(facts.movedPoints);
-  facts.largestDisplacement = this->Group.maximum(facts.largestDisplacement);
-  facts.boundaryPoints = this->countOwned(this->Prescribed);
+  this->prescribe(facts);
   this->findTensors();
-  WarpResult result = this->warp();
+  WarpResult result = this->resultOfStep();
+  if (!this->Session.atRequested())
+  {
+    return;
+  }
   facts.motion = this->Correspondence;
   facts.method = nameOf(this->Settings.options.method);
   const WarpCoefficients coefficients = this->Settings.options.coefficients;
@@ -495,17 +594,30 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   facts.seconds = clock.seconds();
   this->report(result, facts, history, statistics, totals);
 }
+
+/// Whether a piece has the points and cells that another has, wherever the points are.
+bool areAlike(vtkDataSet* piece, vtkDataSet* other)
+{
+  if (!piece) // but blocks
+  {
+    return false;
+  }
+  vtkDataArray* a = piece->GetPointData()->GetGlobalIds();
+  vtkDataArray* b = other->GetPointData()->GetGlobalIds();
+  bool alike = haveSameCells(piece, other) && (a != nullptr) == (b != nullptr);
+  for (vtkIdType i = 0; alike && a && i < piece->GetNumberOfPoints(); ++i)
+  {
+    alike = a->GetComponent(i, 0) == b->GetComponent(i, 0);
+  }
+  return alike;
+}
 }
 
 //------------------------------------------------------------------------------
-std::string needOfWholeMesh(const WarpSession& session, vtkDataObject* input, vtkDataObject* target)
+std::string needOfWholeMesh(
+  const WarpSettings& settings, vtkDataObject* input, vtkDataObject* target)
 {
-  const MotionSource motion = session.settings.motion;
-  if (motion == MotionSource::TimeSteps || session.sequence())
-  {
-    return "motions over time";
-  }
-  if (motion == MotionSource::Target)
+  if (settings.motion == MotionSource::Target)
   {
     const auto onAny = [](bool here) { return minimumOverProcesses(here ? 0 : 1) == 0; };
     auto* own = vtkDataSet::SafeDownCast(input);
@@ -515,8 +627,7 @@ std::string needOfWholeMesh(const WarpSession& session, vtkDataObject* input, vt
       return "targets with blocks";
     }
     // A target that is missing or empty is an error, whoever has the mesh.
-    if (onAny(other && other->GetNumberOfPoints() > 0) &&
-      onAny(!findsPlaces(session.settings, own, other)))
+    if (onAny(other && other->GetNumberOfPoints() > 0) && onAny(!findsPlaces(settings, own, other)))
     {
       return "targets that are matched to the whole boundary";
     }
@@ -525,9 +636,17 @@ std::string needOfWholeMesh(const WarpSession& session, vtkDataObject* input, vt
 }
 
 //------------------------------------------------------------------------------
-void warpPieces(const WarpSettings& settings, RankGroup& group, RankMesh& mesh,
-  const WarpPiece& piece, TableRows& history, TableRows& statistics, WarpTotals& totals)
+void warpPieces(WarpSession& session, RankGroup& group, RankMesh& mesh, const WarpPiece& piece,
+  TableRows& history, TableRows& statistics, WarpTotals& totals)
 {
-  PieceWarp(settings, group, mesh, piece).run(history, statistics, totals);
+  if (session.sequence() && group.any(!areAlike(piece.input, session.ownPiece().first)))
+  {
+    session.beginGathered();
+    return;
+  }
+  if (session.atRequested() || session.settings.fromPreviousStep)
+  {
+    PieceWarp(session, group, mesh, piece).run(history, statistics, totals);
+  }
 }
 }

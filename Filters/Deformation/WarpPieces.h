@@ -16,12 +16,11 @@ namespace tautline
 {
 class RankMesh;
 
-/// What needs the whole mesh in one place, in the plural, "motions over time"; "" if each process
-/// takes its piece.
-/// Collective.
+/// What needs the whole mesh in one place, in the plural, "targets with blocks"; "" if each process
+/// takes its piece. Collective.
 /// @param input the piece of the mesh @param target of this process, or null
 std::string needOfWholeMesh(
-  const WarpSession& session, vtkDataObject* input, vtkDataObject* target);
+  const WarpSettings& settings, vtkDataObject* input, vtkDataObject* target);
 
 /// What a process has of the inputs and outputs.
 struct WarpPiece
@@ -37,8 +36,14 @@ struct WarpPiece
  * @brief Warps the mesh and gives each piece its points and arrays, as addWarpOutput() does; rows
  * of the tables on the first process only. Throws Error, on all processes, as WarpSession::visit()
  * does. Matrices are not kept for the next execution. Collective.
+ *
+ * Of a motion over time, does what this time step needs: each process keeps its piece at the first
+ * time step and, where steps start from the one before, its points at those. Where the pieces have
+ * other points or cells than at the first time step, the session begins again with the mesh
+ * gathered.
+ * @param mesh at the first time step: of session.ownPiece(); else of the input
  */
-void warpPieces(const WarpSettings& settings, RankGroup& group, RankMesh& mesh,
-  const WarpPiece& piece, TableRows& history, TableRows& statistics, WarpTotals& totals);
+void warpPieces(WarpSession& session, RankGroup& group, RankMesh& mesh, const WarpPiece& piece,
+  TableRows& history, TableRows& statistics, WarpTotals& totals);
 }
 #endif

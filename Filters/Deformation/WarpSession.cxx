@@ -2,16 +2,15 @@
 #include "WarpSession.h"
 
 #include "PointMerge.h"
+#include "PointOrder.h"
 #include "Processes.h"
 
 #include "tautline/Core/Stopwatch.h"
 
 #include "vtkAlgorithm.h"
-#include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkInformation.h"
 #include "vtkPointData.h"
-#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <cmath>
@@ -33,27 +32,6 @@ static_assert(MethodNames.size() == static_cast<std::size_t>(WarpMethod::Weighte
 double norm3(const double* d)
 {
   return std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-}
-
-bool sameMesh(const MeshView& a, const MeshView& b)
-{
-  return a.numberOfPoints == b.numberOfPoints && a.numberOfCells == b.numberOfCells &&
-    std::equal(a.points, a.points + 3 * a.numberOfPoints, b.points) &&
-    std::equal(a.cellTypes, a.cellTypes + a.numberOfCells, b.cellTypes) &&
-    std::equal(a.offsets, a.offsets + a.numberOfCells + 1, b.offsets) &&
-    std::equal(a.connectivity, a.connectivity + a.offsets[a.numberOfCells], b.connectivity);
-}
-
-/// Points, cells and which are ghosts; without other arrays, whose changes do not matter.
-vtkSmartPointer<vtkPointSet> structureOf(vtkPointSet* input)
-{
-  auto copy = vtkSmartPointer<vtkPointSet>::Take(input->NewInstance());
-  copy->CopyStructure(input);
-  if (vtkUnsignedCharArray* ghosts = input->GetCellGhostArray())
-  {
-    copy->GetCellData()->AddArray(ghosts);
-  }
-  return copy;
 }
 
 /// The target of a data set: that at its place, or the only one there is.
@@ -85,6 +63,24 @@ vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
     throw Error("The target has no data set in the place of this one of the mesh.");
   }
   return only;
+}
+
+/// Throws Error if points that have moved were put together in the order of their coordinates.
+void requireOrderOverTime(vtkPointSet& first, vtkPointSet& now)
+{
+  bool moved = pointOrder(&now) == PointOrder::Coordinates && &first != &now;
+  for (vtkIdType i = 0; moved && i < now.GetNumberOfPoints(); ++i)
+  {
+    Vec3 a, b;
+    first.GetPoint(i, a.data());
+    now.GetPoint(i, b.data());
+    if (a != b)
+    {
+      throw Error("The pieces of the mesh are put together, and its points have moved since the "
+                  "first time step, so that their order is not known: run Generate Global Ids "
+                  "before, or Aggregate Dataset.");
+    }
+  }
 }
 
 bool allZero(const std::vector<double>& values)
@@ -120,78 +116,6 @@ vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input)
 }
 
 //------------------------------------------------------------------------------
-void RestingMesh::take(vtkPointSet* input, int threads, bool mergePoints)
-{
-  // What was taken shares its arrays with its owner, who may have changed them in place.
-  if (this->data && this->data->GetMTime() <= this->time && mergePoints == this->MergePoints &&
-    input->HasAnyGhostCells() == this->data->HasAnyGhostCells() &&
-    sameMesh(MeshAdapter(input, threads).mesh().view(), this->mesh->given().view()))
-  {
-    return;
-  }
-  this->warper.reset();
-  this->data = nullptr; // so that it is not taken for good if what follows throws
-  vtkSmartPointer<vtkPointSet> copy = structureOf(input);
-  this->mesh = std::make_unique<MovableMesh>(copy, threads, mergePoints);
-  this->MergePoints = mergePoints;
-  requireElements(*this->mesh);
-  this->boundary = boundaryOf(this->mesh->mesh());
-  this->Parts.reset();
-  this->takeElements(threads);
-  this->data = copy;
-  this->time = copy->GetMTime();
-}
-
-//------------------------------------------------------------------------------
-const BoundaryParts& RestingMesh::parts() const
-{
-  if (!this->Parts)
-  {
-    this->Parts = std::make_unique<BoundaryParts>(boundaryParts(this->mesh->mesh()));
-  }
-  return *this->Parts;
-}
-
-//------------------------------------------------------------------------------
-void RestingMesh::takeElements(int threads)
-{
-  const Mesh& all = this->mesh->mesh();
-  MeshView view = all.view();
-  const int dimension = all.dimension() == Dimension::Volume ? 3 : 2;
-  this->elements.reset();
-  this->cells.clear();
-  for (Index cell = 0; cell < view.numberOfCells; ++cell)
-  {
-    const CellType type = cornerType(view.cellTypes[cell]);
-    if (type != CellType::Unsupported && topology(type).dimension == dimension)
-    {
-      this->cells.push_back(cell);
-    }
-  }
-  if (static_cast<Index>(this->cells.size()) == view.numberOfCells)
-  {
-    this->cells.clear();
-    return;
-  }
-  this->types.clear();
-  this->offsets.assign(1, 0);
-  this->connectivity.clear();
-  for (Index cell : this->cells)
-  {
-    this->types.push_back(view.cellTypes[cell]);
-    this->connectivity.insert(this->connectivity.end(), view.connectivity + view.offsets[cell],
-      view.connectivity + view.offsets[cell + 1]);
-    this->offsets.push_back(static_cast<Index>(this->connectivity.size()));
-  }
-  view.numberOfCells = static_cast<Index>(this->cells.size());
-  view.cellTypes = this->types.data();
-  view.offsets = this->offsets.data();
-  view.connectivity = this->connectivity.data();
-  this->elements = std::make_unique<Mesh>(view, threads);
-  this->elements->setMirrored(all.mirrored());
-}
-
-//------------------------------------------------------------------------------
 bool WarpSession::sequence() const
 {
   return !this->times.empty() &&
@@ -209,7 +133,12 @@ void WarpSession::plan(double time, vtkMTimeType upstream, vtkMTimeType own)
   {
     return;
   }
-  const bool changed = upstream != this->Upstream;
+  // The processes begin again together.
+  const auto onAny = [](bool here) { return minimumOverProcesses(here ? 0 : 1) == 0; };
+  const bool modified = onAny(own > this->Own);
+  const bool changed =
+    onAny(upstream != this->Upstream) || (severalProcesses() != nullptr && modified);
+  this->gathers = this->gathers && !changed;
   for (auto& [number, kept] : this->Blocks)
   {
     if (changed)
@@ -218,7 +147,7 @@ void WarpSession::plan(double time, vtkMTimeType upstream, vtkMTimeType own)
     }
     const bool stopped = std::any_of(kept.frames.begin(), kept.frames.end(),
       [](const auto& frame) { return frame.second.aborted; });
-    if (changed || stopped || own > this->Own)
+    if (changed || stopped || modified)
     {
       kept.frames.clear();
     }
@@ -226,9 +155,9 @@ void WarpSession::plan(double time, vtkMTimeType upstream, vtkMTimeType own)
   this->Upstream = upstream;
   this->Own = own;
 
-  this->begun = this->begun && !changed &&
-    std::all_of(this->Blocks.begin(), this->Blocks.end(),
-      [](const auto& entry) { return entry.second.first != nullptr; });
+  this->begun = !onAny(!this->begun || changed ||
+    std::any_of(this->Blocks.begin(), this->Blocks.end(),
+      [](const auto& entry) { return entry.second.first == nullptr; }));
   this->current = this->begun ? this->requested : 0;
   for (const auto& [number, kept] : this->Blocks)
   {
@@ -260,7 +189,7 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
     kept.first = structureOf(input);
     kept.frames.clear();
   }
-  const bool last = !inSequence || this->current == this->requested;
+  const bool last = this->atRequested();
   if (!last && !this->settings.fromPreviousStep)
   {
     return; // only the mesh at the first time step was requested
@@ -276,6 +205,7 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
       std::to_string(view.numberOfPoints) + " and " + std::to_string(view.numberOfCells) +
       ": only its points may change over time.");
   }
+  requireOrderOverTime(*kept.rest.data, *input);
   WarpTask todo = this->task(block, kept.rest, target, selected);
   WarpFacts facts;
   WarpResult result = this->warp(kept, todo, block.number, facts.reused);
@@ -354,7 +284,7 @@ void WarpSession::forgetFrom(int block)
 //------------------------------------------------------------------------------
 void WarpSession::clear()
 {
-  this->looping = this->begun = false;
+  this->looping = this->begun = this->piecewise = this->gathers = this->startsAgain = false;
   this->Blocks.clear();
 }
 
@@ -448,7 +378,7 @@ void WarpSession::moveOverTime(
 {
   if (this->times.empty())
   {
-    throw Error("The input has no time steps its boundary could move over: choose another Motion.");
+    throw Error(NoTimeSteps);
   }
   requireEqualValues(vtkPointSet::SafeDownCast(block.input)->GetPoints()->GetData(),
     rest.mesh->representative(), "positions at this time step");
@@ -604,7 +534,7 @@ WarpResult WarpSession::warp(WarpBlock& kept, WarpTask& task, int blockNumber, b
   spread(result.points, 3, rest.mesh->representative());
   if (stepwise)
   {
-    this->limitMemory(kept);
+    limitFrames(kept, 3 * static_cast<std::size_t>(kept.rest.data->GetNumberOfPoints()));
     kept.frames[this->current] = result;
   }
   return result;
@@ -625,7 +555,7 @@ WarpResult WarpSession::warpFromPrevious(
   }
   catch (const Error&) // tangled; the step goes the whole way from the mesh at rest
   {
-    note = "The time step before was not valid, so this one started from the first.";
+    note = PreviousInvalid;
   }
   WarpTask rise = task;
   for (std::size_t i = 0; note.empty() && i < rise.displacement.size(); ++i)
@@ -659,12 +589,36 @@ WarpResult WarpSession::run(Warper& warper, const WarpTask& task) const
 }
 
 //------------------------------------------------------------------------------
-void WarpSession::limitMemory(WarpBlock& kept) const
+vtkPointSet* WarpSession::firstPiece(vtkDataObject* input)
 {
-  const auto numbers = 3 * static_cast<std::size_t>(kept.rest.data->GetNumberOfPoints());
-  if ((kept.frames.size() + 1) * numbers > MaximumNumbersKept)
+  auto* piece = vtkPointSet::SafeDownCast(input);
+  if (!piece)
   {
-    kept.frames.clear(); // going back starts from the first, and ends in the same place
+    return nullptr;
+  }
+  WarpBlock& kept = this->ownPiece();
+  if (!kept.first)
+  {
+    kept.first = structureOf(piece);
+    kept.first->GetPointData()->SetGlobalIds(piece->GetPointData()->GetGlobalIds());
+    kept.frames.clear();
+  }
+  return kept.first;
+}
+
+//------------------------------------------------------------------------------
+void WarpSession::beginGathered()
+{
+  this->clear();
+  this->gathers = this->startsAgain = true;
+}
+
+//------------------------------------------------------------------------------
+void limitFrames(WarpBlock& block, std::size_t numbers)
+{
+  if ((block.frames.size() + 1) * numbers > MaximumNumbersKept)
+  {
+    block.frames.clear();
   }
 }
 }

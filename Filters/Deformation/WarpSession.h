@@ -7,7 +7,7 @@
 #define tautline_WarpSession_h
 
 #include "Blocks.h"
-#include "MovedBoundary.h"
+#include "RestingMesh.h"
 #include "TargetMatch.h"
 #include "WarpOutput.h"
 #include "tautline/Deformation/PointMotion.h"
@@ -65,42 +65,18 @@ struct WarpSettings
   bool anisotropic() const { return isAnisotropic(this->options.method); }
 };
 
+// Errors.
+constexpr const char* NoTimeSteps =
+  "The input has no time steps its boundary could move over: choose another Motion.";
+/// A message of a result.
+constexpr const char* PreviousInvalid =
+  "The time step before was not valid, so this one started from the first.";
+
 /// The name of a method in the menu.
 const char* nameOf(WarpMethod method);
 /// The point array that moves the boundary: the chosen one, or `Displacement`, or the vectors; or
 /// null.
 vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input);
-
-/// A mesh at rest, and what was made of it.
-struct RestingMesh
-{
-  vtkSmartPointer<vtkPointSet> data;
-  vtkMTimeType time = 0; ///< of data when it was taken
-  std::unique_ptr<MovableMesh> mesh;
-  PointFlags boundary;
-  // The elements alone, if there are other cells (lines, vertices, the triangles around a volume).
-  std::vector<unsigned char> types;
-  std::vector<Index> offsets, connectivity, cells;
-  std::unique_ptr<Mesh> elements;
-  // What the warper was made with and refers to.
-  PointFlags prescribed;
-  std::vector<double> tensors, options, elementTensors;
-  std::unique_ptr<Warper> warper;
-
-  /// Takes a data set, unless it is the one that is here. Throws Error if nothing can be warped.
-  void take(vtkPointSet* input, int threads, bool mergePoints);
-  /// What is warped.
-  const Mesh& warped() const { return this->elements ? *this->elements : this->mesh->mesh(); }
-
-  /// Of its boundary; computed on first use.
-  const BoundaryParts& parts() const;
-
-private:
-  void takeElements(int threads);
-
-  bool MergePoints = true;
-  mutable std::unique_ptr<BoundaryParts> Parts;
-};
 
 /// A data set of the input.
 struct WarpBlock
@@ -109,6 +85,11 @@ struct WarpBlock
   vtkSmartPointer<vtkPointSet> first; ///< at the first time step
   std::map<int, WarpResult> frames;   ///< at time steps, each warped from the one before
 };
+
+/// Drops the time steps that are kept if another one would need too much memory: going back starts
+/// from the first then, and ends in the same place.
+/// @param numbers of coordinates of a time step
+void limitFrames(WarpBlock& block, std::size_t numbers);
 
 /// The requested motion of a data set.
 struct WarpTask
@@ -136,9 +117,15 @@ public:
   bool looping = false; ///< another pass of the same execution
   bool begun = false;   ///< the first time step is known (or this process has nothing of it)
   int requested = 0, current = 0; ///< numbers of time steps
+  // On several processes.
+  bool piecewise = false;   ///< each process keeps its piece, else the first one the whole mesh
+  bool gathers = false;     ///< since the pieces change over time
+  bool startsAgain = false; ///< the first time step is to be requested again
 
   /// Whether a result needs more than the data at its time.
   bool sequence() const;
+  /// Whether the data are those of the time that is requested.
+  bool atRequested() const { return !this->sequence() || this->current == this->requested; }
   /**
    * @brief Chooses the time step to request. Collective.
    * @param own the modification time of the filter
@@ -154,6 +141,14 @@ public:
   PointFlags movingPoints(const InputBlock& block, vtkDataObject* target, vtkDataObject* selected);
   /// The mesh of a data set after movingPoints().
   const RestingMesh& restingMesh(int block) const { return this->Blocks.at(block).rest; }
+  /// What a process keeps of its piece of a mesh on several processes.
+  WarpBlock& ownPiece() { return this->Blocks[0]; }
+  /// The piece at the first time step, with its global ids; that of the input if none is kept yet.
+  /// Null if points are implicit, or for blocks.
+  vtkPointSet* firstPiece(vtkDataObject* input);
+  /// Drops all pieces; the first time step is requested again and the mesh is gathered from then
+  /// on.
+  void beginGathered();
   /// Drops the data sets from a number on.
   void forgetFrom(int block);
   /// Drops all data, after an error.
@@ -177,7 +172,6 @@ private:
   WarpResult warpFromPrevious(
     RestingMesh& rest, const WarpResult& previous, const WarpTask& task, int blockNumber);
   WarpResult run(Warper& warper, const WarpTask& task) const;
-  void limitMemory(WarpBlock& kept) const;
 
   std::map<int, WarpBlock> Blocks; ///< by number
   vtkMTimeType Upstream = 0, Own = 0;

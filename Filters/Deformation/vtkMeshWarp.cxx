@@ -300,16 +300,24 @@ int vtkMeshWarp::RequestData(
                                   "off), or warp the mesh in parts",
     [&]
     {
-      if (pieces)
+      if (pieces || session.piecewise)
       {
-        session.clear();
+        if (!session.sequence())
+        {
+          session.clear();
+        }
+        if (!pieces) // as at the first time step
+        {
+          throw tautline::Error("The mesh and the target can no longer be taken in pieces, as at "
+                                "the first time step: " +
+            this->WhyGathered);
+        }
         output->ShallowCopy(input);
         const tautline::WarpPiece piece = { vtkDataSet::SafeDownCast(input),
           vtkSelection::GetData(inputVector[MovedPort]),
           vtkSelection::GetData(inputVector[FixedPort]), vtkDataSet::SafeDownCast(target),
           vtkDataSet::SafeDownCast(output) };
-        tautline::warpPieces(
-          session.settings, *this->Group, *pieces, piece, history, statistics, totals);
+        tautline::warpPieces(session, *this->Group, *pieces, piece, history, statistics, totals);
         return;
       }
       const auto moved =
@@ -325,12 +333,15 @@ int vtkMeshWarp::RequestData(
     session.clear();
     return this->Fail(outputVector, failure);
   }
-  session.begun = session.sequence();
+  session.begun = session.sequence() && !session.startsAgain;
   // Time steps before the one requested, which the result needs: again, with the next of them.
-  if (session.sequence() && session.current < session.requested)
+  if (session.sequence() && (session.startsAgain || session.current < session.requested))
   {
     session.looping = true;
-    session.current = this->StartFrom == PREVIOUS_STEP ? session.current + 1 : session.requested;
+    session.current = session.startsAgain ? 0
+      : this->StartFrom == PREVIOUS_STEP  ? session.current + 1
+                                          : session.requested;
+    session.startsAgain = false;
     request->Set(Pipeline::CONTINUE_EXECUTING(), 1);
     return 1;
   }
@@ -378,6 +389,12 @@ void vtkMeshWarp::ClearNumbers()
 }
 
 //------------------------------------------------------------------------------
+bool vtkMeshWarp::ExecutesAgain() const
+{
+  return this->Session->looping;
+}
+
+//------------------------------------------------------------------------------
 tautline::GatheredResult vtkMeshWarp::GetGatheredResult() const
 {
   return tautline::GatheredResult::SameMesh;
@@ -388,19 +405,46 @@ bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
 {
   this->Pieces.reset();
   this->Group.reset();
-  this->Session->settings = this->GetSettings();
+  tautline::WarpSession& session = *this->Session;
+  session.settings = this->GetSettings();
+  const bool sequence = session.sequence();
+  if (sequence && session.begun && !session.piecewise)
+  {
+    return false; // as at the first time step
+  }
+  if (!sequence)
+  {
+    session.piecewise = session.gathers = false;
+  }
+  else if (!session.begun)
+  {
+    session.forgetFrom(0);
+  }
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
+  vtkPointSet* first = sequence ? session.firstPiece(input) : nullptr;
   const std::string what =
-    tautline::needOfWholeMesh(*this->Session, input, vtkDataObject::GetData(inputs[TargetPort]));
+    tautline::needOfWholeMesh(session.settings, input, vtkDataObject::GetData(inputs[TargetPort]));
   std::string why =
     what.empty() || !tautline::isScattered(input) ? "" : what + " need the whole mesh";
-  if (what.empty())
+  if (sequence && session.gathers)
   {
-    this->Pieces = tautline::takePieces(this->Group, input, this->Threads,
+    why = "its pieces change over time";
+  }
+  else if (what.empty())
+  {
+    this->Pieces = tautline::takePieces(this->Group, first ? first : input, this->Threads,
       this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute), &why);
   }
   this->WhyGathered = tautline::gatheredSentence(why);
-  return this->Pieces != nullptr;
+  if (sequence && !session.begun)
+  {
+    session.piecewise = this->Pieces != nullptr;
+    if (!session.piecewise)
+    {
+      session.forgetFrom(0);
+    }
+  }
+  return this->Pieces || (sequence && session.piecewise);
 }
 
 //------------------------------------------------------------------------------

@@ -452,6 +452,8 @@ protected:
   bool KeepsBest() const override { return true; }
   int RequestData(vtkInformation* request, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
+  /// While time steps before the one requested are taken.
+  bool ExecutesAgain() const override;
   tautline::GatheredResult GetGatheredResult() const override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   bool TakesPieces(vtkInformationVector** inputs) override;

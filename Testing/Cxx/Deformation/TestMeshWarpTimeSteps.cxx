@@ -28,6 +28,7 @@ public:
   double Degrees = 12; ///< per unit of time
   bool Moves = true;   ///< or only its array of displacements does
   bool Grows = false;  ///< from time 2 on it has another cell
+  double FailsAt = -1; ///< the time at which it cannot be computed
   int Executions = 0;
 
 protected:
@@ -51,6 +52,11 @@ protected:
     const double asked = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
     const double time =
       *std::prev(std::upper_bound(this->Times.begin() + 1, this->Times.end(), asked));
+    if (time == this->FailsAt)
+    {
+      vtkErrorMacro("The time step cannot be computed.");
+      return 0;
+    }
     const double angle = time * this->Degrees * 3.14159265358979323846 / 180;
     MeshData now = this->Data;
     for (Index i = 0; i < now.numberOfPoints(); ++i)
@@ -213,6 +219,28 @@ void testTimeCosts()
   source->Modified();
   filter->UpdateTimeStep(4);
   TAUTLINE_CHECK(messages.empty());
+
+  // A time step in between that fails ends the execution; VTK would go on forever.
+  {
+    vtkNew<vtkMeshWarp> stepwise;
+    stepwise->SetInputConnection(source->GetOutputPort());
+    stepwise->SetMotion(vtkMeshWarp::TIME_STEPS);
+    stepwise->SetStartFrom(vtkMeshWarp::PREVIOUS_STEP);
+    stepwise->SetMethod(vtkMeshWarp::FEMWARP);
+    Messages all(stepwise), upstream(source);
+    source->FailsAt = 2;
+    source->Modified();
+    stepwise->UpdateTimeStep(4);
+    TAUTLINE_CHECK(upstream.has("The time step cannot be computed."));
+    TAUTLINE_CHECK(all.has("An input could not be computed"));
+    TAUTLINE_CHECK_EQUAL(meshOf(stepwise)->GetNumberOfPoints(), 0);
+    source->FailsAt = -1;
+    source->Modified();
+    all.clear();
+    stepwise->UpdateTimeStep(4);
+    TAUTLINE_CHECK(all.empty());
+    TAUTLINE_CHECK(meshOf(stepwise)->GetNumberOfPoints() > 0);
+  }
 
   // Another source, made before: its first step counts, not that of the one before.
   auto older = movingMesh();

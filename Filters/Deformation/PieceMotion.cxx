@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "PieceMotion.h"
+
+#include "RankMesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+constexpr double NotGiven = std::numeric_limits<double>::infinity();
+
+/// Takes the least of what the pieces give for a point.
+/// @param given 3 per point of the piece
+void takeLeast(RankGroup& group, const RankMesh& mesh, const std::vector<double>& given,
+  double amount, PieceMotion& motion)
+{
+  const Index points = mesh.mesh().localPoints();
+  std::vector<double> component, negative;
+  group.together(
+    [&]
+    {
+      component.resize(given.size() / 3);
+      negative.resize(component.size());
+      motion.displacement.assign(3 * points, 0.0);
+    });
+  for (int c = 0; c < 3; ++c)
+  {
+    for (std::size_t p = 0; p < component.size(); ++p)
+    {
+      component[p] = given[3 * p + c];
+      negative[p] = component[p] == NotGiven ? NotGiven : -component[p];
+    }
+    const std::vector<double> least = mesh.leastOf(component, NotGiven);
+    const std::vector<double> most = mesh.leastOf(negative, NotGiven);
+    for (Index p = 0; p < points; ++p)
+    {
+      if (least[p] != NotGiven)
+      {
+        motion.farthest = std::max(motion.farthest, -most[p] - least[p]);
+        motion.displacement[3 * p + c] = amount * least[p];
+      }
+    }
+  }
+  motion.farthest = group.maximum(motion.farthest);
+}
+}
+
+//------------------------------------------------------------------------------
+Index countOwned(RankGroup& group, const DistributedMesh& mesh, const PointFlags& flags)
+{
+  Index count = 0;
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    count += flags[p] != 0 && mesh.owned(p);
+  }
+  return group.sum(count);
+}
+
+//------------------------------------------------------------------------------
+double diagonalOf(const DistributedMesh& mesh)
+{
+  const std::array<double, 6>& box = mesh.bounds();
+  return norm({ box[3] - box[0], box[4] - box[1], box[5] - box[2] });
+}
+
+//------------------------------------------------------------------------------
+PieceMotion motionOfPieces(RankGroup& group, RankMesh& mesh, const PointFlags& chosen,
+  double amount, const std::function<bool(Index, Vec3&)>& displacementOf)
+{
+  const Index points = mesh.piece().numberOfPoints;
+  const std::vector<Index>& localOf = mesh.mesh().localOfPiece();
+  PieceMotion motion;
+  std::vector<double> given;
+  PointFlags placed, broken;
+  group.together(
+    [&]
+    {
+      given.assign(3 * points, NotGiven);
+      placed.assign(points, 0);
+      broken = placed;
+      for (Index p = 0; p < points; ++p)
+      {
+        Vec3 d = { 0, 0, 0 };
+        if (localOf[p] < 0 || !chosen[localOf[p]] || !displacementOf(p, d))
+        {
+          continue;
+        }
+        placed[p] = 1;
+        broken[p] = !std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2]);
+        std::copy(d.begin(), d.end(), &given[3 * p]);
+      }
+    });
+  motion.broken = countOwned(group, mesh.mesh(), mesh.anyOf(broken));
+  if (motion.broken == 0)
+  {
+    motion.given = mesh.anyOf(placed);
+    takeLeast(group, mesh, given, amount, motion);
+  }
+  return motion;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> localPoints(
+  RankGroup& group, const RankMesh& mesh, const std::vector<double>& ofPiece)
+{
+  const Index points = mesh.mesh().localPoints();
+  std::vector<double> local, component;
+  group.together(
+    [&]
+    {
+      local.resize(3 * points);
+      component.resize(ofPiece.size() / 3);
+    });
+  for (int c = 0; c < 3; ++c)
+  {
+    for (std::size_t p = 0; p < component.size(); ++p)
+    {
+      component[p] = ofPiece[3 * p + c];
+    }
+    const std::vector<double> values = mesh.leastOf(component, NotGiven);
+    for (Index p = 0; p < points; ++p)
+    {
+      local[3 * p + c] = values[p];
+    }
+  }
+  return local;
+}
+
+//------------------------------------------------------------------------------
+void PlacedPoints::exchange()
+{
+  std::swap_ranges(this->Other.begin(), this->Other.end(), this->Placed.points().begin());
+}
+}

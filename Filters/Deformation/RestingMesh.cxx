@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "RestingMesh.h"
+
+#include "vtkCellData.h"
+#include "vtkUnsignedCharArray.h"
+
+#include <algorithm>
+
+namespace tautline
+{
+namespace
+{
+bool sameMesh(const MeshView& a, const MeshView& b)
+{
+  return a.numberOfPoints == b.numberOfPoints && a.numberOfCells == b.numberOfCells &&
+    std::equal(a.points, a.points + 3 * a.numberOfPoints, b.points) &&
+    std::equal(a.cellTypes, a.cellTypes + a.numberOfCells, b.cellTypes) &&
+    std::equal(a.offsets, a.offsets + a.numberOfCells + 1, b.offsets) &&
+    std::equal(a.connectivity, a.connectivity + a.offsets[a.numberOfCells], b.connectivity);
+}
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkPointSet> structureOf(vtkPointSet* input)
+{
+  auto copy = vtkSmartPointer<vtkPointSet>::Take(input->NewInstance());
+  copy->CopyStructure(input);
+  if (vtkUnsignedCharArray* ghosts = input->GetCellGhostArray())
+  {
+    copy->GetCellData()->AddArray(ghosts);
+  }
+  return copy;
+}
+
+//------------------------------------------------------------------------------
+void RestingMesh::take(vtkPointSet* input, int threads, bool mergePoints)
+{
+  // What was taken shares its arrays with its owner, who may have changed them in place.
+  if (this->data && this->data->GetMTime() <= this->time && mergePoints == this->MergePoints &&
+    input->HasAnyGhostCells() == this->data->HasAnyGhostCells() &&
+    sameMesh(MeshAdapter(input, threads).mesh().view(), this->mesh->given().view()))
+  {
+    return;
+  }
+  this->warper.reset();
+  this->data = nullptr; // so that it is not taken for good if what follows throws
+  vtkSmartPointer<vtkPointSet> copy = structureOf(input);
+  this->mesh = std::make_unique<MovableMesh>(copy, threads, mergePoints);
+  this->MergePoints = mergePoints;
+  requireElements(*this->mesh);
+  this->boundary = boundaryOf(this->mesh->mesh());
+  this->Parts.reset();
+  this->takeElements(threads);
+  this->data = copy;
+  this->time = copy->GetMTime();
+}
+
+//------------------------------------------------------------------------------
+const BoundaryParts& RestingMesh::parts() const
+{
+  if (!this->Parts)
+  {
+    this->Parts = std::make_unique<BoundaryParts>(boundaryParts(this->mesh->mesh()));
+  }
+  return *this->Parts;
+}
+
+//------------------------------------------------------------------------------
+void RestingMesh::takeElements(int threads)
+{
+  const Mesh& all = this->mesh->mesh();
+  MeshView view = all.view();
+  const int dimension = all.dimension() == Dimension::Volume ? 3 : 2;
+  this->elements.reset();
+  this->cells.clear();
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const CellType type = cornerType(view.cellTypes[cell]);
+    if (type != CellType::Unsupported && topology(type).dimension == dimension)
+    {
+      this->cells.push_back(cell);
+    }
+  }
+  if (static_cast<Index>(this->cells.size()) == view.numberOfCells)
+  {
+    this->cells.clear();
+    return;
+  }
+  this->types.clear();
+  this->offsets.assign(1, 0);
+  this->connectivity.clear();
+  for (Index cell : this->cells)
+  {
+    this->types.push_back(view.cellTypes[cell]);
+    this->connectivity.insert(this->connectivity.end(), view.connectivity + view.offsets[cell],
+      view.connectivity + view.offsets[cell + 1]);
+    this->offsets.push_back(static_cast<Index>(this->connectivity.size()));
+  }
+  view.numberOfCells = static_cast<Index>(this->cells.size());
+  view.cellTypes = this->types.data();
+  view.offsets = this->offsets.data();
+  view.connectivity = this->connectivity.data();
+  this->elements = std::make_unique<Mesh>(view, threads);
+  this->elements->setMirrored(all.mirrored());
+}
+}

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file RestingMesh.h
+ * @brief The mesh that Warp Mesh starts from.
+ */
+#ifndef tautline_RestingMesh_h
+#define tautline_RestingMesh_h
+
+#include "MovedBoundary.h"
+#include "tautline/Deformation/Warp.h"
+
+#include "vtkPointSet.h"
+#include "vtkSmartPointer.h"
+
+#include <memory>
+#include <vector>
+
+namespace tautline
+{
+/// Points, cells and which are ghosts; without other arrays, whose changes do not matter.
+vtkSmartPointer<vtkPointSet> structureOf(vtkPointSet* input);
+
+/// A mesh at rest, and what was made of it.
+struct RestingMesh
+{
+  vtkSmartPointer<vtkPointSet> data;
+  vtkMTimeType time = 0; ///< of data when it was taken
+  std::unique_ptr<MovableMesh> mesh;
+  PointFlags boundary;
+  // The elements alone, if there are other cells (lines, vertices, the triangles around a volume).
+  std::vector<unsigned char> types;
+  std::vector<Index> offsets, connectivity, cells;
+  std::unique_ptr<Mesh> elements;
+  // What the warper was made with and refers to.
+  PointFlags prescribed;
+  std::vector<double> tensors, options, elementTensors;
+  std::unique_ptr<Warper> warper;
+
+  /// Takes a data set, unless it is the one that is here. Throws Error if nothing can be warped.
+  void take(vtkPointSet* input, int threads, bool mergePoints);
+  /// What is warped.
+  const Mesh& warped() const { return this->elements ? *this->elements : this->mesh->mesh(); }
+
+  /// Of its boundary; computed on first use.
+  const BoundaryParts& parts() const;
+
+private:
+  void takeElements(int threads);
+
+  bool MergePoints = true;
+  mutable std::unique_ptr<BoundaryParts> Parts;
+};
+}
+#endif
