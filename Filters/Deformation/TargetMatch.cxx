@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TargetMatch.h"
 
+#include "CellEdges.h"
 #include "MeshAdapter.h"
 #include "PointOrder.h"
 #include "tautline/Mesh/BoundaryParts.h"
 
 #include "vtkCellArray.h"
-#include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetSurfaceFilter.h"
@@ -51,38 +51,6 @@ std::string place(const double* p)
   return stream.str();
 }
 
-/// Calls visit(a, b) for the edges of all cells of a view; of lines and polygons too.
-template <class Visit>
-void forEachEdge(const MeshView& view, const Visit& visit)
-{
-  for (Index cell = 0; cell < view.numberOfCells; ++cell)
-  {
-    const Index* node = view.connectivity + view.offsets[cell];
-    const Index size = view.offsets[cell + 1] - view.offsets[cell];
-    const int code = view.cellTypes[cell];
-    const CellType type = cornerType(code);
-    if (type != CellType::Unsupported)
-    {
-      const CellTopology& t = topology(type);
-      for (int e = 0; e < t.edges; ++e)
-      {
-        visit(node[t.edgeNodes[e][0]], node[t.edgeNodes[e][1]]);
-      }
-    }
-    else if (code == VTK_LINE || code == VTK_POLY_LINE || code == VTK_POLYGON)
-    {
-      for (Index i = 0; i + 1 < size; ++i)
-      {
-        visit(node[i], node[i + 1]);
-      }
-      if (code == VTK_POLYGON && size > 2)
-      {
-        visit(node[size - 1], node[0]);
-      }
-    }
-  }
-}
-
 struct EdgeHash
 {
   std::size_t operator()(const std::pair<Index, Index>& e) const
@@ -125,9 +93,7 @@ public:
     const Index points = this->Request.target->GetNumberOfPoints();
     if (requested == Correspondence::SameMesh && points != this->View.numberOfPoints)
     {
-      throw Error("The target has " + text(points) + " points and the mesh has " +
-        text(this->View.numberOfPoints) +
-        ": it is not the same mesh. Choose another Correspondence.");
+      throw otherMesh(points, this->View.numberOfPoints);
     }
     this->requireOrder(points);
     if (requested != Correspondence::SameBoundary && points == this->View.numberOfPoints)
@@ -148,9 +114,7 @@ public:
         (this->Order != PointOrder::Given &&
           this->target().numberOfCells == this->View.numberOfCells))
       {
-        throw Error("The target has as many points as the mesh, but not its cells in the "
-                    "order of the global ids, or of the pieces. " +
-          std::string(OrderRemedy));
+        throw otherCells();
       }
     }
     if (requested == Correspondence::SameBoundary || requested == Correspondence::Automatic)
@@ -165,11 +129,7 @@ public:
       }
       if (requested == Correspondence::SameBoundary && ids.empty())
       {
-        throw Error("The target has " + text(points) + " points, of the mesh " +
-          text(count(*this->Request.projected)) +
-          " points move, and its cells are not those of the boundary in the same order: choose "
-          "another "
-          "Correspondence, or what moves.");
+        throw otherBoundary(points, count(*this->Request.projected));
       }
       return ids;
     }
@@ -190,10 +150,7 @@ private:
     vtkDataArray* own = this->Request.mesh->GetPointData()->GetArray(ids->GetName());
     if (!own && pointOrder(this->Request.mesh) == PointOrder::Coordinates)
     {
-      throw Error(std::string("The mesh has no array '") + ids->GetName() +
-        "' of its own, and its points were put together from several processes, so that they have "
-        "no numbers that the target could refer to: give the mesh the array, too, or run Generate "
-        "Global Ids before it is cut.");
+      throw noNumbers(ids->GetName());
     }
     for (Index i = 0; own && i < this->View.numberOfPoints; ++i)
     {
@@ -321,11 +278,7 @@ private:
     }
     if (ordered)
     {
-      throw Error("The target's " + text(points) +
-        " points would correspond to those of the mesh by their order, which is not known: mesh "
-        "and target were put together from several processes with other pieces of each, without "
-        "an order of global ids of both. " +
-        OrderRemedy);
+      throw noOrder(points);
     }
   }
 
@@ -395,6 +348,44 @@ void project(const TargetRequest& request, TargetPlaces& places)
   places.displacement = std::move(found.displacement);
   places.how = describeProjection(count(places.given), found.farthest);
 }
+}
+
+//------------------------------------------------------------------------------
+Error otherMesh(Index points, Index ofMesh)
+{
+  return Error("The target has " + text(points) + " points and the mesh has " + text(ofMesh) +
+    ": it is not the same mesh. Choose another Correspondence.");
+}
+
+Error otherCells()
+{
+  return Error("The target has as many points as the mesh, but not its cells in the order of the "
+               "global ids, or of the pieces. " +
+    std::string(OrderRemedy));
+}
+
+Error otherBoundary(Index points, Index moving)
+{
+  return Error("The target has " + text(points) + " points, of the mesh " + text(moving) +
+    " points move, and its cells are not those of the boundary in the same order: choose another "
+    "Correspondence, or what moves.");
+}
+
+Error noNumbers(const std::string& array)
+{
+  return Error("The mesh has no array '" + array +
+    "' of its own, and its points are on several processes, so that they have no numbers that the "
+    "target could refer to: give the mesh the array, too, or run Generate Global Ids before it is "
+    "cut.");
+}
+
+Error noOrder(Index points)
+{
+  return Error("The target's " + text(points) +
+    " points would correspond to those of the mesh by their order, which is not known: mesh and "
+    "target are on several processes with other pieces of each, without an order of global ids of "
+    "both. " +
+    OrderRemedy);
 }
 
 //------------------------------------------------------------------------------

@@ -41,6 +41,17 @@ constexpr const char* OrderRemedy =
   "before it is cut and the target is made of it; or let each process have the same pieces of "
   "both; or choose Closest Point.";
 
+/// The target is not the mesh in another place: it has other numbers of points.
+Error otherMesh(Index points, Index ofMesh);
+/// The same, as it has other cells.
+Error otherCells();
+/// The target is not the boundary, or the points that move.
+Error otherBoundary(Index points, Index moving);
+/// The target has an array of point ids that the mesh has not, and the mesh no order.
+Error noNumbers(const std::string& array);
+/// Points of several processes would correspond by an order that they have not.
+Error noOrder(Index points);
+
 struct TargetRequest
 {
   vtkDataSet* mesh = nullptr; ///< whose boundary moves, with its arrays

@@ -2,6 +2,7 @@
 #include "TargetPieces.h"
 
 #include "RankMesh.h"
+#include "TargetOrder.h"
 #include "TargetSurface.h"
 
 #include "vtkDataArray.h"
@@ -14,6 +15,8 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <limits>
+#include <numeric>
 
 namespace tautline
 {
@@ -70,6 +73,14 @@ bool matchesByIds(const WarpSettings& settings)
     (settings.correspondence == Correspondence::Automatic && chosen);
 }
 
+/// Whether points of pieces correspond as those of one process that has all of both.
+bool areInOnePlace(RankGroup& group, vtkDataSet* mesh, vtkDataSet* target)
+{
+  const bool has = mesh->GetNumberOfPoints() > 0;
+  const bool hasTarget = target && target->GetNumberOfPoints() > 0;
+  return group.sum(static_cast<Index>(has)) == 1 && !group.any(has != hasTarget);
+}
+
 /**
  * @class TargetPieces
  * @brief A motion to a target, on processes.
@@ -92,8 +103,14 @@ private:
   template <class PlaceOf>
   PieceMotion moveTo(const PointFlags& matched, const PlaceOf& placeOf);
   PieceMotion moveToClosest(const PointFlags& moved);
-  std::vector<FoundPlace> placesById(Index& unknown);
+  PieceMotion moveInOnePlace(const PointFlags& moved, const PointFlags& matched);
   PieceMotion moveByIds(const PointFlags& matched);
+  PieceMotion moveByOrder(const PointFlags& moved, const PointFlags& matched);
+  std::vector<FoundPlace> placesOf(
+    const std::vector<double>& ofMesh, const std::vector<double>& ofTarget, Index& unknown);
+  PieceMotion moveTo(const PointFlags& matched, const std::vector<FoundPlace>& found);
+  std::vector<double> targetIds();
+  bool ownIds(std::vector<double>& ids);
 
   const WarpSettings& Settings;
   RankGroup& Group;
@@ -131,13 +148,76 @@ PieceMotion TargetPieces::moveTo(const PointFlags& matched, const PlaceOf& place
 }
 
 //------------------------------------------------------------------------------
+/// The array of the target that is chosen, one per point of the piece.
+std::vector<double> TargetPieces::targetIds()
+{
+  std::vector<double> ids;
+  this->Group.together(
+    [&]
+    {
+      vtkDataSet* target = this->Piece.target;
+      const vtkIdType points = target ? target->GetNumberOfPoints() : 0;
+      vtkDataArray* array =
+        points > 0 ? chosenTargetIds(target, this->Settings.targetIds) : nullptr;
+      if (points > 0 && !array)
+      {
+        throw Error(NoIdsChosen);
+      }
+      for (vtkIdType i = 0; i < points; ++i)
+      {
+        ids.push_back(array->GetComponent(i, 0));
+      }
+    });
+  return ids;
+}
+
+//------------------------------------------------------------------------------
+/// What the ids of the target refer to, one per point of the piece: an array of that name that all
+/// pieces have, or the numbers of points.
+/// @return whether it is the array
+bool TargetPieces::ownIds(std::vector<double>& ids)
+{
+  const std::string& name = this->Settings.targetIds;
+  vtkDataArray* own = this->Piece.input->GetPointData()->GetArray(name.c_str());
+  const Index points = this->Whole.piece().numberOfPoints;
+  const bool has = !this->Group.any(points > 0 && !own);
+  std::vector<Index> positions;
+  if (!has)
+  {
+    const PieceIds known = idsOfPieces(this->Group, this->Piece.rest);
+    if (known.order == PointOrder::Coordinates)
+    {
+      throw Error(noNumbers(name));
+    }
+    Index count = 0;
+    positions = known.order == PointOrder::Given
+      ? std::vector<Index>(points)
+      : positionsOf(this->Group, known.ids, PointFlags(points, 1), count);
+    if (known.order == PointOrder::Given)
+    {
+      std::iota(positions.begin(), positions.end(), Index(0));
+    }
+  }
+  this->Group.together(
+    [&]
+    {
+      for (Index p = 0; p < points; ++p)
+      {
+        ids.push_back(has ? own->GetComponent(p, 0) : static_cast<double>(positions[p]));
+      }
+    });
+  return has;
+}
+
+//------------------------------------------------------------------------------
 /// The places that the target has for the ids of this piece. Each id has a process that gets what
 /// all have of it, so that none has the whole target.
+/// @param ofMesh, ofTarget one per point of the pieces; NaN: none
 /// @param unknown gets the number of target points, of all processes, whose id the mesh has not
-std::vector<FoundPlace> TargetPieces::placesById(Index& unknown)
+std::vector<FoundPlace> TargetPieces::placesOf(
+  const std::vector<double>& ofMesh, const std::vector<double>& ofTarget, Index& unknown)
 {
   const int processes = this->Group.size();
-  vtkDataSet* target = this->Piece.target;
   std::vector<std::vector<TargetPoint>> offered;
   std::vector<std::vector<IdQuery>> asked;
   unknown = 0;
@@ -146,24 +226,16 @@ std::vector<FoundPlace> TargetPieces::placesById(Index& unknown)
     {
       offered.resize(processes);
       asked.resize(processes);
-      const std::string& name = this->Settings.targetIds;
-      const vtkIdType points = target ? target->GetNumberOfPoints() : 0;
-      vtkDataArray* ids = points > 0 ? chosenTargetIds(target, name) : nullptr;
-      if (points > 0 && !ids)
+      for (std::size_t i = 0; i < ofTarget.size(); ++i)
       {
-        throw Error(NoIdsChosen);
-      }
-      for (vtkIdType i = 0; i < points; ++i)
-      {
-        TargetPoint point = { ids->GetComponent(i, 0), {} };
-        target->GetPoint(i, point.place.data());
+        TargetPoint point = { ofTarget[i], {} };
+        this->Piece.target->GetPoint(static_cast<vtkIdType>(i), point.place.data());
         std::isnan(point.id) ? static_cast<void>(++unknown)
                              : offered[homeOf(point.id, processes)].push_back(point);
       }
-      vtkDataArray* own = this->Piece.input->GetPointData()->GetArray(name.c_str());
-      for (Index p = 0; p < this->Whole.piece().numberOfPoints; ++p)
+      for (std::size_t p = 0; p < ofMesh.size(); ++p)
       {
-        const IdQuery query = { own->GetComponent(p, 0), p };
+        const IdQuery query = { ofMesh[p], static_cast<Index>(p) };
         if (!std::isnan(query.id))
         {
           asked[homeOf(query.id, processes)].push_back(query);
@@ -225,14 +297,11 @@ std::vector<FoundPlace> TargetPieces::placesById(Index& unknown)
 }
 
 //------------------------------------------------------------------------------
-/// By an array of ids that both have.
-PieceMotion TargetPieces::moveByIds(const PointFlags& matched)
+/// @param found in the order of the points
+PieceMotion TargetPieces::moveTo(const PointFlags& matched, const std::vector<FoundPlace>& found)
 {
-  Index unknown = 0;
-  const std::vector<FoundPlace> found = this->placesById(unknown);
-  requireKnownIds(unknown, this->Settings.targetIds, true);
   auto next = found.begin(); // points are visited in their order
-  PieceMotion motion = this->moveTo(matched,
+  return this->moveTo(matched,
     [&](Index p, Vec3& place)
     {
       next = std::find_if(next, found.end(), [p](const FoundPlace& one) { return one.point >= p; });
@@ -240,7 +309,101 @@ PieceMotion TargetPieces::moveByIds(const PointFlags& matched)
       place = has ? next->place : Vec3{ 0, 0, 0 };
       return has;
     });
+}
+
+//------------------------------------------------------------------------------
+/// By an array of ids that both have, or by numbers of points.
+PieceMotion TargetPieces::moveByIds(const PointFlags& matched)
+{
+  std::vector<double> ofTarget = this->targetIds(), ofMesh;
+  const bool byArray = this->ownIds(ofMesh);
+  for (double& id : ofTarget)
+  {
+    id = byArray || !(id >= 0) ? id : std::floor(id);
+  }
+  Index unknown = 0;
+  const std::vector<FoundPlace> found = this->placesOf(ofMesh, ofTarget, unknown);
+  requireKnownIds(unknown, this->Settings.targetIds, byArray);
+  PieceMotion motion = this->moveTo(matched, found);
   motion.how = "by point ids" + motion.how;
+  return motion;
+}
+
+//------------------------------------------------------------------------------
+/// By the order of the points; to the closest ones where that does not fit.
+PieceMotion TargetPieces::moveByOrder(const PointFlags& moved, const PointFlags& matched)
+{
+  const PieceIds ofMesh = idsOfPieces(this->Group, this->Piece.rest);
+  const PieceIds ofTarget = idsOfPieces(this->Group, this->Piece.target);
+  const OrderMatch match =
+    matchByOrder(this->Settings, this->Group, this->Whole, this->Piece, moved, ofMesh, ofTarget);
+  if (match.how.empty())
+  {
+    return this->moveToClosest(moved);
+  }
+  const auto numbers = [](const std::vector<Index>& positions)
+  {
+    std::vector<double> ids(positions.begin(), positions.end());
+    std::replace(ids.begin(), ids.end(), -1.0, std::numeric_limits<double>::quiet_NaN());
+    return ids;
+  };
+  Index unknown = 0;
+  PieceMotion motion =
+    this->moveTo(matched, this->placesOf(numbers(match.ofMesh), numbers(match.ofTarget), unknown));
+  motion.how = match.how + motion.how;
+  return motion;
+}
+
+//------------------------------------------------------------------------------
+/// Of a mesh and a target that one process has: as if it were alone. The mesh may still be divided
+/// among all.
+PieceMotion TargetPieces::moveInOnePlace(const PointFlags& moved, const PointFlags& matched)
+{
+  const std::vector<Index>& localOf = this->local().localOfPiece();
+  TargetPlaces places;
+  this->Group.together(
+    [&]
+    {
+      if (localOf.empty())
+      {
+        return;
+      }
+      // Of points that are one the first.
+      PointFlags projected(localOf.size(), 0), chosen(projected);
+      std::vector<char> seen(this->local().localPoints(), 0);
+      for (std::size_t p = 0; p < localOf.size(); ++p)
+      {
+        const Index at = localOf[p];
+        if (at >= 0 && !seen[at])
+        {
+          seen[at] = 1;
+          projected[p] = moved[at];
+          chosen[p] = matched[at];
+        }
+      }
+      const Mesh view(this->Whole.piece());
+      TargetRequest request;
+      request.mesh = this->Piece.rest;
+      request.view = &view;
+      request.target = this->Piece.target;
+      request.correspondence = this->Settings.correspondence;
+      request.projected = &projected;
+      request.matched = &chosen;
+      request.threads = this->Settings.options.threads;
+      places = tautline::placesOf(request);
+    });
+  const PointFlags all(this->local().localPoints(), 1);
+  PieceMotion motion = motionOfPieces(this->Group, this->Whole, all, this->Settings.amount,
+    [&places](Index p, Vec3& d)
+    {
+      std::copy_n(&places.displacement[3 * p], 3, d.begin());
+      return places.given[p] != 0;
+    });
+  for (const std::vector<char>& how :
+    this->Group.gatherItems(std::vector<char>(places.how.begin(), places.how.end())))
+  {
+    motion.how += std::string(how.begin(), how.end());
+  }
   return motion;
 }
 
@@ -272,14 +435,21 @@ PieceMotion TargetPieces::run(const PointFlags& moved, const PointFlags& matched
   {
     return this->moveByIds(matched);
   }
-  PieceMotion motion = this->moveTo(matched,
-    [this](Index p, Vec3& place)
-    {
-      this->Piece.target->GetPoint(p, place.data());
-      return true;
-    });
-  motion.how = "as the same mesh, point by point" + motion.how;
-  return motion;
+  const bool anywhere = this->Settings.correspondence != Correspondence::SameBoundary;
+  if (anywhere && !this->Group.any(!haveSameCells(this->Piece.rest, this->Piece.target)))
+  {
+    PieceMotion motion = this->moveTo(matched,
+      [this](Index p, Vec3& place)
+      {
+        this->Piece.target->GetPoint(p, place.data());
+        return true;
+      });
+    motion.how = "as the same mesh, point by point" + motion.how;
+    return motion;
+  }
+  return areInOnePlace(this->Group, this->Piece.rest, this->Piece.target)
+    ? this->moveInOnePlace(moved, matched)
+    : this->moveByOrder(moved, matched);
 }
 }
 
@@ -302,21 +472,6 @@ bool haveSameCells(vtkDataSet* piece, vtkDataSet* other)
     }
   }
   return true;
-}
-
-//------------------------------------------------------------------------------
-bool findsPlaces(const WarpSettings& settings, vtkDataSet* input, vtkDataSet* target)
-{
-  if (settings.correspondence == Correspondence::ClosestPoint)
-  {
-    return true;
-  }
-  if (matchesByIds(settings))
-  {
-    return input->GetNumberOfPoints() == 0 ||
-      input->GetPointData()->GetArray(settings.targetIds.c_str());
-  }
-  return settings.correspondence != Correspondence::SameBoundary && haveSameCells(input, target);
 }
 
 //------------------------------------------------------------------------------

@@ -14,20 +14,12 @@ namespace tautline
 /// Whether a piece has as many points as another and the same cells; null is empty. Not collective.
 bool haveSameCells(vtkDataSet* piece, vtkDataSet* other);
 
-/**
- * @brief Whether a process can find the places of its points: by ids that it has, by the closest
- * points, or since the piece of the target has the points and cells of that of the mesh. Else the
- * points of the whole boundary have to be matched. Not collective.
- * @param target of this process, or null
- */
-bool findsPlaces(const WarpSettings& settings, vtkDataSet* input, vtkDataSet* target);
-
 /// Throws Error if the target is missing or empty on all processes. Collective.
 void requireTarget(RankGroup& group, vtkDataSet* piece);
 
 /**
- * @brief The displacements to the places of a target, where all processes find them. Collective;
- * throws Error on all processes.
+ * @brief The displacements to the places of a target, as placesOf() finds them of the whole of
+ * both. Collective; throws Error on all processes.
  * @param moved one flag per local point: those that are projected to the closest point
  * @param matched those that move otherwise, where the target has a place
  */

@@ -619,17 +619,11 @@ std::string needOfWholeMesh(
 {
   if (settings.motion == MotionSource::Target)
   {
-    const auto onAny = [](bool here) { return minimumOverProcesses(here ? 0 : 1) == 0; };
-    auto* own = vtkDataSet::SafeDownCast(input);
-    auto* other = vtkDataSet::SafeDownCast(target);
-    if (onAny(!own || (target && !other)))
+    const bool blocks =
+      !vtkDataSet::SafeDownCast(input) || (target && !vtkDataSet::SafeDownCast(target));
+    if (minimumOverProcesses(blocks ? 0 : 1) == 0)
     {
       return "targets with blocks";
-    }
-    // A target that is missing or empty is an error, whoever has the mesh.
-    if (onAny(other && other->GetNumberOfPoints() > 0) && onAny(!findsPlaces(settings, own, other)))
-    {
-      return "targets that are matched to the whole boundary";
     }
   }
   return "";

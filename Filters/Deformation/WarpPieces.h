@@ -26,6 +26,7 @@ std::string needOfWholeMesh(
 struct WarpPiece
 {
   vtkDataSet* input;
+  vtkDataSet* rest;    ///< what the mesh is made of: the input, at the first time step
   vtkSelection* moved; ///< what is selected to move, or null
   vtkSelection* fixed; ///< to stay, or null
   vtkDataSet* target;  ///< of a motion to a target, or null

@@ -313,8 +313,9 @@ int vtkMeshWarp::RequestData(
             this->WhyGathered);
         }
         output->ShallowCopy(input);
+        vtkDataObject* first = session.sequence() ? session.firstPiece(input) : input;
         const tautline::WarpPiece piece = { vtkDataSet::SafeDownCast(input),
-          vtkSelection::GetData(inputVector[MovedPort]),
+          vtkDataSet::SafeDownCast(first), vtkSelection::GetData(inputVector[MovedPort]),
           vtkSelection::GetData(inputVector[FixedPort]), vtkDataSet::SafeDownCast(target),
           vtkDataSet::SafeDownCast(output) };
         tautline::warpPieces(session, *this->Group, *pieces, piece, history, statistics, totals);

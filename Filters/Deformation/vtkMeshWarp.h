@@ -60,15 +60,23 @@
  * itself inverts elements: how many stay inverted, and the points, may depend on both. Matrices are
  * not kept.
  *
- * A target stays in pieces where it is matched by ids of which the mesh has an array of the same
- * name, or, AUTOMATIC_MATCH and SAME_MESH, where its pieces have the points and cells of those of
- * the mesh; their copies of a point may differ by rounding. Of one that is matched by CLOSEST_POINT
- * each process gets the surface. With other targets, time steps, HYBRID with UntangleFirst off,
- * composite data and inclined planes, the first process has the whole mesh while it computes and
- * sends the results to the pieces; the summary states why. Points that correspond by their order
- * (SAME_MESH, SAME_BOUNDARY, and AUTOMATIC_MATCH where the numbers of points are the same) then
- * need global ids of both that are those of one mesh; without, it is an error, as what was put
- * together has lost the order. Ghost cells count as copies; on one process, their points stay.
+ * Of a motion over time each process keeps its piece at the first time step and, with
+ * PREVIOUS_STEP, its points at the time steps that others start from. Where the pieces have other
+ * points or cells than at the first time step, the mesh is gathered from then on, and needs global
+ * ids.
+ *
+ * A target stays in pieces, too, whose copies of a point may differ by rounding. Its points
+ * correspond by an array of ids that both have; or, AUTOMATIC_MATCH and SAME_MESH, by their places
+ * in pieces that have the points and cells of those of the mesh. Otherwise what corresponds by its
+ * order on one process (SAME_MESH, SAME_BOUNDARY, AUTOMATIC_MATCH where the numbers of points are
+ * the same, ids that are numbers of points) does so in the order of the global ids of mesh and
+ * target, which have to be those of one mesh; without, it is an error, unless all of both is on one
+ * process. Each process compares a share of the ids and edges, and none has the boundary. Of a
+ * target that is matched by CLOSEST_POINT each process gets the surface.
+ *
+ * With blocks, inclined planes, cells that list their points in opposite orders and coordinates of
+ * extreme size, the first process has the whole mesh while it computes and sends the results to the
+ * pieces; the summary states why. Ghost cells count as copies; on one process, their points stay.
  *
  * @par Example:
  * @code

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Motions over time of Warp Mesh on processes: each keeps its piece, and the points are those of one
-// process, from the first time step or from the one before, whatever the order of the requests.
+// Motions over time of Warp Mesh on processes: each keeps its piece, and the points are those of
+// one process, from the first time step or from the one before, whatever the order of the requests.
 #include "MovingPieces.h"
 
 #include "vtkCommand.h"
