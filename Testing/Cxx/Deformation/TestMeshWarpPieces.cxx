@@ -156,6 +156,50 @@ void testValid(const char* name, vtkMPIController* controller, const MeshData& w
   }
 }
 
+/// Positions of the boundary that former ones span need no solve: norms and products are those of
+/// all processes, also where a matrix is the sum of what they have.
+void testSpanned(vtkMPIController* controller, const MeshData& whole)
+{
+  const Context context("spanned");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const auto group = makeProcessGroup();
+  const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
+  DistributedMesh spread(*group, { part.data.view() });
+  const std::vector<unsigned char> boundary = rankBoundary(spread);
+  const auto solved = [&](WarpMethod method)
+  {
+    WarpOptions options;
+    options.method = method;
+    options.threads = 1;
+    options.prescribed = boundary.data();
+    options.automaticSolver = false;
+    options.solver.method = KrylovMethod::ConjugateGradient;
+    options.solver.preconditioner = Preconditioner::Jacobi;
+    Warper warper(spread, false, spread.numbers(), Processes().communicator(), options);
+    std::vector<int> iterations;
+    // No affine motions, which are split off: the third is the sum of the others.
+    for (const Vec3& factors : { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0.5, 0.25, 0 } })
+    {
+      std::vector<double> displacement;
+      for (Index i = 0; i < spread.localPoints(); ++i)
+      {
+        const Vec3 p = tautline::pointOf(spread.view(), i);
+        displacement.insert(displacement.end(),
+          { factors[0] * 0.02 * p[1] * p[1] + factors[1] * 0.01 * p[0] * p[1], 0, 0 });
+      }
+      iterations.push_back(warper.warp(displacement.data()).history.front().iterations);
+    }
+    return iterations;
+  };
+  for (const WarpMethod method : { WarpMethod::Femwarp, WarpMethod::Biharmonic })
+  {
+    const Context inner("method " + std::to_string(static_cast<int>(method)));
+    const std::vector<int> iterations = solved(method);
+    TAUTLINE_CHECK(iterations[0] > 5 && iterations[1] > 5);
+    TAUTLINE_CHECK_EQUAL(iterations[2], 0);
+  }
+}
+
 /// The second step of Hybrid, to its minimum, is that of one process to 1e-6.
 void testConverged(vtkMPIController* controller, const MeshData& whole, double degrees)
 {
@@ -379,6 +423,7 @@ void testPieces(vtkMPIController* controller)
       testValid("literal hybrid", controller, *mesh, true, false, literal);
     }
     testConverged(controller, *mesh, 20);
+    testSpanned(controller, *mesh);
   }
 }
 }
