@@ -314,49 +314,6 @@ double Femwarp::splitAffine(
 }
 
 //------------------------------------------------------------------------------
-/// Solves for the three components of the rest and adds them to the motion.
-Femwarp::Outcome Femwarp::solveComponents(
-  const std::vector<double>& rest, double nothing, WarpControl& control, std::vector<double>& moved)
-{
-  // The maximum principle bounds the motion by the prescribed one; discrete operators may exceed it
-  // a little.
-  constexpr double excess = 2.0;
-  const Index n = this->Input.view().numberOfPoints;
-  Outcome outcome;
-  std::vector<double> values(n);
-  for (int c = 0; c < 3 && !control.stopped(); ++c)
-  {
-    double largest = 0;
-    for (Index i = 0; i < n; ++i)
-    {
-      values[i] = rest[3 * i + c];
-      largest = std::max(largest, std::abs(values[i]));
-    }
-    largest = this->Parts.ranks().maximum(largest);
-    if (!(largest > nothing))
-    {
-      continue;
-    }
-    outcome.converged = this->System->solve(values, control) && outcome.converged;
-    outcome.failure = outcome.failure.empty() ? this->System->failure() : outcome.failure;
-    if (this->Second && !control.stopped())
-    {
-      outcome.converged = this->Second->solve(values, control) && outcome.converged;
-    }
-    for (Index i = 0; i < n; ++i)
-    {
-      if (!this->Parts.held()[i])
-      {
-        outcome.bounded = outcome.bounded && std::abs(values[i]) <= excess * largest;
-        moved[3 * i + c] += values[i];
-      }
-    }
-  }
-  outcome.bounded = !this->Parts.ranks().any(!outcome.bounded);
-  return outcome;
-}
-
-//------------------------------------------------------------------------------
 std::vector<double> Femwarp::warp(const double* displacement, WarpControl& control)
 {
   std::vector<double> rest, affine;
@@ -366,7 +323,8 @@ std::vector<double> Femwarp::warp(const double* displacement, WarpControl& contr
   for (;;)
   {
     std::vector<double> moved = affine;
-    const Outcome outcome = this->solveComponents(rest, nothing, control, moved);
+    const ComponentSolution outcome = solveComponents(
+      { this->System.get(), this->Second.get() }, this->Parts, rest, nothing, control, moved);
     control.result().decoupled = this->Decoupled;
     control.result().regularization = this->Regularization;
     if (control.stopped() || !this->Singular || (outcome.converged && outcome.bounded) ||

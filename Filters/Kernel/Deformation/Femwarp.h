@@ -40,17 +40,8 @@ public:
   std::vector<double> warp(const double* displacement, WarpControl& control);
 
 private:
-  /// How the solves for the components ended.
-  struct Outcome
-  {
-    bool converged = true;
-    bool bounded = true; ///< the motion is not much larger than the prescribed one
-    std::string failure; ///< of the linear solver, or ""
-  };
   double splitAffine(
     const double* displacement, std::vector<double>& rest, std::vector<double>& result) const;
-  Outcome solveComponents(const std::vector<double>& rest, double nothing, WarpControl& control,
-    std::vector<double>& moved);
   SparseMatrix assemble(double regularization, WarpControl& control) const;
   void partition(WarpControl& control);
   void findDecoupled(const SparseMatrix& matrix, WarpControl& control);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WarpSystem.h"
 
+#include "WarpParts.h"
 #include "tautline/Core/Parallel.h"
 
 #include <algorithm>
@@ -340,5 +341,49 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
     }
   }
   return good;
+}
+
+//------------------------------------------------------------------------------
+ComponentSolution solveComponents(const std::vector<WarpSystem*>& systems, const WarpParts& parts,
+  const std::vector<double>& rest, double nothing, WarpControl& control, std::vector<double>& moved)
+{
+  // The maximum principle bounds the motion by the prescribed one; discrete operators may exceed it
+  // a little.
+  constexpr double excess = 2.0;
+  const std::size_t n = rest.size() / 3;
+  ComponentSolution outcome;
+  std::vector<double> values(n);
+  for (int c = 0; c < 3 && !control.stopped(); ++c)
+  {
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      values[i] = rest[3 * i + c];
+      largest = std::max(largest, std::abs(values[i]));
+    }
+    largest = parts.ranks().maximum(largest);
+    if (!(largest > nothing))
+    {
+      continue;
+    }
+    for (WarpSystem* system : systems)
+    {
+      if (system && !control.stopped())
+      {
+        outcome.converged = system->solve(values, control) && outcome.converged;
+        outcome.failure = outcome.failure.empty() ? system->failure() : outcome.failure;
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      if (!parts.held()[i])
+      {
+        outcome.bounded = outcome.bounded && std::abs(values[i]) <= excess * largest;
+        moved[3 * i + c] += values[i];
+      }
+    }
+  }
+  outcome.bounded = !parts.ranks().any(!outcome.bounded);
+  return outcome;
 }
 }

@@ -17,6 +17,8 @@
 
 namespace tautline
 {
+class WarpParts;
+
 /// The matrix of all points.
 struct WarpMatrix
 {
@@ -105,5 +107,25 @@ private:
   std::deque<Former> Basis;
   std::string Failure;
 };
+
+/// What became of solveComponents().
+struct ComponentSolution
+{
+  bool converged = true;
+  bool bounded = true; ///< no point moves much farther than the prescribed ones
+  std::string failure; ///< of the first system that failed, or ""
+};
+
+/**
+ * @brief Solves for the components of a motion, one after the other, and adds them to it at the
+ * points that are not held. The ranks of the parts solve together.
+ * @param systems each takes what the one before has found; null ones are left out
+ * @param rest 3 per point: what the prescribed points move by, 0 elsewhere
+ * @param nothing components that are nowhere larger are 0
+ * @param moved 3 per point; where the control stops, not all components are added
+ */
+ComponentSolution solveComponents(const std::vector<WarpSystem*>& systems, const WarpParts& parts,
+  const std::vector<double>& rest, double nothing, WarpControl& control,
+  std::vector<double>& moved);
 }
 #endif

@@ -540,27 +540,25 @@ std::vector<double> warpByWeightedLaplacian(
       std::make_unique<WarpSystem>(rows, 1, parts.held(), view.points, dimension, options, ranks);
     matrix = {};
   }
-  std::vector<double> values(n);
-  // A plane is at right angles to an axis: no error leads out of it.
-  for (int c = 0; c < 3 && system; ++c)
+  if (!system)
   {
-    for (Index i = 0; i < n; ++i)
-    {
-      values[i] = prescribed[i] ? displacement[3 * i + c] - moved[3 * i + c] : 0.0;
-    }
-    const bool solved = system->solve(values, control);
-    if (control.stopped())
-    {
-      return {};
-    }
-    if (!solved)
-    {
-      throwUnsolved(options.tolerance, " (" + system->failure() + ")");
-    }
-    for (Index i = 0; i < n; ++i)
-    {
-      moved[3 * i + c] += parts.held()[i] ? 0.0 : values[i];
-    }
+    return moved;
+  }
+  std::vector<double> rest(3 * n, 0.0);
+  for (Index i = 0; i < 3 * n; ++i)
+  {
+    rest[i] = prescribed[i / 3] ? displacement[i] - moved[i] : 0.0;
+  }
+  // A plane is at right angles to an axis: no error leads out of it.
+  const ComponentSolution outcome =
+    solveComponents({ system.get() }, parts, rest, 0.0, control, moved);
+  if (control.stopped())
+  {
+    return {};
+  }
+  if (!outcome.converged)
+  {
+    throwUnsolved(options.tolerance, " (" + outcome.failure + ")");
   }
   return moved;
 }
