@@ -15,6 +15,13 @@
  *
  * The other outputs are empty tables.
  *
+ * @par Several processes:
+ * Unlike in vtkMeshWarp, the mesh is gathered on the first process, whose memory it has to fit
+ * into, and which has the output. The preview is one surface with each point once, for blocks, too,
+ * and its facets are those that one cell alone has in the whole mesh. The boundary that vtkMeshWarp
+ * finds in pieces has flags of points, but no facets, and these would have to be made one surface
+ * again. What a mesh that is put together cannot match without global ids leaves the output empty.
+ *
  * @par Example:
  * @code
  * vtkNew<vtkMovingBoundary> boundary;
