@@ -615,21 +615,32 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
   const Context context("wrong target");
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
   const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Slabs, size));
-  for (const bool byIds : { false, true })
+  const RankPart other = partOf(whole, rank, cutBy(whole, Cut::Random, size));
+  enum Way
   {
-    const auto grid = gridOf(part);
+    Pieces,
+    Ids,
+    Order
+  };
+  for (const Way way : { Pieces, Ids, Order })
+  {
+    const Context inner("way " + std::to_string(way));
+    const RankPart& of = way == Order ? other : part;
+    const auto grid = numberedGridOf(part);
     grid->GetPointData()->AddArray(idsOf(part));
-    const auto target = targetOf(part, middle, 0.3);
-    const auto ids = idsOf(part);
+    const auto target = targetOf(of, middle, 0.3, true);
+    const auto ids = idsOf(of);
     if (rank == size - 1)
     {
-      // Not at the seam, where the other process has the point, too.
+      // A corner, not at the seam, where the other process has the point, too.
       vtkIdType far = 0;
-      for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
+      for (vtkIdType i = 0; i < target->GetNumberOfPoints(); ++i)
       {
-        far = tautline::pointOf(grid, i)[0] > tautline::pointOf(grid, far)[0] ? i : far;
+        const Vec3 p = tautline::pointOf(target, i), q = tautline::pointOf(target, far);
+        far = p[0] + p[1] + p[2] > q[0] + q[1] + q[2] ? i : far;
       }
-      byIds ? ids->SetValue(far, -7) : target->GetPoints()->GetData()->SetComponent(far, 0, NAN);
+      way == Ids ? ids->SetValue(far, -7)
+                 : target->GetPoints()->GetData()->SetComponent(far, 0, NAN);
     }
     target->GetPointData()->AddArray(ids);
     vtkNew<vtkMeshWarp> filter;
@@ -637,11 +648,12 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
     filter->SetInputData(1, target);
     filter->SetMotion(vtkMeshWarp::TARGET);
     filter->SetMethod(vtkMeshWarp::FEMWARP);
-    filter->SetTargetIds(byIds ? "number" : nullptr);
+    filter->SetTargetIds(way == Ids ? "number" : nullptr);
     Messages messages(filter);
     filter->Update();
-    TAUTLINE_CHECK(messages.has(byIds ? "has 1 values that are no values of the mesh's array"
-                                      : "coordinates that are NaN or infinite"));
+    TAUTLINE_CHECK(messages.has(way == Ids ? "has 1 values that are no values of the mesh's array"
+                                           : "coordinates that are NaN or infinite"));
+    TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfPoints(), 0);
   }
 }
 
