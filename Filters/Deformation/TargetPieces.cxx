@@ -22,6 +22,10 @@ namespace tautline
 {
 namespace
 {
+/// How far copies of a point may be apart, of the size of the mesh; rounding of single precision is
+/// 1e-7.
+constexpr double Torn = 1e-3;
+
 /// A point of the target by its id.
 struct TargetPoint
 {
@@ -106,8 +110,8 @@ private:
   PieceMotion moveInOnePlace(const PointFlags& moved, const PointFlags& matched);
   PieceMotion moveByIds(const PointFlags& matched);
   PieceMotion moveByOrder(const PointFlags& moved, const PointFlags& matched);
-  std::vector<FoundPlace> placesOf(
-    const std::vector<double>& ofMesh, const std::vector<double>& ofTarget, Index& unknown);
+  std::vector<FoundPlace> placesOf(const std::vector<double>& ofMesh,
+    const std::vector<double>& ofTarget, Index& unknown, double& apart);
   PieceMotion moveTo(const PointFlags& matched, const std::vector<FoundPlace>& found);
   std::vector<double> targetIds();
   bool ownIds(std::vector<double>& ids);
@@ -125,7 +129,6 @@ private:
 template <class PlaceOf>
 PieceMotion TargetPieces::moveTo(const PointFlags& matched, const PlaceOf& placeOf)
 {
-  constexpr double torn = 1e-3; // of the size of the mesh; rounding of single precision is 1e-7
   const MeshView& piece = this->Whole.piece();
   PieceMotion motion = motionOfPieces(this->Group, this->Whole, matched, this->Settings.amount,
     [&](Index p, Vec3& d)
@@ -135,7 +138,7 @@ PieceMotion TargetPieces::moveTo(const PointFlags& matched, const PlaceOf& place
       return has;
     });
   requireFiniteTarget(motion.broken);
-  if (motion.farthest > torn * diagonalOf(this->local()))
+  if (motion.farthest > Torn * diagonalOf(this->local()))
   {
     throw Error("For points that several pieces of the mesh have, the target has different places, "
                 "up to " +
@@ -214,13 +217,15 @@ bool TargetPieces::ownIds(std::vector<double>& ids)
 /// all have of it, so that none has the whole target.
 /// @param ofMesh, ofTarget one per point of the pieces; NaN: none
 /// @param unknown gets the number of target points, of all processes, whose id the mesh has not
-std::vector<FoundPlace> TargetPieces::placesOf(
-  const std::vector<double>& ofMesh, const std::vector<double>& ofTarget, Index& unknown)
+/// @param apart gets the largest distance between points of the target with one id
+std::vector<FoundPlace> TargetPieces::placesOf(const std::vector<double>& ofMesh,
+  const std::vector<double>& ofTarget, Index& unknown, double& apart)
 {
   const int processes = this->Group.size();
   std::vector<std::vector<TargetPoint>> offered;
   std::vector<std::vector<IdQuery>> asked;
   unknown = 0;
+  apart = 0;
   this->Group.together(
     [&]
     {
@@ -276,11 +281,13 @@ std::vector<FoundPlace> TargetPieces::placesOf(
       for (std::size_t k = known.size(); k-- > 0;)
       {
         const bool same = k + 1 < known.size() && known[k + 1].id == known[k].id;
+        apart = std::max(apart, same ? norm(known[k + 1].place - known[k].place) : 0.0);
         wanted[k] = same ? wanted[k + 1] : wanted[k];
         unknown += wanted[k] == 0;
       }
     });
   unknown = this->Group.sum(unknown);
+  apart = this->Group.maximum(apart);
   std::vector<FoundPlace> found;
   const std::vector<std::vector<FoundPlace>> lists = this->Group.exchangeItems(answers);
   this->Group.together(
@@ -322,7 +329,8 @@ PieceMotion TargetPieces::moveByIds(const PointFlags& matched)
     id = byArray || !(id >= 0) ? id : std::floor(id);
   }
   Index unknown = 0;
-  const std::vector<FoundPlace> found = this->placesOf(ofMesh, ofTarget, unknown);
+  double apart = 0; // the last counts, as on one process
+  const std::vector<FoundPlace> found = this->placesOf(ofMesh, ofTarget, unknown, apart);
   requireKnownIds(unknown, this->Settings.targetIds, byArray);
   PieceMotion motion = this->moveTo(matched, found);
   motion.how = "by point ids" + motion.how;
@@ -348,8 +356,15 @@ PieceMotion TargetPieces::moveByOrder(const PointFlags& moved, const PointFlags&
     return ids;
   };
   Index unknown = 0;
-  PieceMotion motion =
-    this->moveTo(matched, this->placesOf(numbers(match.ofMesh), numbers(match.ofTarget), unknown));
+  double apart = 0;
+  const std::vector<FoundPlace> found =
+    this->placesOf(numbers(match.ofMesh), numbers(match.ofTarget), unknown, apart);
+  if (apart > Torn * diagonalOf(this->local()))
+  {
+    throw Error("Points of the target at different places, up to " + std::to_string(apart) +
+      " apart, have the same global id: run Generate Global Ids again.");
+  }
+  PieceMotion motion = this->moveTo(matched, found);
   motion.how = match.how + motion.how;
   return motion;
 }

@@ -616,16 +616,25 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
   const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Slabs, size));
   const RankPart other = partOf(whole, rank, cutBy(whole, Cut::Random, size));
+  const auto shift = [](vtkUnstructuredGrid* target)
+  {
+    for (vtkIdType i = 0; i < target->GetNumberOfPoints(); ++i)
+    {
+      const Vec3 p = tautline::pointOf(target, i) + Vec3{ 0, 0, 0.5 };
+      target->GetPoints()->SetPoint(i, p.data());
+    }
+  };
   enum Way
   {
     Pieces,
     Ids,
-    Order
+    Order,
+    Torn
   };
-  for (const Way way : { Pieces, Ids, Order })
+  for (const Way way : { Pieces, Ids, Order, Torn })
   {
     const Context inner("way " + std::to_string(way));
-    const RankPart& of = way == Order ? other : part;
+    const RankPart& of = way >= Order ? other : part;
     const auto grid = numberedGridOf(part);
     grid->GetPointData()->AddArray(idsOf(part));
     const auto target = targetOf(of, middle, 0.3, true);
@@ -639,8 +648,9 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
         const Vec3 p = tautline::pointOf(target, i), q = tautline::pointOf(target, far);
         far = p[0] + p[1] + p[2] > q[0] + q[1] + q[2] ? i : far;
       }
-      way == Ids ? ids->SetValue(far, -7)
-                 : target->GetPoints()->GetData()->SetComponent(far, 0, NAN);
+      way == Ids      ? ids->SetValue(far, -7)
+        : way == Torn ? shift(target)
+                      : target->GetPoints()->GetData()->SetComponent(far, 0, NAN);
     }
     target->GetPointData()->AddArray(ids);
     vtkNew<vtkMeshWarp> filter;
@@ -652,7 +662,8 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
     Messages messages(filter);
     filter->Update();
     TAUTLINE_CHECK(messages.has(way == Ids ? "has 1 values that are no values of the mesh's array"
-                                           : "coordinates that are NaN or infinite"));
+        : way == Torn ? "have the same global id: run Generate Global Ids again"
+                      : "coordinates that are NaN or infinite"));
     TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfPoints(), 0);
   }
 }
