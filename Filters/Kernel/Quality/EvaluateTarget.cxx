@@ -465,12 +465,77 @@ Packet evaluateFormula(const BatchContext& context, Corner<N>& corner, TargetInv
   }
 }
 
+/// Whether a metric is a function of |T|^2 and det T alone, and T that of the target's shape.
+template <class M>
+constexpr bool ofNormAndDeterminant = !M::usesAdjugate && !M::usesTrace && !M::usesSize && !M::user;
+
+/**
+ * @brief A metric of norm and determinant on tetrahedra, with the regular one of edge length 1 as
+ * the target: |T|^2 is half the sum of the squared edges, which is that of four points relative to
+ * the first, 4 sum |p|^2 - |sum p|^2.
+ */
+template <class M, bool WithGradient>
+void evaluateRegular(const BatchContext& context, Batch& batch)
+{
+  constexpr double half = 0.5, points = 4.0;
+  constexpr double sqrt2 = 1.4142135623730951; // det T of det A
+  Packet p[3][3], sum[3] = {};
+  Packet squares = {}, lengths2 = broadcast(1.0);
+  for (int k = 0; k < 3; ++k)
+  {
+    subtract(batch.points[k + 1], batch.points[0], p[k]);
+    const Packet length2 = dot(p[k], p[k]);
+    squares += length2;
+    lengths2 *= length2;
+    for (int c = 0; c < 3; ++c)
+    {
+      sum[c] += p[k][c];
+    }
+  }
+  Packet cofactor[3][3]; // of p
+  cross(p[0], p[1], cofactor[2]);
+  const Packet det = dot(cofactor[2], p[2]);
+  Corner<3> corner;
+  corner.invariants.norm2 = half * (points * squares - dot(sum, sum));
+  corner.invariants.det = sqrt2 * det;
+  const double tolerance = Mesh::degenerateTolerance() * Mesh::degenerateTolerance();
+  corner.degenerate = det * det <= tolerance * lengths2;
+  TargetInvariants<3> d;
+  batch.value = evaluateInvariants<M, 3>(context, corner, d);
+  if constexpr (WithGradient)
+  {
+    cross(p[1], p[2], cofactor[0]);
+    cross(p[2], p[0], cofactor[1]);
+    const Packet byDet = sqrt2 * d.det, byPoint = points * d.norm2;
+    for (int c = 0; c < 3; ++c)
+    {
+      const Packet middle = d.norm2 * sum[c];
+      Packet all = {};
+      for (int k = 0; k < 3; ++k)
+      {
+        const Packet g = byPoint * p[k][c] - middle + byDet * cofactor[k][c];
+        batch.gradient[k + 1][c] = g;
+        all += g;
+      }
+      batch.gradient[0][c] = -all;
+    }
+  }
+}
+
 /// Flattened into one function: calls between the steps would cost more than the steps.
 template <class M, int N, bool WithGradient>
 __attribute__((flatten)) void evaluateTarget(const BatchContext& context, Batch& batch)
 {
   const CellTopology& topology = *context.topology;
   const int samples = topology.samples;
+  if constexpr (N == 3 && ofNormAndDeterminant<M>)
+  {
+    if (samples == 1 && !context.options->targets && (!batch.scaled || context.scaleInvariant))
+    {
+      evaluateRegular<M, WithGradient>(context, batch);
+      return;
+    }
+  }
   Corner<N> corner;
   Packet normal[3];
   const bool surface = N == 2 && context.mesh->dimension() != Dimension::Planar;

@@ -68,10 +68,10 @@ struct InverseMeanRatio : TargetMetric
     }
     else
     {
-      const Packet root = inverseCbrt(abs(t.det));
-      d.norm2 = signOf(t.det) * root * root * (1.0 / 3.0);
+      const Packet root = inverseCbrt(abs(t.det)), square = signOf(t.det) * root * root;
+      d.norm2 = square * (1.0 / 3.0);
       q = t.norm2 * d.norm2;
-      d.det = (-2.0 / 3.0) * q / t.det;
+      d.det = (-2.0 / 3.0) * q * (square * root); // 1 / det T
     }
     return q;
   }

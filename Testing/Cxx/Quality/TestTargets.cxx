@@ -280,10 +280,76 @@ void testRefusals()
     TAUTLINE_CHECK_THROWS(referenceTargets(target, Mesh(bad.view())), "Cell 3");
   }
 }
+
+//------------------------------------------------------------------------------
+/// Without targets, tetrahedra have formulas of their own: the same numbers as with the ideal
+/// tetrahedron given as the target of each, inverted ones and ones of extreme size included.
+void testGivenIdeal()
+{
+  const std::vector<Vec3> ideal = idealCell(CellType::Tetrahedron);
+  Random random(8);
+  MeshData data, reference;
+  for (double size : { 1e-8, 0.1, 1.0, 30.0, 1e8 })
+  {
+    for (int i = 0; i < cellsPerMesh; ++i)
+    {
+      std::vector<Vec3> corners;
+      for (int k = 0; k < 4; ++k)
+      {
+        corners.push_back(size * random.vector(-1, 1));
+      }
+      data.addCell(CellType::Tetrahedron, corners);
+      reference.addCell(CellType::Tetrahedron, ideal);
+    }
+  }
+  const Mesh mesh(data.view());
+  const std::vector<signed char> validity = validityOf(data);
+  TAUTLINE_CHECK(std::count(validity.begin(), validity.end(), Inverted) > cellsPerMesh);
+  const Targets targets = referenceTargets(mesh, Mesh(reference.view()));
+  const std::size_t cells = validity.size(), numbers = 3 * data.connectivity.size();
+  for (const MetricInfo& info : metricRegistry())
+  {
+    if (!info.definedOn(CellType::Tetrahedron) || info.family != MetricFamily::Target)
+    {
+      continue;
+    }
+    const Context context(info.name);
+    std::vector<double> values[2], gradients[2];
+    for (const bool given : { false, true })
+    {
+      EvaluationOptions options;
+      options.targets = given ? &targets : nullptr;
+      values[given].resize(cells);
+      gradients[given].resize(numbers);
+      evaluateMetricGradient(
+        mesh, info.metric, options, values[given].data(), gradients[given].data());
+      const std::vector<double> alone = valuesOf(mesh, info.metric, options);
+      for (std::size_t cell = 0; cell < cells; ++cell)
+      {
+        const double value = values[given][cell];
+        TAUTLINE_CHECK_NEAR(alone[cell], value, tolerance * std::abs(value));
+      }
+    }
+    for (std::size_t cell = 0; cell < cells; ++cell)
+    {
+      const double value = values[true][cell];
+      TAUTLINE_CHECK_NEAR(values[false][cell], value, tolerance * std::abs(value));
+      // Relative to the largest component of the cell.
+      const auto first = gradients[true].begin() + static_cast<std::ptrdiff_t>(12 * cell);
+      double largest = 0;
+      std::for_each(first, first + 12, [&](double g) { largest = std::max(largest, std::abs(g)); });
+      for (std::size_t k = 12 * cell; k < 12 * (cell + 1); ++k)
+      {
+        TAUTLINE_CHECK_NEAR(gradients[false][k], gradients[true][k], tolerance * largest);
+      }
+    }
+  }
+}
 }
 
 int TestTargets(int, char*[])
 {
+  testGivenIdeal();
   for (CellType type : allTypes)
   {
     for (bool surface : { false, true })
