@@ -72,7 +72,7 @@ inline void locate(const CellSource& source, const Index* order, Index begin, in
 
 /// Loads the vertices of the cells of a batch, of which `nodes` has the numbers.
 template <int Nodes, class Numbers>
-void loadNodes(
+inline __attribute__((always_inline)) void loadNodes(
   const CellSource& source, const double* points, const Numbers& nodes, CellVertices& batch)
 {
   for (int k = 0; k < Nodes; ++k)

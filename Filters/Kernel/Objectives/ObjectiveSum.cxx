@@ -130,6 +130,7 @@ template <bool WithGradient>
 double ObjectiveSumState::run(double scale, double* gradient) const
 {
   const ElementFunction& f = this->function;
+  const bool weighted = f.weights != nullptr;
   return withTemplate(f.objectiveTemplate,
     [&](auto objectiveTemplate)
     {
@@ -141,13 +142,13 @@ double ObjectiveSumState::run(double scale, double* gradient) const
         const double F = f.combine<Template>(this->elements.run<false, ScaledSums>(
           [&f](const BatchContext& context, const Batch& batch, ScaledSums& total, Packet&)
           { f.addScaled<Template>(context, batch, total); },
-          nullptr));
+          nullptr, weighted));
         if (WithGradient && std::isfinite(F))
         {
           this->elements.run<true, LaneSums>([&f, F, scale](const BatchContext& context,
                                                const Batch& batch, LaneSums&, Packet& slope)
             { slope = scale * f.slopeOf<Template>(context, batch, F); },
-            gradient);
+            gradient, weighted);
         }
         return F;
       }
@@ -162,7 +163,7 @@ double ObjectiveSumState::run(double scale, double* gradient) const
             slope *= scale;
             total.lanes += onlyCells(batch, value);
           },
-          gradient);
+          gradient, weighted);
         double sum = 0;
         for (const LaneSums& total : totals)
         {

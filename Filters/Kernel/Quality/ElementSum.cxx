@@ -303,7 +303,7 @@ double MetricSum::run(double* gradient) const
       raise(batch.value, power, value, slope);
       total.lanes += onlyCells(batch, value);
     },
-    gradient);
+    gradient, false);
   double sum = 0;
   for (const LaneSums& total : totals)
   {

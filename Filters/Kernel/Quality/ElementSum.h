@@ -47,15 +47,24 @@ void scatter(const BatchContext& context, const Batch& batch, Packet factor, con
   const bool mirrored = context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume;
   VectorLanes lanes[Nodes];
   factor = timesUnit(batch, factor, context.lengthPower - 1);
+  Packet g[Nodes][3], zero = {}; // 0 unless a number is not finite
   for (int k = 0; k < Nodes; ++k)
   {
-    Packet g[3];
     for (int c = 0; c < 3; ++c)
     {
-      g[c] = finiteOrZero(factor * batch.gradient[k][c]);
+      g[k][c] = factor * batch.gradient[k][c];
+      zero += 0.0 * g[k][c];
     }
-    g[0] = mirrored ? -g[0] : g[0];
-    lanes[k].set(g);
+  }
+  const bool finite = !any(zero != 0.0);
+  for (int k = 0; k < Nodes; ++k)
+  {
+    for (int c = 0; c < 3 && !finite; ++c)
+    {
+      g[k][c] = finiteOrZero(g[k][c]);
+    }
+    g[k][0] = mirrored ? -g[k][0] : g[k][0];
+    lanes[k].set(g[k]);
   }
   for (int l = 0; l < batch.count; ++l)
   {
@@ -141,11 +150,13 @@ public:
    * @brief Evaluates every cell and calls function(context, batch, total, slope) for each batch: it
    * adds to `total`, and `slope` is what the metric's gradient is multiplied by and added to
    * `gradient`.
+   * @param numbered whether the function needs the numbers of the cells; that of targets is known
    * @return the totals, one per chunk, in a fixed order
    */
   template <bool WithGradient, class Total, class Function>
-  std::vector<Total> run(const Function& function, double* gradient) const
+  std::vector<Total> run(const Function& function, double* gradient, bool numbered) const
   {
+    numbered = numbered || this->Options.targets;
     std::vector<Total> totals(this->Chunks.size());
     const Scratch scratch(*this);
     const bool renumbered = !this->PackedPoints.empty();
@@ -172,11 +183,16 @@ public:
             const std::int32_t* const connectivity = this->PackedConnectivity[chunk.block].data();
             const Index end = chunk.end;
             Batch batch;
+            std::fill(std::begin(batch.cells), std::end(batch.cells), Index(0));
             PackedNodes nodes;
             for (Index begin = chunk.begin; begin < end; begin += PacketWidth)
             {
               const int count = static_cast<int>(std::min<Index>(PacketWidth, end - begin));
-              gatherPacked<Nodes>(context, order, connectivity, points, begin, count, batch, nodes);
+              if (numbered)
+              {
+                findCells(context, order, begin, count, batch);
+              }
+              gatherPacked<Nodes>(context, connectivity, points, begin, count, batch, nodes);
               evaluate(context, batch);
               batch.value = finiteOrZero(batch.value);
               Packet slope = {};
@@ -239,16 +255,26 @@ private:
   const double* packedCoordinates(std::vector<double>& coordinates) const;
   void addUnpacked(const std::vector<double>& packedGradient, double* gradient) const;
 
+  /// The numbers of the cells of a batch, which are read for nothing else.
+  static void findCells(
+    const BatchContext& context, const Index* order, Index begin, int count, Batch& batch)
+  {
+    for (int l = 0; l < PacketWidth; ++l)
+    {
+      const Index position = begin + (l < count ? l : count - 1);
+      batch.cells[l] = context.block->cell(order ? order[position] : position);
+    }
+  }
+
   /// As gather(), from packed connectivity and coordinates.
   template <int Nodes>
-  static void gatherPacked(const BatchContext& context, const Index* order,
+  static inline __attribute__((always_inline)) void gatherPacked(const BatchContext& context,
     const std::int32_t* connectivity, const double* coordinates, Index begin, int count,
     Batch& batch, PackedNodes& nodes)
   {
     for (int l = 0; l < PacketWidth; ++l)
     {
       const Index position = begin + (l < count ? l : count - 1);
-      batch.cells[l] = context.block->cell(order ? order[position] : position);
       nodes[l] = connectivity + Nodes * position;
     }
     batch.count = count;
