@@ -278,11 +278,7 @@ std::vector<double> MovableMesh::settle(const std::vector<double>& points, std::
 //------------------------------------------------------------------------------
 std::vector<signed char> MovableMesh::validityAt(const std::vector<double>& points) const
 {
-  MeshView view = this->mesh().view();
-  view.points = points.data();
-  Mesh moved(view, this->Threads);
-  moved.setMirrored(this->mesh().mirrored());
-  return validityOf(moved, this->Threads);
+  return validityOf(this->mesh().at(points.data()), this->Threads);
 }
 
 //------------------------------------------------------------------------------

@@ -129,10 +129,8 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
   const std::vector<MeasuredMetric>& metrics, const VerifiedElements& known, int threads,
   const std::string& block, vtkDataSet* output, TableRows& rows)
 {
-  MeshView view = mesh.mesh().view();
-  view.points = points.data();
-  Mesh moved(view, threads);
-  moved.setMirrored(mesh.mesh().mirrored());
+  const MeshView& view = mesh.mesh().view();
+  const Mesh moved = mesh.mesh().at(points.data());
   vtkNew<vtkSignedCharArray> validity;
   validity->SetName("Validity");
   validity->SetNumberOfValues(view.numberOfCells);

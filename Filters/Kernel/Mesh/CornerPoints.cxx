@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CornerPoints.h"
 
+#include "CellBatch.h"
 #include "tautline/Core/CountingSort.h"
 
 namespace tautline
@@ -19,15 +20,21 @@ void markPart(const Mesh& mesh, int dimension, Index part, Index parts, std::vec
       continue;
     }
     const Index end = block.count * (part + 1) / parts;
-    for (Index i = block.count * part / parts; i < end; ++i)
-    {
-      pollInterruption(i);
-      const Index* node = view.connectivity + view.offsets[block.cell(i)];
-      for (int k = 0; k < t.nodes; ++k)
+    withNodes(t,
+      [&](auto nodesOfCell)
       {
-        marks[node[k]] = 1;
-      }
-    }
+        constexpr int Nodes = decltype(nodesOfCell)::value;
+        char* const mark = marks.data(); // which stores to it do not change
+        for (Index i = block.count * part / parts; i < end; ++i)
+        {
+          pollInterruption(i);
+          const Index* node = view.connectivity + view.offsets[block.cell(i)];
+          for (int k = 0; k < Nodes; ++k)
+          {
+            mark[node[k]] = 1;
+          }
+        }
+      });
   }
 }
 }

@@ -123,12 +123,32 @@ Mesh::Mesh(const MeshView& view, int threads)
 
   this->Blocks = sortByType(view, this->HigherOrder, this->Unsupported);
   checkConnectivity(view, this->Blocks, threads);
+  this->findDimension();
+}
+
+//------------------------------------------------------------------------------
+Mesh Mesh::at(const double* points) const
+{
+  Mesh result = *this;
+  result.View.points = points;
+  result.findDimension();
+  return result;
+}
+
+//------------------------------------------------------------------------------
+/// What depends on the points: which are not finite, and the plane.
+void Mesh::findDimension()
+{
+  const MeshView& view = this->View;
+  this->NonFinitePoints = 0;
   for (Index i = 0; i < view.numberOfPoints; ++i)
   {
     const Vec3 p = pointOf(view, i);
     this->NonFinitePoints += !(std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]));
   }
 
+  this->Normal = { 0, 0, 0 };
+  this->Frame = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 } };
   bool flat = false, solid = false;
   for (const CellBlock& block : this->Blocks)
   {

@@ -124,6 +124,12 @@ class TAUTLINE_KERNEL_EXPORT Mesh
 {
 public:
   explicit Mesh(const MeshView& view, int threads = 0);
+  /**
+   * @brief The same cells at other points, 3 coordinates per point of the view, which must outlive
+   * the result; mirrored as this mesh is. Cheaper than another construction: the cells have been
+   * checked.
+   */
+  Mesh at(const double* points) const;
 
   const MeshView& view() const { return this->View; }
   const std::vector<CellBlock>& blocks() const { return this->Blocks; }
@@ -195,6 +201,7 @@ public:
   Vec3 center(Index cell, CellType type) const;
 
 private:
+  void findDimension();
   void findPlane();
 
   MeshView View;

@@ -101,6 +101,42 @@ void testDimension()
 }
 
 //------------------------------------------------------------------------------
+/// At other points a mesh is what a new one there is: on a tilted plane, off it, in space, with a
+/// point that is not finite, and back.
+void testAtOtherPoints(MeshData data, bool mirrored)
+{
+  Mesh mesh(data.view());
+  mesh.setMirrored(mirrored);
+  const MeshData start = data;
+  Random random(21);
+  const Columns turn = randomRotation(random);
+  MeshData tilted = start, bent = start, broken = start;
+  tilted.transform([&](const Vec3& p) { return 3.0 * (turn * p) + Vec3{ 5, 6, 7 }; });
+  bent.transform([](const Vec3& p) { return p + Vec3{ 0, 0, 0.1 * p[0] * p[1] }; });
+  broken.setPoint(2, { std::nan(""), 0, 0 });
+  Mesh moved = mesh;
+  for (const MeshData& other : { tilted, bent, broken, start })
+  {
+    moved = moved.at(other.points.data());
+    const Mesh fresh(other.view());
+    TAUTLINE_CHECK(moved.view().points == other.points.data());
+    TAUTLINE_CHECK(moved.dimension() == fresh.dimension());
+    TAUTLINE_CHECK(moved.normal() == fresh.normal());
+    TAUTLINE_CHECK(moved.frame() == fresh.frame());
+    TAUTLINE_CHECK_EQUAL(moved.nonFinitePoints(), fresh.nonFinitePoints());
+    TAUTLINE_CHECK_EQUAL(moved.mirrored(), mirrored);
+    TAUTLINE_CHECK_EQUAL(moved.blocks().size(), fresh.blocks().size());
+    TAUTLINE_CHECK_EQUAL(moved.higherOrderCells(), fresh.higherOrderCells());
+    TAUTLINE_CHECK_EQUAL(moved.unsupportedCells(), fresh.unsupportedCells());
+    for (std::size_t b = 0; b < fresh.blocks().size(); ++b)
+    {
+      TAUTLINE_CHECK(moved.blocks()[b].cells == fresh.blocks()[b].cells);
+    }
+  }
+  TAUTLINE_CHECK(mesh.view().points == data.points.data());
+}
+
+//------------------------------------------------------------------------------
 void testBoundary(CellType type)
 {
   const MeshData data = box(type);
@@ -302,7 +338,9 @@ int TestMesh(int, char*[])
     const Context context(topology(type).name);
     testBoundary(type);
     testAdjacency(box(type));
+    testAtOtherPoints(box(type), topology(type).dimension == 3);
   }
+  testAtOtherPoints(mixedMesh(), false);
   testMixed();
   testNonManifold();
   testHigherOrder();
