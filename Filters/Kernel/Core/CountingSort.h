@@ -62,9 +62,24 @@ public:
   template <class Visit>
   void place(const Visit& visit)
   {
+    this->place(visit, [](Index, const auto&) {});
+  }
+
+  /// The same; before that of an item, `fetch` is called as visit() is for one that comes later, so
+  /// that it can fetch the memory which that will write to: placeOf(key) is about the place then.
+  template <class Visit, class Fetch>
+  void place(const Visit& visit, const Fetch& fetch)
+  {
+    constexpr Index ahead = 32; // items: as many as are placed while memory is fetched
     this->forEachItem([](std::vector<std::int32_t>&) {},
-      [&visit](Index item, std::vector<std::int32_t>& next)
-      { visit(item, [&next](std::int32_t key) { return next[key]++; }); });
+      [&](Index item, std::vector<std::int32_t>& next)
+      {
+        if (item + ahead < this->Items)
+        {
+          fetch(item + ahead, [&next](std::int32_t key) { return next[key]; });
+        }
+        visit(item, [&next](std::int32_t key) { return next[key]++; });
+      });
   }
 
 private:

@@ -376,6 +376,10 @@ std::vector<std::vector<std::uint64_t>> SimplexMesh::blocksOfSimplices(int threa
         {
           block[k] = corner[k] < this->Free ? corner[k] / VertexBlocks::size : none;
         }
+        if (std::all_of(block + 1, block + corners, [&](std::int32_t b) { return b == block[0]; }))
+        {
+          continue;
+        }
         for (int k = 0; k < corners; ++k)
         {
           for (int l = k + 1; l < corners; ++l)

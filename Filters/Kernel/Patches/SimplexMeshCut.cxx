@@ -2,6 +2,7 @@
 #include "SimplexMesh.h"
 
 #include "tautline/Core/CountingSort.h"
+#include "tautline/Core/LargeArray.h"
 
 #include <algorithm>
 #include <array>
@@ -73,6 +74,8 @@ public:
         this->Simplices += block.count * t.samples;
       }
     }
+    this->AllSimplices = this->Parts.size() == 1 && this->Parts.front().topology->samples == 1;
+    this->AllFinite = mesh.nonFinitePoints() == 0;
   }
 
   /// Of cells of the dimension.
@@ -80,6 +83,11 @@ public:
   /// At most: with those of points that are not finite.
   Index simplices() const { return this->Simplices; }
 
+  /// Whether all cells are simplices, of one block and of finite points: one simplex per cell.
+  bool isPlain() const { return this->AllSimplices && this->AllFinite; }
+
+  /// Of a plain cell, by its place.
+  Index cellAt(Index place) const { return this->Parts.front().block->cell(place); }
   /// Of a cell of the dimension.
   const CellTopology& topologyOf(Index cell) const
   {
@@ -93,6 +101,22 @@ public:
   template <class Visit>
   void visit(Index place, const Visit& visit) const
   {
+    if (this->AllSimplices) // the usual case: a simplex is its only corner
+    {
+      const Index cell = this->Parts.front().block->cell(place);
+      const Index* node = this->View.connectivity + this->View.offsets[cell];
+      std::int32_t v[Dim + 1], lowest = 0;
+      for (int k = 0; k <= Dim; ++k)
+      {
+        v[k] = this->VertexOf[node[k]];
+        lowest = std::min(lowest, v[k]);
+      }
+      if (lowest >= 0)
+      {
+        visit(cell, 0, v);
+      }
+      return;
+    }
     auto part = this->Parts.begin();
     for (; place >= part->block->count; ++part)
     {
@@ -194,6 +218,8 @@ private:
   std::vector<Part> Parts;
   std::array<const CellTopology*, NumberOfCellTypes> OfType = {};
   Index Cells = 0, Simplices = 0;
+  bool AllSimplices = false; ///< all cells are simplices of one block
+  bool AllFinite = false;    ///< all points are
 };
 
 /// The targets of the corners of the ideal cells, and where those of each type begin.
@@ -245,10 +271,22 @@ void SimplexMesh::cutInto(const Mesh& mesh, const std::vector<std::int32_t>& ver
     throw Error(
       "The mesh has more elements than the optimizers take (about 500 million): split it.");
   }
-  // Sorted by their first vertex in the new numbering: each goes to the next place of that.
+  // Sorted by their first vertex in the new numbering: each goes to the next place of that. The
+  // vertices of plain cells are kept: they tell early where a cell will go.
+  LargeArray<std::int32_t> kept(source.isPlain() ? corners * source.cells() : 0);
   CountingSort places(source.cells(), this->vertices(), threads,
     [&](Index cell, const auto& use)
-    { source.visit(cell, [&](Index, int, const std::int32_t* v) { use(first(v)); }); });
+    {
+      source.visit(cell,
+        [&](Index, int, const std::int32_t* v)
+        {
+          use(first(v));
+          if (!kept.empty())
+          {
+            std::copy_n(v, corners, kept.data() + corners * cell);
+          }
+        });
+    });
   this->Simplices = places.starts().back();
   this->Scale = frame ? frame->scale : powerOfTwo(source.meanLength(this->Point, threads));
 
@@ -268,33 +306,54 @@ void SimplexMesh::cutInto(const Mesh& mesh, const std::vector<std::int32_t>& ver
   this->Shape.resize(several ? this->Simplices : 0);
   // Cells are read in their order and written to their places: the processor need not wait for a
   // write as it would for a read.
-  places.place(
-    [&](Index cellPlace, const auto& placeOf)
+  const auto put = [&](Index cell, int s, const std::int32_t* v, std::int32_t place)
+  {
+    this->Cell[place] = static_cast<std::int32_t>(cell);
+    std::int32_t* corner = this->Corners.data() + corners * static_cast<std::size_t>(place);
+    std::copy_n(v, corners, corner);
+    if (this->Mirrored)
     {
-      source.visit(cellPlace,
-        [&](Index cell, int s, const std::int32_t* v)
-        {
-          const std::int32_t place = placeOf(first(v));
-          this->Cell[place] = static_cast<std::int32_t>(cell);
-          std::int32_t* corner = this->Corners.data() + corners * static_cast<std::size_t>(place);
-          std::copy_n(v, corners, corner);
-          if (this->Mirrored)
-          {
-            std::swap(corner[0], corner[1]);
-          }
-          if (targets)
-          {
-            this->Shape[place] = place;
-            this->Shapes[place] = targetFrom(
-              targets->inverse.data() + 9 * (targets->offsets[cell] + s), Dim, this->Scale);
-          }
-          else if (several)
-          {
-            const CellTopology& t = source.topologyOf(cell);
-            this->Shape[place] = firstShape[topologyIndex(t.type)] + s;
-          }
-        });
-    });
+      std::swap(corner[0], corner[1]);
+    }
+    if (targets)
+    {
+      this->Shape[place] = place;
+      this->Shapes[place] =
+        targetFrom(targets->inverse.data() + 9 * (targets->offsets[cell] + s), Dim, this->Scale);
+    }
+    else if (several)
+    {
+      const CellTopology& t = source.topologyOf(cell);
+      this->Shape[place] = firstShape[topologyIndex(t.type)] + s;
+    }
+  };
+  if (!kept.empty())
+  {
+    const auto vertices = [&kept](Index cell) { return kept.data() + corners * cell; };
+    places.place(
+      [&](Index cell, const auto& placeOf)
+      {
+        const std::int32_t* v = vertices(cell);
+        put(source.cellAt(cell), 0, v, placeOf(first(v)));
+      },
+      [&](Index cell, const auto& placeOf)
+      {
+        const std::int32_t place = placeOf(first(vertices(cell)));
+        constexpr int toWrite = 1;
+        __builtin_prefetch(this->Cell.data() + place, toWrite);
+        __builtin_prefetch(
+          this->Corners.data() + corners * static_cast<std::size_t>(place), toWrite);
+      });
+  }
+  else
+  {
+    places.place(
+      [&](Index cellPlace, const auto& placeOf)
+      {
+        source.visit(cellPlace,
+          [&](Index cell, int s, const std::int32_t* v) { put(cell, s, v, placeOf(first(v))); });
+      });
+  }
   if (this->Mirrored && several)
   {
     for (TargetSimplex& shape : this->Shapes)
