@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OptimizationProblem.h"
 
+#include "tautline/Core/Parallel.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace tautline
 {
@@ -32,10 +35,8 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   , Points(points)
   , Clock(clock)
 {
-  MeshView view = mesh.view();
-  view.points = points.data();
-  this->Moving = std::make_unique<Mesh>(view, options.threads);
-  this->Moving->setMirrored(mesh.mirrored());
+  const MeshView& view = mesh.view();
+  this->Moving = std::make_unique<Mesh>(mesh.at(points.data()));
   this->Resolved = options.objectives;
 
   // One set of targets can be built into the simplices; objectives with others take the general
@@ -84,8 +85,10 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   }
   else
   {
-    if (this->invalidSimplices() > 0)
+    this->summarizeSimplices(this->AtStart);
+    if (this->AtStart.inverted > 0)
     {
+      this->AtStart = {};
       std::vector<signed char> validity(view.numberOfCells);
       this->Moving->classifyCells(validity.data(), options.threads);
       this->leaveOut(validity);
@@ -493,10 +496,7 @@ IterationRecord OptimizationProblem::record(int iteration)
 {
   IterationRecord record;
   record.iteration = iteration;
-  // The mean of the mean ratio does not follow from sums of its reciprocal.
-  const bool ratio = std::any_of(this->Resolved.begin(), this->Resolved.end(),
-    [](const Objective& o) { return o.metric == Metric::MeanRatio; });
-  if (this->AllFast && !ratio)
+  if (this->hasSimplexTotals())
   {
     this->summarizeSimplices(record);
   }
@@ -509,6 +509,52 @@ IterationRecord OptimizationProblem::record(int iteration)
     : record.objectives[0];
   record.seconds = this->Clock.seconds();
   return record;
+}
+
+//------------------------------------------------------------------------------
+bool OptimizationProblem::hasSimplexTotals() const
+{
+  // The mean of the mean ratio does not follow from sums of its reciprocal.
+  return this->AllFast &&
+    std::none_of(this->Resolved.begin(), this->Resolved.end(),
+      [](const Objective& o) { return o.metric == Metric::MeanRatio; });
+}
+
+//------------------------------------------------------------------------------
+IterationRecord OptimizationProblem::firstRecord(int iteration)
+{
+  if (this->AtStart.objectives.empty() || !this->hasSimplexTotals())
+  {
+    return this->record(iteration);
+  }
+  IterationRecord record = this->AtStart;
+  record.iteration = iteration;
+  record.objective = record.objectives[0];
+  record.seconds = this->Clock.seconds();
+  return record;
+}
+
+//------------------------------------------------------------------------------
+double OptimizationProblem::sumOfSquares(const std::vector<double>& values) const
+{
+  std::vector<double> ofChunk(numberOfChunks(static_cast<Index>(values.size())));
+  forEachChunk(static_cast<Index>(values.size()), this->Options.threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        ofChunk[chunk] += values[i] * values[i];
+      }
+    });
+  return std::accumulate(ofChunk.begin(), ofChunk.end(), 0.0);
+}
+
+//------------------------------------------------------------------------------
+bool OptimizationProblem::isSumOfSquaresOf(const Objective& judged) const
+{
+  return this->isSimple() && this->Terms[0].shapePower == 2 && this->Simplices->uniform() &&
+    judged.metric == Metric::InverseMeanRatio && !judged.evaluation.targets &&
+    !this->Resolved[0].evaluation.targets;
 }
 
 //------------------------------------------------------------------------------

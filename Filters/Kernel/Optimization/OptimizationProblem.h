@@ -78,6 +78,12 @@ public:
   bool someRepaired() const;
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
   IterationRecord record(int iteration);
+  /// The same before anything has moved, from what the constructor has found; without start().
+  IterationRecord firstRecord(int iteration);
+  /// Whether the objective is the sum of the squares of the values that a metric has.
+  bool isSumOfSquaresOf(const Objective& judged) const;
+  /// That sum of values of cells, on all threads.
+  double sumOfSquares(const std::vector<double>& values) const;
   /// The worst value of a metric among the valid elements with a free vertex.
   double worstMovable(const Objective& judged) const;
   /// That of the inverse mean ratio, of simplices alone: where the coordinates are, stored or not.
@@ -95,7 +101,7 @@ private:
   void makeSurface();
   LocalTerm fastTerm(const Objective& objective) const;
   void leaveOut(std::vector<signed char> validity);
-  Index invalidSimplices() const;
+  bool hasSimplexTotals() const;
   void summarizeSimplices(IterationRecord& record) const;
   void summarizeCells(IterationRecord& record);
 
@@ -116,6 +122,7 @@ private:
   std::vector<Index> LeftOut;               ///< cells whose corners were not valid at first
   std::vector<std::vector<double>> Weights; ///< of each objective, if not all 1
   std::unique_ptr<Scalarizer> TheScalarizer;
+  IterationRecord AtStart;   ///< sums of the simplices there; without objectives: not found
   std::vector<double> Start; ///< coordinates of the simplex mesh at the start
   Stopwatch Clock;
 };

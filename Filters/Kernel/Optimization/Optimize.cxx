@@ -386,9 +386,21 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
 void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecord& first,
   const QualityGuard& guard, QualityGuard::State& state, OptimizeResult& result)
 {
-  problem.restart(std::vector<double>(result.points));
-  const bool larger = guard.holdsObjective() &&
-    isLarger(problem.options().scalarization, problem.scalarizer(), problem.record(0), first);
+  const auto isLargerThere = [&](const IterationRecord& now)
+  { return isLarger(problem.options().scalarization, problem.scalarizer(), now, first); };
+  bool larger = guard.holdsObjective();
+  if (larger && problem.isSumOfSquaresOf(guard.judged()))
+  {
+    // The values of all elements are there, measured on the points.
+    IterationRecord now = first;
+    now.objective = problem.sumOfSquares(state.values);
+    larger = isLargerThere(now);
+  }
+  if (larger)
+  {
+    problem.restart(std::vector<double>(result.points));
+    larger = isLargerThere(problem.record(0));
+  }
   if (larger || state.violated)
   {
     const double* start = mesh.view().points;
@@ -416,7 +428,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   result.freeVertices = problem.simplices().freeVertices();
   const StoppingTest watch(options.stopping, [&problem] { return problem.outOfTime(); });
   const bool again = !result.history.empty();
-  IterationRecord first = problem.record(again ? result.history.back().iteration : 0);
+  IterationRecord first = problem.firstRecord(again ? result.history.back().iteration : 0);
   problem.start(first);
   first.objective =
     problem.objectives() > 1 ? problem.scalarizer().value(first.objectives) : first.objectives[0];

@@ -194,15 +194,6 @@ SimplexTotals totalsOf(const SimplexMesh& mesh, const std::vector<double>& weigh
 }
 
 //------------------------------------------------------------------------------
-Index OptimizationProblem::invalidSimplices() const
-{
-  const SimplexTotals totals = this->Simplices->dimension() == 3
-    ? totalsOf<3>(*this->Simplices, {}, this->Options.threads)
-    : totalsOf<2>(*this->Simplices, {}, this->Options.threads);
-  return totals.invalid;
-}
-
-//------------------------------------------------------------------------------
 void OptimizationProblem::summarizeSimplices(IterationRecord& record) const
 {
   std::vector<double> weights;
