@@ -93,9 +93,9 @@ std::unique_ptr<ComparisonPieces> ComparisonPieces::take(
       second = listPieces(after, others);
     });
   const bool composite = vtkCompositeDataSet::SafeDownCast(before) != nullptr;
-  const bool alike = groups == others &&
-    composite == (vtkCompositeDataSet::SafeDownCast(after) != nullptr) &&
-    groups == static_cast<int>(group.maximum(static_cast<Index>(groups)));
+  const int most = static_cast<int>(group.maximum(static_cast<Index>(groups)));
+  const bool alike = groups == others && groups == most &&
+    composite == (vtkCompositeDataSet::SafeDownCast(after) != nullptr);
   if (group.any(!alike) || (group.any(composite) && group.any(!composite)))
   {
     why = OtherBlocks;
