@@ -398,8 +398,9 @@ double estimatePeridynamicMemory(const HorizonMesh& mesh, const PeridynamicOptio
 //------------------------------------------------------------------------------
 namespace
 {
-/// The slices of a colour after which ranks learn whether one of them has stopped.
-constexpr Index SlicesOfColour = 32;
+/// The slices of a colour, and of the pairs, after which ranks learn whether one of them has
+/// stopped.
+constexpr Index SlicesOnRanks = 32;
 
 /// Everything that can be wrong, before the expensive part. Sets what of the system follows.
 /// @param share of the matrix that this rank needs memory for, at most 1
@@ -469,7 +470,7 @@ void addTriangles(RankGroup& group, const PeridynamicWork& work, const PairInteg
     [&] {
       colours = colourTriangles(work.triangles, space, space.trianglesWithUnknowns(work.triangles));
     });
-  const Index slices = group.size() > 1 ? SlicesOfColour : 1;
+  const Index slices = group.size() > 1 ? SlicesOnRanks : 1;
   Index done = 0;
   const Index all = std::count(work.needed.begin(), work.needed.end(), 1);
   for (const std::vector<std::int32_t>& colour : colours)
@@ -555,15 +556,21 @@ PeridynamicSystem assemblePeridynamics(RankGroup& group, const HorizonMesh& mesh
   const bool exact = options.discretization == Discretization::Exact;
   const bool stateBased = options.model == PeridynamicModel::StateBased;
   std::shared_ptr<PairIntegrals> integrals;
+  group.together([&] { integrals = exact ? makePairIntegrals(work) : nullptr; });
+  const Index slices = group.size() > 1 ? SlicesOnRanks : 1;
+  for (Index slice = 0; exact && slice < slices; ++slice)
+  {
+    group.together(
+      [&]
+      {
+        integratePairs(
+          *integrals, slice, slices, [&](double fraction) { return control.proceed(fraction); });
+        control.throwIfStopped();
+      });
+  }
   group.together(
     [&]
     {
-      if (exact)
-      {
-        integrals =
-          makePairIntegrals(work, [&](double fraction) { return control.proceed(fraction); });
-        control.throwIfStopped();
-      }
       control.setRange(exact ? 0.5 : 0.0, stateBased ? StateBasedShare : 1.0);
       system.matrix = makePattern(space, first ? std::vector<char>(own.size(), 1) : own,
         parts->supports, interactionReach(options), system.components, options.threads);

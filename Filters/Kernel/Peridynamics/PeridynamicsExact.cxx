@@ -73,7 +73,8 @@ using Slot = std::int32_t; // 2 x block + 1 if seen from the second
 class PairIntegrals
 {
 public:
-  PairIntegrals(const PeridynamicWork& work, const std::function<bool(double)>& proceed);
+  explicit PairIntegrals(const PeridynamicWork& work);
+  void integrate(Index slice, Index slices, const std::function<bool(double)>& proceed);
 
   Index integrated() const { return this->Integrated; }
   /// Whether all pairs are here. Otherwise those that touch are.
@@ -102,7 +103,6 @@ private:
   void findShapes();
   void findPairs(const std::vector<char>& needed);
   void findTouching(const std::vector<char>& needed);
-  void integrate(const std::function<bool(double)>& proceed);
   Vec2 corner(Index t, int k, Index fromX, Index fromY) const;
 
   const PeridynamicWork& Work;
@@ -121,15 +121,27 @@ private:
   std::vector<Example> Examples; ///< per block
   std::unordered_map<Signature, std::vector<Slot>, SignatureHash> Surroundings;
   std::vector<double> Rows;
+  struct Scratch
+  {
+    PairIntegrator integrator;
+    std::vector<double> block;
+  };
+  ScratchPool<Scratch> Scratches;
 };
 
 //------------------------------------------------------------------------------
-PairIntegrals::PairIntegrals(
-  const PeridynamicWork& work, const std::function<bool(double)>& proceed)
+PairIntegrals::PairIntegrals(const PeridynamicWork& work)
   : Work(work)
   , Functions(work.space.perTriangle())
   , Components(isElastic(work.options.model) ? 2 : 1)
   , RowSize(2 * this->Functions * this->Functions * this->Components * this->Components)
+  , Scratches(
+      [this]
+      {
+        Scratch scratch{ PairIntegrator(this->Work.options, this->Functions), {} };
+        scratch.block.resize(scratch.integrator.blockSize());
+        return scratch;
+      })
 {
   // A power of two, so that the rounding of exact coordinates is exact, far below every length.
   constexpr double fineness = 1e-10;
@@ -139,7 +151,9 @@ PairIntegrals::PairIntegrals(
   const Index few = std::max<Index>(64, work.triangles.size() / 16);
   this->Reuse = work.options.reuseCongruent && this->NumberOfShapes <= few;
   this->Reuse ? this->findPairs(work.needed) : this->findTouching(work.needed);
-  this->integrate(proceed);
+  const auto count = static_cast<Index>(this->Examples.size());
+  this->Integrated = count;
+  this->Rows.assign(static_cast<std::size_t>(2 * count) * this->RowSize, 0.0);
 }
 
 //------------------------------------------------------------------------------
@@ -404,35 +418,25 @@ void PairIntegrals::toRows(
 }
 
 //------------------------------------------------------------------------------
-void PairIntegrals::integrate(const std::function<bool(double)>& proceed)
+/// Integrates one of several parts of the pairs.
+void PairIntegrals::integrate(Index slice, Index slices, const std::function<bool(double)>& proceed)
 {
   const auto count = static_cast<Index>(this->Examples.size());
-  this->Integrated = count;
-  this->Rows.assign(static_cast<std::size_t>(2 * count) * this->RowSize, 0.0);
-  struct Scratch
-  {
-    PairIntegrator integrator;
-    std::vector<double> block;
-  };
-  ScratchPool<Scratch> scratches(
-    [&]
-    {
-      Scratch scratch{ PairIntegrator(this->Work.options, this->Functions), {} };
-      scratch.block.resize(scratch.integrator.blockSize());
-      return scratch;
-    });
+  const Index begin = count * slice / slices, end = count * (slice + 1) / slices;
   constexpr Index grain = 4;
   parallelFor(
-    count, grain, this->Work.options.threads, scratches,
-    [&](Scratch& scratch, Index i)
+    end - begin, grain, this->Work.options.threads, this->Scratches,
+    [&](Scratch& scratch, Index k)
     {
+      const Index i = begin + k;
       const TrianglePair pair =
         this->pair(this->Examples[i].first, this->Examples[i].second, false);
       scratch.integrator.integrate(pair, scratch.block.data());
       this->toRows(pair, scratch.block.data(), this->Rows.data() + 2 * i * this->RowSize,
         this->Rows.data() + (2 * i + 1) * this->RowSize);
     },
-    proceed);
+    [&](double fraction)
+    { return proceed((static_cast<double>(slice) + fraction) / static_cast<double>(slices)); });
 }
 
 //------------------------------------------------------------------------------
@@ -501,10 +505,16 @@ private:
 }
 
 //------------------------------------------------------------------------------
-std::shared_ptr<PairIntegrals> makePairIntegrals(
-  const PeridynamicWork& work, const std::function<bool(double)>& proceed)
+std::shared_ptr<PairIntegrals> makePairIntegrals(const PeridynamicWork& work)
 {
-  return std::make_shared<PairIntegrals>(work, proceed);
+  return std::make_shared<PairIntegrals>(work);
+}
+
+//------------------------------------------------------------------------------
+void integratePairs(
+  PairIntegrals& integrals, Index slice, Index slices, const std::function<bool(double)>& proceed)
+{
+  integrals.integrate(slice, slices, proceed);
 }
 
 Index numberOfIntegratedPairs(const PairIntegrals& integrals)

@@ -72,10 +72,15 @@ std::unique_ptr<TriangleAssembler> makeDissertationAssembler(const PeridynamicWo
 
 /// Integrals over pairs of triangles, kept for congruent ones.
 class PairIntegrals;
-/// Integrates the pairs that are kept; `proceed` gets the fraction done and returns whether to
-/// continue.
-std::shared_ptr<PairIntegrals> makePairIntegrals(
-  const PeridynamicWork& work, const std::function<bool(double)>& proceed);
+/// Finds the pairs that are kept.
+std::shared_ptr<PairIntegrals> makePairIntegrals(const PeridynamicWork& work);
+/**
+ * @brief Integrates one of several parts of the pairs.
+ * @param slice 0 to slices - 1
+ * @param proceed gets the fraction of all pairs that is done and returns whether to continue
+ */
+void integratePairs(
+  PairIntegrals& integrals, Index slice, Index slices, const std::function<bool(double)>& proceed);
 Index numberOfIntegratedPairs(const PairIntegrals& integrals);
 std::unique_ptr<TriangleAssembler> makeExactAssembler(
   const PeridynamicWork& work, const PairIntegrals& integrals);

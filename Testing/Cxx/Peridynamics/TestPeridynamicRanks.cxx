@@ -166,11 +166,38 @@ void testEnds()
                           { own.progress = [](double part) { return part < 0.8; }; }),
     "stopped by the user");
 }
+
+/// A rank that stops while pairs are integrated, the first half of the work, ends the others soon.
+void testSoon()
+{
+  constexpr double stop = 0.1, soon = 0.15;
+  const PeridynamicOptions options = optionsOf(cases[0]);
+  const HorizonMesh mesh = meshFor(options, 0.1);
+  std::vector<double> farthest(3, 0.0);
+  TAUTLINE_CHECK_THROWS(onRanks(3,
+                          [&](RankGroup& group)
+                          {
+                            PeridynamicOptions own = options;
+                            own.progress = [&](double part)
+                            {
+                              double& here = farthest[group.rank()];
+                              here = std::max(here, part);
+                              return group.rank() != 0 || part < stop;
+                            };
+                            assemblePeridynamics(group, mesh, own);
+                          }),
+    "stopped by the user");
+  for (const double part : farthest)
+  {
+    TAUTLINE_CHECK(part > 0 && part < soon);
+  }
+}
 }
 
 int TestPeridynamicRanks(int, char*[])
 {
   testEqual();
   testEnds();
+  testSoon();
   return exitCode();
 }
