@@ -19,7 +19,7 @@ results = {}
 # Runs on every rank: its part of a mesh with its points in one of two states.
 PIECES = """
 import numpy as np
-from rank_meshes import RANK, RANKS, add_global_ids, divided, piece, simplices
+from rank_meshes import RANK, RANKS, add_global_ids, appended, divided, piece, simplices
 
 D, N, KIND, AFTER, TAKERS = {dimension}, {n}, "{kind}", {after}, {takers}
 takers = TAKERS if 0 < TAKERS < RANKS else RANKS
@@ -41,6 +41,9 @@ if KIND == "mixed":
     cells[::5, 1:3] = cells[::5, 2:0:-1]
 own = divided(places[cells].mean(axis=1), "{cut}", takers, axis={axis}) == RANK
 grid = piece(x, cells, own, {ghosts} and RANKS > 1)
+if {several} and RANKS > 1:  # as readers put pieces together: each has points of its own
+    halves = divided(places[cells].mean(axis=1), "tree", 3)
+    grid = appended([piece(x, cells, np.logical_and(own, halves == half)) for half in range(3)])
 if grid.GetNumberOfPoints():
     if {ids}:
         add_global_ids(grid)
@@ -48,7 +51,7 @@ if grid.GetNumberOfPoints():
 """
 
 
-def mesh(kind="plain", cut="slabs", after=0, ids=1, ghosts=0, dimension=3, n=4, takers=0, axis=0):
+def mesh(kind="plain", cut="slabs", after=0, ids=1, ghosts=0, dimension=3, n=4, takers=0, axis=0, several=0):
     script = PIECES.format(**locals())
     return simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=script)
 
@@ -96,6 +99,7 @@ compare("two ranks, random", mesh(takers=2, kind="tangled"), mesh(cut="random", 
 compare("random, one rank", mesh(cut="random", dimension=2, n=8), mesh(takers=1, after=1, dimension=2, n=8))
 compare("surfaces", mesh(cut="random", kind="surface", dimension=2, n=8),
         mesh(after=1, kind="surface", dimension=2, n=8))  # fmt: skip
+compare("several pieces", mesh(several=1, kind="tangled"), mesh(cut="random", after=1, several=1, kind="tangled"))
 # By their places where nothing has moved.
 compare("unmoved", mesh(cut="random", ids=0), mesh(cut="tree", ids=0))
 # With ids that ParaView makes, and ghost cells in one of the meshes only.
@@ -110,6 +114,21 @@ first = simple.GroupDatasets(Input=[mesh(ids=0), mesh(**tangled)])
 second = simple.GroupDatasets(Input=[mesh(ids=0, after=1), mesh(after=1, **tangled)])
 blocks = update(CompareMeshes(Input=first, Other=second, Metrics=METRICS))
 results["blocks"] = [table(blocks), blocks.Summary]
+# A block that only the first rank has.
+BLOCKS = PIECES.replace("    output.VTKObject.ShallowCopy(grid)\n", "    pass\n") + """
+blocks = output.VTKObject
+blocks.SetBlock(0, grid)
+if RANK == 0:
+    blocks.SetBlock(1, piece(x, cells, np.ones(len(cells), bool)))
+"""
+state = {"kind": "plain", "cut": "slabs", "ids": 0, "ghosts": 0, "dimension": 3, "n": 4, "takers": 0, "axis": 0,
+         "several": 0}  # fmt: skip
+first, second = (
+    simple.ProgrammableSource(OutputDataSetType="vtkMultiblockDataSet", Script=BLOCKS.format(after=after, **state))
+    for after in (0, 1)
+)
+blocks = update(CompareMeshes(Input=first, Other=second, Metrics=METRICS))
+results["more blocks"] = [table(blocks), blocks.Summary]
 
 
 def refused(name, first, second):

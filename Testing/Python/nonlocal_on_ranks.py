@@ -20,7 +20,7 @@ results = {}
 # are in the order of their coordinates and the cells in that of their points, as meshes are put together.
 PIECES = """
 import numpy as np
-from rank_meshes import RANK, RANKS, add_array, add_global_ids, divided, piece, simplices
+from rank_meshes import RANK, RANKS, add_array, add_global_ids, appended, divided, piece, simplices
 
 N, KIND = {n}, "{kind}"
 takers = {takers} if 0 < {takers} < RANKS else RANKS
@@ -49,6 +49,9 @@ ranks = divided(x[cells].mean(axis=1), "{cut}", takers, axis={axis})
 if {uneven} and RANKS > 1:
     ranks = np.where(np.arange(len(cells)) < 100, 0, RANKS - 1)
 grid = piece(x, cells, ranks == RANK, {ghosts} and RANKS > 1)
+if {several} and RANKS > 1:  # as readers put pieces together: each has points of its own
+    halves = divided(x[cells].mean(axis=1), "tree", 3)
+    grid = appended([piece(x, cells, np.logical_and(ranks == RANK, halves == half)) for half in range(3)])
 if grid.GetNumberOfPoints():
     number = np.array(grid.GetPointData().GetArray("place"))
     add_array(grid.GetPointData(), "value", np.stack([x[number, 0] + 1, number + 0.5], -1))
@@ -60,7 +63,7 @@ if grid.GetNumberOfPoints():
 """
 
 
-def mesh(kind="plain", cut="slabs", ids=1, ghosts=0, n=12, takers=0, axis=0, uneven=0):
+def mesh(kind="plain", cut="slabs", ids=1, ghosts=0, n=12, takers=0, axis=0, uneven=0, several=0):
     script = PIECES.format(**locals())
     return simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=script)
 
@@ -121,6 +124,8 @@ for case, given in {
     "two ranks": {"takers": 2, "cut": "tree"},
     "reversed": {"kind": "reversed", "cut": "random", "ids": 0},
     "upright": {"kind": "upright", "cut": "tree"},
+    "several": {"several": 1, "cut": "random", "ids": 0},
+    "several ids": {"several": 1, "cut": "tree"},
     "mixed": {"kind": "mixed", "cut": "random"},
     "inclined": {"kind": "inclined", "cut": "tree"},
 }.items():

@@ -7,6 +7,7 @@ import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_TETRA, VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersCore import vtkAppendFilter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
 CONTROLLER = vtkMultiProcessController.GetGlobalController()
@@ -88,3 +89,13 @@ def piece(points: np.ndarray, cells: np.ndarray, own: np.ndarray, ghosts: bool =
     if ghosts:
         add_array(grid.GetCellData(), "vtkGhostType", (~own[taken]).astype(np.uint8))
     return grid
+
+
+def appended(pieces: list) -> vtkUnstructuredGrid:
+    """One data set of several, whose points stay apart."""
+    append = vtkAppendFilter()
+    append.MergePointsOff()
+    for part in pieces:
+        append.AddInputData(part)
+    append.Update()
+    return append.GetOutput()
