@@ -59,6 +59,8 @@ private:
     const std::vector<std::vector<NamedPoint>>& answers,
     std::vector<std::vector<double>>* places) const;
   void matchPoints();
+  void countCells();
+  void requireAsManyCells() const;
   int homeOfCell(const MeshView& view, const std::vector<Index>& names, Index cell,
     std::vector<Index>& points) const;
   std::vector<std::vector<Index>> listCells(
@@ -71,6 +73,7 @@ private:
   std::vector<RankPiece> Mesh, Other;
   std::size_t Ranks;
   bool ById = false;
+  Index Cells = 0, OtherCells = 0;
   Names OfMesh, OfOther;
   std::vector<std::vector<double>> Places;
 };
@@ -243,6 +246,10 @@ void PieceMatch::matchPoints()
   this->Group.together(
     [&]
     {
+      if (!this->ById)
+      {
+        this->requireAsManyCells(); // rather than that points have moved
+      }
       const bool differ = distinctAsked != distinct;
       if (!differ || !this->ById)
       {
@@ -324,12 +331,10 @@ void forEachListed(const std::vector<Index>& list, const Visit& visit)
 }
 
 //------------------------------------------------------------------------------
-/// Throws Error unless the meshes have the same cells with the same points in the same order.
-void PieceMatch::matchCells()
+/// Counts the cells of the meshes; copies do not count.
+void PieceMatch::countCells()
 {
-  std::vector<std::vector<Index>> known, asked;
-  Index cells = 0, others = 0;
-  const auto count = [](const std::vector<RankPiece>& pieces)
+  const auto count = [this](const std::vector<RankPiece>& pieces)
   {
     Index number = 0;
     for (const RankPiece& piece : pieces)
@@ -339,31 +344,41 @@ void PieceMatch::matchCells()
         number += !(piece.ghosts && piece.ghosts[cell]);
       }
     }
-    return number;
+    return this->Group.sum(number);
   };
+  this->Cells = count(this->Mesh);
+  this->OtherCells = count(this->Other);
+}
+
+void PieceMatch::requireAsManyCells() const
+{
+  if (this->Cells != this->OtherCells)
+  {
+    throw Error(Differ +
+      ("the first mesh has " + std::to_string(this->OtherCells) + " cells, the second " +
+        std::to_string(this->Cells)) +
+      Remedy);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Throws Error unless the meshes have the same cells with the same points in the same order.
+void PieceMatch::matchCells()
+{
+  std::vector<std::vector<Index>> known, asked;
   this->Group.together(
     [&]
     {
       known = this->listCells(this->Other, this->OfOther, false);
       asked = this->listCells(this->Mesh, this->OfMesh, true);
-      cells = count(this->Mesh);
-      others = count(this->Other);
     });
-  cells = this->Group.sum(cells);
-  others = this->Group.sum(others);
   known = this->Group.exchangeItems(known);
   asked = this->Group.exchangeItems(asked);
   std::vector<std::vector<char>> answers(this->Ranks);
   this->Group.together(
     [&]
     {
-      if (cells != others)
-      {
-        throw Error(Differ +
-          ("the first mesh has " + std::to_string(others) + " cells, the second " +
-            std::to_string(cells)) +
-          Remedy);
-      }
+      this->requireAsManyCells();
       std::vector<ListedCell> list;
       for (const std::vector<Index>& ofRank : known)
       {
@@ -422,6 +437,7 @@ std::vector<std::vector<double>> PieceMatch::run()
       piece.globalIds = this->ById ? piece.globalIds : nullptr;
     }
   }
+  this->countCells();
   this->matchPoints();
   this->matchCells();
   return std::move(this->Places);
