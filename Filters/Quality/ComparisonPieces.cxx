@@ -102,19 +102,42 @@ std::unique_ptr<ComparisonPieces> ComparisonPieces::take(
     return nullptr;
   }
   std::unique_ptr<ComparisonPieces> result(new ComparisonPieces(group, threads));
-  if (!result->pair(first, second))
-  {
-    result->match(first, second, groups);
-  }
+  result->pairOrMatch(first, second, groups);
   why = result->settle(groups);
   return why.empty() ? std::move(result) : nullptr;
 }
 
 //------------------------------------------------------------------------------
-/// Whether the pieces of one mesh are those of the other one, on all processes.
-bool ComparisonPieces::pair(const Leaves& before, const Leaves& after)
+void ComparisonPieces::pairOrMatch(const Leaves& before, const Leaves& after, int groups)
 {
-  bool alike = before.size() == after.size();
+  bool sameIds = true;
+  const bool alike = this->pair(before, after, sameIds);
+  if (alike && sameIds)
+  {
+    return;
+  }
+  try
+  {
+    this->match(before, after, groups);
+  }
+  catch (const Error&) // on all processes
+  {
+    if (!alike)
+    {
+      throw;
+    }
+    // The ids are not those of one mesh; the order of points and cells counts, as on one process.
+    this->pair(before, after, sameIds);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Whether the pieces of one mesh are those of the other one, on all processes.
+/// @param sameIds gets whether their points have the same global ids, if they have some
+bool ComparisonPieces::pair(const Leaves& before, const Leaves& after, bool& sameIds)
+{
+  bool alike = before.size() == after.size(), same = true;
+  this->Pieces.clear();
   this->Group.together(
     [&]
     {
@@ -133,11 +156,12 @@ bool ComparisonPieces::pair(const Leaves& before, const Leaves& after)
         piece.is = std::make_unique<MeshAdapter>(piece.after, this->Threads);
         piece.ids = idsOf(piece.before);
         const std::vector<Index> others = idsOf(piece.after);
-        alike = connectivityDifference(piece.was->mesh(), piece.is->mesh()).empty() &&
-          (piece.ids.empty() || others.empty() || piece.ids == others);
+        alike = connectivityDifference(piece.was->mesh(), piece.is->mesh()).empty();
+        same = same && (piece.ids.empty() || others.empty() || piece.ids == others);
         this->Pieces.push_back(std::move(piece));
       }
     });
+  sameIds = !this->Group.any(!same);
   return !this->Group.any(!alike);
 }
 

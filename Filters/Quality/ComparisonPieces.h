@@ -61,7 +61,8 @@ private:
   }
   using Leaves = std::vector<GroupedPiece>;
 
-  bool pair(const Leaves& before, const Leaves& after);
+  void pairOrMatch(const Leaves& before, const Leaves& after, int groups);
+  bool pair(const Leaves& before, const Leaves& after, bool& sameIds);
   void match(const Leaves& before, const Leaves& after, int groups);
   std::string settle(int groups);
   std::vector<RankPiece> ofGroup(int group, bool after);

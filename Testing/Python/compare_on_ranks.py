@@ -20,6 +20,7 @@ results = {}
 PIECES = """
 import numpy as np
 from rank_meshes import RANK, RANKS, add_global_ids, appended, divided, piece, simplices
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 D, N, KIND, AFTER, TAKERS = {dimension}, {n}, "{kind}", {after}, {takers}
 takers = TAKERS if 0 < TAKERS < RANKS else RANKS
@@ -39,7 +40,7 @@ if KIND == "reversed":
     cells[:, [1, 2]] = cells[:, [2, 1]]
 if KIND == "mixed":
     cells[::5, 1:3] = cells[::5, 2:0:-1]
-own = divided(places[cells].mean(axis=1), "{cut}", takers, axis={axis}) == RANK
+own = divided(places[cells].mean(axis=1), "{cut}", takers, axis={axis}) == (takers - 1 - RANK if {swap} else RANK)
 grid = piece(x, cells, own, {ghosts} and RANKS > 1)
 if {several} and RANKS > 1:  # as readers put pieces together: each has points of its own
     halves = divided(places[cells].mean(axis=1), "tree", 3)
@@ -47,12 +48,17 @@ if {several} and RANKS > 1:  # as readers put pieces together: each has points o
 if grid.GetNumberOfPoints():
     if {ids}:
         add_global_ids(grid)
+        vtk_to_numpy(grid.GetPointData().GetGlobalIds())[:] += {shift}
     output.VTKObject.ShallowCopy(grid)
 """
 
 
-def mesh(kind="plain", cut="slabs", after=0, ids=1, ghosts=0, dimension=3, n=4, takers=0, axis=0, several=0):
-    script = PIECES.format(**locals())
+PLAIN = {"kind": "plain", "cut": "slabs", "after": 0, "ids": 1, "ghosts": 0, "dimension": 3, "n": 4, "takers": 0,
+         "axis": 0, "several": 0, "swap": 0, "shift": 0}  # fmt: skip
+
+
+def mesh(**given):
+    script = PIECES.format(**{**PLAIN, **given})
     return simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=script)
 
 
@@ -100,6 +106,9 @@ compare("random, one rank", mesh(cut="random", dimension=2, n=8), mesh(takers=1,
 compare("surfaces", mesh(cut="random", kind="surface", dimension=2, n=8),
         mesh(after=1, kind="surface", dimension=2, n=8))  # fmt: skip
 compare("several pieces", mesh(several=1, kind="tangled"), mesh(cut="random", after=1, several=1, kind="tangled"))
+# The pieces look alike, and the ids tell that they are not; or the ids are those of another mesh.
+compare("swapped slabs", mesh(), mesh(after=1, swap=1))
+compare("other ids", mesh(cut="tree"), mesh(cut="tree", after=1, shift=1000))
 # By their places where nothing has moved.
 compare("unmoved", mesh(cut="random", ids=0), mesh(cut="tree", ids=0))
 # With ids that ParaView makes, and ghost cells in one of the meshes only.
@@ -121,12 +130,8 @@ blocks.SetBlock(0, grid)
 if RANK == 0:
     blocks.SetBlock(1, piece(x, cells, np.ones(len(cells), bool)))
 """
-state = {"kind": "plain", "cut": "slabs", "ids": 0, "ghosts": 0, "dimension": 3, "n": 4, "takers": 0, "axis": 0,
-         "several": 0}  # fmt: skip
-first, second = (
-    simple.ProgrammableSource(OutputDataSetType="vtkMultiblockDataSet", Script=BLOCKS.format(after=after, **state))
-    for after in (0, 1)
-)
+scripts = [BLOCKS.format(**{**PLAIN, "ids": 0, "after": after}) for after in (0, 1)]
+first, second = (simple.ProgrammableSource(OutputDataSetType="vtkMultiblockDataSet", Script=text) for text in scripts)
 blocks = update(CompareMeshes(Input=first, Other=second, Metrics=METRICS))
 results["more blocks"] = [table(blocks), blocks.Summary]
 
