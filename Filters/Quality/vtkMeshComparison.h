@@ -44,10 +44,12 @@
  * first process. The second mesh may be cut otherwise than the first: its points and cells are then
  * found by the global ids of the points (Generate Global Ids), which both need, and the points of
  * the first mesh go to the pieces of the second. Without ids only points that have not moved are
- * found; otherwise it is an error. Ghost cells are compared and do not count. Where some cells list
- * their points in the opposite order of their neighbours, or connected parts are reversed and
- * others are not, with coordinates of extreme size, and where processes have different blocks, the
- * first process has both meshes while it computes; the summary states why.
+ * found; otherwise it is an error. Pieces with the same cells and other ids are matched by the ids
+ * if these match throughout, else by the order of points and cells. Ghost cells are compared and do
+ * not count. Where some cells list their points in the opposite order of their neighbours, or
+ * connected parts are reversed and others are not, with coordinates of extreme size, and where
+ * processes have different blocks, the first process has both meshes while it computes; the summary
+ * states why.
  *
  * @par Example:
  * @code
