@@ -306,11 +306,10 @@ int vtkMeshWarp::RequestData(
         {
           session.clear();
         }
-        if (!pieces) // as at the first time step
+        if (!pieces) // of other kinds than at the first time step
         {
-          throw tautline::Error("The mesh and the target can no longer be taken in pieces, as at "
-                                "the first time step: " +
-            this->WhyGathered);
+          session.beginGathered();
+          return;
         }
         output->ShallowCopy(input);
         vtkDataObject* first = session.sequence() ? session.firstPiece(input) : input;

@@ -94,16 +94,18 @@ void testSame(
     const int before = run.source->Executions;
     run.at(3.0, whole, part);
     TAUTLINE_CHECK_EQUAL(run.source->Executions, before + 1);
-    return run.filter->GetMTime();
   };
   const auto plain = [](Run&) {};
   check(partOf(whole, rank, cutBy(whole, Cut::Random, size)), plain);
-  check(partOf(whole, rank, cutBy(whole, Cut::Slabs, size), true), plain);
-  // More processes than pieces: the first has none.
-  check(
-    partOf(whole, rank, [&](Index cell) { return size > 2 && cell % 2 ? size - 1 : 1; }), plain);
-  check(partOf(whole, rank, [](Index) { return 0; }),
-    [](Run& run) { run.filter->SetRedistribute(vtkMeshWarp::KD_TREE); });
+  if (middle == PlanarMiddle) // other cuts of the volume take long
+  {
+    check(partOf(whole, rank, cutBy(whole, Cut::Slabs, size), true), plain);
+    // More processes than pieces: the first has none.
+    check(
+      partOf(whole, rank, [&](Index cell) { return size > 2 && cell % 2 ? size - 1 : 1; }), plain);
+    check(partOf(whole, rank, [](Index) { return 0; }),
+      [](Run& run) { run.filter->SetRedistribute(vtkMeshWarp::KD_TREE); });
+  }
   if (rank == 0)
   {
     std::cout << "motion " << motion << ", start " << start << ": farthest " << far << "\n";
