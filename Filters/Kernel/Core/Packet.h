@@ -97,11 +97,11 @@ inline Packet pow(Packet x, double exponent)
   return each(x, [=](double v) { return std::pow(v, exponent); });
 }
 
-/// One 32-bit number per lane.
-using HalfMask = std::int32_t __attribute__((vector_size(PacketWidth * sizeof(std::int32_t))));
+/// A 32-bit integer per lane.
+using HalfIntegers = std::int32_t __attribute__((vector_size(PacketWidth * sizeof(std::int32_t))));
 
 /// The upper halves of the bits.
-inline HalfMask upperHalves(Packet x)
+inline HalfIntegers upperHalves(Packet x)
 {
   using Halves = std::int32_t __attribute__((vector_size(2 * PacketWidth * sizeof(std::int32_t))));
   const Halves all = reinterpret_cast<Halves>(x);
@@ -114,17 +114,18 @@ inline HalfMask upperHalves(Packet x)
 #endif
 }
 
-/// x^(-1/3) for normal x > 0, to rounding; finite nonsense elsewhere.
+/// x^(-1/3) for normal x > 0, to rounding. Meaningless elsewhere: finite at 0 and between 0 and the
+/// smallest normal number, NaN or infinite for negative and infinite x.
 inline Packet inverseCbrt(Packet x)
 {
   // A guess within 3.5 % from the exponent bits, then two steps of order four:
-  // y (1 + r/3 + 2 r^2/9 + 14 r^3/81) with r = 1 - x y^3. Only the upper halves of the bits matter
-  // to the guess, and these most machines convert in one instruction.
+  // y (1 + r/3 + 2 r^2/9 + 14 r^3/81) with r = 1 - x y^3. The guess needs the upper halves of the
+  // bits only, which most machines convert in one instruction.
   constexpr double third = 1.0 / 3.0;
   constexpr double guess = 1430188458.0; // 4/3 of the upper bits of 1.0, less the mean error
   constexpr int half = 32;
   const Packet scaled = guess - third * __builtin_convertvector(upperHalves(x), Packet);
-  const Mask bits = __builtin_convertvector(__builtin_convertvector(scaled, HalfMask), Mask);
+  const Mask bits = __builtin_convertvector(__builtin_convertvector(scaled, HalfIntegers), Mask);
   Packet y = reinterpret_cast<Packet>(bits << half);
   for (int step = 0; step < 2; ++step)
   {

@@ -25,7 +25,8 @@ struct CellSource
 /// Up to PacketWidth cells and their vertices.
 struct CellVertices
 {
-  Index cells[PacketWidth]; ///< the last one repeated to fill the packet
+  /// The last one repeated to fill the packet; in ElementSum::run() only on request.
+  Index cells[PacketWidth];
   int count = 0;
   Packet points[MaxNodes][3];
   bool scaled = false; ///< whether normalizeExtents() has scaled a cell

@@ -241,8 +241,10 @@ struct DualNumber
   }
   friend DualNumber cbrt(const DualNumber& x)
   {
-    const Packet inverse = inverseCbrt(tautline::abs(x.value));
-    return chain(x, x.value * inverse * inverse, inverse * inverse * (1.0 / 3.0));
+    const Packet inverse = inverseCbrt(tautline::abs(x.value)), square = inverse * inverse;
+    const Mask finite = DualNumber::isFinite(x.value);
+    return chain(x, tautline::select(finite, x.value * square, x.value),
+      tautline::select(finite, square * (1.0 / 3.0), Packet{}));
   }
   friend DualNumber exp(const DualNumber& x)
   {
@@ -293,6 +295,11 @@ struct DualNumber
   }
 
 private:
+  static Mask isFinite(Packet x)
+  {
+    return tautline::abs(x) <= std::numeric_limits<double>::max();
+  }
+
   static Packet powerOf(Packet x, double exponent)
   {
     constexpr double largest = 12;
@@ -312,8 +319,8 @@ private:
     else
     {
       const Packet inverse = inverseCbrt(x);
-      base = tautline::select(
-        x > 0.0, x * inverse * inverse, each(x, [](double v) { return v == 0 ? 0.0 : NAN; }));
+      base = tautline::select((x > 0.0) & DualNumber::isFinite(x), x * inverse * inverse,
+        each(x, [](double v) { return v == 0 || v == HUGE_VAL ? v : NAN; }));
     }
     Packet result = broadcast(1.0);
     for (; n > 0; n >>= 1)

@@ -150,7 +150,8 @@ public:
    * @brief Evaluates every cell and calls function(context, batch, total, slope) for each batch: it
    * adds to `total`, and `slope` is what the metric's gradient is multiplied by and added to
    * `gradient`.
-   * @param numbered whether the function needs the numbers of the cells; that of targets is known
+   * @param numbered whether the function reads Batch::cells, as weights do; with targets they are
+   * set anyway
    * @return the totals, one per chunk, in a fixed order
    */
   template <bool WithGradient, class Total, class Function>
@@ -183,7 +184,7 @@ public:
             const std::int32_t* const connectivity = this->PackedConnectivity[chunk.block].data();
             const Index end = chunk.end;
             Batch batch;
-            std::fill(std::begin(batch.cells), std::end(batch.cells), Index(0));
+            std::fill(std::begin(batch.cells), std::end(batch.cells), Index(-1));
             PackedNodes nodes;
             for (Index begin = chunk.begin; begin < end; begin += PacketWidth)
             {

@@ -465,14 +465,14 @@ Packet evaluateFormula(const BatchContext& context, Corner<N>& corner, TargetInv
   }
 }
 
-/// Whether a metric is a function of |T|^2 and det T alone, and T that of the target's shape.
+/// Whether a metric is a function of |T|^2 and det T alone, with T relative to the target.
 template <class M>
 constexpr bool ofNormAndDeterminant = !M::usesAdjugate && !M::usesTrace && !M::usesSize && !M::user;
 
 /**
  * @brief A metric of norm and determinant on tetrahedra, with the regular one of edge length 1 as
- * the target: |T|^2 is half the sum of the squared edges, which is that of four points relative to
- * the first, 4 sum |p|^2 - |sum p|^2.
+ * the target. |T|^2 is half the sum of the squared edges; that sum is 4 sum |p|^2 - |sum p|^2, with
+ * the points p relative to the first one.
  */
 template <class M, bool WithGradient>
 void evaluateRegular(const BatchContext& context, Batch& batch)
