@@ -38,7 +38,7 @@ public:
     , Starts(static_cast<std::size_t>(keys) + 1)
   {
     this->forEachItem([&](std::vector<std::int32_t>& counts) { counts.assign(keys, 0); },
-      [&usesOf](Index item, std::vector<std::int32_t>& counts)
+      [&usesOf](Index item, Index, std::vector<std::int32_t>& counts)
       { usesOf(item, [&counts](std::int32_t key) { ++counts[key]; }); });
     std::int32_t place = 0;
     for (std::int32_t key = 0; key < keys; ++key)
@@ -65,16 +65,16 @@ public:
     this->place(visit, [](Index, const auto&) {});
   }
 
-  /// The same; before that of an item, `fetch` is called as visit() is for one that comes later, so
-  /// that it can fetch the memory which that will write to: placeOf(key) is about the place then.
+  /// The same, and calls fetch(item, placeOf) for an item that is to be placed soon, so that it can
+  /// prefetch the memory; placeOf(key) is near the later place then, and does not advance.
   template <class Visit, class Fetch>
   void place(const Visit& visit, const Fetch& fetch)
   {
     constexpr Index ahead = 32; // items: as many as are placed while memory is fetched
     this->forEachItem([](std::vector<std::int32_t>&) {},
-      [&](Index item, std::vector<std::int32_t>& next)
+      [&](Index item, Index end, std::vector<std::int32_t>& next)
       {
-        if (item + ahead < this->Items)
+        if (item + ahead < end)
         {
           fetch(item + ahead, [&next](std::int32_t key) { return next[key]; });
         }
@@ -96,7 +96,7 @@ private:
         for (Index item = this->Items * part / parts; item < end; ++item)
         {
           pollInterruption(item);
-          visit(item, own);
+          visit(item, end, own);
         }
       });
   }

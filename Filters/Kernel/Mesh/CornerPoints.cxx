@@ -24,7 +24,7 @@ void markPart(const Mesh& mesh, int dimension, Index part, Index parts, std::vec
       [&](auto nodesOfCell)
       {
         constexpr int Nodes = decltype(nodesOfCell)::value;
-        char* const mark = marks.data(); // which stores to it do not change
+        char* const mark = marks.data(); // local: stores through it cannot change it
         for (Index i = block.count * part / parts; i < end; ++i)
         {
           pollInterruption(i);

@@ -125,8 +125,9 @@ class TAUTLINE_KERNEL_EXPORT Mesh
 public:
   explicit Mesh(const MeshView& view, int threads = 0);
   /**
-   * @brief The same cells at other points, 3 coordinates per point of the view, which must outlive
-   * the result; mirrored as this mesh is. Cheaper than another construction: the cells have been
+   * @brief The same cells at other points, 3 coordinates per point of the view; mirrored as this
+   * mesh is. Dimension and plane are found anew: setSpace() is not kept. The points and the arrays
+   * of view() must outlive the result. Cheaper than another construction: the cells have been
    * checked.
    */
   Mesh at(const double* points) const;

@@ -7,6 +7,8 @@
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Patches/SimplexMesh.h"
 
+#include <atomic>
+
 using namespace tautline;
 
 namespace
@@ -34,6 +36,7 @@ void testCountingSort()
     TAUTLINE_CHECK_EQUAL(sort.starts().back(), static_cast<std::int32_t>(items));
     std::vector<std::int32_t> found(items, -1); // one use for each item on the average
     const std::vector<std::int32_t> starts = sort.starts();
+    std::atomic<bool> near{ true };
     bool within = true;
     sort.place(
       [&](Index item, const auto& placeOf)
@@ -44,7 +47,13 @@ void testCountingSort()
           within = within && place >= starts[key] && place < starts[key + 1];
           found[place] = static_cast<std::int32_t>(item);
         }
+      },
+      [&](Index item, const auto& placeOf)
+      {
+        const std::int32_t key = keyOf(item, 0), place = placeOf(key);
+        near = near && item < items && place >= starts[key] && place <= starts[key + 1];
       });
+    TAUTLINE_CHECK(near);
     TAUTLINE_CHECK(within);
     bool ordered = true;
     for (std::int32_t key = 0; key < keys; ++key)
