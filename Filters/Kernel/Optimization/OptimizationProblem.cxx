@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OptimizationProblem.h"
 
-#include "tautline/Core/Parallel.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace tautline
 {
@@ -535,21 +532,6 @@ IterationRecord OptimizationProblem::firstRecord(int iteration)
 }
 
 //------------------------------------------------------------------------------
-double OptimizationProblem::sumOfSquares(const std::vector<double>& values) const
-{
-  std::vector<double> ofChunk(numberOfChunks(static_cast<Index>(values.size())));
-  forEachChunk(static_cast<Index>(values.size()), this->Options.threads,
-    [&](Index chunk, Index begin, Index end)
-    {
-      for (Index i = begin; i < end; ++i)
-      {
-        ofChunk[chunk] += values[i] * values[i];
-      }
-    });
-  return std::accumulate(ofChunk.begin(), ofChunk.end(), 0.0);
-}
-
-//------------------------------------------------------------------------------
 bool OptimizationProblem::isSumOfSquaresOf(const Objective& judged) const
 {
   return this->isSimple() && this->Terms[0].shapePower == 2 && this->Simplices->uniform() &&
@@ -606,6 +588,7 @@ void OptimizationProblem::start(const IterationRecord& first)
 //------------------------------------------------------------------------------
 void OptimizationProblem::restart(const std::vector<double>& points)
 {
+  this->AtStart = {};
   this->Points = points;
   this->Simplices->load(this->Points.data(), this->Options.threads);
 }

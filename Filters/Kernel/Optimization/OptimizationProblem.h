@@ -78,12 +78,10 @@ public:
   bool someRepaired() const;
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
   IterationRecord record(int iteration);
-  /// The same before anything has moved, from what the constructor has found; without start().
+  /// The same before anything has moved, from what the constructor has found.
   IterationRecord firstRecord(int iteration);
   /// Whether the objective is the sum of the squares of the values that a metric has.
   bool isSumOfSquaresOf(const Objective& judged) const;
-  /// That sum of values of cells, on all threads.
-  double sumOfSquares(const std::vector<double>& values) const;
   /// The worst value of a metric among the valid elements with a free vertex.
   double worstMovable(const Objective& judged) const;
   /// That of the inverse mean ratio, of simplices alone: where the coordinates are, stored or not.

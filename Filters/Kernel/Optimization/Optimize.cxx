@@ -5,6 +5,7 @@
 #include "GlobalFunction.h"
 #include "HarmonicStart.h"
 #include "tautline/Core/Memory.h"
+#include "tautline/Core/Parallel.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "ImproveWorst.h"
 #include "LeaveSurface.h"
@@ -16,6 +17,7 @@
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <numeric>
 #include <type_traits>
 
 namespace tautline
@@ -378,6 +380,20 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
   return state;
 }
 
+double sumOfSquares(const std::vector<double>& values, int threads)
+{
+  std::vector<double> ofChunk(numberOfChunks(static_cast<Index>(values.size())));
+  forEachChunk(static_cast<Index>(values.size()), threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        ofChunk[chunk] += values[i] * values[i];
+      }
+    });
+  return std::accumulate(ofChunk.begin(), ofChunk.end(), 0.0);
+}
+
 /**
  * @brief Goes back to the input if the result, computed anew from its points, has an invalid
  * element, a worse worst element or a larger objective.
@@ -389,11 +405,12 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
   const auto isLargerThere = [&](const IterationRecord& now)
   { return isLarger(problem.options().scalarization, problem.scalarizer(), now, first); };
   bool larger = guard.holdsObjective();
-  if (larger && problem.isSumOfSquaresOf(guard.judged()))
+  const auto cells = static_cast<std::size_t>(mesh.view().numberOfCells);
+  if (larger && state.values.size() == cells && problem.isSumOfSquaresOf(guard.judged()))
   {
     // The values of all elements are there, measured on the points.
     IterationRecord now = first;
-    now.objective = problem.sumOfSquares(state.values);
+    now.objective = sumOfSquares(state.values, problem.options().threads);
     larger = isLargerThere(now);
   }
   if (larger)
