@@ -19,7 +19,7 @@ namespace tautline
 {
 namespace
 {
-/// Cells that are left out, and come before the triangles in a mesh that is put together.
+/// Cells that are left out; poly data has them before its triangles.
 bool isVertexOrLine(unsigned char type)
 {
   return type == VTK_VERTEX || type == VTK_POLY_VERTEX || type == VTK_LINE || type == VTK_POLY_LINE;
@@ -46,7 +46,7 @@ std::unique_ptr<HorizonPieces> HorizonPieces::take(
     return nullptr;
   }
   result->requireTriangles();
-  if (!result->isRegular())
+  if (!result->isRegular(input))
   {
     return nullptr;
   }
@@ -81,15 +81,18 @@ void HorizonPieces::requireTriangles() const
 }
 
 //------------------------------------------------------------------------------
-bool HorizonPieces::isRegular() const
+/// Whether the triangles are found as they are, and come after all other cells of the whole mesh.
+bool HorizonPieces::isRegular(vtkDataObject* input) const
 {
   const MeshView& piece = this->Pieces->piece();
+  // Where one piece is a grid, the cells of all types are in one order.
+  const bool poly = !this->Group->any(piece.numberOfPoints > 0 && !input->IsA("vtkPolyData"));
   const MeshView& local = this->view();
   bool regular = this->Pieces->inverted() == 0;
   for (Index cell = 0; cell < piece.numberOfCells; ++cell)
   {
     const unsigned char type = piece.cellTypes[cell];
-    regular = regular && (cornerType(type) == CellType::Triangle || isVertexOrLine(type));
+    regular = regular && (cornerType(type) == CellType::Triangle || (poly && isVertexOrLine(type)));
   }
   // Triangles with the same corners are next to each other.
   for (Index cell = 1; cell < local.numberOfCells; ++cell)

@@ -35,7 +35,8 @@ public:
   /**
    * @brief Null, on all processes, where the mesh has to be gathered: see takePieces(), and where
    * triangles are inverted or listed in opposite orders, occur twice, or are among cells of other
-   * types. What is wrong with the mesh is then found as with one process.
+   * types; vertices and lines of poly data do no harm, as they come before its triangles. What is
+   * wrong with the mesh is then found as with one process.
    *
    * Throws Error, on all processes, for cells that are no triangles.
    * @param mergePoints whether points with the same coordinates are one; else by global ids
@@ -62,7 +63,7 @@ public:
 private:
   HorizonPieces() = default;
   void requireTriangles() const;
-  bool isRegular() const;
+  bool isRegular(vtkDataObject* input) const;
   void order(vtkDataSet* input);
 
   std::unique_ptr<RankGroup> Group; // outlives the mesh
@@ -70,7 +71,7 @@ private:
   HorizonPlane Plane;
   std::vector<Index> Owned, PointIds;
   std::vector<Index> CellIds; ///< per local triangle; empty: those of the points decide
-  Index Before = 0;           ///< cells of the whole mesh that come before the triangles
+  Index Before = 0;           ///< vertices and lines of poly data, which come before the triangles
   bool Single = false;        ///< all triangles are in one piece, whose order is kept
 };
 

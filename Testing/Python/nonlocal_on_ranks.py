@@ -21,6 +21,7 @@ results = {}
 PIECES = """
 import numpy as np
 from rank_meshes import RANK, RANKS, add_array, add_global_ids, appended, divided, piece, simplices
+from vtkmodules.vtkCommonDataModel import VTK_LINE
 
 N, KIND = {n}, "{kind}"
 takers = {takers} if 0 < {takers} < RANKS else RANKS
@@ -56,6 +57,12 @@ if grid.GetNumberOfPoints():
     number = np.array(grid.GetPointData().GetArray("place"))
     add_array(grid.GetPointData(), "value", np.stack([x[number, 0] + 1, number + 0.5], -1))
     add_array(grid.GetPointData(), "large", 2**60 + number)
+    if KIND == "lines":  # an edge of every seventh triangle, behind all triangles
+        numbers = np.array(grid.GetCellData().GetArray("cell"))
+        for edge in np.flatnonzero(numbers % 7 == 0):
+            corners = grid.GetCell(int(edge)).GetPointIds()
+            grid.InsertNextCell(VTK_LINE, 2, [corners.GetId(0), corners.GetId(1)])
+            grid.GetCellData().GetArray("cell").InsertNextTuple1(len(cells) + numbers[edge])
     add_array(grid.GetCellData(), "half", (np.array(grid.GetCellData().GetArray("cell")) + 0.5).astype(np.float32))
     if {ids}:
         add_global_ids(grid)
@@ -98,6 +105,28 @@ if grid.GetNumberOfCells():
 """
 
 
+# Runs on every rank: a grid of triangles and lines as poly data, which has the lines first.
+POLY_DATA = """
+import numpy as np
+from vtkmodules.util.numpy_support import numpy_to_vtkIdTypeArray, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import VTK_LINE, vtkCellArray
+grid, poly = inputs[0].VTKObject, output.VTKObject
+if grid.GetNumberOfCells():
+    kinds = np.array([grid.GetCellType(cell) == VTK_LINE for cell in range(grid.GetNumberOfCells())])
+    lists = [vtkCellArray(), vtkCellArray()]  # triangles and lines
+    for cell, line in enumerate(kinds):
+        lists[int(line)].InsertNextCell(grid.GetCell(cell).GetPointIds())
+    poly.SetPoints(grid.GetPoints())
+    poly.SetPolys(lists[0])
+    poly.SetLines(lists[1])
+    poly.GetPointData().ShallowCopy(grid.GetPointData())
+    order = np.concatenate([np.flatnonzero(kinds), np.flatnonzero(~kinds)])
+    ids = numpy_to_vtkIdTypeArray(vtk_to_numpy(grid.GetCellData().GetGlobalIds())[order], deep=True)
+    ids.SetName("ids")
+    poly.GetCellData().SetGlobalIds(ids)
+"""
+
+
 def layer(name, source, **options):
     filter_ = update(InteractionLayer(source, **{"Width": 0.3, **options}))
     found = parts(simple.ProgrammableFilter(filter_, Script=CORNERS), sys.argv[1])
@@ -133,6 +162,10 @@ for case, given in {
     places = {"upright": {"Center": [0.3, 0.45, 0.4]}, "inclined": {"Center": [0.1, 0.6, 0.2]}}
     horizon(case, whole, **places.get(case, {}))
     layer(case, whole)
+# Lines have the highest global ids: in a grid they come last, in poly data before the triangles.
+horizon("lines", mesh(kind="lines", cut="tree"))
+horizon("lines of poly data", simple.ProgrammableFilter(mesh(kind="lines", cut="tree"), Script=POLY_DATA,
+                                                        OutputDataSetType="vtkPolyData"))  # fmt: skip
 horizon("all", mesh(cut="random"), Horizon=5.0)
 layer("small", mesh(cut="tree", ids=0), ElementSize=0.04, Width=0.1)
 layer("by ids", mesh(cut="random"), MergeCoincidentPoints=0)
