@@ -138,6 +138,45 @@ void HorizonPieces::order(vtkDataSet* input)
   }
   const std::vector<double> local = this->Pieces->ofCells(ids, 1);
   this->CellIds.assign(local.begin(), local.end());
+  if (!this->Single)
+  {
+    this->requireDistinctIds();
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Throws Error, on all processes, if several triangles have one global id. Each id has a process
+/// that gets it from all that own a triangle with it.
+void HorizonPieces::requireDistinctIds() const
+{
+  const auto size = static_cast<std::size_t>(this->Group->size());
+  std::vector<std::vector<Index>> sent(size);
+  this->Group->together(
+    [&]
+    {
+      for (const Index triangle : this->Owned)
+      {
+        const Index id = this->CellIds[triangle];
+        sent[static_cast<std::size_t>(id) % size].push_back(id);
+      }
+    });
+  const std::vector<std::vector<Index>> received = this->Group->exchangeItems(sent);
+  this->Group->together(
+    [&]
+    {
+      std::vector<Index> ids;
+      for (const std::vector<Index>& ofRank : received)
+      {
+        ids.insert(ids.end(), ofRank.begin(), ofRank.end());
+      }
+      std::sort(ids.begin(), ids.end());
+      const auto twice = std::adjacent_find(ids.begin(), ids.end());
+      if (twice != ids.end())
+      {
+        throw Error("Several cells have the global id " + std::to_string(*twice) +
+          " and are not marked as ghost cells: run Generate Global Ids again.");
+      }
+    });
 }
 
 //------------------------------------------------------------------------------

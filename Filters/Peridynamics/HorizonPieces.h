@@ -38,7 +38,8 @@ public:
    * types; vertices and lines of poly data do no harm, as they come before its triangles. What is
    * wrong with the mesh is then found as with one process.
    *
-   * Throws Error, on all processes, for cells that are no triangles.
+   * Throws Error, on all processes, for cells that are no triangles, and for triangles with the
+   * same global id.
    * @param mergePoints whether points with the same coordinates are one; else by global ids
    */
   static std::unique_ptr<HorizonPieces> take(vtkDataObject* input, bool mergePoints, int threads);
@@ -65,6 +66,7 @@ private:
   void requireTriangles() const;
   bool isRegular(vtkDataObject* input) const;
   void order(vtkDataSet* input);
+  void requireDistinctIds() const;
 
   std::unique_ptr<RankGroup> Group; // outlives the mesh
   std::unique_ptr<RankMesh> Pieces;

@@ -194,6 +194,11 @@ for case, change in {
     broken = simple.ProgrammableFilter(mesh(), Script=BREAK.format(change=change))
     refused(f"horizon {case}", HorizonNeighbors(broken))
     refused(f"layer {case}", InteractionLayer(broken))
+# A cell of the last rank has the id of one of the first rank; a mesh of one rank keeps its order whatever the ids are.
+if RANKS > 1:
+    same = BREAK.format(change="vtk_to_numpy(grid.GetCellData().GetGlobalIds())[0] = 0")
+    refused("horizon ids", HorizonNeighbors(simple.ProgrammableFilter(mesh(), Script=same)))
+    refused("layer ids", InteractionLayer(simple.ProgrammableFilter(mesh(), Script=same)))
 flat = simple.ProgrammableFilter(mesh(), Script=BREAK.format(change="connectivity[0] = connectivity[1]"))
 refused("layer flat", InteractionLayer(flat))
 refused("horizon zero", HorizonNeighbors(mesh(), Horizon=0))

@@ -69,5 +69,5 @@ for ranks in (2, 3, 4):
             assert [taken > MEBIBYTES for taken in found[case]] == gathered, (where, found[case])
             print(f"{where}: horizon {found[case][0]:.1f}, layer {found[case][1]:.1f}, "
                   f"comparison {found[case][2]:.1f} MiB")  # fmt: skip
-    for problem, times in REFUSALS.items():
+    for problem, times in {**REFUSALS, "Several cells have the global id 0": 2}.items():
         assert text.count(problem) == times * ranks, (ranks, problem, text)
