@@ -318,11 +318,17 @@ std::string ComparisonPieces::settleOrientation(int group)
       });
     return orientationOnRanks(this->Group, pieces, values).state;
   };
-  // The cells of a surface have no sign.
-  const bool surface = std::any_of(this->Pieces.begin(), this->Pieces.end(),
-    [group](const ComparedPiece& piece)
-    { return piece.group == group && piece.was->mesh().dimension() == Dimension::Surface; });
-  if (this->Group.any(surface))
+  const auto isSurface = [&](bool after)
+  {
+    return this->Group.any(std::any_of(this->Pieces.begin(), this->Pieces.end(),
+      [=](const ComparedPiece& piece)
+      {
+        return piece.group == group &&
+          (after ? piece.is : piece.was)->mesh().dimension() == Dimension::Surface;
+      }));
+  };
+  // The cells of a surface have no sign; where one of the meshes is flat, its cells have one.
+  if (isSurface(false) && isSurface(true))
   {
     return "";
   }

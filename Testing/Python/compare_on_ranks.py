@@ -34,11 +34,13 @@ for state in range(1 + AFTER):
     x[:, :D] += amplitude / (1 + state) * inner[:, None] * (random.random(places.shape) - 0.5)
 if KIND == "surface":
     x[:, 2] = np.abs(x[:, 0] - 0.5) + (0.2 * x[:, 1] ** 2 if AFTER else 0)
+if KIND == "flattened":
+    x[:, 2] = 0 if AFTER else np.abs(x[:, 0] - 0.5)
 if KIND == "inclined":
     x = x @ np.array([[0.8, 0.6, 0.2], [-0.6, 0.8, 0.1], [0, 0, 1]])
 if KIND == "reversed":
     cells[:, [1, 2]] = cells[:, [2, 1]]
-if KIND == "mixed":
+if KIND in ("mixed", "flattened"):
     cells[::5, 1:3] = cells[::5, 2:0:-1]
 own = divided(places[cells].mean(axis=1), "{cut}", takers, axis={axis}) == (takers - 1 - RANK if {swap} else RANK)
 grid = piece(x, cells, own, {ghosts} and RANKS > 1)
@@ -94,7 +96,7 @@ for cut in ("slabs", "tree", "random"):
         given = {"cut": cut, "ghosts": ghosts, "ids": ghosts}
         compare(f"alike {cut} {ghosts}", mesh(**given), mesh(after=1, **given))
 for kind, dimension in (("tangled", 3), ("reversed", 3), ("tangled", 2), ("inclined", 2), ("reversed", 2),
-                        ("surface", 2), ("mixed", 3)):  # fmt: skip
+                        ("surface", 2), ("mixed", 3), ("flattened", 2)):  # fmt: skip
     given = {"kind": kind, "dimension": dimension, "n": 4 if dimension == 3 else 9, "ids": 0}
     for cut in ("slabs", "random"):
         compare(f"{kind} {dimension} {cut}", mesh(cut=cut, **given), mesh(cut=cut, after=1, **given))
