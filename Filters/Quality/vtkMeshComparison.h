@@ -45,7 +45,9 @@
  * found by the global ids of the points (Generate Global Ids), which both need, and the points of
  * the first mesh go to the pieces of the second. Without ids only points that have not moved are
  * found; otherwise it is an error. Pieces with the same cells and other ids are matched by the ids
- * if these match throughout, else by the order of points and cells. Ghost cells are compared and do
+ * if these match throughout, else by the order of points and cells. That one id is at one place is
+ * checked where points are found by ids; pieces with the same cells and the same ids need no match,
+ * and points that several of them share are compared piece by piece. Ghost cells are compared and do
  * not count. Where some cells list their points in the opposite order of their neighbours, or
  * connected parts are reversed and others are not, with coordinates of extreme size, and where
  * processes have different blocks, the first process has both meshes while it computes; the summary

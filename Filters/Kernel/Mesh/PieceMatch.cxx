@@ -28,6 +28,38 @@ struct PlacedPoint
   Vec3 place;
 };
 
+bool hasLess(const PlacedPoint& a, const PlacedPoint& b)
+{
+  return a.key < b.key;
+}
+
+/// One point per key, in the order of these. Throws Error if one is at two places.
+std::vector<PlacedPoint> distinctPoints(const std::vector<std::vector<PlacedPoint>>& lists)
+{
+  std::vector<PlacedPoint> points;
+  for (const std::vector<PlacedPoint>& list : lists)
+  {
+    points.insert(points.end(), list.begin(), list.end());
+  }
+  std::stable_sort(points.begin(), points.end(), hasLess);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    if (kept == 0 || points[kept - 1].key != points[i].key)
+    {
+      points[kept++] = points[i];
+    }
+    else if (points[kept - 1].place != points[i].place &&
+      std::isfinite(dot(points[i].place, points[i].place)))
+    {
+      throw Error("Points at different places have the global id " +
+        std::to_string(points[i].key[0]) + ": run Generate Global Ids again.");
+    }
+  }
+  points.resize(kept);
+  return points;
+}
+
 /// The answer on a point.
 struct NamedPoint
 {
@@ -181,31 +213,9 @@ void PieceMatch::matchPoints()
   this->Group.together(
     [&]
     {
-      std::vector<PlacedPoint> points;
-      for (const std::vector<PlacedPoint>& list : known)
-      {
-        points.insert(points.end(), list.begin(), list.end());
-      }
-      const auto less = [](const PlacedPoint& a, const PlacedPoint& b) { return a.key < b.key; };
-      std::stable_sort(points.begin(), points.end(), less);
-      std::size_t kept = 0;
-      for (std::size_t i = 0; i < points.size(); ++i)
-      {
-        if (kept == 0 || points[kept - 1].key != points[i].key)
-        {
-          points[kept++] = points[i];
-        }
-        else if (points[kept - 1].place != points[i].place &&
-          std::isfinite(dot(points[i].place, points[i].place)))
-        {
-          throw Error("Points at different places have the global id " +
-            std::to_string(points[i].key[0]) + ": run Generate Global Ids again.");
-        }
-      }
-      points.resize(kept);
-      distinct = static_cast<Index>(kept);
-      std::vector<char> wanted(kept, 0);
-      std::vector<PointKey> unknown;
+      const std::vector<PlacedPoint> points = distinctPoints(known);
+      distinct = static_cast<Index>(points.size());
+      distinctAsked = static_cast<Index>(distinctPoints(asked).size());
       const auto answer = [&](const std::vector<std::vector<PlacedPoint>>& questions,
                             std::vector<std::vector<NamedPoint>>& answers)
       {
@@ -213,29 +223,17 @@ void PieceMatch::matchPoints()
         {
           for (const PlacedPoint& question : questions[rank])
           {
-            const auto at = std::lower_bound(points.begin(), points.end(), question, less);
+            const auto at = std::lower_bound(points.begin(), points.end(), question, hasLess);
             const bool found = at != points.end() && at->key == question.key;
             const auto row = static_cast<std::size_t>(at - points.begin());
             const auto number = static_cast<Index>(row * this->Ranks) + this->Group.rank();
             answers[rank].push_back(
               { found ? number : Index(-1), found ? at->place : question.place });
-            if (found)
-            {
-              wanted[row] = 1;
-            }
-            else
-            {
-              unknown.push_back(question.key);
-            }
           }
         }
       };
       answer(known, ofKnown);
-      std::fill(wanted.begin(), wanted.end(), 0);
       answer(asked, ofAsked);
-      std::sort(unknown.begin(), unknown.end());
-      distinctAsked = std::count(wanted.begin(), wanted.end(), 1) +
-        (std::unique(unknown.begin(), unknown.end()) - unknown.begin());
     });
   known = {};
   asked = {};

@@ -236,6 +236,23 @@ void testMatch(CellType type)
         const class Mesh other(turned.data.view());
         const std::string order = problem({ &other, b.ghosts.data(), b.pointOf.data() }, before);
         TAUTLINE_CHECK_EQUAL(order.find("in this order") != std::string::npos, any);
+        // An id that is at two places, in either mesh.
+        RankPart shifted = b;
+        const auto place = std::find(b.pointOf.begin(), b.pointOf.end(), Index(5));
+        const bool has = place != b.pointOf.end();
+        const bool shared = group.sum(static_cast<Index>(has)) > 1;
+        TAUTLINE_CHECK(shared || ranks < MostRanks);
+        const auto owner = -group.maximum(has ? -static_cast<Index>(group.rank()) : Index(-ranks));
+        if (has && owner == group.rank())
+        {
+          shifted.data.points[3 * (place - b.pointOf.begin())] += 0.1;
+        }
+        const class Mesh apart(shifted.data.view());
+        const RankPiece torn = { &apart, b.ghosts.data(), b.pointOf.data() };
+        for (const std::string& text : { problem(torn, before), problem(before, torn) })
+        {
+          TAUTLINE_CHECK_EQUAL(text.find("have the global id 5:") != std::string::npos, shared);
+        }
         // Cells that one mesh has twice, as they are not marked as ghosts.
         const std::string twice = problem(after, { &was, nullptr, a.pointOf.data() });
         TAUTLINE_CHECK_EQUAL(twice.find(" cells, the second ") != std::string::npos, ranks > 1);
