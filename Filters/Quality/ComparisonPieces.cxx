@@ -4,6 +4,7 @@
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Quality/Compare.h"
 
+#include "vtkCellData.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -103,6 +104,7 @@ std::unique_ptr<ComparisonPieces> ComparisonPieces::take(
   }
   std::unique_ptr<ComparisonPieces> result(new ComparisonPieces(group, threads));
   result->pairOrMatch(first, second, groups);
+  result->requireDistinctCells(groups);
   why = result->settle(groups);
   return why.empty() ? std::move(result) : nullptr;
 }
@@ -218,6 +220,66 @@ void ComparisonPieces::match(const Leaves& before, const Leaves& after, int grou
                             : std::make_unique<MeshAdapter>(leaf.data, this->Threads);
           piece.was = std::make_unique<MeshAdapter>(piece.before, this->Threads);
           this->Pieces.push_back(std::move(piece));
+        }
+      });
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Throws Error, on all processes, if several cells that are not marked as ghosts have one global id
+/// in one of the meshes. Each id has a process that gets it from all that have a cell with it.
+void ComparisonPieces::requireDistinctCells(int groups)
+{
+  const auto size = static_cast<std::size_t>(this->Group.size());
+  for (int k = 0; k < 2 * groups; ++k)
+  {
+    const bool after = k % 2 == 1;
+    std::vector<std::vector<Index>> sent(size);
+    bool lacking = false;
+    this->Group.together(
+      [&]
+      {
+        for (const ComparedPiece& piece : this->Pieces)
+        {
+          vtkDataSet* data = after ? piece.after : piece.before.Get();
+          if (piece.group != k / 2 || data->GetNumberOfCells() == 0)
+          {
+            continue;
+          }
+          vtkDataArray* ids = data->GetCellData()->GetGlobalIds();
+          const unsigned char* ghosts = (after ? piece.is : piece.was)->ghostCells();
+          lacking = lacking || !ids;
+          for (vtkIdType cell = 0; ids && cell < data->GetNumberOfCells(); ++cell)
+          {
+            const auto id = static_cast<Index>(ids->GetComponent(cell, 0));
+            if (!ghosts || !ghosts[cell])
+            {
+              sent[static_cast<std::size_t>(id) % size].push_back(id);
+            }
+          }
+        }
+      });
+    if (this->Group.any(lacking))
+    {
+      continue;
+    }
+    const std::vector<std::vector<Index>> received = this->Group.exchangeItems(sent);
+    this->Group.together(
+      [&]
+      {
+        std::vector<Index> ids;
+        for (const std::vector<Index>& ofRank : received)
+        {
+          ids.insert(ids.end(), ofRank.begin(), ofRank.end());
+        }
+        std::sort(ids.begin(), ids.end());
+        const auto twice = std::adjacent_find(ids.begin(), ids.end());
+        if (twice != ids.end())
+        {
+          throw Error(std::string("Several cells of the ") + (after ? "second" : "first") +
+            " mesh have the global id " + std::to_string(*twice) +
+            " and are not marked as ghost cells: run Generate Global Ids again, and keep the array "
+            "vtkGhostType.");
         }
       });
   }

@@ -64,6 +64,7 @@ private:
   void pairOrMatch(const Leaves& before, const Leaves& after, int groups);
   bool pair(const Leaves& before, const Leaves& after, bool& sameIds);
   void match(const Leaves& before, const Leaves& after, int groups);
+  void requireDistinctCells(int groups);
   std::string settle(int groups);
   std::vector<RankPiece> ofGroup(int group, bool after);
   std::string settleOrientation(int group);

@@ -158,6 +158,10 @@ if controller.GetLocalProcessId() == controller.GetNumberOfProcesses() - 1:
 refused("order", mesh(), simple.ProgrammableFilter(mesh(after=1), Script=BREAK))
 refused("cells", mesh(n=3), mesh(after=1))
 if RANKS > 1:
+    # Copies of cells that are no longer marked are not counted as cells.
+    drop = "output.VTKObject.ShallowCopy(inputs[0].VTKObject); output.CellData.VTKObject.RemoveArray('vtkGhostType')"
+    unmarked = [simple.ProgrammableFilter(mesh(ghosts=1, after=after), Script=drop) for after in (0, 1)]
+    refused("copies", *unmarked)
     refused("no ids", mesh(ids=0), mesh(cut="random", ids=0, after=1))
 
 results["ranks"] = RANKS

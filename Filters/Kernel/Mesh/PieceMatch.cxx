@@ -310,6 +310,7 @@ std::vector<std::vector<Index>> PieceMatch::listCells(
 struct ListedCell
 {
   const Index* begin;
+  std::size_t rank; ///< that has it
   const Index* end() const { return this->begin + 2 + this->begin[1]; }
   bool operator<(const ListedCell& other) const
   {
@@ -318,11 +319,11 @@ struct ListedCell
 };
 
 template <class Visit>
-void forEachListed(const std::vector<Index>& list, const Visit& visit)
+void forEachListed(const std::vector<Index>& list, std::size_t rank, const Visit& visit)
 {
   for (const Index* at = list.data(); at < list.data() + list.size();)
   {
-    const ListedCell cell = { at };
+    const ListedCell cell = { at, rank };
     visit(cell);
     at = cell.end();
   }
@@ -378,14 +379,23 @@ void PieceMatch::matchCells()
     {
       this->requireAsManyCells();
       std::vector<ListedCell> list;
-      for (const std::vector<Index>& ofRank : known)
-      {
-        forEachListed(ofRank, [&](const ListedCell& cell) { list.push_back(cell); });
-      }
-      std::sort(list.begin(), list.end());
       for (std::size_t rank = 0; rank < this->Ranks; ++rank)
       {
-        forEachListed(asked[rank],
+        forEachListed(known[rank], rank, [&](const ListedCell& cell) { list.push_back(cell); });
+      }
+      std::sort(list.begin(), list.end());
+      const auto copy = std::adjacent_find(list.begin(), list.end(),
+        [](const ListedCell& a, const ListedCell& b) { return a.rank != b.rank && !(a < b); });
+      if (copy != list.end())
+      {
+        throw Error("Cells of the first mesh on processes " + std::to_string(copy->rank) + " and " +
+          std::to_string(copy[1].rank) +
+          " have the same points and are not marked as ghost cells: keep the array vtkGhostType, "
+          "or take pieces without copies of cells.");
+      }
+      for (std::size_t rank = 0; rank < this->Ranks; ++rank)
+      {
+        forEachListed(asked[rank], rank,
           [&](const ListedCell& cell)
           {
             answers[rank].push_back(

@@ -53,7 +53,7 @@ TAUTLINE_KERNEL_EXPORT Orientation orientationOnRanks(RankGroup& group,
  * gets the pieces of another: each point and cell has a rank that gets what all have of it.
  *
  * Throws Error, on all ranks, if the points or cells of the meshes differ, a cell lists its points
- * in another order, or one id is at two places. Ghost cells of `mesh` need a counterpart, those of
+ * in another order, one id is at two places, or ranks have a cell of `other` twice. Ghost cells of `mesh` need a counterpart, those of
  * `other` do not count.
  * @return for each piece of `mesh` the coordinates of its points in `other`
  */

@@ -256,6 +256,10 @@ void testMatch(CellType type)
         // Cells that one mesh has twice, as they are not marked as ghosts.
         const std::string twice = problem(after, { &was, nullptr, a.pointOf.data() });
         TAUTLINE_CHECK_EQUAL(twice.find(" cells, the second ") != std::string::npos, ranks > 1);
+        const RankPiece unmarked = { &was, nullptr, a.pointOf.data() };
+        const std::string copies = problem(unmarked, unmarked);
+        TAUTLINE_CHECK_EQUAL(
+          copies.find("are not marked as ghost cells") != std::string::npos, ranks > 1);
         // Without ids, rather than that points have moved.
         const std::string more =
           problem({ &is, b.ghosts.data(), nullptr }, { &was, nullptr, nullptr });
