@@ -50,8 +50,9 @@ std::unique_ptr<HorizonPieces> HorizonPieces::take(
   {
     return nullptr;
   }
-  const Mesh local(result->view(), threads);
-  const RankPiece piece = { &local, nullptr, nullptr };
+  std::unique_ptr<Mesh> local;
+  result->Group->together([&] { local = std::make_unique<Mesh>(result->view(), threads); });
+  const RankPiece piece = { local.get(), nullptr, nullptr };
   const MeshSpace space = spaceOnRanks(*result->Group, { piece });
   const std::array<double, 6>& box = result->Pieces->mesh().bounds();
   result->Plane = HorizonPlane(space, { box[0], box[1], box[2] });
@@ -108,13 +109,17 @@ void HorizonPieces::order(vtkDataSet* input)
 {
   const MeshView& piece = this->Pieces->piece();
   const std::vector<unsigned char>& owned = this->Pieces->mesh().ownedCells();
-  for (Index cell = 0; cell < this->view().numberOfCells; ++cell)
-  {
-    if (owned[cell])
+  this->Group->together(
+    [&]
     {
-      this->Owned.push_back(cell);
-    }
-  }
+      for (Index cell = 0; cell < this->view().numberOfCells; ++cell)
+      {
+        if (owned[cell])
+        {
+          this->Owned.push_back(cell);
+        }
+      }
+    });
   this->PointIds = this->Pieces->pointIds();
   vtkUnsignedCharArray* ghosts = input->GetCellGhostArray();
   Index before = 0;
@@ -131,13 +136,17 @@ void HorizonPieces::order(vtkDataSet* input)
   {
     return;
   }
-  std::vector<double> ids(piece.numberOfCells);
-  for (Index cell = 0; cell < piece.numberOfCells; ++cell)
-  {
-    ids[cell] = this->Single ? static_cast<double>(cell) : given->GetComponent(cell, 0);
-  }
+  std::vector<double> ids;
+  this->Group->together(
+    [&]
+    {
+      for (Index cell = 0; cell < piece.numberOfCells; ++cell)
+      {
+        ids.push_back(this->Single ? static_cast<double>(cell) : given->GetComponent(cell, 0));
+      }
+    });
   const std::vector<double> local = this->Pieces->ofCells(ids, 1);
-  this->CellIds.assign(local.begin(), local.end());
+  this->Group->together([&] { this->CellIds.assign(local.begin(), local.end()); });
   if (!this->Single)
   {
     this->requireDistinctIds();
@@ -198,7 +207,9 @@ TriangleKey HorizonPieces::keyOf(Index triangle) const
 std::vector<Index> HorizonPieces::cellNumbers(const std::vector<TriangleKey>& keys) const
 {
   const bool first = this->Group->rank() == 0;
-  std::vector<Index> numbers(keys.size(), 0);
+  std::vector<Index> numbers;
+  std::vector<std::vector<Index>> sent(this->Group->size());
+  this->Group->together([&] { numbers.resize(keys.size(), 0); });
   if (this->Single)
   {
     std::transform(
@@ -218,9 +229,8 @@ std::vector<Index> HorizonPieces::cellNumbers(const std::vector<TriangleKey>& ke
   {
     numbers[i] += numbers[i - 1];
   }
-  std::vector<std::vector<Index>> sent(this->Group->size());
   sent[0] = std::move(numbers);
-  numbers.assign(keys.size(), this->Before);
+  this->Group->together([&] { numbers.assign(keys.size(), this->Before); });
   for (const std::vector<Index>& ofRank : this->Group->exchangeItems(sent))
   {
     for (std::size_t i = 0; first && i < ofRank.size(); ++i)

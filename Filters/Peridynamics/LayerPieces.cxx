@@ -318,22 +318,26 @@ void LayerPieces::takeFromOthers(const std::vector<LayerTriangle>& layer)
 {
   const DistributedMesh& mesh = this->Pieces.mesh().mesh();
   std::vector<std::vector<Index>> asked(this->Group.size());
-  for (const LayerTriangle& triangle : layer)
-  {
-    for (const LayerCorner& corner : triangle)
+  this->Group.together(
+    [&]
     {
-      const Index local = corner.number < 0 ? -1 : mesh.local(corner.number);
-      if (corner.number >= 0 && (local < 0 || this->FirstOf[local] < 0))
+      for (const LayerTriangle& triangle : layer)
       {
-        asked[corner.owner].push_back(corner.number);
+        for (const LayerCorner& corner : triangle)
+        {
+          const Index local = corner.number < 0 ? -1 : mesh.local(corner.number);
+          if (corner.number >= 0 && (local < 0 || this->FirstOf[local] < 0))
+          {
+            asked[corner.owner].push_back(corner.number);
+          }
+        }
       }
-    }
-  }
-  for (std::vector<Index>& list : asked)
-  {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
+      for (std::vector<Index>& list : asked)
+      {
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
+      }
+    });
   asked = this->Group.exchangeItems(asked);
   std::vector<std::vector<SentPoint>> points(this->Group.size());
   std::vector<Bytes> rows(this->Group.size());

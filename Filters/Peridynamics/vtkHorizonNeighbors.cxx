@@ -143,7 +143,8 @@ tautline::HorizonInput takeFromPieces(const tautline::HorizonPieces& pieces, con
   std::vector<std::vector<MetTriangle>> sent(pieces.group().size());
   std::vector<TriangleKey> own, keys;
   const MeshView& view = pieces.view();
-  for (const Index t : pieces.triangles())
+  RankGroup& group = pieces.group();
+  const auto find = [&](Index t)
   {
     MetTriangle found = { pieces.keyOf(t), { -1, {}, {} } };
     double xy[6];
@@ -160,15 +161,22 @@ tautline::HorizonInput takeFromPieces(const tautline::HorizonPieces& pieces, con
       own.push_back(found.key);
       sent[0].push_back(found);
     }
-  }
-  for (const std::vector<TriangleKey>& list : pieces.group().gatherItems(own))
-  {
-    keys.insert(keys.end(), list.begin(), list.end());
-  }
-  std::sort(keys.begin(), keys.end());
+  };
+  group.together(
+    [&] { std::for_each(pieces.triangles().begin(), pieces.triangles().end(), find); });
+  const std::vector<std::vector<TriangleKey>> all = group.gatherItems(own);
+  group.together(
+    [&]
+    {
+      for (const std::vector<TriangleKey>& list : all)
+      {
+        keys.insert(keys.end(), list.begin(), list.end());
+      }
+      std::sort(keys.begin(), keys.end());
+    });
   const std::vector<Index> numbers = pieces.cellNumbers(keys);
   std::vector<NumberedTriangle> triangles;
-  for (const std::vector<MetTriangle>& list : pieces.group().exchangeItems(sent))
+  for (const std::vector<MetTriangle>& list : group.exchangeItems(sent))
   {
     for (const MetTriangle& met : list)
     {

@@ -227,42 +227,50 @@ void SeamedParts::join()
 {
   const auto ranks = static_cast<std::size_t>(this->Group.size());
   std::vector<std::vector<SeamFacet>> sent(ranks);
-  for (const SeamFacet& facet : this->Seams)
-  {
-    sent[homeOf(facet.hash, this->Group)].push_back(facet);
-  }
+  this->Group.together(
+    [&]
+    {
+      for (const SeamFacet& facet : this->Seams)
+      {
+        sent[homeOf(facet.hash, this->Group)].push_back(facet);
+      }
+    });
   const std::vector<std::vector<SeamFacet>> received = this->Group.exchangeItems(sent);
   struct Place
   {
     std::size_t rank, number;
   };
-  std::vector<Place> places;
-  for (std::size_t rank = 0; rank < ranks; ++rank)
-  {
-    for (std::size_t i = 0; i < received[rank].size(); ++i)
-    {
-      places.push_back({ rank, i });
-    }
-  }
-  const auto facetAt = [&](const Place& at) -> const SeamFacet&
-  { return received[at.rank][at.number]; };
-  std::sort(places.begin(), places.end(),
-    [&](const Place& a, const Place& b) { return facetAt(a) < facetAt(b); });
   std::vector<std::pair<Place, Place>> pairs;
-  for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end)
-  {
-    while (end < places.size() && !(facetAt(places[begin]) < facetAt(places[end])))
+  this->Group.together(
+    [&]
     {
-      ++end;
-    }
-    // Cells that meet at a facet with more than two are not neighbours there.
-    if (end - begin == 2)
-    {
-      const Place &a = places[begin], &b = places[begin + 1];
-      this->Disagreeing += facetAt(a).forward == facetAt(b).forward;
-      pairs.emplace_back(a, b);
-    }
-  }
+      std::vector<Place> places;
+      for (std::size_t rank = 0; rank < ranks; ++rank)
+      {
+        for (std::size_t i = 0; i < received[rank].size(); ++i)
+        {
+          places.push_back({ rank, i });
+        }
+      }
+      const auto facetAt = [&](const Place& at) -> const SeamFacet&
+      { return received[at.rank][at.number]; };
+      std::sort(places.begin(), places.end(),
+        [&](const Place& a, const Place& b) { return facetAt(a) < facetAt(b); });
+      for (std::size_t begin = 0, end = 0; begin < places.size(); begin = end)
+      {
+        while (end < places.size() && !(facetAt(places[begin]) < facetAt(places[end])))
+        {
+          ++end;
+        }
+        // Cells that meet at a facet with more than two are not neighbours there.
+        if (end - begin == 2)
+        {
+          const Place &a = places[begin], &b = places[begin + 1];
+          this->Disagreeing += facetAt(a).forward == facetAt(b).forward;
+          pairs.emplace_back(a, b);
+        }
+      }
+    });
   bool changed = true;
   while (this->Group.any(changed))
   {
