@@ -31,9 +31,10 @@
  * in that of the global ids of their points, or of the places of these, x first; a mesh that one
  * process has keeps its order. Without global ids of points those at the same place are one. A mesh
  * with inverted triangles or ones that are listed in opposite orders, with cells of other types
- * than triangles, vertices and lines, in a plane that is not at right angles to an axis, with
- * coordinates of extreme size, of quadratic cells or in blocks is put together on the first
- * process.
+ * than triangles (in vtkPolyData also vertices and lines), in a plane that is not at right angles
+ * to an axis, with coordinates of extreme size, of quadratic cells or in blocks is put together on
+ * the first process. Triangles with the same global id that are not marked as ghost cells are an
+ * error.
  *
  * @sa tautline::intersectDisc (tautline/Peridynamics/Horizon.h), vtkPeridynamicStiffness
  */

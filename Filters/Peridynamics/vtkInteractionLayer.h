@@ -30,9 +30,10 @@
  * to its boundary. The first process gets the edges of the boundary of the whole mesh and computes
  * the layer. Without global ids of points, and with MergeCoincidentPoints, those at the same place
  * are one. A mesh with inverted or degenerate triangles or ones that are listed in opposite orders,
- * with cells of other types than triangles, vertices and lines, in a plane that is not at right
- * angles to an axis, with coordinates of extreme size, of quadratic cells, in blocks, or without
- * MergeCoincidentPoints and global ids is put together on the first process.
+ * with cells of other types than triangles (in vtkPolyData also vertices and lines), in a plane
+ * that is not at right angles to an axis, with coordinates of extreme size, of quadratic cells, in
+ * blocks, or without MergeCoincidentPoints and global ids is put together on the first process.
+ * Triangles with the same global id that are not marked as ghost cells are an error.
  *
  * @par Example:
  * @code

@@ -226,8 +226,8 @@ void ComparisonPieces::match(const Leaves& before, const Leaves& after, int grou
 }
 
 //------------------------------------------------------------------------------
-/// Throws Error, on all processes, if several cells that are not marked as ghosts have one global id
-/// in one of the meshes. Each id has a process that gets it from all that have a cell with it.
+/// Throws Error, on all processes, if several cells that are not marked as ghosts have one global
+/// id in one of the meshes. Each id has a process that gets it from all that have a cell with it.
 void ComparisonPieces::requireDistinctCells(int groups)
 {
   const auto size = static_cast<std::size_t>(this->Group.size());

@@ -47,11 +47,13 @@
  * found; otherwise it is an error. Pieces with the same cells and other ids are matched by the ids
  * if these match throughout, else by the order of points and cells. That one id is at one place is
  * checked where points are found by ids; pieces with the same cells and the same ids need no match,
- * and points that several of them share are compared piece by piece. Ghost cells are compared and do
- * not count. Where some cells list their points in the opposite order of their neighbours, or
- * connected parts are reversed and others are not, with coordinates of extreme size, and where
- * processes have different blocks, the first process has both meshes while it computes; the summary
- * states why.
+ * and points that several of them share are compared piece by piece. Ghost cells are compared and
+ * do not count; other copies of cells are not cells of the mesh: where the first mesh is cut
+ * otherwise, and where cells have global ids, they are an error. Without global ids of points
+ * pieces with the same cells are taken for pieces that are cut alike. Where some cells list their
+ * points in the opposite order of their neighbours, or connected parts are reversed and others are
+ * not, with coordinates of extreme size, and where processes have different blocks, the first
+ * process has both meshes while it computes; the summary states why.
  *
  * @par Example:
  * @code

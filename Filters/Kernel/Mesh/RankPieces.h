@@ -39,6 +39,10 @@ TAUTLINE_KERNEL_EXPORT MeshSpace spaceOnRanks(
  *
  * Only what is on the boundary of the pieces is sent, and only if there are valid and inverted
  * cells. Points at the same place are one, without global ids also those of a crack.
+ *
+ * A facet has at most two cells, as in a manifold mesh. Where three or more meet, none of them are
+ * neighbours there in one piece; but two of them in one piece are, if the others are in others. The
+ * numbers of parts and of facets that disagree may then depend on how the mesh is cut.
  * @param pieces with Mesh::setSpace() of the whole
  * @param validity as Mesh::classifyCells() gives it, of each piece
  */
@@ -53,8 +57,8 @@ TAUTLINE_KERNEL_EXPORT Orientation orientationOnRanks(RankGroup& group,
  * gets the pieces of another: each point and cell has a rank that gets what all have of it.
  *
  * Throws Error, on all ranks, if the points or cells of the meshes differ, a cell lists its points
- * in another order, one id is at two places, or ranks have a cell of `other` twice. Ghost cells of `mesh` need a counterpart, those of
- * `other` do not count.
+ * in another order, one id is at two places, or ranks have a cell of `other` twice. Ghost cells of
+ * `mesh` need a counterpart, those of `other` do not count.
  * @return for each piece of `mesh` the coordinates of its points in `other`
  */
 TAUTLINE_KERNEL_EXPORT std::vector<std::vector<double>> pointsInOther(
