@@ -115,6 +115,7 @@ private:
   PieceMotion moveTo(const PointFlags& matched, const std::vector<FoundPlace>& found);
   std::vector<double> targetIds();
   bool ownIds(std::vector<double>& ids);
+  bool contradictsIds();
 
   const WarpSettings& Settings;
   RankGroup& Group;
@@ -440,6 +441,18 @@ PieceMotion TargetPieces::moveToClosest(const PointFlags& moved)
 }
 
 //------------------------------------------------------------------------------
+/// Whether all pieces of mesh and target have global ids, and those of points with the same number
+/// in their pieces differ: the pieces are alike, but in other places.
+bool TargetPieces::contradictsIds()
+{
+  const auto lacks = [](vtkDataSet* piece)
+  { return piece && piece->GetNumberOfPoints() > 0 && !piece->GetPointData()->GetGlobalIds(); };
+  vtkDataSet* target = this->Piece.target;
+  const bool differ = target && !haveSameIds(this->Piece.rest, target);
+  return !this->Group.any(lacks(this->Piece.rest) || lacks(target)) && this->Group.any(differ);
+}
+
+//------------------------------------------------------------------------------
 PieceMotion TargetPieces::run(const PointFlags& moved, const PointFlags& matched)
 {
   if (this->Settings.correspondence == Correspondence::ClosestPoint)
@@ -450,8 +463,10 @@ PieceMotion TargetPieces::run(const PointFlags& moved, const PointFlags& matched
   {
     return this->moveByIds(matched);
   }
+  const bool onePlace = areInOnePlace(this->Group, this->Piece.rest, this->Piece.target);
   const bool anywhere = this->Settings.correspondence != Correspondence::SameBoundary;
-  if (anywhere && !this->Group.any(!haveSameCells(this->Piece.rest, this->Piece.target)))
+  if (anywhere && !this->Group.any(!haveSameCells(this->Piece.rest, this->Piece.target)) &&
+    (onePlace || !this->contradictsIds()))
   {
     PieceMotion motion = this->moveTo(matched,
       [this](Index p, Vec3& place)
@@ -462,9 +477,7 @@ PieceMotion TargetPieces::run(const PointFlags& moved, const PointFlags& matched
     motion.how = "as the same mesh, point by point" + motion.how;
     return motion;
   }
-  return areInOnePlace(this->Group, this->Piece.rest, this->Piece.target)
-    ? this->moveInOnePlace(moved, matched)
-    : this->moveByOrder(moved, matched);
+  return onePlace ? this->moveInOnePlace(moved, matched) : this->moveByOrder(moved, matched);
 }
 }
 
@@ -487,6 +500,20 @@ bool haveSameCells(vtkDataSet* piece, vtkDataSet* other)
     }
   }
   return true;
+}
+
+//------------------------------------------------------------------------------
+bool haveSameIds(vtkDataSet* piece, vtkDataSet* other)
+{
+  vtkDataArray* a = piece->GetPointData()->GetGlobalIds();
+  vtkDataArray* b = other->GetPointData()->GetGlobalIds();
+  const vtkIdType points = piece->GetNumberOfPoints();
+  bool same = points == other->GetNumberOfPoints() && (points == 0 || !a == !b);
+  for (vtkIdType i = 0; same && a && b && i < points; ++i)
+  {
+    same = a->GetComponent(i, 0) == b->GetComponent(i, 0);
+  }
+  return same;
 }
 
 //------------------------------------------------------------------------------

@@ -14,6 +14,10 @@ namespace tautline
 /// Whether a piece has as many points as another and the same cells; null is empty. Not collective.
 bool haveSameCells(vtkDataSet* piece, vtkDataSet* other);
 
+/// Whether a piece has as many points as another and the same global ids, or both have none. Not
+/// collective.
+bool haveSameIds(vtkDataSet* piece, vtkDataSet* other);
+
 /// Throws Error if the target is missing or empty on all processes. Collective.
 void requireTarget(RankGroup& group, vtkDataSet* piece);
 

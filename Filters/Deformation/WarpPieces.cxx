@@ -598,18 +598,7 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
 /// Whether a piece has the points and cells that another has, wherever the points are.
 bool areAlike(vtkDataSet* piece, vtkDataSet* other)
 {
-  if (!piece) // but blocks
-  {
-    return false;
-  }
-  vtkDataArray* a = piece->GetPointData()->GetGlobalIds();
-  vtkDataArray* b = other->GetPointData()->GetGlobalIds();
-  bool alike = haveSameCells(piece, other) && (a != nullptr) == (b != nullptr);
-  for (vtkIdType i = 0; alike && a && i < piece->GetNumberOfPoints(); ++i)
-  {
-    alike = a->GetComponent(i, 0) == b->GetComponent(i, 0);
-  }
-  return alike;
+  return piece && haveSameCells(piece, other) && haveSameIds(piece, other); // null: blocks
 }
 }
 
