@@ -10,6 +10,7 @@
 #include "vtkAlgorithm.h"
 #include "vtkDataArray.h"
 #include "vtkInformation.h"
+#include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
@@ -116,23 +117,69 @@ vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input)
 }
 
 //------------------------------------------------------------------------------
-bool WarpSession::sequence() const
+bool WarpSession::overTime() const
 {
-  return !this->times.empty() &&
-    (this->settings.motion == MotionSource::TimeSteps ||
-      (this->settings.fromPreviousStep && this->settings.motion != MotionSource::Transform));
+  return this->settings.motion == MotionSource::TimeSteps ||
+    (this->settings.fromPreviousStep && this->settings.motion != MotionSource::Transform);
 }
 
 //------------------------------------------------------------------------------
-void WarpSession::plan(double time, vtkMTimeType upstream, vtkMTimeType own)
+bool WarpSession::sequence() const
 {
-  // The last time step that is not later, as readers choose it.
-  const auto later = std::upper_bound(this->times.begin(), this->times.end(), time);
-  this->requested = std::max<int>(0, int(later - this->times.begin()) - 1);
+  return !this->times.empty() && this->overTime();
+}
+
+//------------------------------------------------------------------------------
+void WarpSession::agreeOnTimes(bool needed)
+{
+  this->times = this->ownTimes;
+  this->TimesProblem.clear();
+  vtkMultiProcessController* controller = needed ? severalProcesses() : nullptr;
+  if (!controller)
+  {
+    return;
+  }
+  const int rank = controller->GetLocalProcessId(), count = controller->GetNumberOfProcesses();
+  const int first = minimumOverProcesses(this->ownTimes.empty() ? count : rank);
+  if (first == count)
+  {
+    return;
+  }
+  auto number = static_cast<vtkIdType>(this->times.size());
+  controller->Broadcast(&number, 1, first);
+  this->times.resize(static_cast<std::size_t>(number));
+  controller->Broadcast(this->times.data(), number, first);
+  const bool differ = !this->ownTimes.empty() && this->ownTimes != this->times;
+  const int other = minimumOverProcesses(differ ? rank : count);
+  if (other < count)
+  {
+    this->TimesProblem = "The time steps of process " + std::to_string(other) +
+      " are not those of process " + std::to_string(first) +
+      ": give all processes the same ones, or none to a process without cells.";
+  }
+}
+
+//------------------------------------------------------------------------------
+void WarpSession::requireSameTimes() const
+{
+  if (!this->TimesProblem.empty())
+  {
+    throw Error(this->TimesProblem);
+  }
+}
+
+//------------------------------------------------------------------------------
+void WarpSession::plan(std::optional<double> time, vtkMTimeType upstream, vtkMTimeType own)
+{
   if (this->looping)
   {
     return;
   }
+  // The last time step that is not later, as readers choose it; the first one before all of them.
+  const auto later =
+    time ? std::upper_bound(this->times.begin(), this->times.end(), *time) : this->times.begin();
+  const int here = static_cast<int>(later - this->times.begin()) - 1;
+  this->requested = std::max(0, -minimumOverProcesses(-here));
   // The processes begin again together.
   const auto onAny = [](bool here) { return minimumOverProcesses(here ? 0 : 1) == 0; };
   const bool modified = onAny(own > this->Own);

@@ -18,6 +18,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 
 namespace tautline
 {
@@ -113,24 +114,34 @@ public:
   WarpSettings settings; ///< set them before each call
 
   // Time steps one after the other, if the motion is one over time.
-  std::vector<double> times;
-  bool looping = false; ///< another pass of the same execution
-  bool begun = false;   ///< the first time step is known (or this process has nothing of it)
+  std::vector<double> ownTimes; ///< as the inputs of this process have them
+  std::vector<double> times;    ///< of all processes, see agreeOnTimes()
+  bool looping = false;         ///< another pass of the same execution
+  bool begun = false; ///< the first time step is known (or this process has nothing of it)
   int requested = 0, current = 0; ///< numbers of time steps
   // On several processes.
   bool piecewise = false;   ///< each process keeps its piece, else the first one the whole mesh
   bool gathers = false;     ///< since the pieces change over time
   bool startsAgain = false; ///< the first time step is to be requested again
 
+  /// Whether the settings make a motion over time, if there are time steps.
+  bool overTime() const;
   /// Whether a result needs more than the data at its time.
   bool sequence() const;
   /// Whether the data are those of the time that is requested.
   bool atRequested() const { return !this->sequence() || this->current == this->requested; }
+  /// Takes the time steps of the first process that has any: readers may give none to a process
+  /// without cells. Collective.
+  /// @param needed else each process has its own
+  void agreeOnTimes(bool needed);
+  /// Throws Error if there were other ones on another process.
+  void requireSameTimes() const;
   /**
    * @brief Chooses the time step to request. Collective.
+   * @param time that is requested, or nothing if this process knows of none
    * @param own the modification time of the filter
    */
-  void plan(double time, vtkMTimeType upstream, vtkMTimeType own);
+  void plan(std::optional<double> time, vtkMTimeType upstream, vtkMTimeType own);
   /// Does what this time step needs of a data set; warps it if it is the one requested.
   void visit(const InputBlock& block, vtkDataObject* target, vtkDataObject* selected,
     TableRows& history, TableRows& statistics, WarpTotals& totals);
@@ -175,6 +186,7 @@ private:
 
   std::map<int, WarpBlock> Blocks; ///< by number
   vtkMTimeType Upstream = 0, Own = 0;
+  std::string TimesProblem; ///< or ""
 };
 }
 #endif

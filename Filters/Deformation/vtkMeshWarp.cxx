@@ -2,6 +2,7 @@
 #include "vtkMeshWarp.h"
 
 #include "GatheredExecution.h"
+#include "Processes.h"
 #include "RankMesh.h"
 #include "WarpPieces.h"
 
@@ -16,6 +17,7 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 vtkStandardNewMacro(vtkMeshWarp);
@@ -204,9 +206,9 @@ tautline::WarpSettings vtkMeshWarp::GetSettings()
 }
 
 //------------------------------------------------------------------------------
-bool vtkMeshWarp::PlaysMotion() const
+bool vtkMeshWarp::PlaysMotion(const std::vector<double>& times) const
 {
-  return this->Animation && this->Motion != TIME_STEPS && this->Session->times.empty();
+  return this->Animation && this->Motion != TIME_STEPS && times.empty();
 }
 
 //------------------------------------------------------------------------------
@@ -220,9 +222,19 @@ int vtkMeshWarp::RequestInformation(
     const std::vector<double> more = timeStepsOf(inputVector[TargetPort]);
     steps.insert(more.begin(), more.end());
   }
-  this->Session->times.assign(steps.begin(), steps.end());
-  std::vector<double> times = this->Session->times;
-  if (this->PlaysMotion())
+  tautline::WarpSession& session = *this->Session;
+  session.settings = this->GetSettings();
+  session.ownTimes.assign(steps.begin(), steps.end());
+  std::vector<double> times = session.ownTimes;
+  // Another process may have time steps; with a range, whatever it is, all execute at each of them.
+  const bool unknown =
+    times.empty() && session.overTime() && tautline::severalProcesses() != nullptr;
+  for (int port = 0; unknown && port < NumberOfOutputPorts; ++port)
+  {
+    const double range[2] = { 0, 0 };
+    outputVector->GetInformationObject(port)->Set(Pipeline::TIME_RANGE(), range, 2);
+  }
+  if (this->PlaysMotion(times))
   {
     for (int i = 0; i <= this->AnimationSteps; ++i)
     {
@@ -243,8 +255,13 @@ int vtkMeshWarp::RequestInformation(
 int vtkMeshWarp::RequestUpdateExtent(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  this->Session->settings = this->GetSettings();
-  if (!this->Session->sequence())
+  tautline::WarpSession& session = *this->Session;
+  session.settings = this->GetSettings();
+  if (!session.looping)
+  {
+    session.agreeOnTimes(session.overTime() || this->Animation);
+  }
+  if (!session.sequence())
   {
     return 1;
   }
@@ -257,7 +274,7 @@ int vtkMeshWarp::RequestUpdateExtent(
       upstream = std::max(upstream, producer ? producer->GetPipelineMTime() : 0);
     }
   }
-  double time = this->Session->times.front();
+  std::optional<double> time;
   for (int port = 0; port < NumberOfOutputPorts; ++port)
   {
     vtkInformation* info = outputVector->GetInformationObject(port);
@@ -267,13 +284,13 @@ int vtkMeshWarp::RequestUpdateExtent(
       break;
     }
   }
-  this->Session->plan(time, upstream, this->GetMTime());
+  session.plan(time, upstream, this->GetMTime());
   for (int port : { int(MeshPort), int(TargetPort) })
   {
     for (int i = 0; i < inputVector[port]->GetNumberOfInformationObjects(); ++i)
     {
       inputVector[port]->GetInformationObject(i)->Set(
-        Pipeline::UPDATE_TIME_STEP(), this->Session->times[this->Session->current]);
+        Pipeline::UPDATE_TIME_STEP(), session.times[session.current]);
     }
   }
   return 1;
@@ -289,7 +306,8 @@ int vtkMeshWarp::RequestData(
   vtkDataObject* target = vtkDataObject::GetData(inputVector[TargetPort]);
   vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   vtkInformation* requested = outputVector->GetInformationObject(MeshPort);
-  const bool plays = this->PlaysMotion() && requested->Has(Pipeline::UPDATE_TIME_STEP());
+  const bool plays =
+    this->PlaysMotion(session.times) && requested->Has(Pipeline::UPDATE_TIME_STEP());
   const double time = plays ? requested->Get(Pipeline::UPDATE_TIME_STEP()) : 1.0;
   session.settings.amount *= std::clamp(time, 0.0, 1.0);
   tautline::TableRows history, statistics;
@@ -300,6 +318,7 @@ int vtkMeshWarp::RequestData(
                                   "off), or warp the mesh in parts",
     [&]
     {
+      session.requireSameTimes();
       if (pieces || session.piecewise)
       {
         if (!session.sequence())

@@ -481,7 +481,7 @@ private:
 
   void ClearNumbers();
   /// Whether the time of a request is a fraction of the way.
-  bool PlaysMotion() const;
+  bool PlaysMotion(const std::vector<double>& times) const;
 
   int Motion = TRANSFORM;
   double Amount = 1.0;

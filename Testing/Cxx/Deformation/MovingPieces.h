@@ -58,9 +58,12 @@ protected:
   {
     using Pipeline = vtkStreamingDemandDrivenPipeline;
     vtkInformation* info = outputVector->GetInformationObject(0);
-    const double range[2] = { this->Times.front(), this->Times.back() };
-    info->Set(Pipeline::TIME_STEPS(), this->Times.data(), static_cast<int>(this->Times.size()));
-    info->Set(Pipeline::TIME_RANGE(), range, 2);
+    if (!this->Times.empty())
+    {
+      const double range[2] = { this->Times.front(), this->Times.back() };
+      info->Set(Pipeline::TIME_STEPS(), this->Times.data(), static_cast<int>(this->Times.size()));
+      info->Set(Pipeline::TIME_RANGE(), range, 2);
+    }
     info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
     return 1;
   }
@@ -70,8 +73,9 @@ protected:
   {
     vtkInformation* info = outputVector->GetInformationObject(0);
     const double asked = info->Get(vtkStreamingDemandDrivenPipeline::UPDATE_TIME_STEP());
-    const double time =
-      *std::prev(std::upper_bound(this->Times.begin() + 1, this->Times.end(), asked));
+    const double time = this->Times.empty()
+      ? 0.0
+      : *std::prev(std::upper_bound(this->Times.begin() + 1, this->Times.end(), asked));
     ++this->Executions;
     if (time == this->FailsAt)
     {

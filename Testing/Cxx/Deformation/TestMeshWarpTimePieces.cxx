@@ -4,6 +4,7 @@
 #include "MovingPieces.h"
 
 #include "vtkCommand.h"
+#include "vtkPassThrough.h"
 
 using namespace tautline;
 
@@ -270,6 +271,73 @@ void testWrong(vtkMPIController* controller, const MeshData& whole, double middl
   TAUTLINE_CHECK(messages.has("The input has no time steps"));
 }
 
+/// A process without cells may have no time steps: it takes part in those of the others, also
+/// behind another filter. Others have to have the same.
+void testTimes(vtkMPIController* controller, const MeshData& whole, double middle)
+{
+  const Context context("times");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const int start = vtkMeshWarp::PREVIOUS_STEP;
+  for (const int motion : { vtkMeshWarp::TIME_STEPS, vtkMeshWarp::DISPLACEMENT })
+  {
+    std::map<double, std::vector<double>> expected;
+    for (const double time : { 0.0, 2.0, 3.0 })
+    {
+      expected[time] = aloneAt(time, controller, whole, middle, motion, start, [](Run&) {});
+    }
+    for (const int idle : { 0, size - 1 })
+    {
+      const Context inner("idle " + std::to_string(idle));
+      const RankPart part = partOf(whole, rank,
+        [idle, size](Index cell)
+        {
+          const int taker = static_cast<int>(cell % (size - 1));
+          return taker < idle ? taker : taker + 1;
+        });
+      Run run(part, middle, motion, start);
+      vtkNew<vtkPassThrough> after;
+      after->SetInputConnection(run.filter->GetOutputPort());
+      if (rank == idle)
+      {
+        run.source->Times.clear();
+      }
+      Messages messages(run.filter);
+      for (const double time : { 3.0, 0.0, 2.5 })
+      {
+        const double step = std::floor(time);
+        TAUTLINE_CHECK(farthest(run.at(time, whole, part), expected[step]) <= Same);
+      }
+      run.source->Modified();
+      for (const double time : { 2.0, 3.0, 0.0 })
+      {
+        after->UpdateTimeStep(time);
+        auto* output = vtkDataSet::SafeDownCast(after->GetOutputDataObject(0));
+        TAUTLINE_CHECK(farthest(spreadOf(whole, part, output), expected[time]) <= Same);
+      }
+      TAUTLINE_CHECK(messages.empty());
+      TAUTLINE_CHECK(!contains(run.filter->GetSummary(), "put together"));
+    }
+  }
+  const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
+  Run run(part, middle, vtkMeshWarp::TIME_STEPS, start);
+  const std::vector<double> common = run.source->Times;
+  if (rank == size - 1)
+  {
+    run.source->Times.push_back(5);
+  }
+  Messages messages(run.filter);
+  run.filter->UpdateTimeStep(3.0);
+  TAUTLINE_CHECK(messages.has("The time steps of process " + std::to_string(size - 1) +
+    " are not those of process 0: give all processes the same ones"));
+  TAUTLINE_CHECK_EQUAL(meshOf(run.filter)->GetNumberOfPoints(), 0);
+  messages.clear();
+  run.source->Times = common;
+  run.source->Modified();
+  run.filter->UpdateTimeStep(3.0);
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK_EQUAL(meshOf(run.filter)->GetNumberOfPoints(), part.data.numberOfPoints());
+}
+
 /// A stop on one process, or the time limit, ends all of them with the mesh so far.
 void testStop(vtkMPIController* controller, const MeshData& whole, double middle)
 {
@@ -360,6 +428,7 @@ void testAll(vtkMPIController* controller)
   testBeginsAgain(controller, planar, PlanarMiddle);
   testPutTogether(controller);
   testWrong(controller, planar, PlanarMiddle);
+  testTimes(controller, planar, PlanarMiddle);
   testStop(controller, planar, PlanarMiddle);
 }
 }
