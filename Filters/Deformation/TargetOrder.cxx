@@ -29,6 +29,7 @@ public:
   OrderMatch match();
 
 private:
+  PointFlags every(Index points);
   void requireOrder();
   bool fits(const PointFlags& chosen, const char* how);
   void findBoundary();
@@ -68,15 +69,28 @@ OrderMatcher::OrderMatcher(const WarpSettings& settings, RankGroup& group, RankM
     cells != piece.rest->GetNumberOfCells());
   this->ById = inOrder(ofMesh) && inOrder(ofTarget);
   this->Ordered = this->ById || (alike && ofTarget.order != PointOrder::Given);
-  if (this->ById)
+  if (this->Ordered && !this->ById)
   {
-    this->Own = ofMesh.ids;
-    this->Other = ofTarget.ids;
+    this->Own = mesh.idsOfPiece(mesh.pointIds());
   }
-  else if (this->Ordered)
-  {
-    this->Own = this->Other = mesh.idsOfPiece(mesh.pointIds());
-  }
+  group.together(
+    [&]
+    {
+      if (this->ById)
+      {
+        this->Own = ofMesh.ids;
+      }
+      this->Other = this->ById ? ofTarget.ids : this->Own;
+    });
+}
+
+//------------------------------------------------------------------------------
+/// One flag for each of so many points.
+PointFlags OrderMatcher::every(Index points)
+{
+  PointFlags flags;
+  this->Group.together([&] { flags.assign(points, 1); });
+  return flags;
 }
 
 //------------------------------------------------------------------------------
@@ -92,7 +106,7 @@ void OrderMatcher::findBoundary()
   std::unique_ptr<RankMesh> apart;
   if (this->ById && this->Settings.mergePoints)
   {
-    PointFlags used(this->Own.size());
+    PointFlags used = this->every(static_cast<Index>(this->Own.size()));
     for (std::size_t p = 0; p < used.size(); ++p)
     {
       used[p] = this->Whole.mesh().localOfPiece()[p] >= 0;
@@ -107,7 +121,7 @@ void OrderMatcher::findBoundary()
   }
   const DistributedMesh& mesh = apart ? apart->mesh() : this->Whole.mesh();
   const std::vector<unsigned char> boundary = rankBoundary(mesh);
-  this->Boundary.assign(mesh.localOfPiece().size(), 0);
+  this->Group.together([&] { this->Boundary.assign(mesh.localOfPiece().size(), 0); });
   for (std::size_t p = 0; p < this->Boundary.size(); ++p)
   {
     const Index at = mesh.localOfPiece()[p];
@@ -122,10 +136,11 @@ PointFlags OrderMatcher::surface()
 {
   this->findBoundary();
   const MeshView& view = this->Whole.piece();
-  PointFlags flags = this->Boundary;
+  PointFlags flags;
   this->Group.together(
     [&]
     {
+      flags = this->Boundary;
       for (Index cell = 0; cell < view.numberOfCells; ++cell)
       {
         const CellType type = cornerType(view.cellTypes[cell]);
@@ -144,21 +159,36 @@ PointFlags OrderMatcher::surface()
 PointFlags OrderMatcher::rim()
 {
   this->findBoundary();
-  return this->Whole.volume() ? PointFlags(this->Boundary.size(), 0) : this->Boundary;
+  PointFlags flags;
+  this->Group.together(
+    [&]
+    {
+      flags = this->Boundary;
+      if (this->Whole.volume())
+      {
+        std::fill(flags.begin(), flags.end(), 0);
+      }
+    });
+  return flags;
 }
 
 //------------------------------------------------------------------------------
 /// The points that move; of those that are one that with the least id.
 PointFlags OrderMatcher::moving()
 {
-  const std::vector<Index> least = this->Ordered ? this->Whole.pointIds() : std::vector<Index>();
   const std::vector<Index>& localOf = this->Whole.mesh().localOfPiece();
-  PointFlags flags(localOf.size(), 0);
-  for (std::size_t p = 0; p < flags.size(); ++p)
-  {
-    const Index at = localOf[p];
-    flags[p] = at >= 0 && this->Moved[at] && (!this->Ordered || this->Own[p] == least[at]);
-  }
+  const std::vector<Index> least = this->Ordered ? this->Whole.pointIds() : std::vector<Index>();
+  PointFlags flags;
+  this->Group.together(
+    [&]
+    {
+      flags.assign(localOf.size(), 0);
+      for (std::size_t p = 0; p < flags.size(); ++p)
+      {
+        const Index at = localOf[p];
+        flags[p] = at >= 0 && this->Moved[at] && (!this->Ordered || this->Own[p] == least[at]);
+      }
+    });
   return flags;
 }
 
@@ -170,8 +200,8 @@ void OrderMatcher::requireOrder()
   const auto count = [this](vtkDataSet* piece, const PointFlags& flags)
   { return countByPlace(this->Group, piece, flags); };
   vtkDataSet* mesh = this->Piece.rest;
-  this->Points = count(this->Piece.target, PointFlags(this->TargetPoints, 1));
-  const Index all = count(mesh, PointFlags(mesh->GetNumberOfPoints(), 1));
+  this->Points = count(this->Piece.target, this->every(this->TargetPoints));
+  const Index all = count(mesh, this->every(mesh->GetNumberOfPoints()));
   if (requested == Correspondence::SameMesh && this->Points != all)
   {
     throw otherMesh(this->Points, all);
@@ -236,9 +266,9 @@ OrderMatch OrderMatcher::match()
     this->requireOrder();
     return {};
   }
-  this->Found.ofTarget =
-    positionsOf(this->Group, this->Other, PointFlags(this->Other.size(), 1), this->Points);
-  const PointFlags all(this->Own.size(), 1);
+  this->Found.ofTarget = positionsOf(
+    this->Group, this->Other, this->every(static_cast<Index>(this->Other.size())), this->Points);
+  const PointFlags all = this->every(static_cast<Index>(this->Own.size()));
   Index points = 0;
   positionsOf(this->Group, this->Own, all, points);
   if (requested == Correspondence::SameMesh && this->Points != points)

@@ -193,13 +193,19 @@ bool TargetPieces::ownIds(std::vector<double>& ids)
     {
       throw Error(noNumbers(name));
     }
+    const bool given = known.order == PointOrder::Given;
+    PointFlags all;
+    this->Group.together(
+      [&]
+      {
+        positions.resize(given ? points : 0);
+        std::iota(positions.begin(), positions.end(), Index(0));
+        all.assign(given ? 0 : points, 1);
+      });
     Index count = 0;
-    positions = known.order == PointOrder::Given
-      ? std::vector<Index>(points)
-      : positionsOf(this->Group, known.ids, PointFlags(points, 1), count);
-    if (known.order == PointOrder::Given)
+    if (!given)
     {
-      std::iota(positions.begin(), positions.end(), Index(0));
+      positions = positionsOf(this->Group, known.ids, all, count);
     }
   }
   this->Group.together(
@@ -350,16 +356,21 @@ PieceMotion TargetPieces::moveByOrder(const PointFlags& moved, const PointFlags&
   {
     return this->moveToClosest(moved);
   }
-  const auto numbers = [](const std::vector<Index>& positions)
+  const auto numbers = [this](const std::vector<Index>& positions)
   {
-    std::vector<double> ids(positions.begin(), positions.end());
-    std::replace(ids.begin(), ids.end(), -1.0, std::numeric_limits<double>::quiet_NaN());
+    std::vector<double> ids;
+    this->Group.together(
+      [&]
+      {
+        ids.assign(positions.begin(), positions.end());
+        std::replace(ids.begin(), ids.end(), -1.0, std::numeric_limits<double>::quiet_NaN());
+      });
     return ids;
   };
   Index unknown = 0;
   double apart = 0;
-  const std::vector<FoundPlace> found =
-    this->placesOf(numbers(match.ofMesh), numbers(match.ofTarget), unknown, apart);
+  const std::vector<double> ids = numbers(match.ofMesh), targetIds = numbers(match.ofTarget);
+  const std::vector<FoundPlace> found = this->placesOf(ids, targetIds, unknown, apart);
   if (apart > Torn * diagonalOf(this->local()))
   {
     throw Error("Points of the target at different places, up to " + std::to_string(apart) +
@@ -408,7 +419,8 @@ PieceMotion TargetPieces::moveInOnePlace(const PointFlags& moved, const PointFla
       request.threads = this->Settings.options.threads;
       places = tautline::placesOf(request);
     });
-  const PointFlags all(this->local().localPoints(), 1);
+  PointFlags all;
+  this->Group.together([&] { all.assign(this->local().localPoints(), 1); });
   PieceMotion motion = motionOfPieces(this->Group, this->Whole, all, this->Settings.amount,
     [&places](Index p, Vec3& d)
     {

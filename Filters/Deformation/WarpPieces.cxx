@@ -31,6 +31,16 @@ struct MovedPoints
   std::vector<double> places; ///< 3 each
 };
 
+/// A copy of all but the points, which may not fit twice into memory.
+WarpResult copyWithoutPoints(WarpResult& result)
+{
+  std::vector<double> points;
+  points.swap(result.points);
+  WarpResult copy = result;
+  points.swap(result.points);
+  return copy;
+}
+
 /**
  * @class PieceWarp
  * @brief The state of an execution.
@@ -381,7 +391,8 @@ WarpResult PieceWarp::resultOfStep()
   const auto done = kept.frames.find(step), before = kept.frames.find(step - 1);
   if (done != kept.frames.end())
   {
-    WarpResult result = done->second;
+    WarpResult result;
+    this->Group.together([&] { result = copyWithoutPoints(done->second); });
     result.points = localPoints(this->Group, this->Whole, done->second.points);
     return result;
   }
@@ -392,9 +403,9 @@ WarpResult PieceWarp::resultOfStep()
     [&]
     {
       limitFrames(kept, static_cast<std::size_t>(most));
-      WarpResult& frame = kept.frames[step];
-      frame = result;
+      WarpResult frame = copyWithoutPoints(result);
       frame.points = this->Whole.ofPiece(result.points);
+      kept.frames[step] = std::move(frame);
     });
   return result;
 }
@@ -442,9 +453,13 @@ WarpResult PieceWarp::warp()
   if (!this->Group.any(!rests))
   {
     WarpResult result;
-    result.points = this->local().points();
-    result.history.resize(1);
-    result.history[0].stage = "rest";
+    this->Group.together(
+      [&]
+      {
+        result.points = this->local().points();
+        result.history.resize(1);
+        result.history[0].stage = "rest";
+      });
     return result;
   }
   return this->run(this->Displacement);

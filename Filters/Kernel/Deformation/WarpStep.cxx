@@ -403,14 +403,15 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   std::vector<double>& points) const
 {
   const WarpRanks& ranks = this->Parts.ranks();
-  const Mesh mesh = this->moved(points, control.options().threads);
+  std::unique_ptr<Mesh> mesh;
   Targets targets;
   ranks.together(
     [&]
     {
-      if (mesh.view().numberOfCells > 0)
+      mesh.reset(new Mesh(this->moved(points, control.options().threads)));
+      if (mesh->view().numberOfCells > 0)
       {
-        targets = referenceTargets(mesh, this->Initial);
+        targets = referenceTargets(*mesh, this->Initial);
       }
     });
   const WarpOptions& options = control.options();
@@ -464,7 +465,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   }
   else
   {
-    done = tautline::optimize(mesh, optimization);
+    done = tautline::optimize(*mesh, optimization);
   }
   control.agree();
   points = std::move(done.points);
