@@ -613,7 +613,8 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
 /// Whether a piece has the points and cells that another has, wherever the points are.
 bool areAlike(vtkDataSet* piece, vtkDataSet* other)
 {
-  return piece && haveSameCells(piece, other) && haveSameIds(piece, other); // null: blocks
+  // Null is blocks; another is also null if the first piece was none with points of its own.
+  return piece && other && haveSameCells(piece, other) && haveSameIds(piece, other);
 }
 }
 
