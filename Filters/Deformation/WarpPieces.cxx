@@ -398,6 +398,10 @@ WarpResult PieceWarp::resultOfStep()
   }
   WarpResult result =
     before == kept.frames.end() ? this->warp() : this->warpFromPrevious(before->second);
+  if (before != kept.frames.end())
+  {
+    notePrevious(before->second, result);
+  }
   const Index most = this->Group.maximum(3 * this->Whole.piece().numberOfPoints);
   this->Group.together(
     [&]

@@ -573,6 +573,7 @@ WarpResult WarpSession::warp(WarpBlock& kept, WarpTask& task, int blockNumber, b
   else
   {
     result = this->warpFromPrevious(rest, before->second, task, blockNumber);
+    notePrevious(before->second, result);
   }
   if (rest.elements && result.message.find("cell ") != std::string::npos)
   {
@@ -658,6 +659,15 @@ void WarpSession::beginGathered()
 {
   this->clear();
   this->gathers = this->startsAgain = true;
+}
+
+//------------------------------------------------------------------------------
+void notePrevious(const WarpResult& previous, WarpResult& result)
+{
+  if (previous.timeLimit || previous.message.find(PreviousLimited) != std::string::npos)
+  {
+    result.message += (result.message.empty() ? "" : " ") + std::string(PreviousLimited);
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -72,6 +72,11 @@ constexpr const char* NoTimeSteps =
 /// A message of a result.
 constexpr const char* PreviousInvalid =
   "The time step before was not valid, so this one started from the first.";
+constexpr const char* PreviousLimited =
+  "A time step before this one had reached the time limit, and this one started from there: raise "
+  "the Time Limit.";
+/// Says so in a result if the one that it started from was limited, or says so.
+void notePrevious(const WarpResult& previous, WarpResult& result);
 
 /// The name of a method in the menu.
 const char* nameOf(WarpMethod method);

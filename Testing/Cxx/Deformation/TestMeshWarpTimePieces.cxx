@@ -374,6 +374,20 @@ void testStop(vtkMPIController* controller, const MeshData& whole, double middle
   run.filter->SetTimeLimit(1e-9);
   run.filter->UpdateTimeStep(2.0);
   TAUTLINE_CHECK(contains(run.filter->GetSummary(), "The time limit was reached."));
+  // The steps after a limited one say so, also if they are not limited themselves.
+  Run slow(part, middle, vtkMeshWarp::TIME_STEPS, vtkMeshWarp::PREVIOUS_STEP);
+  slow.filter->SetTimeLimit(1e-9);
+  const char* sentence = "A time step before this one had reached the time limit";
+  slow.filter->UpdateTimeStep(1.0);
+  TAUTLINE_CHECK(!contains(slow.filter->GetSummary(), sentence));
+  for (const double time : { 2.0, 3.0 })
+  {
+    slow.filter->UpdateTimeStep(time);
+    TAUTLINE_CHECK(contains(slow.filter->GetSummary(), sentence));
+  }
+  slow.filter->SetTimeLimit(0);
+  TAUTLINE_CHECK(farthest(slow.at(3.0, whole, part), expected) <= Same);
+  TAUTLINE_CHECK(!contains(slow.filter->GetSummary(), sentence));
 }
 
 /// Hybrid optimizes in another order than one process: as valid, and the same for all cuts.
