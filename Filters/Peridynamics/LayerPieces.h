@@ -17,7 +17,7 @@ class vtkUnstructuredGrid;
 
 namespace tautline
 {
-/// The cell array that tells the interaction layer from the domain, and its values.
+/// The name of the cell array of interaction layer and domain, and its values.
 constexpr const char* ReferenceArray = "Reference";
 constexpr int DomainValue = 1, LayerValue = 2;
 
