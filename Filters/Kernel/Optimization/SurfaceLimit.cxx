@@ -13,6 +13,9 @@ namespace
 constexpr double near = 0.1;
 /// Places in a leaf of their tree, at most.
 constexpr std::size_t leafSize = 8;
+/// Of the distance: a step that leaves the planes of facets by less slides in them. Thousands of
+/// such steps do not add up to what counts.
+constexpr double inPlane = 1e-9;
 
 /// Triangles in the balls round their centres: what is far from a ball is far from its triangle.
 class BalledTriangles
@@ -251,6 +254,73 @@ Index SurfaceLimit::held() const
 }
 
 //------------------------------------------------------------------------------
+/**
+ * @brief Whether the facets of v cover the same places with v here as with v at `before`: v has
+ * moved in the planes of all its triangles, and no triangle is turned over. Where two planes meet,
+ * v has then moved along their edge; a border, where the triangles of v end, must be such an edge,
+ * too.
+ * @param triangles of v, with v at `before`
+ */
+bool SurfaceLimit::coversSame(
+  std::int32_t v, const Vec3& before, const std::vector<Triangle>& triangles) const
+{
+  const Vec3 x = this->at(v), step = x - before;
+  const double tolerance = inPlane * this->Distance;
+  const auto isAlong = [&](const Vec3& end)
+  {
+    const Vec3 edge = end - before, off = cross(edge, step);
+    return dot(off, off) <= tolerance * tolerance * dot(edge, edge);
+  };
+  // The ends of the edges at v that one triangle has so far.
+  constexpr std::size_t most = 32;
+  std::array<Vec3, most> open;
+  std::size_t count = 0;
+  for (const Triangle& triangle : triangles)
+  {
+    const std::size_t k = std::find(triangle.begin(), triangle.end(), before) - triangle.begin();
+    if (k == triangle.size())
+    {
+      continue; // the other half of a quadrilateral
+    }
+    const bool edge = triangle[1] == triangle[2];
+    const Vec3 &b = triangle[edge && k > 0 ? 0 : (k + 1) % 3],
+               &c = edge ? b : triangle[(k + 2) % 3];
+    if (edge)
+    {
+      if (!isAlong(b) || dot(b - x, b - before) <= 0)
+      {
+        return false;
+      }
+      continue;
+    }
+    const Vec3 normal = cross(b - before, c - before);
+    const double height = dot(normal, step);
+    if (height * height > tolerance * tolerance * dot(normal, normal) ||
+      dot(cross(b - x, c - x), normal) <= 0)
+    {
+      return false;
+    }
+    for (const Vec3& end : { b, c })
+    {
+      const auto last = open.begin() + count, found = std::find(open.begin(), last, end);
+      if (found != last)
+      {
+        *found = open[--count];
+      }
+      else if (count < most)
+      {
+        open[count++] = end;
+      }
+      else
+      {
+        return false;
+      }
+    }
+  }
+  return std::all_of(open.begin(), open.begin() + count, isAlong);
+}
+
+//------------------------------------------------------------------------------
 bool SurfaceLimit::staysNear(std::int32_t v, const Vec3& before)
 {
   bool left = true;
@@ -263,6 +333,10 @@ bool SurfaceLimit::staysNear(std::int32_t v, const Vec3& before)
     return true;
   }
   const std::vector<Triangle> old = this->trianglesAt(v, before);
+  if (this->coversSame(v, before, old))
+  {
+    return true; // as near as before
+  }
   const std::vector<Triangle> now = this->trianglesAt(v, this->at(v));
   double distance = this->farthest(now, this->Distance);
   if (distance > this->Distance)

@@ -24,7 +24,8 @@ namespace tautline
  * start stay near.
  *
  * What is left of the distance is kept with the corners of each facet: as long as none of these is
- * farther from there than that, nothing needs to be measured again.
+ * farther from there than that, nothing needs to be measured again. Nor does it where a vertex
+ * slides on a flat part, or along a straight edge between two: its facets cover what they covered.
  */
 class TAUTLINE_KERNEL_EXPORT SurfaceLimit
 {
@@ -66,6 +67,7 @@ private:
     return { p[0], p[1], p[2] };
   }
   void findFacets(const Mesh& mesh);
+  bool coversSame(std::int32_t v, const Vec3& before, const std::vector<Triangle>& triangles) const;
   bool staysNear(std::int32_t v, const Vec3& before);
   bool isLeft(const Facet& facet) const;
   std::vector<Triangle> trianglesAt(std::int32_t v, const Vec3& place) const;

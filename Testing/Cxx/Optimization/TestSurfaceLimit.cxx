@@ -6,6 +6,7 @@
 #include "VtkMeshes.h"
 
 #include "tautline/Mesh/Features.h"
+#include "tautline/Optimization/SurfaceLimit.h"
 #include "vtkCellData.h"
 #include "vtkDoubleArray.h"
 #include "vtkMeshOptimizer.h"
@@ -483,10 +484,115 @@ void testStopping()
   options.onGeometry = true;
   TAUTLINE_CHECK_THROWS(optimize(mesh, options), "no other surface");
 }
+
+/// Steps of one vertex, in cells, of meshes whose cells have the size 1.
+class SteppedMesh
+{
+public:
+  static constexpr double limit = 0.02;
+
+  explicit SteppedMesh(MeshData data)
+    : Data(std::move(data))
+    , TheMesh(Data.view())
+    , Fixed(Data.points.size() / 3, 0)
+    , Simplices(TheMesh, Fixed.data(), nullptr, 1)
+    , Surface(TheMesh, Simplices)
+    , Limit(TheMesh, Simplices, Surface, limit / Simplices.scale(), true)
+  {
+  }
+
+  /// Whether the point that is at a place may move by a step; it goes back.
+  bool allows(const Vec3& place, const Vec3& step) { return this->move(place, step, false); }
+  /// As allows(); the point stays where it may be.
+  bool moves(const Vec3& place, const Vec3& step) { return this->move(place, step, true); }
+
+private:
+  bool move(const Vec3& place, const Vec3& step, bool stays)
+  {
+    const Vec3 x = this->Simplices.transform(place);
+    for (std::int32_t v = 0; v < this->Simplices.vertices(); ++v)
+    {
+      double* p = this->Simplices.coordinates() + VertexStride * v;
+      const Vec3 before = { p[0], p[1], p[2] };
+      if (norm(before - x) > 1e-6)
+      {
+        continue;
+      }
+      const Vec3 after = this->Simplices.transform(place + step);
+      std::copy(after.begin(), after.end(), p);
+      const bool allowed = this->Limit.allows(v, before);
+      if (!allowed || !stays)
+      {
+        std::copy(before.begin(), before.end(), p);
+      }
+      return allowed;
+    }
+    throw Error("no point there");
+  }
+
+  MeshData Data;
+  Mesh TheMesh;
+  std::vector<unsigned char> Fixed;
+  SimplexMesh Simplices;
+  SurfaceProjection Surface;
+  SurfaceLimit Limit;
+};
+
+/// Vertices slide on flat parts and along straight edges, and nowhere else.
+void testFlatParts()
+{
+  constexpr Index n = 4;
+  for (CellType type : { CellType::Hexahedron, CellType::Tetrahedron })
+  {
+    SteppedMesh block(blockMesh(type, n, n, n));
+    const double off = 2 * SteppedMesh::limit;
+    TAUTLINE_CHECK(block.allows({ 2, 2, 4 }, { 0.4, -0.3, 0 }));
+    TAUTLINE_CHECK(!block.allows({ 2, 2, 4 }, { 0.4, -0.3, off }));
+    TAUTLINE_CHECK(!block.allows({ 2, 2, 4 }, { 0, 0, -off }));
+    // Along an edge, but not in one of its two planes, nor beyond the next corner.
+    TAUTLINE_CHECK(block.allows({ 4, 2, 4 }, { 0, 0.4, 0 }));
+    TAUTLINE_CHECK(!block.allows({ 4, 2, 4 }, { -off, 0.4, 0 }));
+    TAUTLINE_CHECK(!block.allows({ 4, 2, 4 }, { 0, 0, -off }));
+    TAUTLINE_CHECK(!block.allows({ 4, 3, 4 }, { 0, 1 + off, 0 }));
+    TAUTLINE_CHECK(!block.allows({ 3, 3, 4 }, { 1.5, 0, 0 }));
+    TAUTLINE_CHECK(!block.allows({ 4, 4, 4 }, { 0, -off, 0 }));
+    // Small steps off the plane add up, also beside large ones in it.
+    Vec3 at = { 2, 2, 4 };
+    const Vec3 step = { 0.01, 0, 0.1 * SteppedMesh::limit };
+    int steps = 0;
+    for (; steps < 20 && block.moves(at, step); ++steps)
+    {
+      at += step;
+    }
+    TAUTLINE_CHECK(steps >= 8 && steps <= 10);
+  }
+
+  // A sheet that is bent at x = 2: its border counts, too.
+  MeshData sheet = blockMesh(CellType::Triangle, n, n, 0);
+  sheet.transform(
+    [](Vec3 p) {
+      return Vec3{ std::min(p[0], 2.0), p[1], std::max(p[0] - 2, 0.0) };
+    });
+  SteppedMesh bent(sheet);
+  TAUTLINE_CHECK(bent.allows({ 1, 2, 0 }, { 0.3, 0.2, 0 }));
+  TAUTLINE_CHECK(bent.allows({ 2, 2, 0 }, { 0, 0.3, 0 }));
+  TAUTLINE_CHECK(!bent.allows({ 2, 2, 0 }, { -0.3, 0, 0 }));
+  TAUTLINE_CHECK(bent.allows({ 0, 2, 0 }, { 0, 0.3, 0 }));
+  TAUTLINE_CHECK(!bent.allows({ 0, 2, 0 }, { 0.3, 0, 0 }));
+  TAUTLINE_CHECK(!bent.allows({ 0, 0, 0 }, { 0, 0.3, 0 }));
+  TAUTLINE_CHECK(!bent.allows({ 2, 0, 0 }, { 0, 0.3, 0 }));
+
+  SteppedMesh plane(blockMesh(CellType::Quadrilateral, n, n, 0));
+  TAUTLINE_CHECK(plane.allows({ 2, 4, 0 }, { 0.4, 0, 0 }));
+  TAUTLINE_CHECK(!plane.allows({ 2, 4, 0 }, { 0.4, -0.3, 0 }));
+  TAUTLINE_CHECK(!plane.allows({ 3, 4, 0 }, { 1.3, 0, 0 }));
+  TAUTLINE_CHECK(!plane.allows({ 4, 4, 0 }, { 0, -0.3, 0 }));
+}
 }
 
 int TestSurfaceLimit(int, char*[])
 {
+  testFlatParts();
   testLimit();
   testFilter();
   testLeaving();
