@@ -277,8 +277,10 @@ public:
   /**
    * The algorithm: local ones sweep over the points, others move all at once. AUTOMATIC, the
    * default, is LOCAL_NEWTON. Where sweeps of one objective converge slowly,
-   * NEWTON_CONJUGATE_GRADIENT starts from the input, or from its harmonic map if that is valid and
-   * better; should a sweep fail to reduce several objectives, LIMITED_MEMORY_BFGS continues.
+   * NEWTON_CONJUGATE_GRADIENT starts from the input, or from its harmonic map if that is valid
+   * and better; with points that slide on the surface both take turns, and
+   * NEWTON_CONJUGATE_GRADIENT holds those on curved parts. Should a sweep fail to reduce several
+   * objectives, LIMITED_MEMORY_BFGS continues.
    */
   vtkTautlineSetRangeMacro(Optimizer, int, AUTOMATIC, NEWTON_CONJUGATE_GRADIENT);
   vtkGetMacro(Optimizer, int);

@@ -4,10 +4,17 @@
 #include "HarmonicStart.h"
 #include "tautline/Core/Memory.h"
 
+#include <cmath>
+
 namespace tautline
 {
 namespace
 {
+/// Runs of Newton's method between sweeps, at most; one that reduces the objective by less than
+/// this fraction of it is the last.
+constexpr int maxTurns = 20;
+constexpr double worthTurn = 1e-3;
+
 /// A stage of an optimization, and what it leaves in the result of the run.
 class Stage
 {
@@ -26,7 +33,9 @@ public:
 private:
   bool startsWithNewton(const IterationRecord& first);
   void takeHarmonicStart(const std::vector<double>& start);
-  void useNewton(Slowness slow, const std::vector<double>& start);
+  bool useNewton(Slowness slow, const std::vector<double>& start);
+  bool mayGoOn() const;
+  void takeTurns();
   void sweep(Slowness* slow)
   {
     this->Reason = this->Steps.sweep(slow, this->Failed, this->Repaired);
@@ -74,7 +83,9 @@ void Stage::takeHarmonicStart(const std::vector<double>& start)
 }
 
 //------------------------------------------------------------------------------
-void Stage::useNewton(Slowness slow, const std::vector<double>& start)
+/// Returns whether that leads further than the sweeps have; if not, it sweeps to the end where that
+/// is worth it.
+bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
 {
   // Sweeps smooth what is rough and leave a start that is often further for Newton's method.
   this->Steps.store();
@@ -98,7 +109,7 @@ void Stage::useNewton(Slowness slow, const std::vector<double>& start)
   {
     this->Steps.restart(swept);
     this->sweep(nullptr);
-    return;
+    return false;
   }
   // Where the harmonic map is the minimum, no iteration is recorded.
   IterationRecord& last = this->History.back();
@@ -106,7 +117,7 @@ void Stage::useNewton(Slowness slow, const std::vector<double>& start)
   last = found.objective < last.objective ? found : last;
   if (found.objective < reached)
   {
-    return;
+    return true;
   }
   this->Steps.restart(swept);
   last = this->Steps.record(last.iteration);
@@ -115,6 +126,40 @@ void Stage::useNewton(Slowness slow, const std::vector<double>& start)
   {
     this->sweep(nullptr);
   }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+bool Stage::mayGoOn() const
+{
+  return this->Reason != StopReason::Aborted && this->Reason != StopReason::TimeLimit &&
+    this->Reason != StopReason::IterationLimit;
+}
+
+//------------------------------------------------------------------------------
+/// Sweeps for all points, and Newton's method for those that it does not hold, while both pay.
+void Stage::takeTurns()
+{
+  for (int turn = 0; turn < maxTurns; ++turn)
+  {
+    Slowness slow = Slowness::None;
+    this->sweep(&slow);
+    if (slow == Slowness::None)
+    {
+      return;
+    }
+    const double reached = this->History.back().objective;
+    const bool gained = this->useNewton(Slowness::Near, {});
+    if (!gained || !this->mayGoOn() || !this->Steps.holdsPoints())
+    {
+      return;
+    }
+    if (reached - this->History.back().objective < worthTurn * std::abs(reached))
+    {
+      break;
+    }
+  }
+  this->sweep(nullptr);
 }
 
 //------------------------------------------------------------------------------
@@ -128,6 +173,11 @@ bool Stage::move(bool onlyLocal, const IterationRecord& first)
   }
   Slowness slow = Slowness::None;
   const bool mayGoOver = !onlyLocal && mayUseNewton(this->Options);
+  if (this->Steps.slidesOnSurface())
+  {
+    mayGoOver ? this->takeTurns() : this->sweep(nullptr);
+    return this->Repaired;
+  }
   const std::vector<double> start = mayGoOver ? this->Steps.stored() : std::vector<double>();
   if (mayGoOver && this->startsWithNewton(first))
   {

@@ -39,6 +39,10 @@ public:
   virtual bool hasConvexPart() = 0;
   /// Whether points slide on lines or planes, or an objective has targets.
   virtual bool slidesOrHasTargets() const = 0;
+  /// Whether points slide on the surface, which only sweeps keep where it is curved.
+  virtual bool slidesOnSurface() const = 0;
+  /// Whether methods that move all points at once hold some of these.
+  virtual bool holdsPoints() = 0;
   virtual bool outOfTime() const = 0;
 
   /// The points as they were stored.
@@ -61,7 +65,8 @@ public:
  * corners, and goes over to it where sweeps converge too slowly: from the start, or near the
  * minimum from where they are. If its matrix does not fit into memory the sweeps go on; if it does
  * not get as far as they did, their points are kept. Where sweeps fail, as those of several
- * objectives can, LimitedMemoryBFGS goes on.
+ * objectives can, LimitedMemoryBFGS goes on. With points that slide on a surface, sweeps and
+ * Newton's method, which holds points on curved parts, take turns.
  *
  * @param onlyLocal constraints that only sweeps keep
  * @param first the record of the start

@@ -12,11 +12,12 @@ namespace tautline
 {
 namespace
 {
-/// Whether a point has a direction of its own in an array of 3 per point, or null.
-bool slides(const double* directions, std::size_t p)
+/// The direction of a point in an array of 3 per point, which may be empty; 0 for none.
+Vec3 directionOf(const std::vector<double>& directions, std::size_t p)
 {
-  return directions &&
-    (directions[3 * p] != 0 || directions[3 * p + 1] != 0 || directions[3 * p + 2] != 0);
+  return directions.empty()
+    ? Vec3{ 0, 0, 0 }
+    : Vec3{ directions[3 * p], directions[3 * p + 1], directions[3 * p + 2] };
 }
 }
 
@@ -29,6 +30,7 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
   , RowOfPoint(std::move(rowOfPoint))
   , Rows(RowOfPoint.empty() ? problem.simplices().freeVertices() : rows)
   , Axes(coordinateAxes(problem.moving()))
+  , Slides(problem.slides())
   , Origin(problem.points())
   , Gradient(3 * problem.moving().view().numberOfPoints)
   , Objectives(problem.objectives())
@@ -137,24 +139,27 @@ bool GlobalFunction::allowed()
 }
 
 //------------------------------------------------------------------------------
+bool GlobalFunction::isHeld(std::size_t p) const
+{
+  return !this->Slides.held.empty() && this->Slides.held[p];
+}
+
+//------------------------------------------------------------------------------
 /// The part of a vector a point may follow: in a planar mesh's plane, along its line or plane.
 Vec3 GlobalFunction::project(std::size_t p, Vec3 g) const
 {
-  const OptimizeOptions& options = this->Problem.options();
+  if (this->isHeld(p))
+  {
+    return { 0, 0, 0 };
+  }
   if (this->Problem.moving().dimension() == Dimension::Planar)
   {
     const Vec3& normal = this->Problem.moving().normal();
     g = g - dot(g, normal) * normal;
   }
-  const auto along = [&](const double* u)
-  {
-    const Vec3 n = { u[3 * p], u[3 * p + 1], u[3 * p + 2] };
-    const double n2 = dot(n, n);
-    return n2 > 0 ? (dot(g, n) / n2) * n : Vec3{ 0, 0, 0 };
-  };
-  return slides(options.slideLines, p) ? along(options.slideLines)
-    : slides(options.slidePlanes, p)   ? g - along(options.slidePlanes)
-                                       : g;
+  const auto along = [&g](const Vec3& n) { return (dot(g, n) / dot(n, n)) * n; };
+  const Vec3 line = directionOf(this->Slides.lines, p), plane = directionOf(this->Slides.planes, p);
+  return dot(line, line) > 0 ? along(line) : dot(plane, plane) > 0 ? g - along(plane) : g;
 }
 
 //------------------------------------------------------------------------------
@@ -252,11 +257,11 @@ void GlobalFunction::makeMatrix()
 }
 
 //------------------------------------------------------------------------------
-/// Lets a point that slides move along its line or plane only.
+/// Lets a point that slides move along its line or plane only, and one that is held not at all.
 void GlobalFunction::restrict(std::size_t row, std::size_t p)
 {
-  if (!slides(this->Problem.options().slideLines, p) &&
-    !slides(this->Problem.options().slidePlanes, p))
+  const Vec3 line = directionOf(this->Slides.lines, p), plane = directionOf(this->Slides.planes, p);
+  if (!this->isHeld(p) && !(dot(line, line) > 0) && !(dot(plane, plane) > 0))
   {
     return;
   }
@@ -292,8 +297,7 @@ bool GlobalFunction::fillMatrix()
              : this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
     }
   }
-  const OptimizeOptions& options = this->Problem.options();
-  if (options.slideLines || options.slidePlanes)
+  if (!this->Slides.lines.empty() || !this->Slides.planes.empty() || !this->Slides.held.empty())
   {
     this->forEachFree([&](std::size_t i, std::size_t p) { this->restrict(i, p); });
   }
@@ -312,9 +316,35 @@ void GlobalFunction::linearize(const double*)
 }
 
 //------------------------------------------------------------------------------
+void GlobalFunction::keepSlides(double* d) const
+{
+  if (this->Slides.lines.empty() && this->Slides.planes.empty() && this->Slides.held.empty())
+  {
+    return;
+  }
+  this->forEachFree(
+    [&](std::size_t i, std::size_t p)
+    {
+      double* of = d + this->Size * i;
+      Vec3 step = { 0, 0, 0 };
+      for (int a = 0; a < this->Size; ++a)
+      {
+        step += of[a] * this->Axes[a];
+      }
+      step = this->project(p, step);
+      for (int a = 0; a < this->Size; ++a)
+      {
+        of[a] = dot(step, this->Axes[a]);
+      }
+    });
+}
+
+//------------------------------------------------------------------------------
 bool GlobalFunction::precondition(const double* r, double* z)
 {
   this->Hessian->precondition(r, z);
+  // The coarse grids of multigrid do not have the planes and lines of the points.
+  this->keepSlides(z);
   return true;
 }
 

@@ -19,7 +19,7 @@ namespace tautline
  * @class tautline::GlobalFunction
  * @brief The variables are how far the free points are from where they were at construction, in the
  * axes of coordinateAxes(): two a point in a planar mesh, three in a volume. Points that slide have
- * gradients along their line or plane only.
+ * gradients along their line or plane only, those that are held none.
  */
 class GlobalFunction : public SmoothFunction
 {
@@ -57,6 +57,8 @@ public:
   /// The Hessian with the slopes of findGradient(), not factorized; whether it is the positive
   /// semidefinite part.
   bool fillMatrix();
+  /// Takes from steps of the points what leads them off their planes and lines.
+  void keepSlides(double* d) const;
   HessianMatrix& matrix() { return *this->Hessian; }
   bool hasMatrix() const { return this->Hessian != nullptr; }
 
@@ -65,6 +67,7 @@ private:
   void forEachFree(const Visit& visit) const;
   bool hasElements(std::size_t objective) const;
   void takeGradient(double* gradient) const;
+  bool isHeld(std::size_t p) const;
   void restrict(std::size_t row, std::size_t p);
   Vec3 project(std::size_t p, Vec3 g) const;
 
@@ -74,6 +77,7 @@ private:
   std::vector<std::int32_t> RowOfPoint;
   Index Rows;
   std::array<Vec3, 3> Axes;
+  const PointSlides& Slides;
   std::vector<double> Origin; ///< 3 per point
   bool Check = true;          ///< whether elements may invert without an infinite objective
   std::vector<signed char> Start, Levels; ///< a ValidityLevel per cell: at the start, now

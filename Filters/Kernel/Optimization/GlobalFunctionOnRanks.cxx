@@ -180,6 +180,13 @@ bool GlobalFunctionOnRanks::precondition(const double* r, double* z)
   if (this->Convex)
   {
     this->Grids.apply(r, z);
+    if (this->Local)
+    {
+      // The coarse grids do not have the planes and lines of the points.
+      this->Rows.place(z, this->All.data(), this->Size);
+      this->Local->keepSlides(this->All.data());
+      this->Rows.pick(this->All.data(), z, this->Size);
+    }
   }
   else if (this->Local)
   {

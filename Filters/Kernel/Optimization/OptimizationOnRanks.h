@@ -54,6 +54,8 @@ private:
   bool hasMostlyCorners() const override;
   bool hasConvexPart() override;
   bool slidesOrHasTargets() const override;
+  bool slidesOnSurface() const override { return false; } // such meshes are gathered
+  bool holdsPoints() override { return false; }
   bool findHarmonicPoints(std::vector<double>& points) override;
   IterationRecord record(int iteration) override;
   void addObjective(

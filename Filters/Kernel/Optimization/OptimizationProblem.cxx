@@ -593,6 +593,17 @@ void OptimizationProblem::restart(const std::vector<double>& points)
   this->Simplices->load(this->Points.data(), this->Options.threads);
 }
 
+//------------------------------------------------------------------------------
+const PointSlides& OptimizationProblem::slides()
+{
+  if (!this->Slides)
+  {
+    this->Slides = std::make_unique<PointSlides>(slidesOf(this->TheMesh, this->Options));
+  }
+  return *this->Slides;
+}
+
+//------------------------------------------------------------------------------
 bool OptimizationProblem::outOfTime() const
 {
   return this->Clock.reached(this->Options.stopping.maximumSeconds);

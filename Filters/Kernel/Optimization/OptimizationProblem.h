@@ -8,6 +8,7 @@
 #define tautline_OptimizationProblem_h
 
 #include "tautline/Core/Stopwatch.h"
+#include "FlatParts.h"
 #include "LocalSweep.h"
 
 #include <memory>
@@ -94,6 +95,8 @@ public:
   bool outOfTime() const;
   const OptimizeOptions& options() const { return this->Options; }
   std::vector<double>& points() { return this->Points; }
+  /// What methods that move all points at once keep, see slidesOf(). Found on first use.
+  const PointSlides& slides();
 
 private:
   void makeSurface();
@@ -120,6 +123,7 @@ private:
   std::vector<Index> LeftOut;               ///< cells whose corners were not valid at first
   std::vector<std::vector<double>> Weights; ///< of each objective, if not all 1
   std::unique_ptr<Scalarizer> TheScalarizer;
+  std::unique_ptr<PointSlides> Slides;
   IterationRecord AtStart;   ///< sums of the simplices there; without objectives: not found
   std::vector<double> Start; ///< coordinates of the simplex mesh at the start
   Stopwatch Clock;

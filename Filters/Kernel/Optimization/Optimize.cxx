@@ -253,6 +253,15 @@ public:
     const OptimizeOptions& options = this->Problem.options();
     return options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets;
   }
+  bool slidesOnSurface() const override
+  {
+    return this->Problem.options().model || this->Problem.options().slideSurface;
+  }
+  bool holdsPoints() override
+  {
+    const std::vector<unsigned char>& held = this->Problem.slides().held;
+    return std::any_of(held.begin(), held.end(), [](unsigned char h) { return h != 0; });
+  }
   bool outOfTime() const override { return this->Problem.outOfTime(); }
 
   const std::vector<double>& stored() const override { return this->Result.points; }
@@ -464,8 +473,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
     result.reason = StopReason::NoFreeVertices;
     return false;
   }
-  const bool onlyLocal = options.limits || options.slideSurface || options.model ||
-    mesh.dimension() == Dimension::Surface;
+  const bool onlyLocal = options.limits || mesh.dimension() == Dimension::Surface;
   StepsOfProblem steps(problem, watch, result);
   const bool repaired = movePoints(steps, options, onlyLocal, first, result.history, result.reason);
   QualityGuard::State state;

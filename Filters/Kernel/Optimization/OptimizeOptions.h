@@ -24,8 +24,10 @@ enum class Optimizer : int
    * hexahedra or wedges, and where its sweeps of one objective converge slowly (by the ratio of
    * their gains): NewtonConjugateGradient from the start, or from its harmonic map if valid and
    * the sum smaller there; near the minimum, where more than 25 sweeps are to be expected, from
-   * where they are. Not on surfaces, with limits or with points that slide on the boundary. Should
-   * a sweep fail to reduce several objectives, LimitedMemoryBFGS from there.
+   * where they are. With a model or slideSurface, sweeps and NewtonConjugateGradient in turn, which
+   * moves points on flat patches and straight curves and holds the others on the surface. Not on
+   * surface meshes, nor with limits. Should a sweep fail to reduce several objectives,
+   * LimitedMemoryBFGS from there, unless points slide on the surface.
    */
   Automatic = 0,
   LocalNewton = 1,            ///< sweeps over one-vertex patches, a damped Newton step in each

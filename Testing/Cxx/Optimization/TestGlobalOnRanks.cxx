@@ -114,6 +114,34 @@ void testOptimizers()
   }
 }
 
+/// Points slide in planes that are not at right angles to an axis, too, though coarse grids mix the
+/// coordinates.
+void testSlantedPlanes()
+{
+  constexpr Index cells = 8;
+  constexpr double slant = 0.4;
+  MeshData tets = jittered(CellType::Tetrahedron, cells, 0.15);
+  tets.transform([](const Vec3& p) { return Vec3{ p[0] + slant * (p[1] + p[2]), p[1], p[2] }; });
+  const OptimizeOptions options =
+    converging(with({ Metric::InverseMeanRatio }), Optimizer::NewtonConjugateGradient);
+  const Run slid =
+    testAgainstOne("tetrahedra that slide in slanted planes", tets, options, Constraint::Sliding);
+  double off = 0;
+  Index moved = 0;
+  for (std::size_t i = 0; i < tets.points.size(); i += 3)
+  {
+    const double *p = &tets.points[i], *q = &slid.points[i];
+    const auto across = [](const double* x) { return x[0] - slant * (x[1] + x[2]); };
+    if (std::abs(across(p)) < 1e-9 || std::abs(across(p) - cells) < 1e-9)
+    {
+      off = std::max(off, std::abs(across(q) - across(p)));
+      moved += std::abs(q[1] - p[1]) > 0.01;
+    }
+  }
+  TAUTLINE_CHECK(off <= 1e-13);
+  TAUTLINE_CHECK(moved > 20);
+}
+
 void testObjectives()
 {
   const MeshData tets = jittered(CellType::Tetrahedron, 5, 0.2);
@@ -279,6 +307,7 @@ void testLarge()
 int TestGlobalOnRanks(int, char*[])
 {
   testOptimizers();
+  testSlantedPlanes();
   testObjectives();
   testTangled();
   testStiff();
