@@ -172,7 +172,9 @@ void MeshAdapter::reverseCells(const std::vector<unsigned char>& flags)
     *this->Given = Mesh(view, this->Threads);
     view.connectivity = this->MergedConnectivity.data();
   }
-  *this->TheMesh = Mesh(view, this->Threads); // in place: others refer to it
+  const MeshSpace space = this->TheMesh->space(); // of the whole, where this is a piece
+  *this->TheMesh = Mesh(view, this->Threads);     // in place: others refer to it
+  this->TheMesh->setSpace(space);
   this->setMirrored(mirrored);
 }
 

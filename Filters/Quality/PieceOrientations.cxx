@@ -4,29 +4,76 @@
 #include "Blocks.h"
 #include "MeshAdapter.h"
 
+#include "tautline/Mesh/RankPieces.h"
+
 #include "vtkDataSet.h"
 #include "vtkMultiProcessController.h"
 
 #include <algorithm>
+#include <map>
+#include <memory>
 
 namespace tautline
 {
 //------------------------------------------------------------------------------
-void PieceOrientations::find(vtkDataObject* input, int threads)
+void PieceOrientations::find(vtkDataObject* input, int threads, RankGroup* group)
 {
+  std::map<Index, vtkDataSet*> pieces; // by flat index
   forEachLeaf(input,
     [&](unsigned int index, vtkDataSet* data)
     {
-      if (data->GetNumberOfCells() == 0)
+      if (data->GetNumberOfCells() > 0)
+      {
+        pieces[index] = data;
+      }
+    });
+  const Index own = pieces.empty() ? 0 : pieces.rbegin()->first + 1;
+  const Index size = group ? group->maximum(own) : own;
+  this->Found.resize(static_cast<std::size_t>(size));
+  this->Spaces.resize(static_cast<std::size_t>(size));
+  for (Index index = 0; index < size; ++index)
+  {
+    const auto piece = pieces.find(index);
+    this->findPiece(piece != pieces.end() ? piece->second : nullptr, threads, group,
+      static_cast<unsigned int>(index));
+  }
+}
+
+//------------------------------------------------------------------------------
+/// @param data null if this process has no cells of it
+void PieceOrientations::findPiece(
+  vtkDataSet* data, int threads, RankGroup* group, unsigned int index)
+{
+  const auto together = [group](const auto& work) { group ? group->together(work) : work(); };
+  std::unique_ptr<MeshAdapter> adapter;
+  std::vector<unsigned char> skip;
+  std::vector<RankPiece> pieces;
+  together(
+    [&]
+    {
+      if (data)
+      {
+        adapter = std::make_unique<MeshAdapter>(data, threads);
+        skip = cellsToSkip(*adapter);
+        pieces.push_back({ &adapter->mesh(), skip.empty() ? nullptr : skip.data(), nullptr });
+      }
+    });
+  if (group)
+  {
+    this->Spaces[index] = spaceOnRanks(*group, pieces);
+  }
+  together(
+    [&]
+    {
+      if (!adapter)
       {
         return;
       }
-      const MeshAdapter adapter(data, threads);
-      const Mesh& mesh = adapter.mesh();
+      Mesh& mesh = adapter->mesh();
+      mesh.setSpace(this->Spaces[index].value_or(mesh.space()));
       std::vector<signed char> validity(static_cast<std::size_t>(mesh.view().numberOfCells));
       mesh.classifyCells(validity.data(), threads);
       const Orientation found = mesh.orientation(validity.data());
-      this->Found.resize(std::max<std::size_t>(this->Found.size(), index + 1));
       Pieces& piece = this->Found[index];
       const bool reversed = found.state == Orientation::Reversed;
       piece.any = found.positiveCells + found.negativeCells > 0;
@@ -73,5 +120,11 @@ bool PieceOrientations::ambiguous(unsigned int flatIndex) const
   const Pieces& pieces = this->Found[flatIndex];
   return pieces.any > 1 && pieces.withReversed > 0 && pieces.withOthers > 0 &&
     pieces.disagreeing == 0;
+}
+
+//------------------------------------------------------------------------------
+std::optional<MeshSpace> PieceOrientations::space(unsigned int flatIndex) const
+{
+  return flatIndex < this->Spaces.size() ? this->Spaces[flatIndex] : std::nullopt;
 }
 }

@@ -9,6 +9,7 @@
 #include "MetricSelection.h"
 #include "PieceOrientations.h"
 #include "PointMerge.h"
+#include "ProcessGroup.h"
 #include "Processes.h"
 #include "ProgressStep.h"
 #include "QualityTotals.h"
@@ -211,7 +212,12 @@ int vtkElementQuality::RequestData(
   if (this->Controller && this->Controller->GetNumberOfProcesses() > 1)
   {
     const std::string malformed = anywhere(FailureOf("divide the mesh",
-      [&] { orientations.find(vtkDataObject::GetData(inputVector[0]), this->Threads); }));
+      [&]
+      {
+        const bool all = this->Controller == vtkMultiProcessController::GetGlobalController();
+        const auto group = all ? tautline::tryProcessGroup() : nullptr;
+        orientations.find(vtkDataObject::GetData(inputVector[0]), this->Threads, group.get());
+      }));
     if (!malformed.empty())
     {
       return this->Fail(outputVector, malformed);
@@ -227,7 +233,7 @@ int vtkElementQuality::RequestData(
         tautline::forEachBlock(vtkDataObject::GetData(inputVector[0]),
           vtkDataObject::GetData(inputVector[1]), nullptr, output,
           [&](const tautline::InputBlock& block)
-          { this->Measure(block, orientations.ambiguous(block.flatIndex), totals, grader, bad); });
+          { this->Measure(block, orientations, totals, grader, bad); });
       }));
   if (!failure.empty())
   {
@@ -275,8 +281,9 @@ void vtkElementQuality::ClearResult()
 }
 
 //------------------------------------------------------------------------------
-void vtkElementQuality::Measure(const tautline::InputBlock& block, bool ambiguous,
-  tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad)
+void vtkElementQuality::Measure(const tautline::InputBlock& block,
+  const tautline::PieceOrientations& pieces, tautline::QualityTotals& totals,
+  tautline::CriteriaGrader& grader, tautline::BadElements& bad)
 {
   using namespace tautline;
   vtkDataSet *input = block.input, *output = block.output;
@@ -292,6 +299,7 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block, bool ambiguou
   std::optional<ProgressStep> progress(std::in_place, this, stepAt(0), stepAt(1));
   MeshAdapter adapter(input, this->Threads);
   Mesh& mesh = adapter.mesh();
+  mesh.setSpace(pieces.space(block.flatIndex).value_or(mesh.space()));
   const Index cells = mesh.view().numberOfCells;
   requireMemory(
     static_cast<double>(cells) * static_cast<double>(totals.metrics().size() * sizeof(double)),
@@ -300,7 +308,8 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block, bool ambiguou
   vtkNew<vtkSignedCharArray> validity;
   validity->SetName("Validity");
   validity->SetNumberOfValues(cells);
-  this->SettleOrientation(adapter, ambiguous, validity->GetPointer(0), output);
+  this->SettleOrientation(
+    adapter, pieces.ambiguous(block.flatIndex), validity->GetPointer(0), output);
   const std::vector<unsigned char> skip = cellsToSkip(adapter);
   const unsigned char* skipped = skip.empty() ? nullptr : skip.data();
   this->CheckConnections(mesh, skipped);

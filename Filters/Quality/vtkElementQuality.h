@@ -106,6 +106,7 @@ class BadElements;
 class CriteriaGrader;
 class Mesh;
 class MeshAdapter;
+class PieceOrientations;
 class QualityTotals;
 struct EvaluationOptions;
 struct InputBlock;
@@ -281,8 +282,8 @@ private:
   vtkElementQuality(const vtkElementQuality&) = delete;
   void operator=(const vtkElementQuality&) = delete;
 
-  void Measure(const tautline::InputBlock& block, bool ambiguous, tautline::QualityTotals& totals,
-    tautline::CriteriaGrader& grader, tautline::BadElements& bad);
+  void Measure(const tautline::InputBlock& block, const tautline::PieceOrientations& pieces,
+    tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad);
   /// @param ambiguous whether the pieces on other processes do not agree
   void SettleOrientation(
     tautline::MeshAdapter& adapter, bool ambiguous, signed char* validity, vtkDataSet* output);

@@ -50,6 +50,27 @@ if grid.GetNumberOfPoints():
 """
 
 
+# The surface of a cube. All ranks but the last have one face each, which is flat, and some are seen from behind.
+FACES = """
+import numpy as np
+from rank_meshes import RANK, RANKS, piece, simplices
+
+N = 3
+places, square = simplices(N, 2)
+x, cells, faces = np.zeros((0, 3)), [], []
+for face in range(6):
+    axis, side = face // 2, face % 2
+    points = np.full((len(places), 3), float(N * side))
+    points[:, (axis + 1) % 3], points[:, (axis + 2) % 3] = places.T
+    cells.append(len(x) + (square if side else square[:, ::-1]))
+    faces += [face] * len(square)
+    x = np.concatenate([x, points])
+x, number_of = np.unique(x, axis=0, return_inverse=True)
+own = np.minimum(faces, RANKS - 1) == RANK
+output.VTKObject.ShallowCopy(piece(x, number_of.ravel()[np.concatenate(cells)], own, False))
+"""
+
+
 def mesh(cut, ghosts=0, ids=0, dimension=3, n=3):
     script = PIECES.format(cut=cut, ghosts=ghosts, ids=ids, dimension=dimension, n=n)
     return simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=script)
@@ -148,6 +169,13 @@ def quality_of(filter_):
     )  # fmt: skip
 
 
+def surface():
+    """Pieces that are flat are parts of a surface in space, which has no inverted cells."""
+    faces = simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=FACES)
+    measured = update(ElementQuality(faces, Metrics=["Mean ratio"]))
+    results["surface"] = [values(measured, ["Validity", "mean_ratio"], "cell"), table(measured, 1), measured.Summary]
+
+
 def nonlocal_models(name, cut, **options):
     source = mesh(cut, dimension=2, n=8, **options)
     layer = update(InteractionLayer(source, Width=0.3))
@@ -194,6 +222,7 @@ for case, given in {
 }.items():
     motions(case, **given)
     nonlocal_models(case, **given)
+surface()
 failures()
 results["ranks"] = RANKS
 with open(sys.argv[1], "w", encoding="utf-8") as out:
