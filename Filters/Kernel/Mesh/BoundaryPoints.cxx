@@ -115,6 +115,54 @@ void addTetrahedra(
   }
 }
 
+/// The same for triangles and quadrilaterals, as addMarks() has them.
+template <int Nodes>
+void addPolygons(
+  const MeshView& view, const CellBlock& block, Index begin, Index end, std::vector<Mark>& marks)
+{
+  constexpr int most = 16;
+  std::uint64_t a[Nodes][most] = {}, edge[Nodes][most], sense[Nodes][most];
+  for (; begin < end; begin += most)
+  {
+    const int count = static_cast<int>(std::min<Index>(most, end - begin));
+    const Index* nodes[most];
+    for (int l = 0; l < count; ++l)
+    {
+      nodes[l] = view.connectivity + view.offsets[block.cell(begin + l)];
+      for (int k = 0; k < Nodes; ++k)
+      {
+        a[k][l] = static_cast<std::uint64_t>(nodes[l][k]);
+      }
+    }
+    for (auto& of : a)
+    {
+      for (std::uint64_t& number : of)
+      {
+        number = SplitMix::mixed(number);
+      }
+    }
+    for (int k = 0; k < Nodes; ++k)
+    {
+      for (int l = 0; l < most; ++l)
+      {
+        const std::uint64_t x = a[k][l], y = a[(k + 1) % Nodes][l];
+        edge[k][l] = SplitMix::mixed(x + y);
+        sense[k][l] = x * y * (x - y);
+      }
+    }
+    for (int l = 0; l < count; ++l)
+    {
+      for (int k = 0; k < Nodes; ++k)
+      {
+        constexpr int last = Nodes - 1;
+        Mark& mark = marks[nodes[l][k]];
+        mark.parity ^= edge[k][l] ^ edge[(k + last) % Nodes][l];
+        mark.sum += sense[k][l] + sense[(k + last) % Nodes][l];
+      }
+    }
+  }
+}
+
 int dimensionOf(const Mesh& mesh)
 {
   return mesh.dimension() == Dimension::Volume ? 3 : 2;
@@ -150,13 +198,22 @@ void addMarksOfPart(const Mesh& mesh, int part, int parts, std::vector<Mark>& ma
     {
       throwIfInterrupted();
       const Index next = std::min(end, i + ChunkSize);
-      if (t.type == CellType::Tetrahedron)
+      switch (t.type)
       {
-        addTetrahedra(view, block, i, next, marks);
-      }
-      for (Index k = i; t.type != CellType::Tetrahedron && k < next; ++k)
-      {
-        addMarks(t, view.connectivity + view.offsets[block.cell(k)], marks);
+        case CellType::Tetrahedron:
+          addTetrahedra(view, block, i, next, marks);
+          break;
+        case CellType::Triangle:
+          addPolygons<3>(view, block, i, next, marks);
+          break;
+        case CellType::Quadrilateral:
+          addPolygons<4>(view, block, i, next, marks);
+          break;
+        default:
+          for (Index k = i; k < next; ++k)
+          {
+            addMarks(t, view.connectivity + view.offsets[block.cell(k)], marks);
+          }
       }
     }
   }
