@@ -2,6 +2,7 @@
 #include "FlatParts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace tautline
@@ -35,16 +36,20 @@ bool isFlat(const SurfacePart& part, double surfaceTolerance, Vec3& direction)
     const auto& [a, b, c] = piece;
     return part.curve ? b - a : cross(b - a, c - a);
   };
+  Vec3 largest = { 0, 0, 0 };
+  for (const auto& piece : part.pieces)
+  {
+    const Vec3 d = directionOf(piece);
+    largest = dot(d, d) > dot(largest, largest) ? d : largest;
+  }
+  // Their sum has less of the rounding of coordinates than one, whatever the order of the corners.
   Vec3 origin = { 0, 0, 0 };
   direction = { 0, 0, 0 };
   for (const auto& piece : part.pieces)
   {
     const Vec3 d = directionOf(piece);
-    if (dot(d, d) > dot(direction, direction))
-    {
-      direction = d;
-      origin = piece[0];
-    }
+    direction += (dot(d, largest) < 0 ? -1.0 : 1.0) * d;
+    origin += (1.0 / static_cast<double>(part.pieces.size())) * piece[0];
   }
   const double length = norm(direction);
   if (!(length > 0))
@@ -107,7 +112,8 @@ void addModel(const Mesh& mesh, const OptimizeOptions& options, PointSlides& sli
   {
     const std::int32_t part = options.parts[p];
     slides.held[p] |= part >= 0 && !flat[part];
-    if (part >= 0 && parts[part].curve)
+    const Vec3 x = pointOf(view, p);
+    if (part >= 0 && parts[part].curve && std::isfinite(dot(x, x)))
     {
       onCurves.add(p);
     }

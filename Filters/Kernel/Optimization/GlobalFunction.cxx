@@ -123,6 +123,7 @@ void GlobalFunction::put(const double* x)
 {
   this->move(x);
   this->Problem.simplices().load(this->Problem.points().data(), this->Problem.options().threads);
+  this->Problem.coordinatesChanged();
 }
 
 //------------------------------------------------------------------------------

@@ -75,6 +75,13 @@ public:
 
   bool fast() const { return this->Fast; }
 
+  /// Whether both can be reduced relative to where they start: a sum of values that are all 0 is
+  /// at its best.
+  bool canImprove() const
+  {
+    return this->Fast || (std::abs(this->First[0]) > 0 && std::abs(this->First[1]) > 0);
+  }
+
 private:
   double Pull;
   std::vector<LocalTerm> Terms;
@@ -131,6 +138,10 @@ bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
   for (int round = 0; round < maxRounds && !problem.outOfTime(); ++round)
   {
     const WorstObjectives objectives(problem, judged, worst, *power, pull);
+    if (!objectives.canImprove())
+    {
+      return false;
+    }
     LocalOptions options = problem.localOptions();
     options.newton = true;
     options.relaxation = 1.0;

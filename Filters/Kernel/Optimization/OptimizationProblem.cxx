@@ -271,6 +271,19 @@ void OptimizationProblem::leaveOut(std::vector<signed char> validity)
     {
       continue;
     }
+    Index elements = 0;
+    for (const CellBlock& block : this->Moving->blocks())
+    {
+      for (Index c = 0; isElement(*this->Moving, block.type) && c < block.count; ++c)
+      {
+        elements += !out(block.cell(c));
+      }
+    }
+    if (elements == 0 && !this->Part)
+    {
+      throw Error("No element is valid, and no objective repairs them: untangle the mesh first; if "
+                  "that leaves all invalid, let more points move.");
+    }
     this->Weights[i].assign(cells, 1.0);
     this->LeftOut.clear();
     for (Index cell = 0; cell < cells; ++cell)
@@ -591,6 +604,16 @@ void OptimizationProblem::restart(const std::vector<double>& points)
   this->AtStart = {};
   this->Points = points;
   this->Simplices->load(this->Points.data(), this->Options.threads);
+  this->coordinatesChanged();
+}
+
+//------------------------------------------------------------------------------
+void OptimizationProblem::coordinatesChanged()
+{
+  if (this->Limit)
+  {
+    this->Limit->forget();
+  }
 }
 
 //------------------------------------------------------------------------------

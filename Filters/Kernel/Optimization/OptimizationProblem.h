@@ -66,6 +66,8 @@ public:
 
   /// Writes the simplices' coordinates to the points.
   void store();
+  /// To be called where the coordinates of the simplices have changed other than by sweeps.
+  void coordinatesChanged();
   /// Goes back to other points.
   void restart(const std::vector<double>& points);
   /// One objective in closed form, of every element.

@@ -473,8 +473,11 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
     result.reason = StopReason::NoFreeVertices;
     return false;
   }
-  const bool onlyLocal = options.limits || mesh.dimension() == Dimension::Surface;
   StepsOfProblem steps(problem, watch, result);
+  // Elements that are valid keep points that slide in the part of the surface that they are on.
+  const bool mayCross =
+    steps.slidesOnSurface() && (first.inverted > 0 || mesh.nonFinitePoints() > 0);
+  const bool onlyLocal = options.limits || mesh.dimension() == Dimension::Surface || mayCross;
   const bool repaired = movePoints(steps, options, onlyLocal, first, result.history, result.reason);
   QualityGuard::State state;
   if (repaired)

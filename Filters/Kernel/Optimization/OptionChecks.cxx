@@ -38,7 +38,8 @@ bool boundaryMoves(const Mesh& mesh, const OptimizeOptions& options)
   const std::vector<char> boundary = boundaryPoints(mesh);
   for (Index p = 0; p < static_cast<Index>(boundary.size()); ++p)
   {
-    if (boundary[p] && !options.fixed[p] && !slides(options.slidePlanes, p) &&
+    const bool onModel = options.model && options.parts && options.parts[p] >= 0;
+    if (boundary[p] && !options.fixed[p] && !onModel && !slides(options.slidePlanes, p) &&
       !slides(options.slideLines, p))
     {
       return true;
@@ -63,6 +64,27 @@ void checkSizes(const Mesh& mesh, const OptimizeOptions& options)
         "to a point, or grow without bound. Fix the boundary or let it slide, or choose a metric "
         "relative to a target size (" +
         metricInfo(Metric::SizeBarrier).label + ").");
+    }
+  }
+}
+
+/// The metric that judges the worst element must have a value for each, and a better direction.
+void checkWorstMetric(const Mesh& mesh, Metric metric)
+{
+  const MetricInfo& info = metricInfo(metric);
+  if (info.direction == Direction::Neutral)
+  {
+    throw Error(std::string(info.label) +
+      " is neither better large nor small: choose another metric for the worst element.");
+  }
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    if (t.dimension == dimension && block.count > 0 && !info.definedOn(block.type))
+    {
+      throw Error(std::string(info.label) + " is not defined on every element (there is a " +
+        t.name + "): choose another metric for the worst element.");
     }
   }
 }
@@ -118,6 +140,10 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
         : "A surface in space needs a local optimizer: choose Automatic or Local Newton.");
   }
   checkSizes(mesh, options);
+  if (options.worstMetric)
+  {
+    checkWorstMetric(mesh, *options.worstMetric);
+  }
   requireFinite(options.limits, mesh.view().numberOfPoints, "The limit");
   requireFinite(options.slidePlanes, 3 * mesh.view().numberOfPoints, "The slide plane");
   requireFinite(options.slideLines, 3 * mesh.view().numberOfPoints, "The slide line");

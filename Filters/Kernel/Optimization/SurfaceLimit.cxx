@@ -248,6 +248,15 @@ void SurfaceLimit::setShare(double share)
 }
 
 //------------------------------------------------------------------------------
+void SurfaceLimit::forget()
+{
+  for (Facet& facet : this->Facets)
+  {
+    facet.left = -1;
+  }
+}
+
+//------------------------------------------------------------------------------
 Index SurfaceLimit::held() const
 {
   return std::count(this->Refused.begin(), this->Refused.end(), 1);
@@ -258,7 +267,7 @@ Index SurfaceLimit::held() const
  * @brief Whether the facets of v cover the same places with v here as with v at `before`: v has
  * moved in the planes of all its triangles, and no triangle is turned over. Where two planes meet,
  * v has then moved along their edge; a border, where the triangles of v end, must be such an edge,
- * too.
+ * too, and so must the front of a crack, where they fold back.
  * @param triangles of v, with v at `before`
  */
 bool SurfaceLimit::coversSame(
@@ -271,10 +280,16 @@ bool SurfaceLimit::coversSame(
     const Vec3 edge = end - before, off = cross(edge, step);
     return dot(off, off) <= tolerance * tolerance * dot(edge, edge);
   };
-  // The ends of the edges at v that one triangle has so far.
+  // The ends of the edges at v that one triangle has so far, with its normal.
+  struct OpenEdge
+  {
+    Vec3 end, normal;
+  };
   constexpr std::size_t most = 32;
-  std::array<Vec3, most> open;
+  std::array<OpenEdge, most> open;
   std::size_t count = 0;
+  std::array<Vec3, 2> edges; // of a curve
+  std::size_t edgeCount = 0;
   for (const Triangle& triangle : triangles)
   {
     const std::size_t k = std::find(triangle.begin(), triangle.end(), before) - triangle.begin();
@@ -287,10 +302,11 @@ bool SurfaceLimit::coversSame(
                &c = edge ? b : triangle[(k + 2) % 3];
     if (edge)
     {
-      if (!isAlong(b) || dot(b - x, b - before) <= 0)
+      if (!isAlong(b) || dot(b - x, b - before) <= 0 || edgeCount == edges.size())
       {
         return false;
       }
+      edges[edgeCount++] = b - before;
       continue;
     }
     const Vec3 normal = cross(b - before, c - before);
@@ -302,14 +318,20 @@ bool SurfaceLimit::coversSame(
     }
     for (const Vec3& end : { b, c })
     {
-      const auto last = open.begin() + count, found = std::find(open.begin(), last, end);
+      const auto last = open.begin() + count;
+      const auto found =
+        std::find_if(open.begin(), last, [&](const OpenEdge& e) { return e.end == end; });
       if (found != last)
       {
+        if (dot(found->normal, normal) <= 0 && !isAlong(end))
+        {
+          return false;
+        }
         *found = open[--count];
       }
       else if (count < most)
       {
-        open[count++] = end;
+        open[count++] = { end, normal };
       }
       else
       {
@@ -317,7 +339,12 @@ bool SurfaceLimit::coversSame(
       }
     }
   }
-  return std::all_of(open.begin(), open.begin() + count, isAlong);
+  if (edgeCount > 0 && (edgeCount < edges.size() || dot(edges[0], edges[1]) >= 0))
+  {
+    return false; // the end of a curve, or the tip of a slit
+  }
+  return std::all_of(
+    open.begin(), open.begin() + count, [&](const OpenEdge& e) { return isAlong(e.end); });
 }
 
 //------------------------------------------------------------------------------
@@ -335,7 +362,12 @@ bool SurfaceLimit::staysNear(std::int32_t v, const Vec3& before)
   const std::vector<Triangle> old = this->trianglesAt(v, before);
   if (this->coversSame(v, before, old))
   {
-    return true; // as near as before
+    // As near as before, but by other facets: what is left of the distance is not known for these.
+    for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1]; ++i)
+    {
+      this->Facets[this->FacetsAt[i]].left = -1;
+    }
+    return true;
   }
   const std::vector<Triangle> now = this->trianglesAt(v, this->at(v));
   double distance = this->farthest(now, this->Distance);

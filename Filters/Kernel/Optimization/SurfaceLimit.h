@@ -24,8 +24,9 @@ namespace tautline
  * start stay near.
  *
  * What is left of the distance is kept with the corners of each facet: as long as none of these is
- * farther from there than that, nothing needs to be measured again. Nor does it where a vertex
- * slides on a flat part, or along a straight edge between two: its facets cover what they covered.
+ * farther from there than that, nothing needs to be measured again. Nothing is measured either where
+ * a vertex slides on a flat part, or along a straight edge between two: its facets cover what they
+ * covered.
  */
 class TAUTLINE_KERNEL_EXPORT SurfaceLimit
 {
@@ -49,6 +50,8 @@ public:
   bool allows(std::int32_t v, const Vec3& before);
   /// Uses a share of the distance, 0 to 1, from now on. It must not shrink.
   void setShare(double share);
+  /// To be called where vertices have moved without allows().
+  void forget();
   /// Free vertices whose last step was refused.
   Index held() const;
 

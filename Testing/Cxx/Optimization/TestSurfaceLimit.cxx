@@ -588,11 +588,49 @@ void testFlatParts()
   TAUTLINE_CHECK(!plane.allows({ 3, 4, 0 }, { 1.3, 0, 0 }));
   TAUTLINE_CHECK(!plane.allows({ 4, 4, 0 }, { 0, -0.3, 0 }));
 }
+
+/// The tip of a slit, and the front of a crack, do not move on, though facets on both sides are
+/// flat; places on the sides do.
+void testCracks()
+{
+  constexpr Index n = 4;
+  for (CellType type : { CellType::Quadrilateral, CellType::Hexahedron })
+  {
+    const bool volume = type == CellType::Hexahedron;
+    MeshData data = blockMesh(type, n, n, volume ? 2 : 0);
+    // Points with x < 2 and y = 2 get copies for the cells above.
+    const Index cells = data.numberOfCells(), points = data.numberOfPoints();
+    std::map<Index, Index> copyOf;
+    for (Index p = 0; p < points; ++p)
+    {
+      const Vec3 x = data.point(p);
+      if (x[1] == 2 && x[0] < 2)
+      {
+        copyOf[p] = data.numberOfPoints();
+        data.points.insert(data.points.end(), x.begin(), x.end());
+      }
+    }
+    for (Index c = 0; c < cells; ++c)
+    {
+      const auto begin = data.connectivity.begin() + data.offsets[c],
+                 end = data.connectivity.begin() + data.offsets[c + 1];
+      const bool above = std::any_of(begin, end, [&](Index p) { return data.point(p)[1] > 2; });
+      std::for_each(begin, end, [&](Index& p) { p = above && copyOf.count(p) ? copyOf[p] : p; });
+    }
+    SteppedMesh cracked(data);
+    const double z = volume ? 1 : 0;
+    TAUTLINE_CHECK(!cracked.allows({ 2, 2, z }, { 0.5, 0, 0 }));
+    TAUTLINE_CHECK(!cracked.allows({ 2, 2, z }, { -0.5, 0, 0 }));
+    TAUTLINE_CHECK(cracked.allows({ 1, 2, z }, { 0.3, 0, 0 }));
+    TAUTLINE_CHECK(cracked.allows({ 2, 0, z }, { 0.3, 0, 0 }));
+  }
+}
 }
 
 int TestSurfaceLimit(int, char*[])
 {
   testFlatParts();
+  testCracks();
   testLimit();
   testFilter();
   testLeaving();
