@@ -24,9 +24,9 @@ namespace tautline
  * start stay near.
  *
  * What is left of the distance is kept with the corners of each facet: as long as none of these is
- * farther from there than that, nothing needs to be measured again. Nothing is measured either where
- * a vertex slides on a flat part, or along a straight edge between two: its facets cover what they
- * covered.
+ * farther from there than that, nothing needs to be measured again. Nothing is measured either
+ * where a vertex slides on a flat part, or along a straight edge between two: its facets cover what
+ * they covered.
  */
 class TAUTLINE_KERNEL_EXPORT SurfaceLimit
 {
