@@ -24,9 +24,9 @@ struct PointSlides
 
 /**
  * @brief The constraints of the options: of points that slide on a model or on the surface, those
- * on flat patches and on straight curves between such patches slide there, as the surface then
- * covers the same places while the elements are valid. The other ones are held, and so are all
- * those on another geometry.
+ * on flat patches and on straight curves between such patches slide there. While the elements are
+ * valid, which the caller has to see to, the surface then covers the same places. The other ones
+ * are held, and so are all those on another geometry.
  */
 TAUTLINE_KERNEL_EXPORT PointSlides slidesOf(const Mesh& mesh, const OptimizeOptions& options);
 }
