@@ -90,6 +90,7 @@ private:
   double solveNewton(double shift);
   void hessianTimes(const Vector& d, Vector& product);
   bool iterate();
+  bool isNear();
 
   SmoothFunction& Function;
   const MinimizeOptions& Options;
@@ -105,7 +106,8 @@ private:
   double First = 1;               ///< first trial step along D
   double FirstNewton = 1;         ///< first trial step along Newton's direction
   double Shift = 0;               ///< of Newton's system, in units of the preconditioner
-  double Promised = infinity;     ///< by Newton's quadratic model, of the next step
+  double Promised = infinity;     ///< by a quadratic model, of the step; 0: not known
+  double FirstF = 0;
   bool Preconditioned = false;
   bool Fresh = true; ///< D does not use the history
   MinimizeResult Result;
@@ -303,6 +305,7 @@ bool Minimizer::steepest()
   this->Algebra.each([&](Index i) { this->D[i] = -this->Z[i]; });
   this->Slope = this->dot(this->G, this->D);
   this->First = scaled ? 1.0 : this->firstStep();
+  this->Promised = scaled ? -0.5 * this->Slope : 0.0;
   this->Fresh = true;
   return this->Slope < 0 && std::isfinite(this->Slope);
 }
@@ -325,6 +328,7 @@ void Minimizer::quasiNewton()
       return gamma;
     });
   this->First = 1;
+  this->Promised = -0.5 * this->Slope;
   this->Fresh = false;
 }
 
@@ -351,6 +355,7 @@ void Minimizer::conjugate()
     });
   // As far as the last step would have gone by its slope.
   this->First = this->Step * this->StepSlope / this->Slope;
+  this->Promised = this->Preconditioned ? 0.5 * now : 0.0;
   this->Fresh = beta == 0;
 }
 
@@ -494,7 +499,10 @@ bool Minimizer::iterate()
     return false;
   }
   const double length = std::sqrt(this->dot(this->D, this->D));
-  const bool descent = this->Slope < -minDescent * length * this->Norm;
+  // Newton's direction is at a right angle to the gradient, but for rounding, where some elements
+  // are far flatter than others.
+  const bool descent =
+    method == Optimizer::NewtonConjugateGradient || this->Slope < -minDescent * length * this->Norm;
   bool moved = (descent || this->Fresh) && this->Slope < 0 && std::isfinite(length) &&
     (method == Optimizer::NewtonConjugateGradient && !this->Fresh
         ? this->searchNewton()
@@ -504,11 +512,38 @@ bool Minimizer::iterate()
     this->Memory.clear();
     moved = this->steepest() && this->search(this->First, curvature, conjugateGradient);
   }
+  if (method == Optimizer::NewtonConjugateGradient && this->Fresh)
+  {
+    this->Promised = infinity; // not by Newton's model
+  }
   if (moved && method == Optimizer::LimitedMemoryBFGS)
   {
     this->Memory.add(this->Step, this->D.data(), this->OldG.data(), this->G.data());
   }
   return moved;
+}
+
+//------------------------------------------------------------------------------
+/// Whether little is left to gain, by the last direction and by a preconditioner made here; see
+/// MinimizeOptions::decrement. If not, directions begin anew.
+bool Minimizer::isNear()
+{
+  const double little =
+    std::max(this->Options.decrement * std::abs(this->F), rounding * std::abs(this->FirstF));
+  if (this->Options.decrement == 0 || this->Options.method == Optimizer::NewtonConjugateGradient)
+  {
+    return true;
+  }
+  if (this->Promised <= little)
+  {
+    this->Function.linearize(this->X);
+    this->Memory.clear();
+    if (!this->precondition(this->G, this->Z) || 0.5 * this->dot(this->G, this->Z) <= little)
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 //------------------------------------------------------------------------------
@@ -527,6 +562,7 @@ MinimizeResult Minimizer::run()
   {
     work->resize(this->Size);
   }
+  this->FirstF = this->F;
   this->Norm = this->FirstNorm = std::sqrt(this->dot(this->G, this->G));
   this->Result.gradientNorm = this->Norm;
   if (this->FirstNorm == 0 || !std::isfinite(this->FirstNorm))
@@ -567,7 +603,10 @@ MinimizeResult Minimizer::run()
       this->Result.reason = StopReason::Aborted;
       return this->Result;
     }
-    if (this->Norm == 0 || this->Norm <= this->Options.gradientNorm * this->FirstNorm)
+    const bool flat = this->Norm <= this->Options.gradientNorm * this->FirstNorm;
+    const bool slow = this->Options.relativeChange > 0 &&
+      before - this->F <= this->Options.relativeChange * std::abs(this->F);
+    if (this->Norm == 0 || (flat && this->isNear()))
     {
       this->Result.reason = StopReason::GradientNorm;
       return this->Result;
@@ -577,13 +616,8 @@ MinimizeResult Minimizer::run()
       this->Result.reason = StopReason::NoProgress;
       return this->Result;
     }
-    if (this->Promised <= this->Options.decrement * std::abs(this->F))
-    {
-      this->Result.reason = StopReason::RelativeChange;
-      return this->Result;
-    }
-    if (this->Options.relativeChange > 0 &&
-      before - this->F <= this->Options.relativeChange * std::abs(this->F))
+    if ((everyTime && this->Promised <= this->Options.decrement * std::abs(this->F)) ||
+      (slow && this->isNear()))
     {
       this->Result.reason = StopReason::RelativeChange;
       return this->Result;

@@ -61,10 +61,12 @@ struct MinimizeOptions
   double gradientNorm = 1e-6;  ///< relative to the first; 0: never
   double relativeChange = 0.0; ///< of the value in an iteration; 0: never
   /**
-   * @brief NewtonConjugateGradient: stop after a step of which the quadratic model promised less
-   * than this, relative to the value; 0: never. Half of the squared Newton decrement estimates how
-   * far the value is above its minimum, wherever the iteration started (S. Boyd and L.
-   * Vandenberghe, "Convex Optimization", 2004, section 9.5.1).
+   * @brief Half of the squared Newton decrement, g H^-1 g / 2, estimates how far the value is above
+   * its minimum, wherever the iteration started (S. Boyd and L. Vandenberghe, "Convex
+   * Optimization", 2004, section 9.5.1). NewtonConjugateGradient stops after a step of which its
+   * model promised less than this, relative to the value. The others have estimates of H^-1 only:
+   * where these promise more, gradientNorm and relativeChange do not end them, unless it is the
+   * rounding of the first value. 0: not used.
    */
   double decrement = 0.0;
   /// Asked between the inner iterations of Newton's method: true ends them at what they have.
