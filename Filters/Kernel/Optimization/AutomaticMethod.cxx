@@ -35,7 +35,7 @@ private:
   void takeHarmonicStart(const std::vector<double>& start);
   bool useNewton(Slowness slow, const std::vector<double>& start);
   bool mayGoOn() const;
-  void takeTurns();
+  void takeTurns(const IterationRecord& first);
   void sweep(Slowness* slow)
   {
     this->Reason = this->Steps.sweep(slow, this->Failed, this->Repaired);
@@ -46,6 +46,7 @@ private:
   std::vector<IterationRecord>& History;
   StopReason& Reason;
   bool Failed = false, Repaired = false;
+  bool Fits = true; ///< the matrix of Newton's method, into memory
 };
 
 //------------------------------------------------------------------------------
@@ -53,7 +54,8 @@ private:
 /// elements whose patches have no closed form.
 bool Stage::startsWithNewton(const IterationRecord& first)
 {
-  return this->Steps.hasMostlyCorners() && first.inverted == 0 && this->Steps.hasConvexPart();
+  return this->Options.objectives.size() == 1 && this->Steps.hasMostlyCorners() &&
+    first.inverted == 0 && this->Steps.hasConvexPart();
 }
 
 //------------------------------------------------------------------------------
@@ -83,15 +85,14 @@ void Stage::takeHarmonicStart(const std::vector<double>& start)
 }
 
 //------------------------------------------------------------------------------
-/// Returns whether that leads further than the sweeps have; if not, it sweeps to the end where that
-/// is worth it.
+/// Returns whether that leads further than the sweeps have; if not, their points are kept.
 bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
 {
   // Sweeps smooth what is rough and leave a start that is often further for Newton's method.
   this->Steps.store();
   const std::vector<double> swept = this->Steps.stored();
   const double reached = this->History.back().objective;
-  bool fits = true;
+  this->Fits = true;
   try
   {
     if (slow != Slowness::Near)
@@ -103,12 +104,8 @@ bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
   }
   catch (const MemoryError&)
   {
-    fits = false;
-  }
-  if (!fits)
-  {
+    this->Fits = false;
     this->Steps.restart(swept);
-    this->sweep(nullptr);
     return false;
   }
   // Where the harmonic map is the minimum, no iteration is recorded.
@@ -121,11 +118,6 @@ bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
   }
   this->Steps.restart(swept);
   last = this->Steps.record(last.iteration);
-  const bool stuck = slow == Slowness::Costly && this->Reason == StopReason::NoProgress;
-  if (stuck || (slow == Slowness::Near && this->Reason != StopReason::Aborted))
-  {
-    this->sweep(nullptr);
-  }
   return false;
 }
 
@@ -137,24 +129,44 @@ bool Stage::mayGoOn() const
 }
 
 //------------------------------------------------------------------------------
-/// Sweeps for all points, and Newton's method for those that it does not hold, while both pay.
-void Stage::takeTurns()
+/**
+ * @brief Sweeps and Newton's method in turn, while both pay: Newton's method holds some points, or
+ * stops short of the minimum, where no step of it reduces the objective.
+ * @param first the record of the start
+ */
+void Stage::takeTurns(const IterationRecord& first)
 {
+  const std::vector<double> start =
+    this->Steps.slidesOnSurface() ? std::vector<double>() : this->Steps.stored();
   for (int turn = 0; turn < maxTurns; ++turn)
   {
-    Slowness slow = Slowness::None;
-    this->sweep(&slow);
-    if (slow == Slowness::None)
+    Slowness slow = Slowness::Costly;
+    if (turn > 0 || start.empty() || !this->startsWithNewton(first))
     {
-      return;
+      slow = Slowness::None;
+      this->sweep(&slow);
+      if (slow == Slowness::None)
+      {
+        return;
+      }
     }
     const double reached = this->History.back().objective;
-    const bool gained = this->useNewton(Slowness::Near, {});
-    if (!gained || !this->mayGoOn() || !this->Steps.holdsPoints())
+    const bool fromStart = turn == 0 && !start.empty();
+    const bool gained = this->useNewton(fromStart ? slow : Slowness::Near, start);
+    if (this->Fits && !this->mayGoOn())
     {
       return;
     }
-    if (reached - this->History.back().objective < worthTurn * std::abs(reached))
+    const bool holds = this->Steps.holdsPoints();
+    if (gained && !holds && this->Reason != StopReason::NoProgress)
+    {
+      return;
+    }
+    // From the start it may have ended at a worse place: it goes on from where sweeps lead.
+    const bool worthAnother = gained
+      ? reached - this->History.back().objective > worthTurn * std::abs(reached)
+      : this->Fits && fromStart && slow != Slowness::Near;
+    if (!worthAnother)
     {
       break;
     }
@@ -171,29 +183,17 @@ bool Stage::move(bool onlyLocal, const IterationRecord& first)
     this->Reason = this->Steps.minimizeAll(optimizer);
     return false;
   }
-  Slowness slow = Slowness::None;
-  const bool mayGoOver = !onlyLocal && mayUseNewton(this->Options);
-  if (this->Steps.slidesOnSurface())
+  if (!onlyLocal && mayUseNewton(this->Options))
   {
-    mayGoOver ? this->takeTurns() : this->sweep(nullptr);
-    return this->Repaired;
-  }
-  const std::vector<double> start = mayGoOver ? this->Steps.stored() : std::vector<double>();
-  if (mayGoOver && this->startsWithNewton(first))
-  {
-    slow = Slowness::Costly;
+    this->takeTurns(first);
   }
   else
   {
-    this->sweep(mayGoOver ? &slow : nullptr);
+    this->sweep(nullptr);
   }
-  if (this->Failed && !onlyLocal)
+  if (this->Failed && !onlyLocal && !this->Steps.slidesOnSurface())
   {
     this->Reason = this->Steps.minimizeAll(Optimizer::LimitedMemoryBFGS);
-  }
-  else if (slow != Slowness::None)
-  {
-    this->useNewton(slow, start);
   }
   return this->Repaired;
 }

@@ -452,7 +452,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
 {
   OptimizationProblem problem(mesh, options, result.points, clock);
   result.freeVertices = problem.simplices().freeVertices();
-  const StoppingTest watch(options.stopping, [&problem] { return problem.outOfTime(); });
+  const StoppingTest watch(options, [&problem] { return problem.outOfTime(); });
   const bool again = !result.history.empty();
   IterationRecord first = problem.firstRecord(again ? result.history.back().iteration : 0);
   problem.start(first);

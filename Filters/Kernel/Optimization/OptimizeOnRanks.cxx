@@ -78,7 +78,7 @@ OptimizationOnRanks::OptimizationOnRanks(
   , Mirrored(mirrored)
   , Options(options)
   , Points(mesh.points())
-  , Watch(options.stopping, [this] { return this->outOfTime(); })
+  , Watch(options, [this] { return this->outOfTime(); })
 {
   // To the checks, what is at the edge of this part only is not on the boundary.
   const std::vector<unsigned char> boundary = rankBoundary(mesh);

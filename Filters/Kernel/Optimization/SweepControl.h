@@ -26,8 +26,9 @@ class StoppingTest
 {
 public:
   /// @param outOfTime whether the time limit is reached; of several ranks, on any
-  StoppingTest(const StoppingCriteria& stop, std::function<bool()> outOfTime)
-    : Stop(stop)
+  StoppingTest(const OptimizeOptions& options, std::function<bool()> outOfTime)
+    : Stop(options.stopping)
+    , Shape(options.objectives[0].metric == Metric::InverseMeanRatio)
     , OutOfTime(std::move(outOfTime))
   {
   }
@@ -75,23 +76,45 @@ public:
   }
 
 private:
-  /// To the best known objective, or to the limit of a geometric series of the last decreases.
+  /**
+   * @brief To the best known objective, or to the limit of a geometric series of the last
+   * decreases; infinity where these do not tell. Ratios of decreases tend to grow: the largest of
+   * the last ones counts, and its growth is added.
+   */
   double possibleReduction(const std::vector<IterationRecord>& history) const
   {
     if (std::isfinite(this->Stop.bestKnown))
     {
       return history.front().objective - this->Stop.bestKnown;
     }
-    const std::size_t n = history.size();
-    if (n < 3)
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    constexpr double slowest = 0.9;           // a ratio above this gives no estimate of the limit
+    const std::size_t n = history.size() - 1; // decreases
+    if (n < this->decreasesNeeded(history.back()))
     {
-      return std::numeric_limits<double>::infinity();
+      return infinity;
     }
-    const double last = history[n - 2].objective - history[n - 1].objective;
-    const double before = history[n - 3].objective - history[n - 2].objective;
-    constexpr double slowest = 0.9; // a ratio above this gives no estimate of the limit
-    const double ratio = before > 0 ? std::clamp(last / before, 0.0, slowest) : 0.0;
-    return history.front().objective - history.back().objective + last * ratio / (1.0 - ratio);
+    const auto decrease = [&](std::size_t i)
+    { return history[n - i - 1].objective - history[n - i].objective; };
+    const auto ratioAt = [&](std::size_t i)
+    { return decrease(i + 1) > 0 ? decrease(i) / decrease(i + 1) : 0.0; };
+    double ratio = 0;
+    for (std::size_t i = 0; i + 1 < n && i < ratiosCompared; ++i)
+    {
+      ratio = std::max(ratio, ratioAt(i));
+    }
+    ratio += n > 2 ? std::max(0.0, ratioAt(0) - ratioAt(1)) : 0.0;
+    return ratio > slowest
+      ? infinity
+      : history.front().objective - history.back().objective + decrease(0) * ratio / (1.0 - ratio);
+  }
+
+  /// The first decreases are those of single elements that are nearly flat, if there are any.
+  std::size_t decreasesNeeded(const IterationRecord& now) const
+  {
+    constexpr double flat = 3; // mean inverse mean ratio; 1 is ideal
+    constexpr std::size_t ofGoodShape = 2, ofOtherMetrics = 3, ofFlat = 6;
+    return !this->Shape ? ofOtherMetrics : now.mean[0] > flat ? ofFlat : ofGoodShape;
   }
 
   static bool sameDigits(const std::vector<IterationRecord>& history)
@@ -108,7 +131,10 @@ private:
     return true;
   }
 
+  static constexpr std::size_t ratiosCompared = 3;
+
   StoppingCriteria Stop;
+  bool Shape; ///< the first metric is the inverse mean ratio
   std::function<bool()> OutOfTime;
 };
 
@@ -158,7 +184,7 @@ public:
     constexpr double slow = 0.6;     // isotropic meshes have ratios below a half
     constexpr double worthIt = 0.01; // of the objective, that is still to be gained
     return this->Gains.size() >= this->Trial && this->ratio() > slow &&
-      this->remaining() > worthIt * objective;
+      this->remaining() > worthIt * std::abs(objective);
   }
 
   /**
@@ -169,7 +195,7 @@ public:
   {
     constexpr double worthNewton = 25; // sweeps; a run of Newton's method from afar takes 30 to 85
     const double ratio = std::min(this->ratio(), slowest);
-    const double rest = this->remaining() / (relativeChange * objective);
+    const double rest = this->remaining() / (relativeChange * std::abs(objective));
     return this->Gains.size() >= this->Trial && relativeChange > 0 && ratio > 0 && rest > 1 &&
       std::log(rest) > -worthNewton * std::log(ratio);
   }
@@ -200,14 +226,17 @@ enum class Slowness
   Near    ///< too slowly near the minimum
 };
 
-/// Whether Automatic may go over to Newton's method: for one sum that is wanted at its minimum.
+/// Whether Automatic may go over to Newton's method: for one function of the points, smooth enough,
+/// that is wanted at its minimum.
 inline bool mayUseNewton(const OptimizeOptions& options)
 {
-  const ObjectiveTemplate objectiveTemplate = options.objectives[0].objectiveTemplate;
-  const bool sum = objectiveTemplate != ObjectiveTemplate::PowerMean &&
-    objectiveTemplate != ObjectiveTemplate::Maximum;
+  const auto rough = [](const Objective& o)
+  { return o.objectiveTemplate == ObjectiveTemplate::Maximum; };
+  const bool several =
+    options.objectives.size() > 1 && options.scalarization.method == Scalarization::Lexicographic;
   const StoppingCriteria& stop = options.stopping;
-  return options.optimizer == Optimizer::Automatic && options.objectives.size() == 1 && sum &&
+  return options.optimizer == Optimizer::Automatic && !several &&
+    std::none_of(options.objectives.begin(), options.objectives.end(), rough) &&
     !options.allowInversion && !(stop.reduction < 1) && !stop.twoDigits && !stop.allValid;
 }
 
@@ -221,21 +250,27 @@ inline MinimizeOptions minimizeOptions(const StoppingCriteria& stop, Optimizer m
   options.maximumIterations = stop.maximumIterations;
   options.gradientNorm = stop.gradientNorm;
   options.relativeChange = alone ? stop.relativeChange : afterSweeps * stop.relativeChange;
+  options.decrement = stop.relativeChange;
   if (method == Optimizer::NewtonConjugateGradient)
   {
-    // Its steps tell how far the minimum is. A gradient small beside that of a start with nearly
-    // flat elements tells nothing.
-    options.decrement = stop.relativeChange;
+    // Its steps alone tell how far the minimum is.
     options.relativeChange = options.gradientNorm = 0;
   }
   return options;
 }
 
-/// Whether the sweeps have converged, and why; `all`: it visited every vertex.
+/**
+ * @brief Whether the sweeps have converged, and why. A gradient small beside that of a start with
+ * nearly flat elements tells nothing where much is still to be gained.
+ * @param all whether the sweep visited every vertex
+ * @param remaining what further sweeps may gain
+ * @param size of the objective
+ */
 inline bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bool all,
   double firstGradient, double lowered, double remaining, double size, StopReason& reason)
 {
-  if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient)
+  constexpr double little = 1e-3; // of the objective
+  if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient && remaining <= little * size)
   {
     reason = StopReason::GradientNorm;
     return true;
