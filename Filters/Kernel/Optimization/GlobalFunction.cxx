@@ -36,6 +36,11 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
   , Objectives(problem.objectives())
   , Slopes(problem.objectives(), 1.0)
 {
+  if (problem.options().limits)
+  {
+    this->Outward.assign(this->Origin.size(), 0.0);
+    this->Shortened.assign(this->Origin.size() / 3, 1.0);
+  }
   findValidityLevels(problem.moving(), problem.options().threads, this->Start);
   // An objective that is infinite on inverted elements needs no other check, if these have no
   // inside.
@@ -115,7 +120,34 @@ void GlobalFunction::move(const double* x)
         }
         this->Problem.points()[3 * p + c] = sum;
       }
+      if (!this->Outward.empty())
+      {
+        this->keepLimit(p);
+      }
     });
+}
+
+//------------------------------------------------------------------------------
+/// Takes a point back to its limit. At the limit, values do not change with steps outwards; those
+/// inwards are left to sweeps, as the gradient there need not be the same on all ranks.
+void GlobalFunction::keepLimit(std::size_t p)
+{
+  double* x = &this->Problem.points()[3 * p];
+  const double* start = this->Problem.start() + 3 * p;
+  const Vec3 way = { x[0] - start[0], x[1] - start[1], x[2] - start[2] };
+  const double limit = this->Problem.limitOf(p), length = norm(way);
+  const bool at = length >= insideLimit * limit && length > 0;
+  this->Shortened[p] = length > limit ? limit / length : 1.0;
+  for (int c = 0; c < 3; ++c)
+  {
+    this->Outward[3 * p + c] = at ? way[c] / length : 0.0;
+    x[c] = length > limit ? start[c] + this->Shortened[p] * way[c] : x[c];
+  }
+}
+
+Vec3 GlobalFunction::outwardOf(std::size_t p) const
+{
+  return directionOf(this->Outward, p);
 }
 
 //------------------------------------------------------------------------------
@@ -140,6 +172,12 @@ bool GlobalFunction::allowed()
 }
 
 //------------------------------------------------------------------------------
+bool GlobalFunction::hasConstraints() const
+{
+  return !this->Slides.lines.empty() || !this->Slides.planes.empty() ||
+    !this->Slides.held.empty() || !this->Outward.empty();
+}
+
 bool GlobalFunction::isHeld(std::size_t p) const
 {
   return !this->Slides.held.empty() && this->Slides.held[p];
@@ -160,7 +198,9 @@ Vec3 GlobalFunction::project(std::size_t p, Vec3 g) const
   }
   const auto along = [&g](const Vec3& n) { return (dot(g, n) / dot(n, n)) * n; };
   const Vec3 line = directionOf(this->Slides.lines, p), plane = directionOf(this->Slides.planes, p);
-  return dot(line, line) > 0 ? along(line) : dot(plane, plane) > 0 ? g - along(plane) : g;
+  g = dot(line, line) > 0 ? along(line) : dot(plane, plane) > 0 ? g - along(plane) : g;
+  const Vec3 outward = this->outwardOf(p);
+  return dot(outward, outward) > 0 ? g - along(outward) : g;
 }
 
 //------------------------------------------------------------------------------
@@ -204,7 +244,8 @@ void GlobalFunction::takeGradient(double* gradient) const
     [&](std::size_t i, std::size_t p)
     {
       const double* full = this->Gradient.data() + 3 * p;
-      const Vec3 g = this->project(p, { full[0], full[1], full[2] });
+      const double scale = this->Shortened.empty() ? 1.0 : this->Shortened[p];
+      const Vec3 g = scale * this->project(p, { full[0], full[1], full[2] });
       for (int a = 0; a < this->Size; ++a)
       {
         gradient[this->Size * i + a] = dot(g, this->Axes[a]);
@@ -262,7 +303,9 @@ void GlobalFunction::makeMatrix()
 void GlobalFunction::restrict(std::size_t row, std::size_t p)
 {
   const Vec3 line = directionOf(this->Slides.lines, p), plane = directionOf(this->Slides.planes, p);
-  if (!this->isHeld(p) && !(dot(line, line) > 0) && !(dot(plane, plane) > 0))
+  const Vec3 outward = this->outwardOf(p);
+  if (!this->isHeld(p) && !(dot(line, line) > 0) && !(dot(plane, plane) > 0) &&
+    !(dot(outward, outward) > 0))
   {
     return;
   }
@@ -298,7 +341,7 @@ bool GlobalFunction::fillMatrix()
              : this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
     }
   }
-  if (!this->Slides.lines.empty() || !this->Slides.planes.empty() || !this->Slides.held.empty())
+  if (this->hasConstraints())
   {
     this->forEachFree([&](std::size_t i, std::size_t p) { this->restrict(i, p); });
   }
@@ -319,7 +362,7 @@ void GlobalFunction::linearize(const double*)
 //------------------------------------------------------------------------------
 void GlobalFunction::keepSlides(double* d) const
 {
-  if (this->Slides.lines.empty() && this->Slides.planes.empty() && this->Slides.held.empty())
+  if (!this->hasConstraints())
   {
     return;
   }

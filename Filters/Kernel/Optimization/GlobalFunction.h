@@ -19,7 +19,9 @@ namespace tautline
  * @class tautline::GlobalFunction
  * @brief The variables are how far the free points are from where they were at construction, in the
  * axes of coordinateAxes(): two a point in a planar mesh, three in a volume. Points that slide have
- * gradients along their line or plane only, those that are held none.
+ * gradients along their line or plane only, those that are held none. A point that would
+ * go farther than its limit is at the closest place within; while it is at its limit it moves
+ * across its way from the start only, see keepLimit().
  */
 class GlobalFunction : public SmoothFunction
 {
@@ -67,8 +69,11 @@ private:
   void forEachFree(const Visit& visit) const;
   bool hasElements(std::size_t objective) const;
   void takeGradient(double* gradient) const;
+  bool hasConstraints() const;
   bool isHeld(std::size_t p) const;
   void restrict(std::size_t row, std::size_t p);
+  void keepLimit(std::size_t p);
+  Vec3 outwardOf(std::size_t p) const;
   Vec3 project(std::size_t p, Vec3 g) const;
 
   OptimizationProblem& Problem;
@@ -79,7 +84,10 @@ private:
   std::array<Vec3, 3> Axes;
   const PointSlides& Slides;
   std::vector<double> Origin; ///< 3 per point
-  bool Check = true;          ///< whether elements may invert without an infinite objective
+  /// Of points with limits, 3 per point: the unit vector from the start of one at its limit, else
+  /// 0; and by what factor its way was shortened. Empty without limits.
+  std::vector<double> Outward, Shortened;
+  bool Check = true; ///< whether elements may invert without an infinite objective
   std::vector<signed char> Start, Levels; ///< a ValidityLevel per cell: at the start, now
   std::vector<double> Gradient;
   std::vector<double> Objectives, Slopes;

@@ -25,6 +25,9 @@ struct LocalTerm
   const ObjectiveSum* metric = nullptr;
 };
 
+/// Points farther from their start than this times their limit are at the limit: rounding.
+constexpr double insideLimit = 1 - 1e-9;
+
 struct LocalOptions
 {
   bool newton = true; ///< or Polak-Ribiere+ conjugate gradients

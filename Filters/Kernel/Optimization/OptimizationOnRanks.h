@@ -55,7 +55,10 @@ private:
   bool hasConvexPart() override;
   bool slidesOrHasTargets() const override;
   bool slidesOnSurface() const override { return false; } // such meshes are gathered
-  bool holdsPoints() override { return false; }
+  bool holdsPoints() override
+  {
+    return this->Group.any(this->Problem && this->Problem->someAtLimit());
+  }
   bool findHarmonicPoints(std::vector<double>& points) override;
   IterationRecord record(int iteration) override;
   void addObjective(

@@ -54,9 +54,6 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
   this->Simplices =
     std::make_unique<SimplexMesh>(*this->Moving, options.fixed, targets, options.threads, frame);
   this->makeSurface();
-  this->Start.assign(this->Simplices->coordinates(),
-    this->Simplices->coordinates() +
-      VertexStride * static_cast<std::size_t>(this->Simplices->vertices()));
   // Objectives that are energies of the simplices are evaluated without the metrics.
   this->Sums.resize(this->Resolved.size());
   this->Weights.resize(this->Resolved.size());
@@ -434,10 +431,14 @@ LocalOptions OptimizationProblem::localOptions() const
   local.surfaceLimit = this->Limit.get();
   if (this->Options.limits)
   {
-    local.start = this->Start;
+    // From the input, even where untangling has moved the points since.
+    local.start.resize(VertexStride * static_cast<std::size_t>(s.freeVertices()));
     for (std::int32_t v = 0; v < s.freeVertices(); ++v)
     {
-      local.limits.push_back(std::max(0.0, this->Options.limits[s.point(v)]) / s.scale());
+      local.limits.push_back(this->limitOf(s.point(v)) / s.scale());
+      const Vec3 start = s.transform(pointOf(this->TheMesh.view(), s.point(v)));
+      std::copy(start.begin(), start.end(),
+        local.start.begin() + VertexStride * static_cast<std::ptrdiff_t>(v));
     }
   }
   if (this->AllFast && !this->Weights[0].empty())
@@ -624,6 +625,30 @@ const PointSlides& OptimizationProblem::slides()
     this->Slides = std::make_unique<PointSlides>(slidesOf(this->TheMesh, this->Options));
   }
   return *this->Slides;
+}
+
+//------------------------------------------------------------------------------
+double OptimizationProblem::limitOf(std::size_t point) const
+{
+  return this->Options.limits ? std::max(0.0, this->Options.limits[point])
+                              : std::numeric_limits<double>::infinity();
+}
+
+//------------------------------------------------------------------------------
+bool OptimizationProblem::someAtLimit() const
+{
+  for (std::int32_t v = 0; this->Options.limits && v < this->Simplices->freeVertices(); ++v)
+  {
+    const auto p = static_cast<std::size_t>(this->Simplices->point(v));
+    const double* now = &this->Points[3 * p];
+    const double* start = this->start() + 3 * p;
+    if (std::hypot(now[0] - start[0], now[1] - start[1], now[2] - start[2]) >=
+      insideLimit * this->limitOf(p))
+    {
+      return true;
+    }
+  }
+  return false;
 }
 
 //------------------------------------------------------------------------------

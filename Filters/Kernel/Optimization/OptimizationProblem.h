@@ -99,6 +99,12 @@ public:
   std::vector<double>& points() { return this->Points; }
   /// What methods that move all points at once keep, see slidesOf(). Found on first use.
   const PointSlides& slides();
+  /// How far a point may go from its start, infinite for any distance.
+  double limitOf(std::size_t point) const;
+  /// The points of the input, 3 numbers each.
+  const double* start() const { return this->TheMesh.view().points; }
+  /// Whether a point is as far from its start as a limit lets it.
+  bool someAtLimit() const;
 
 private:
   void makeSurface();
@@ -126,8 +132,7 @@ private:
   std::vector<std::vector<double>> Weights; ///< of each objective, if not all 1
   std::unique_ptr<Scalarizer> TheScalarizer;
   std::unique_ptr<PointSlides> Slides;
-  IterationRecord AtStart;   ///< sums of the simplices there; without objectives: not found
-  std::vector<double> Start; ///< coordinates of the simplex mesh at the start
+  IterationRecord AtStart; ///< sums of the simplices there; without objectives: not found
   Stopwatch Clock;
 };
 }

@@ -260,7 +260,8 @@ public:
   bool holdsPoints() override
   {
     const std::vector<unsigned char>& held = this->Problem.slides().held;
-    return std::any_of(held.begin(), held.end(), [](unsigned char h) { return h != 0; });
+    return this->Problem.someAtLimit() ||
+      std::any_of(held.begin(), held.end(), [](unsigned char h) { return h != 0; });
   }
   bool outOfTime() const override { return this->Problem.outOfTime(); }
 
@@ -477,7 +478,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   // Elements that are valid keep points that slide in the part of the surface that they are on.
   const bool mayCross =
     steps.slidesOnSurface() && (first.inverted > 0 || mesh.nonFinitePoints() > 0);
-  const bool onlyLocal = options.limits || mesh.dimension() == Dimension::Surface || mayCross;
+  const bool onlyLocal = mesh.dimension() == Dimension::Surface || mayCross;
   const bool repaired = movePoints(steps, options, onlyLocal, first, result.history, result.reason);
   QualityGuard::State state;
   if (repaired)
@@ -526,6 +527,11 @@ bool untangleFirst(
   result.points = std::move(untangled.points);
   result.invertedAfter = untangled.invertedAfter;
   result.untangled = true;
+  if (proceed)
+  {
+    requireWithinLimits(
+      beyondLimits(options, mesh.view().points, result.points, [](Index) { return true; }));
+  }
   return proceed;
 }
 }

@@ -473,9 +473,8 @@ bool OptimizationOnRanks::stage()
     this->Result.reason = StopReason::NoFreeVertices;
     return false;
   }
-  const bool onlyLocal = this->Group.any(this->Options.limits != nullptr);
   const bool repaired =
-    movePoints(*this, this->Options, onlyLocal, first, this->Result.history, this->Result.reason);
+    movePoints(*this, this->Options, false, first, this->Result.history, this->Result.reason);
   if (!repaired)
   {
     this->Result.restored = this->restoreWorst();
@@ -514,6 +513,8 @@ void OptimizationOnRanks::untangle()
       this->Options.stopping.maximumSeconds - this->Clock.seconds());
   }
   this->Points = untangleOnRanks(this->TheMesh, this->Mirrored, options).result.points;
+  requireWithinLimits(this->Group.sum(beyondLimits(this->Options, this->TheMesh.points().data(),
+    this->Points, [this](Index p) { return this->TheMesh.owned(p); })));
   this->Result.untangled = true;
 }
 

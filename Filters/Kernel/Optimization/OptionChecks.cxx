@@ -165,4 +165,30 @@ std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Inde
   }
   return held;
 }
+
+//------------------------------------------------------------------------------
+Index beyondLimits(const OptimizeOptions& options, const double* start,
+  const std::vector<double>& points, const std::function<bool(Index)>& counts)
+{
+  constexpr double rounding = 1e-9; // relative
+  Index count = 0;
+  for (std::size_t p = 0; options.limits && p < points.size() / 3; ++p)
+  {
+    const double *x = &points[3 * p], *from = start + 3 * p;
+    const double way = std::hypot(x[0] - from[0], x[1] - from[1], x[2] - from[2]);
+    count +=
+      way > (1 + rounding) * std::max(0.0, options.limits[p]) && counts(static_cast<Index>(p));
+  }
+  return count;
+}
+
+void requireWithinLimits(Index beyond)
+{
+  if (beyond > 0)
+  {
+    throw Error("The elements are untangled first, and that moves " + std::to_string(beyond) +
+      " points farther than their limits: raise the limits of the displacement, or run Untangle "
+      "Mesh before, from whose result the limits then count.");
+  }
+}
 }

@@ -9,6 +9,7 @@
 #include "OptimizeOptions.h"
 #include "tautline/Mesh/Mesh.h"
 
+#include <functional>
 #include <vector>
 
 namespace tautline
@@ -22,5 +23,14 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options);
  * the boundary.
  */
 std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Index points);
+/**
+ * @brief How many points, 3 coordinates each, are farther from their start than their limit.
+ * @param counts whether a point counts
+ */
+Index beyondLimits(const OptimizeOptions& options, const double* start,
+  const std::vector<double>& points, const std::function<bool(Index)>& counts);
+
+/// Throws Error if untangling has moved so many points farther than their limits.
+void requireWithinLimits(Index beyond);
 }
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Where a vertex may go: on its surface or curve, or in its plane or line.
+// Where a vertex may go: on its surface or curve, in its plane or line, within its limit.
 #include "VertexOptimizer.h"
 
 #include <cmath>
@@ -234,6 +234,143 @@ bool VertexOptimizer<Dim>::isUpright(
   return true;
 }
 
+//------------------------------------------------------------------------------
+/// The largest step up to t that keeps x + d + t s within the vertex's limit.
+template <int Dim>
+double VertexOptimizer<Dim>::limited(
+  std::int32_t v, const double* d, const double* s, double t) const
+{
+  if (!this->hasLimit(v))
+  {
+    return t;
+  }
+  // |a + t s|^2 <= limit^2 with a the way gone so far.
+  const double limit = this->Options.limits[v];
+  double a2 = -limit * limit, as = 0, s2 = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    const double a = this->Simplices.coordinates()[VertexStride * static_cast<std::size_t>(v) + c] +
+      d[c] - this->Options.start[VertexStride * static_cast<std::size_t>(v) + c];
+    a2 += a * a;
+    as += a * s[c];
+    s2 += s[c] * s[c];
+  }
+  const double root2 = as * as - a2 * s2;
+  const double maxStep = s2 > 0 && root2 > 0 ? (std::sqrt(root2) - as) / s2 : 0.0;
+  return std::max(0.0, std::min(t, maxStep));
+}
+
+//------------------------------------------------------------------------------
+/// The way of v from its start when displaced by d; returns its length.
+template <int Dim>
+double VertexOptimizer<Dim>::wayFromStart(std::int32_t v, const double* d, double* way) const
+{
+  double length2 = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    const std::size_t i = VertexStride * static_cast<std::size_t>(v) + c;
+    way[c] = this->Simplices.coordinates()[i] + d[c] - this->Options.start[i];
+    length2 += way[c] * way[c];
+  }
+  return std::sqrt(length2);
+}
+
+/// Where the vertex is at its limit and `direction` leads outwards, the direction along the limit
+/// instead, to which search() takes the vertex back. Not on surfaces, which have their own way
+/// back.
+template <int Dim>
+bool VertexOptimizer<Dim>::turnAlongLimit(
+  const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d, double* direction) const
+{
+  const std::int32_t v = w.patch.vertex;
+  if (!this->hasLimit(v) || this->isOnSurface(v))
+  {
+    return false;
+  }
+  double way[Dim], outwards = 0;
+  const double length = this->wayFromStart(v, d, way);
+  for (int c = 0; c < Dim; ++c)
+  {
+    outwards += direction[c] * way[c];
+  }
+  if (!(length > 0 && length >= insideLimit * this->Options.limits[v] && outwards > 0))
+  {
+    return false;
+  }
+  // What is allowed, without the way itself: the last of an orthonormal basis that begins with it.
+  double basis[Dim][Dim] = {}, along[Dim][Dim] = {};
+  const int allowed = this->allowed(v, basis);
+  int found = 0;
+  for (int i = 0; i < allowed && found + 1 < allowed; ++i)
+  {
+    double u[Dim], size2 = 0;
+    for (int c = 0; c < Dim; ++c)
+    {
+      u[c] = allowed == Dim ? (c == i ? 1.0 : 0.0) : basis[c][i];
+    }
+    const auto remove = [&u](const auto& of, double scale)
+    {
+      double part = 0;
+      for (int c = 0; c < Dim; ++c)
+      {
+        part += u[c] * of(c);
+      }
+      for (int c = 0; c < Dim; ++c)
+      {
+        u[c] -= part * scale * of(c);
+      }
+    };
+    remove([&](int c) { return way[c]; }, 1 / (length * length));
+    for (int k = 0; k < found; ++k)
+    {
+      remove([&](int c) { return along[c][k]; }, 1.0);
+    }
+    for (int c = 0; c < Dim; ++c)
+    {
+      size2 += u[c] * u[c];
+    }
+    constexpr double parallel2 = 1e-2; // one of the directions is nearly that of the way
+    for (int c = 0; size2 > parallel2 && c < Dim; ++c)
+    {
+      along[c][found] = u[c] / std::sqrt(size2);
+    }
+    found += size2 > parallel2 ? 1 : 0;
+  }
+  if (this->Options.newton)
+  {
+    this->newtonIn(along, found, sum, direction);
+    return true;
+  }
+  double part[Dim] = {};
+  for (int k = 0; k < found; ++k)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      part[k] += along[c][k] * direction[c];
+    }
+  }
+  for (int c = 0; c < Dim; ++c)
+  {
+    direction[c] = 0;
+    for (int k = 0; k < found; ++k)
+    {
+      direction[c] += part[k] * along[c][k];
+    }
+  }
+  return true;
+}
+
+template <int Dim>
+void VertexOptimizer<Dim>::keepLimit(std::int32_t v, double* to) const
+{
+  double way[Dim];
+  const double length = this->hasLimit(v) ? this->wayFromStart(v, to, way) : 0.0;
+  for (int c = 0; length > 0 && c < Dim; ++c)
+  {
+    to[c] -= std::max(0.0, 1 - this->Options.limits[v] / length) * way[c];
+  }
+}
+
 template void VertexOptimizer<2>::findTangents(std::int32_t, Vec3*) const;
 template void VertexOptimizer<3>::findTangents(std::int32_t, Vec3*) const;
 template std::vector<Vec3> VertexOptimizer<2>::normalsAt(std::int32_t) const;
@@ -248,4 +385,16 @@ template bool VertexOptimizer<2>::placeOnSurface(
   std::int32_t, const double*, const Scalarizer&, PatchWorker<2>&);
 template bool VertexOptimizer<3>::placeOnSurface(
   std::int32_t, const double*, const Scalarizer&, PatchWorker<3>&);
+template double VertexOptimizer<2>::limited(
+  std::int32_t, const double*, const double*, double) const;
+template bool VertexOptimizer<2>::turnAlongLimit(
+  const PatchWorker<2>&, const PatchSum<2>&, const double*, double*) const;
+template void VertexOptimizer<2>::keepLimit(std::int32_t, double*) const;
+template double VertexOptimizer<2>::wayFromStart(std::int32_t, const double*, double*) const;
+template double VertexOptimizer<3>::limited(
+  std::int32_t, const double*, const double*, double) const;
+template bool VertexOptimizer<3>::turnAlongLimit(
+  const PatchWorker<3>&, const PatchSum<3>&, const double*, double*) const;
+template void VertexOptimizer<3>::keepLimit(std::int32_t, double*) const;
+template double VertexOptimizer<3>::wayFromStart(std::int32_t, const double*, double*) const;
 }

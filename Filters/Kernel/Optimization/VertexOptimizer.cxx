@@ -291,7 +291,14 @@ void VertexOptimizer<Dim>::newton(
     newtonDirection<Dim>(sum, s);
     return;
   }
-  // The same in the subspace, with the unit matrix in the rest.
+  this->newtonIn(basis, free, sum, s);
+}
+
+/// The same in a subspace, with the unit matrix in the rest.
+template <int Dim>
+void VertexOptimizer<Dim>::newtonIn(
+  const double basis[Dim][Dim], int free, const PatchSum<Dim>& sum, double* s) const
+{
   PatchSum<Dim> part = {};
   for (int i = 0; i < Dim; ++i)
   {
@@ -318,32 +325,6 @@ void VertexOptimizer<Dim>::newton(
       s[r] += basis[r][i] * inPart[i];
     }
   }
-}
-
-//------------------------------------------------------------------------------
-/// The largest step up to t that keeps x + d + t s within the vertex's limit.
-template <int Dim>
-double VertexOptimizer<Dim>::limited(
-  std::int32_t v, const double* d, const double* s, double t) const
-{
-  if (this->Options.limits.empty() || !std::isfinite(this->Options.limits[v]))
-  {
-    return t;
-  }
-  // |a + t s|^2 <= limit^2 with a the way gone so far.
-  const double limit = this->Options.limits[v];
-  double a2 = -limit * limit, as = 0, s2 = 0;
-  for (int c = 0; c < Dim; ++c)
-  {
-    const double a = this->Simplices.coordinates()[VertexStride * static_cast<std::size_t>(v) + c] +
-      d[c] - this->Options.start[VertexStride * static_cast<std::size_t>(v) + c];
-    a2 += a * a;
-    as += a * s[c];
-    s2 += s[c] * s[c];
-  }
-  const double root2 = as * as - a2 * s2;
-  const double maxStep = s2 > 0 && root2 > 0 ? (std::sqrt(root2) - as) / s2 : 0.0;
-  return std::max(0.0, std::min(t, maxStep));
 }
 
 //------------------------------------------------------------------------------
@@ -404,15 +385,20 @@ double VertexOptimizer<Dim>::conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>&
 
 //------------------------------------------------------------------------------
 /// Halves the step t until the objective falls enough; `to` is then the displacement reached.
+/// @param alongLimit whether the vertex is taken back to its limit
 template <int Dim>
 bool VertexOptimizer<Dim>::search(const Scalarizer& scalarizer, PatchWorker<Dim>& w,
-  const double* d, const double* direction, double t, double slope, double* to)
+  const double* d, const double* direction, double t, double slope, bool alongLimit, double* to)
 {
   for (int halving = 0; halving < maximumHalvings && t > 0; ++halving, t *= 0.5)
   {
     for (int c = 0; c < Dim; ++c)
     {
       to[c] = d[c] + t * direction[c];
+    }
+    if (alongLimit)
+    {
+      this->keepLimit(w.patch.vertex, to);
     }
     if (this->changeAt(scalarizer, w, to) <= ArmijoConstant * t * slope &&
       (!this->Guarded || staysValid<Dim>(w.patch.simplices, d, to)) &&
@@ -543,6 +529,7 @@ bool VertexOptimizer<Dim>::moveVertex(
       t = this->conjugate(w, sum, d, iteration, direction, lastGradient);
     }
 
+    const bool alongLimit = this->turnAlongLimit(w, sum, d, direction);
     double slope = 0, s2 = 0;
     for (int c = 0; c < Dim; ++c)
     {
@@ -557,9 +544,9 @@ bool VertexOptimizer<Dim>::moveVertex(
     {
       t = std::min(t, safety * stepToInversion<Dim>(w.patch.simplices, d, direction));
     }
-    t = this->limited(v, d, direction, t);
+    t = alongLimit ? t : this->limited(v, d, direction, t);
     double to[Dim];
-    if (!this->search(scalarizer, w, d, direction, t, slope, to))
+    if (!this->search(scalarizer, w, d, direction, t, slope, alongLimit, to))
     {
       break;
     }

@@ -57,10 +57,19 @@ private:
   PatchSum<Dim> combined(const PatchWorker<Dim>& w) const;
   double changeAt(const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d) const;
   void newton(const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, double* s) const;
+  void newtonIn(const double basis[Dim][Dim], int free, const PatchSum<Dim>& sum, double* s) const;
   double conjugate(PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d, int iteration,
     double* direction, double* lastGradient) const;
   int allowed(std::int32_t v, double basis[Dim][Dim]) const;
   double limited(std::int32_t v, const double* d, const double* s, double t) const;
+  bool hasLimit(std::int32_t v) const
+  {
+    return !this->Options.limits.empty() && std::isfinite(this->Options.limits[v]);
+  }
+  double wayFromStart(std::int32_t v, const double* d, double* way) const;
+  bool turnAlongLimit(
+    const PatchWorker<Dim>& w, const PatchSum<Dim>& sum, const double* d, double* direction) const;
+  void keepLimit(std::int32_t v, double* to) const;
   /// What v slides on, or null.
   const SurfaceProjection* surfaceOf(std::int32_t v) const
   {
@@ -83,7 +92,7 @@ private:
   bool isUpright(
     std::int32_t v, const VertexPatch<Dim>& patch, const std::vector<Vec3>& normals) const;
   bool search(const Scalarizer& scalarizer, PatchWorker<Dim>& w, const double* d,
-    const double* direction, double t, double slope, double* to);
+    const double* direction, double t, double slope, bool alongLimit, double* to);
   bool staysValidInside(const VertexPatch<Dim>& patch, const double* d) const;
   bool placeMoved(
     std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w);

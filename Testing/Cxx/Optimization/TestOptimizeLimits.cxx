@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Limits on the way of points: kept, and no stop short of the minimum within them.
+#include "OptimizingOnRanks.h"
+#include "StretchedMeshes.h"
+
+#include "tautline/Mesh/BoundaryShape.h"
+#include "tautline/Untangling/Untangle.h"
+
+using namespace tautline;
+
+namespace
+{
+/// Bends rows less than would invert tetrahedra at the boundary.
+MeshData stretchedRows(CellType type, int cells)
+{
+  const double power = type == CellType::Tetrahedron ? 1.5 : 3;
+  return stretched(type, cells,
+    [power](const Vec3& p) {
+      return Vec3{ p[0], std::pow(p[1], power), p[2] };
+    });
+}
+
+double wayOf(const MeshData& data, const std::vector<double>& points, Index p)
+{
+  const double *x = &points[3 * p], *start = &data.points[3 * p];
+  return std::hypot(x[0] - start[0], x[1] - start[1], x[2] - start[2]);
+}
+
+/// Points at their limit.
+Index atLimit(const MeshData& data, const std::vector<double>& points, double limit)
+{
+  Index count = 0;
+  for (Index p = 0; p < data.numberOfPoints(); ++p)
+  {
+    count += wayOf(data, points, p) > (1 - 1e-6) * limit;
+  }
+  return count;
+}
+
+double longestWay(const MeshData& data, const std::vector<double>& points)
+{
+  double longest = 0;
+  for (Index p = 0; p < data.numberOfPoints(); ++p)
+  {
+    longest = std::max(longest, wayOf(data, points, p));
+  }
+  return longest;
+}
+
+/// The sum of squares of the inverse mean ratios of the cells at a point.
+double sumAround(const MeshData& data, Index p)
+{
+  MeshData around;
+  around.points = data.points;
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    const auto begin = data.connectivity.begin() + data.offsets[c],
+               end = data.connectivity.begin() + data.offsets[c + 1];
+    if (std::find(begin, end, p) != end)
+    {
+      around.addCell(static_cast<CellType>(data.types[c]), std::vector<Index>(begin, end));
+    }
+  }
+  return sumOfSquares(around, around.points, Metric::InverseMeanRatio);
+}
+
+/// Small steps of single points, taken back to their limit, do not reduce the sum.
+void checkMinimum(const MeshData& data, const std::vector<double>& points, double limit)
+{
+  constexpr double step = 1e-4, much = 1e-7;
+  const bool flat = topology(static_cast<CellType>(data.types[0])).dimension == 2;
+  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+  MeshData moved = data;
+  moved.points = points;
+  double gain = 0;
+  for (Index p = 0; p < data.numberOfPoints(); p += 7)
+  {
+    const Vec3 x = moved.point(p), start = data.point(p);
+    const double here = sumAround(moved, p);
+    for (int c = 0; !boundary[p] && c < (flat ? 4 : 6); ++c)
+    {
+      Vec3 to = x;
+      to[c / 2] += c % 2 == 0 ? step : -step;
+      const double way = norm(to - start);
+      to = way > limit ? start + (limit / way) * (to - start) : to;
+      moved.setPoint(p, to);
+      gain = std::max(gain, 1 - sumAround(moved, p) / here);
+    }
+    moved.setPoint(p, x);
+  }
+  TAUTLINE_CHECK(gain <= much);
+}
+
+/// Methods of all kinds end at the same sum, a minimum within the limits.
+void testMethods(const char* name, CellType type, int cells, double limit)
+{
+  const Context context(name);
+  const MeshData data = stretchedRows(type, cells);
+  std::vector<double> limits(data.numberOfPoints(), limit);
+  OptimizeOptions options;
+  options.limits = limits.data();
+  options.stopping.maximumIterations = 3000;
+  double sums[3];
+  const Optimizer methods[] = { Optimizer::Automatic, Optimizer::LocalNewton,
+    Optimizer::LocalConjugateGradient };
+  for (int i = 0; i < 3; ++i)
+  {
+    const Context which("optimizer " + std::to_string(static_cast<int>(methods[i])));
+    options.optimizer = methods[i];
+    options.stopping.relativeChange = 1e-9;
+    options.stopping.gradientNorm = 1e-12;
+    const OptimizeResult result = run(data, options);
+    checkHistory(data, result);
+    sums[i] = result.history.back().objective;
+    TAUTLINE_CHECK(result.reason != StopReason::IterationLimit);
+    TAUTLINE_CHECK(longestWay(data, result.points) <= (1 + 1e-12) * limit);
+    TAUTLINE_CHECK(atLimit(data, result.points, limit) > 20);
+    TAUTLINE_CHECK_RELATIVE(sums[i], sums[0], 1e-5);
+    checkMinimum(data, result.points, limit);
+    options.stopping = StoppingCriteria();
+    options.stopping.maximumIterations = 3000;
+    const OptimizeResult usual = run(data, options);
+    TAUTLINE_CHECK(usual.history.back().objective <= 1.001 * sums[0]);
+  }
+}
+
+/// Limits that no point reaches change nothing: the minimum is the uniform grid.
+void testWide()
+{
+  constexpr int cells = 48;
+  const MeshData data = stretchedRows(CellType::Quadrilateral, cells);
+  std::vector<double> limits(data.numberOfPoints(), 2.0);
+  OptimizeOptions options;
+  options.limits = limits.data();
+  const OptimizeResult result = run(data, options);
+  TAUTLINE_CHECK_RELATIVE(result.history.back().objective, 1.0 * cells * cells, 1e-6);
+}
+
+/// Points that slide in planes stay there, with limits, too.
+void testSliding()
+{
+  constexpr double limit = 0.05;
+  const MeshData data = stretchedRows(CellType::Tetrahedron, 8);
+  std::vector<double> limits(data.numberOfPoints(), limit);
+  const BoundaryShape shape = boundaryShape(Mesh(data.view()), 1.0);
+  OptimizeOptions options;
+  options.limits = limits.data();
+  options.fixed = shape.fixed.data();
+  options.slidePlanes = shape.planes.data();
+  options.slideLines = shape.lines.data();
+  OptimizeOptions local = options;
+  local.optimizer = Optimizer::LocalNewton;
+  local.stopping.maximumIterations = 3000;
+  const OptimizeResult result = run(data, options), swept = run(data, local);
+  TAUTLINE_CHECK_RELATIVE(result.history.back().objective, swept.history.back().objective, 1e-3);
+  TAUTLINE_CHECK(longestWay(data, result.points) <= (1 + 1e-12) * limit);
+  double off = 0, along = 0;
+  for (std::size_t i = 0; i < data.points.size(); ++i)
+  {
+    const double x = data.points[i];
+    const double way = std::abs(result.points[i] - x);
+    const bool onSide = x == 0 || x == 1;
+    const std::size_t other = i - i % 3 + (i + 1) % 3;
+    off = std::max(off, onSide ? way : 0.0);
+    along = std::max(along, onSide ? std::abs(result.points[other] - data.points[other]) : 0.0);
+  }
+  TAUTLINE_CHECK(off <= 1e-14);
+  TAUTLINE_CHECK(along > 0.5 * limit);
+}
+
+/// Limits count from the input, not from what untangling leaves: where that goes too far, it is an
+/// error, on ranks, too.
+void testUntangling()
+{
+  const MeshData data = stretched(CellType::Tetrahedron, 8,
+    [](const Vec3& p) {
+      return Vec3{ p[0], p[1] * p[1] * p[1], p[2] };
+    });
+  TAUTLINE_CHECK(invalid(data, data.points) > 0);
+  UntangleOptions untangling;
+  const double way = longestWay(data, untangle(Mesh(data.view()), untangling).points);
+  std::vector<double> limits(data.numberOfPoints(), 1.01 * way);
+  OptimizeOptions options;
+  options.limits = limits.data();
+  const OptimizeResult result = run(data, options);
+  TAUTLINE_CHECK(result.untangled && result.invertedAfter == 0);
+  TAUTLINE_CHECK(longestWay(data, result.points) <= (1 + 1e-12) * limits[0]);
+  limits.assign(limits.size(), 0.9 * way);
+  TAUTLINE_CHECK_THROWS(run(data, options), "points farther than their limits");
+  int errors = 0;
+  std::mutex mutex;
+  onRanks(2,
+    [&](RankGroup& group)
+    {
+      const RankPart part = partOf(data, group.rank(), cutBy(data, Cut::Slabs, 2));
+      DistributedMesh mesh(group, { part.data.view(), nullptr, nullptr });
+      const std::vector<unsigned char> fixed = rankBoundary(mesh);
+      const std::vector<double> own(mesh.localPoints(), 0.9 * way);
+      OptimizeOptions local;
+      local.fixed = fixed.data();
+      local.limits = own.data();
+      try
+      {
+        optimizeOnRanks(mesh, false, local);
+      }
+      catch (const Error& error)
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        errors += std::string(error.what()).find("farther than their limits") != std::string::npos;
+      }
+    });
+  TAUTLINE_CHECK_EQUAL(errors, 2);
+}
+
+/// On ranks, however the mesh is cut, and as on one process.
+void testRanks(CellType type, int cells, double limit)
+{
+  const MeshData data = stretchedRows(type, cells);
+  OptimizeOptions options = with({ Metric::InverseMeanRatio });
+  options.stopping.relativeChange = 1e-9;
+  options.stopping.maximumIterations = 1000;
+  const auto runAt = [&](Cut cut, int ranks)
+  {
+    return moveOnRanks<Found>(data, cut, ranks,
+      [&](DistributedMesh& mesh, Found& result)
+      {
+        OptimizeOptions own = options;
+        const std::vector<unsigned char> fixed = rankBoundary(mesh);
+        const std::vector<double> limits(mesh.localPoints(), limit);
+        own.fixed = fixed.data();
+        own.limits = limits.data();
+        static_cast<OptimizeResult&>(result) = optimizeOnRanks(mesh, false, own);
+      });
+  };
+  const std::vector<double> limits(data.numberOfPoints(), limit);
+  OptimizeOptions own = options;
+  own.limits = limits.data();
+  const double usual = run(data, own).history.back().objective;
+  const Run one = runAt(Cut::FirstOnly, 1);
+  TAUTLINE_CHECK_RELATIVE(one.result.history.back().objective, usual, 1e-6);
+  TAUTLINE_CHECK(longestWay(data, one.points) <= (1 + 1e-12) * limit);
+  for (const auto& [cut, ranks] : { std::pair(Cut::Slabs, 2), std::pair(Cut::Random, 3) })
+  {
+    const Run several = runAt(cut, ranks);
+    TAUTLINE_CHECK(farthest(several.points, one.points) <= 1e-10);
+    TAUTLINE_CHECK_EQUAL(several.result.iterations, one.result.iterations);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int TestOptimizeLimits(int, char*[])
+{
+  testMethods("quadrilaterals", CellType::Quadrilateral, 24, 0.1);
+  testMethods("triangles", CellType::Triangle, 24, 0.1);
+  testMethods("tetrahedra", CellType::Tetrahedron, 10, 0.1);
+  testMethods("hexahedra", CellType::Hexahedron, 10, 0.1);
+  testWide();
+  testSliding();
+  testUntangling();
+  testRanks(CellType::Hexahedron, 8, 0.1);
+  testRanks(CellType::Tetrahedron, 8, 0.1);
+  return exitCode();
+}
