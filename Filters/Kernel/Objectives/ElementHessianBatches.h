@@ -5,9 +5,9 @@
  * Internal: not installed.
  *
  * Coordinates are those of the mesh's own space: two in the plane of a planar mesh, three in a
- * volume (see hessianAxes()). An element does not change under translation, so that its Hessian
- * acts on the vectors from its first node to the others: 9 x 9 numbers for a tetrahedron, of which
- * one half is kept.
+ * volume (see hessianAxes()); two in the plane of each element of a surface (see elementAxes()). An
+ * element does not change under translation, so that its Hessian acts on the vectors from its first
+ * node to the others: 9 x 9 numbers for a tetrahedron, of which one half is kept.
  *
  * The Hessian of the inverse mean ratio is analytic. With N = |T|^2 and D = det T of a corner (see
  * TargetMetrics.h), the ratio is a function q(N, D), N is quadratic in the edges of the corner and
@@ -58,10 +58,40 @@ inline std::array<Vec3, 3> hessianAxes(const Mesh& mesh)
   return { Vec3{ mesh.mirrored() ? -1.0 : 1.0, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } };
 }
 
+/// Of each element of a surface: an edge, and the direction at right angles to it in the plane of
+/// the element (of a quadrilateral, across its mean normal).
+inline void elementAxes(const CellTopology& topology, const Batch& batch, Packet (&axes)[2][3])
+{
+  const bool triangle = topology.nodes == 3;
+  Packet u[3], v[3], normal[3];
+  subtract(batch.points[triangle ? 1 : 2], batch.points[0], u);
+  subtract(batch.points[triangle ? 2 : 3], batch.points[triangle ? 0 : 1], v);
+  cross(u, v, normal);
+  subtract(batch.points[1], batch.points[0], u);
+  cross(normal, u, axes[1]);
+  cross(axes[1], normal, axes[0]);
+  for (Packet(&axis)[3] : axes)
+  {
+    const Packet over = finiteOrZero(1.0 / sqrt(dot(axis, axis)));
+    for (Packet& c : axis)
+    {
+      c = c * over;
+    }
+  }
+}
+
 /// The axes of a batch's coordinates, which loadNodes() has mirrored in a volume.
 template <int Dim>
-void batchAxes(const BatchContext& context, Packet (&axes)[Dim][3])
+void batchAxes(const BatchContext& context, const Batch& batch, Packet (&axes)[Dim][3])
 {
+  if constexpr (Dim == 2)
+  {
+    if (context.mesh->dimension() == Dimension::Surface)
+    {
+      elementAxes(*context.topology, batch, axes);
+      return;
+    }
+  }
   const std::array<Vec3, 3> ofMesh = hessianAxes(*context.mesh);
   for (int a = 0; a < Dim; ++a)
   {
@@ -291,7 +321,7 @@ void ratioHessians(const BatchContext& context, const ElementFunction& function,
   HessianForm form, Packet* h)
 {
   Packet axes[Dim][3], x[MaxNodes][Dim];
-  batchAxes<Dim>(context, axes);
+  batchAxes<Dim>(context, batch, axes);
   for (int k = 0; k < Nodes; ++k)
   {
     Packet vector[3];
@@ -369,7 +399,7 @@ void differences(
   constexpr double relativeStep = 1e-6;
   constexpr int rows = rowsFor<Dim>(Nodes);
   Packet axes[Dim][3];
-  batchAxes<Dim>(context, axes);
+  batchAxes<Dim>(context, batch, axes);
   // Relative to the first node: far from the origin the step would drown in rounding.
   for (int k = Nodes - 1; k >= 0; --k)
   {

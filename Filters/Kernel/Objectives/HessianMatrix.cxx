@@ -20,6 +20,12 @@ bool isElement(const Mesh& mesh, CellType type)
   return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
 }
 
+/// Of the elements of a surface.
+const CellTopology& topologyWith(int nodes)
+{
+  return topology(nodes == 3 ? CellType::Triangle : CellType::Quadrilateral);
+}
+
 /// y += A x for one block.
 template <int Dim>
 void addProduct(const double* block, const double* x, double* y)
@@ -229,7 +235,8 @@ void HessianMatrix::clear()
 }
 
 //------------------------------------------------------------------------------
-template <int Dim>
+/// @tparam Dim coordinates of the elements' Hessians. @tparam Size of the blocks: 3 of a surface
+template <int Dim, int Size>
 void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, HessianForm form)
 {
   const bool full = this->ThePattern == Pattern::Full;
@@ -238,6 +245,11 @@ void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, Hessi
     [&](auto nodesOfCell, const Batch& batch, const BatchNodes&, Packet* h)
     {
       constexpr int Nodes = decltype(nodesOfCell)::value;
+      Packet axes[2][3];
+      if constexpr (Size > Dim)
+      {
+        elementAxes(topologyWith(Nodes), batch, axes);
+      }
       // The blocks of the first node are minus the sums of the others'.
       Packet block[Nodes][Nodes][Dim][Dim];
       for (int r = 0; r < Dim; ++r)
@@ -272,19 +284,35 @@ void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, Hessi
             {
               continue;
             }
-            const Index first = static_cast<Index>(Dim * Dim) * place;
+            const Index first = static_cast<Index>(Size * Size) * place;
+            double entries[Size * Size];
+            for (int e = 0; e < Size * Size; ++e)
+            {
+              if constexpr (Size > Dim)
+              {
+                const auto& b = block[k][m];
+                const int r = e / Size, c = e % Size;
+                entries[e] =
+                  axes[0][r][l] * (b[0][0][l] * axes[0][c][l] + b[0][1][l] * axes[1][c][l]) +
+                  axes[1][r][l] * (b[1][0][l] * axes[0][c][l] + b[1][1][l] * axes[1][c][l]);
+              }
+              else
+              {
+                entries[e] = block[k][m][e / Dim][e % Dim][l];
+              }
+            }
             if (this->Orderless)
             {
-              for (int e = 0; e < Dim * Dim; ++e)
+              for (int e = 0; e < Size * Size; ++e)
               {
-                sums.add(first + e, block[k][m][e / Dim][e % Dim][l]);
+                sums.add(first + e, entries[e]);
               }
               continue;
             }
             double* to = this->Blocks.data() + first;
-            for (int e = 0; e < Dim * Dim; ++e)
+            for (int e = 0; e < Size * Size; ++e)
             {
-              to[e] += block[k][m][e / Dim][e % Dim][l];
+              to[e] += entries[e];
             }
           }
         }
@@ -293,16 +321,22 @@ void HessianMatrix::addBlocks(const ObjectiveSum& objective, double scale, Hessi
   sums.finish();
 }
 
+void HessianMatrix::addForm(const ObjectiveSum& objective, double scale, HessianForm form)
+{
+  const Dimension dimension = this->TheMesh.dimension();
+  dimension == Dimension::Planar     ? this->addBlocks<2, 2>(objective, scale, form)
+    : dimension == Dimension::Volume ? this->addBlocks<3, 3>(objective, scale, form)
+                                     : this->addBlocks<2, 3>(objective, scale, form);
+}
+
 void HessianMatrix::add(const ObjectiveSum& objective, double scale)
 {
-  this->Size == 2 ? this->addBlocks<2>(objective, scale, HessianForm::Exact)
-                  : this->addBlocks<3>(objective, scale, HessianForm::Exact);
+  this->addForm(objective, scale, HessianForm::Exact);
 }
 
 void HessianMatrix::addConvexPart(const ObjectiveSum& objective, double scale)
 {
-  this->Size == 2 ? this->addBlocks<2>(objective, scale, HessianForm::Convex)
-                  : this->addBlocks<3>(objective, scale, HessianForm::Convex);
+  this->addForm(objective, scale, HessianForm::Convex);
 }
 
 bool HessianMatrix::hasConvexPart(const Objective& objective)

@@ -5,8 +5,9 @@
  * blocks with preconditioners. Internal: not installed.
  *
  * A free point is a row of blocks of hessianAxes() coordinates: 2 x 2 numbers in a planar mesh,
- * 3 x 3 in a volume. Vectors have as many entries a free point. Surfaces in space have no such
- * matrix.
+ * 3 x 3 in a volume. Vectors have as many entries a free point. On a surface in space blocks are
+ * 3 x 3, too, and hold what happens in the planes of the elements: restrict() each point to its
+ * tangent plane.
  */
 #ifndef tautline_HessianMatrix_h
 #define tautline_HessianMatrix_h
@@ -33,7 +34,7 @@ public:
 
   /**
    * @brief Takes the memory it needs; all blocks are 0.
-   * @param mesh planar or a volume; must outlive the matrix
+   * @param mesh must outlive the matrix
    * @param rowOfPoint row of each point of the mesh, -1 for points that are not free
    * @param rows number of free points
    * @param threads 0: all cores. The result does not depend on it, bitwise.
@@ -98,8 +99,9 @@ public:
   void preconditionByDiagonal(const double* r, double* z) const;
 
 private:
-  template <int Dim>
+  template <int Dim, int Size>
   void addBlocks(const ObjectiveSum& objective, double scale, HessianForm form);
+  void addForm(const ObjectiveSum& objective, double scale, HessianForm form);
   template <int Dim>
   void invertDiagonal();
   template <int Dim>

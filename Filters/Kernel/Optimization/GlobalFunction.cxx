@@ -41,6 +41,11 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
     this->Outward.assign(this->Origin.size(), 0.0);
     this->Shortened.assign(this->Origin.size() / 3, 1.0);
   }
+  if (problem.moving().dimension() == Dimension::Surface)
+  {
+    this->Surface = std::make_unique<SurfaceSlides>(problem);
+    this->Origin = problem.points();
+  }
   findValidityLevels(problem.moving(), problem.options().threads, this->Start);
   // An objective that is infinite on inverted elements needs no other check, if these have no
   // inside.
@@ -125,6 +130,10 @@ void GlobalFunction::move(const double* x)
         this->keepLimit(p);
       }
     });
+  if (this->Surface)
+  {
+    this->Surface->place();
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -162,6 +171,10 @@ void GlobalFunction::put(const double* x)
 /// No element is less valid than it was at the start.
 bool GlobalFunction::allowed()
 {
+  if (this->Surface && !this->Problem.options().allowInversion && this->Surface->turned())
+  {
+    return false;
+  }
   if (!this->Check)
   {
     return true;
@@ -175,7 +188,7 @@ bool GlobalFunction::allowed()
 bool GlobalFunction::hasConstraints() const
 {
   return !this->Slides.lines.empty() || !this->Slides.planes.empty() ||
-    !this->Slides.held.empty() || !this->Outward.empty();
+    !this->Slides.held.empty() || !this->Outward.empty() || this->Surface;
 }
 
 bool GlobalFunction::isHeld(std::size_t p) const
@@ -190,6 +203,10 @@ Vec3 GlobalFunction::project(std::size_t p, Vec3 g) const
   if (this->isHeld(p))
   {
     return { 0, 0, 0 };
+  }
+  if (this->Surface)
+  {
+    g = this->Surface->project(p, g);
   }
   if (this->Problem.moving().dimension() == Dimension::Planar)
   {
@@ -305,7 +322,7 @@ void GlobalFunction::restrict(std::size_t row, std::size_t p)
   const Vec3 line = directionOf(this->Slides.lines, p), plane = directionOf(this->Slides.planes, p);
   const Vec3 outward = this->outwardOf(p);
   if (!this->isHeld(p) && !(dot(line, line) > 0) && !(dot(plane, plane) > 0) &&
-    !(dot(outward, outward) > 0))
+    !(dot(outward, outward) > 0) && !this->Surface)
   {
     return;
   }
@@ -349,8 +366,27 @@ bool GlobalFunction::fillMatrix()
 }
 
 //------------------------------------------------------------------------------
-void GlobalFunction::linearize(const double*)
+void GlobalFunction::linearize(const double* x)
 {
+  if (this->Surface)
+  {
+    // Steps are added to tangents of the surface: from where the points are by now.
+    this->put(x);
+    this->forEachFree(
+      [&](std::size_t i, std::size_t p)
+      {
+        for (int c = 0; c < 3; ++c)
+        {
+          double by = 0;
+          for (int a = 0; a < this->Size; ++a)
+          {
+            by += x[this->Size * i + a] * this->Axes[a][c];
+          }
+          this->Origin[3 * p + c] = this->Problem.points()[3 * p + c] - by;
+        }
+      });
+    this->Surface->keepNormals();
+  }
   if (!this->Hessian)
   {
     this->makeMatrix();

@@ -9,6 +9,7 @@
 
 #include "Minimize.h"
 #include "OptimizationProblem.h"
+#include "SurfaceSlides.h"
 #include "tautline/Objectives/HessianMatrix.h"
 
 #include <memory>
@@ -18,7 +19,7 @@ namespace tautline
 /**
  * @class tautline::GlobalFunction
  * @brief The variables are how far the free points are from where they were at construction, in the
- * axes of coordinateAxes(): two a point in a planar mesh, three in a volume. Points that slide have
+ * axes of coordinateAxes(): two a point in a planar mesh, three in others. Points that slide have
  * gradients along their line or plane only, those that are held none. A point that would
  * go farther than its limit is at the closest place within; while it is at its limit it moves
  * across its way from the start only, see keepLimit().
@@ -87,6 +88,7 @@ private:
   /// Of points with limits, 3 per point: the unit vector from the start of one at its limit, else
   /// 0; and by what factor its way was shortened. Empty without limits.
   std::vector<double> Outward, Shortened;
+  std::unique_ptr<SurfaceSlides> Surface; ///< of a surface in space
   bool Check = true; ///< whether elements may invert without an infinite objective
   std::vector<signed char> Start, Levels; ///< a ValidityLevel per cell: at the start, now
   std::vector<double> Gradient;

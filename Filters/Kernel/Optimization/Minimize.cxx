@@ -30,6 +30,7 @@ constexpr double firstDecrease = 0.1; // of the value, that the first step of al
 // Iterations in a row that change the value by rounding only, before there is no progress.
 constexpr int maxStalled = 3;
 constexpr double rounding = 1e-15;
+constexpr int gainWindow = 20; // iterations, see MinimizeOptions::leastGain
 
 // Directions.
 constexpr double minDescent = 1e-8;    // cosine between -g and a direction
@@ -91,6 +92,7 @@ private:
   void hessianTimes(const Vector& d, Vector& product);
   bool iterate();
   bool isNear();
+  bool crawls();
 
   SmoothFunction& Function;
   const MinimizeOptions& Options;
@@ -108,6 +110,7 @@ private:
   double Shift = 0;               ///< of Newton's system, in units of the preconditioner
   double Promised = infinity;     ///< by a quadratic model, of the step; 0: not known
   double FirstF = 0;
+  Vector Values; ///< after each of Newton's iterations
   bool Preconditioned = false;
   bool Fresh = true; ///< D does not use the history
   MinimizeResult Result;
@@ -547,6 +550,20 @@ bool Minimizer::isNear()
 }
 
 //------------------------------------------------------------------------------
+/// See MinimizeOptions::leastGain.
+bool Minimizer::crawls()
+{
+  const double least = this->Options.leastGain * std::abs(this->F);
+  this->Values.push_back(this->F);
+  if (this->Values.size() <= gainWindow)
+  {
+    return false;
+  }
+  const double before = this->Values[this->Values.size() - 1 - gainWindow];
+  return before - this->F<least&& this->Promised> least;
+}
+
+//------------------------------------------------------------------------------
 MinimizeResult Minimizer::run()
 {
   this->F = this->Function.valueAndGradient(this->X, this->G.data());
@@ -611,7 +628,8 @@ MinimizeResult Minimizer::run()
       this->Result.reason = StopReason::GradientNorm;
       return this->Result;
     }
-    if (stalled == maxStalled)
+    const bool crawls = everyTime && this->crawls();
+    if (stalled == maxStalled || crawls)
     {
       this->Result.reason = StopReason::NoProgress;
       return this->Result;

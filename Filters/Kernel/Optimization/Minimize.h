@@ -69,6 +69,11 @@ struct MinimizeOptions
    * rounding of the first value. 0: not used.
    */
   double decrement = 0.0;
+  /**
+   * @brief NewtonConjugateGradient: stop (NoProgress) where 20 iterations have reduced the value by
+   * less than this, relative to it, though more than that is promised; 0: never.
+   */
+  double leastGain = 0.0;
   /// Asked between the inner iterations of Newton's method: true ends them at what they have.
   std::function<bool()> outOfTime;
   int refresh = 20; ///< most iterations between calls of linearize(); at least 1

@@ -622,7 +622,14 @@ const PointSlides& OptimizationProblem::slides()
 {
   if (!this->Slides)
   {
-    this->Slides = std::make_unique<PointSlides>(slidesOf(this->TheMesh, this->Options));
+    OptimizeOptions options = this->Options;
+    if (this->TheMesh.dimension() == Dimension::Surface)
+    {
+      // See SurfaceSlides.
+      options.model = nullptr;
+      options.slideSurface = nullptr;
+    }
+    this->Slides = std::make_unique<PointSlides>(slidesOf(this->TheMesh, options));
   }
   return *this->Slides;
 }

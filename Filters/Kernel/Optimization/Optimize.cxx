@@ -117,7 +117,8 @@ StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& wat
     }
 
     // Convergence is only believed of a sweep over all vertices.
-    if (!converged(stop, sweep, all, firstGradient, lowered, remaining, size, reason))
+    if (!converged(
+          stop, sweep, all, firstGradient, lowered, remaining, gains.remaining(), size, reason))
     {
       all = sweep.moved == 0;
       if (all)
@@ -251,11 +252,14 @@ public:
   bool slidesOrHasTargets() const override
   {
     const OptimizeOptions& options = this->Problem.options();
-    return options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets;
+    return options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets ||
+      this->Problem.moving().dimension() == Dimension::Surface;
   }
   bool slidesOnSurface() const override
   {
-    return this->Problem.options().model || this->Problem.options().slideSurface;
+    const OptimizeOptions& options = this->Problem.options();
+    return this->Problem.moving().dimension() != Dimension::Surface &&
+      (options.model || options.slideSurface);
   }
   bool holdsPoints() override
   {
@@ -446,6 +450,21 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
   }
 }
 
+/// Whether Newton's method keeps what holds the points of a surface in space.
+bool keepsSurface(const OptimizationProblem& problem)
+{
+  const OptimizeOptions& options = problem.options();
+  // Without its features, steps would lead across sharp edges.
+  if (!problem.surface() || !options.model || options.limits || options.surfaceTolerance > 0 ||
+    options.slidePlanes || options.slideLines || problem.moving().nonFinitePoints() > 0)
+  {
+    return false;
+  }
+  const std::vector<const SurfaceProjection*> surfaces = problem.localOptions().surfaces;
+  return std::all_of(surfaces.begin(), surfaces.end(),
+    [](const SurfaceProjection* surface) { return surface && !surface->empty(); });
+}
+
 /// Optimizes from result.points on; returns whether there is more to do, with elements that have
 /// become valid.
 bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const QualityGuard& guard,
@@ -478,7 +497,8 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   // Elements that are valid keep points that slide in the part of the surface that they are on.
   const bool mayCross =
     steps.slidesOnSurface() && (first.inverted > 0 || mesh.nonFinitePoints() > 0);
-  const bool onlyLocal = mesh.dimension() == Dimension::Surface || mayCross;
+  const bool onlyLocal =
+    mayCross || (mesh.dimension() == Dimension::Surface && !keepsSurface(problem));
   const bool repaired = movePoints(steps, options, onlyLocal, first, result.history, result.reason);
   QualityGuard::State state;
   if (repaired)

@@ -417,7 +417,8 @@ StopReason OptimizationOnRanks::sweep(Slowness* slow, bool& failed, bool& repair
       *slow = gains.stiff(size) ? Slowness::Far : Slowness::Near;
       return StopReason::NoProgress;
     }
-    if (!converged(stop, swept, all, firstGradient, lowered, gains.remaining(), size, reason))
+    if (!converged(stop, swept, all, firstGradient, lowered, gains.remaining(), gains.remaining(),
+          size, reason))
     {
       all = swept.moved == 0;
     }

@@ -253,6 +253,8 @@ inline MinimizeOptions minimizeOptions(const StoppingCriteria& stop, Optimizer m
   options.decrement = stop.relativeChange;
   if (method == Optimizer::NewtonConjugateGradient)
   {
+    constexpr double worthIterations = 0.05;
+    options.leastGain = alone ? 0.0 : worthIterations; // sweeps may lead further
     // Its steps alone tell how far the minimum is.
     options.relativeChange = options.gradientNorm = 0;
   }
@@ -263,14 +265,16 @@ inline MinimizeOptions minimizeOptions(const StoppingCriteria& stop, Optimizer m
  * @brief Whether the sweeps have converged, and why. A gradient small beside that of a start with
  * nearly flat elements tells nothing where much is still to be gained.
  * @param all whether the sweep visited every vertex
- * @param remaining what further sweeps may gain
+ * @param remaining what further sweeps are worth, for relativeChange
+ * @param possible what they may gain
  * @param size of the objective
  */
 inline bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bool all,
-  double firstGradient, double lowered, double remaining, double size, StopReason& reason)
+  double firstGradient, double lowered, double remaining, double possible, double size,
+  StopReason& reason)
 {
   constexpr double little = 1e-3; // of the objective
-  if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient && remaining <= little * size)
+  if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient && possible <= little * size)
   {
     reason = StopReason::GradientNorm;
     return true;

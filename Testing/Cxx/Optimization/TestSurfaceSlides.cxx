@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Stretched meshes of curved surfaces, whose points Newton's method moves all at once.
+#include "StretchedMeshes.h"
+
+#include "tautline/Mesh/Features.h"
+
+#include <cmath>
+#include <functional>
+
+using namespace tautline;
+
+namespace
+{
+constexpr double height = 0.2, turn = 2; // of the bump; of the cylinder, radians
+
+/// A surface over the unit square, and its normal.
+struct Surface
+{
+  const char* name;
+  std::function<Vec3(const Vec3&)> point, normal;
+  std::function<double(const Vec3&)> distance;
+};
+
+Vec3 onBump(const Vec3& p)
+{
+  return { p[0], p[1], height * std::sin(Pi * p[0]) * std::sin(Pi * p[1]) };
+}
+
+const Surface surfaces[] = {
+  { "bump", onBump,
+    [](const Vec3& x)
+    {
+      return Vec3{ -height * Pi * std::cos(Pi * x[0]) * std::sin(Pi * x[1]),
+        -height * Pi * std::sin(Pi * x[0]) * std::cos(Pi * x[1]), 1 };
+    },
+    [](const Vec3& x) { return std::abs(x[2] - onBump(x)[2]); } },
+  // The order of the points of its elements makes normals point inwards.
+  { "cylinder",
+    [](const Vec3& p) {
+      return Vec3{ std::cos(turn * p[0]), p[1], std::sin(turn * p[0]) };
+    },
+    [](const Vec3& x) {
+      return Vec3{ -x[0], 0, -x[2] };
+    },
+    [](const Vec3& x) { return std::abs(std::hypot(x[0], x[2]) - 1); } },
+};
+
+/// Rows that become flat towards one border, between borders of uniform edges.
+MeshData meshOf(const Surface& surface, CellType type, int cells, double power)
+{
+  MeshData data = stretched(type, cells,
+    [power](const Vec3& p) {
+      return Vec3{ p[0], std::pow(p[1], power), p[2] };
+    });
+  data.transform(surface.point);
+  return data;
+}
+
+OptimizeResult runOnModel(const MeshData& data, bool smooth, OptimizeOptions options)
+{
+  const Mesh mesh(data.view());
+  const Features found = findFeatures(mesh, {});
+  const SurfaceModel model = makeSurfaceModel(mesh, found, smooth);
+  const std::vector<std::int32_t> parts = partsOfPoints(found);
+  std::vector<unsigned char> fixed;
+  for (signed char kind : found.kind)
+  {
+    fixed.push_back(kind == CornerPoint);
+  }
+  options.holdWorst = false; // the sum alone is compared
+  options.fixed = fixed.data();
+  options.model = &model;
+  options.parts = parts.data();
+  return optimize(mesh, options);
+}
+
+/// The largest distance from the surface, and whether all elements face as its normals do.
+double offSurface(const MeshData& data, const std::vector<double>& points, const Surface& surface)
+{
+  MeshData moved = data;
+  moved.points = points;
+  double off = 0;
+  for (Index p = 0; p < moved.numberOfPoints(); ++p)
+  {
+    off = std::max(off, surface.distance(moved.point(p)));
+  }
+  Index turned = 0;
+  for (Index c = 0; c < moved.numberOfCells(); ++c)
+  {
+    const Index first = moved.offsets[c], count = moved.offsets[c + 1] - first;
+    for (Index k = 0; k < count; ++k)
+    {
+      const auto at = [&](Index i)
+      { return moved.point(moved.connectivity[first + (k + i) % count]); };
+      const Vec3 area = cross(at(1) - at(0), at(count - 1) - at(0));
+      turned += !(dot(area, surface.normal(at(0))) > 0);
+    }
+  }
+  TAUTLINE_CHECK_EQUAL(turned, Index(0));
+  return off;
+}
+
+void testStretched(const Surface& surface, CellType type, bool smooth)
+{
+  const Context context(std::string(surface.name) + (smooth ? ", smooth, " : ", facets, ") +
+    "type " + std::to_string(static_cast<int>(type)));
+  constexpr int cells = 32, few = 40;
+  OptimizeOptions accurate;
+  accurate.optimizer = Optimizer::LocalNewton;
+  accurate.stopping.relativeChange = 1e-10;
+  accurate.stopping.gradientNorm = 0;
+  accurate.stopping.maximumIterations = 3000;
+  // From rows of equal heights, sweeps reach the minimum.
+  const double least =
+    runOnModel(meshOf(surface, type, cells, 1), smooth, accurate).history.back().objective;
+  const MeshData data = meshOf(surface, type, cells, 2);
+  const OptimizeResult result = runOnModel(data, smooth, OptimizeOptions());
+  TAUTLINE_CHECK(result.history.front().objective > 20 * least);
+  TAUTLINE_CHECK(result.history.back().objective <= 1.002 * least);
+  TAUTLINE_CHECK(result.reason == StopReason::RelativeChange);
+  TAUTLINE_CHECK(result.iterations <= few);
+  OptimizeOptions sweeps;
+  sweeps.optimizer = Optimizer::LocalNewton;
+  sweeps.stopping.maximumIterations = few;
+  TAUTLINE_CHECK(runOnModel(data, smooth, sweeps).history.back().objective > 1.02 * least);
+  // Facets leave the surface by half of its second derivative times the square of their size, of
+  // which the smooth surface through their corners saves most.
+  constexpr double dx = turn / cells, dy = 2.0 / cells, curvature = Pi * Pi * height;
+  constexpr double chord = 0.5 * curvature * (dx * dx + dy * dy);
+  TAUTLINE_CHECK(offSurface(data, result.points, surface) <= (smooth ? 0.05 : 1.0) * chord);
+  // Points of the straight border stay there, and some of them move.
+  double off = 0, along = 0;
+  for (Index p = 0; p < data.numberOfPoints(); ++p)
+  {
+    const double y = data.points[3 * p + 1];
+    const Vec3 way =
+      Vec3{ result.points[3 * p], result.points[3 * p + 1], result.points[3 * p + 2] } -
+      data.point(p);
+    if (y == 0 || y == 1)
+    {
+      off = std::max(off, std::abs(way[1]));
+      along = std::max(along, norm(way));
+    }
+  }
+  TAUTLINE_CHECK(off <= 1e-12);
+  TAUTLINE_CHECK(along > 0);
+  OptimizeOptions threads;
+  threads.threads = 3;
+  const OptimizeResult three = runOnModel(data, smooth, threads);
+  TAUTLINE_CHECK(three.points == result.points);
+}
+
+/// Far flatter rows: no element turns over, and the minimum is reached but for a few per cent.
+void testFlat(const Surface& surface, CellType type)
+{
+  const Context context(surface.name);
+  constexpr int cells = 24;
+  const double least =
+    runOnModel(meshOf(surface, type, cells, 1), true, OptimizeOptions()).history.back().objective;
+  const MeshData data = meshOf(surface, type, cells, 3);
+  const OptimizeResult result = runOnModel(data, true, OptimizeOptions());
+  TAUTLINE_CHECK(result.history.front().objective > 1000 * least);
+  TAUTLINE_CHECK(result.history.back().objective <= 1.05 * least);
+  offSurface(data, result.points, surface);
+}
+}
+
+//------------------------------------------------------------------------------
+int TestSurfaceSlides(int, char*[])
+{
+  for (const Surface& surface : surfaces)
+  {
+    for (const CellType type : { CellType::Triangle, CellType::Quadrilateral })
+    {
+      testStretched(surface, type, true);
+      testStretched(surface, type, false);
+      testFlat(surface, type);
+    }
+  }
+  return exitCode();
+}
