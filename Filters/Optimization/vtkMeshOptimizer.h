@@ -276,10 +276,10 @@ public:
   ///@{
   /**
    * The algorithm: local ones sweep over the points, others move all at once. AUTOMATIC, the
-   * default, is LOCAL_NEWTON. Where sweeps of one objective converge slowly,
-   * NEWTON_CONJUGATE_GRADIENT starts from the input, or from its harmonic map if that is valid
-   * and better; with points that slide on the surface both take turns, and
-   * NEWTON_CONJUGATE_GRADIENT holds those on curved parts. Should a sweep fail to reduce several
+   * default, is LOCAL_NEWTON. Where sweeps converge slowly, NEWTON_CONJUGATE_GRADIENT starts from
+   * the input, or from its harmonic map if that is valid and better; where it stops short, or holds
+   * points (on curved parts of the boundary of a volume or planar mesh, at limits), both take
+   * turns. Should a sweep fail to reduce several
    * objectives, LIMITED_MEMORY_BFGS continues.
    */
   vtkTautlineSetRangeMacro(Optimizer, int, AUTOMATIC, NEWTON_CONJUGATE_GRADIENT);

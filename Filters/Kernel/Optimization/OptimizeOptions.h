@@ -21,13 +21,15 @@ enum class Optimizer : int
 {
   /**
    * @brief LocalNewton. Sums of the inverse mean ratio on meshes mostly of quadrilaterals,
-   * hexahedra or wedges, and where its sweeps of one objective converge slowly (by the ratio of
-   * their gains): NewtonConjugateGradient from the start, or from its harmonic map if valid and
-   * the sum smaller there; near the minimum, where more than 25 sweeps are to be expected, from
-   * where they are. With a model or slideSurface, sweeps and NewtonConjugateGradient in turn, which
-   * moves points on flat patches and straight curves and holds the others on the surface. Not on
-   * surface meshes, nor with limits. Should a sweep fail to reduce several objectives,
-   * LimitedMemoryBFGS from there, unless points slide on the surface.
+   * hexahedra or wedges, and where its sweeps converge slowly (by the ratio of their gains):
+   * NewtonConjugateGradient from the start, or from its harmonic map if valid and the objective
+   * smaller there; near the minimum, where more than 25 sweeps are to be expected, from where they
+   * are. Where that stops short of the minimum, or holds points, sweeps and
+   * NewtonConjugateGradient in turn: with slideSurface, or a model of the boundary, it moves points
+   * on flat patches and straight curves and holds the others; with limits it leaves it to sweeps to
+   * move points at their limit inwards. Meshes of surfaces in space need a model for it. Not with a
+   * maximum as objective, nor several in lexicographic order. Should a sweep fail to reduce several
+   * objectives, LimitedMemoryBFGS from there, unless points slide on the surface.
    */
   Automatic = 0,
   LocalNewton = 1,            ///< sweeps over one-vertex patches, a damped Newton step in each
@@ -52,8 +54,8 @@ struct StoppingCriteria
   /// Seconds of wall time for the whole run, untangling included; 0: no limit. Honoured within two
   /// iterations.
   double maximumSeconds = 0.0;
-  /// Stop when the gradient's norm has fallen by this factor; 0: never. Not used by
-  /// NewtonConjugateGradient.
+  /// Stop when the gradient's norm has fallen by this factor and, unless relativeChange is 0, an
+  /// estimate of what is left to gain is small, too; 0: never. Not used by NewtonConjugateGradient.
   double gradientNorm = 1e-6;
   /**
    * @brief Stop when the objective hardly changes any more; 0: never. Relative to it: the decrease
@@ -65,8 +67,9 @@ struct StoppingCriteria
   bool twoDigits = false;
   /**
    * @brief Section 2.4: stop when this fraction of the possible reduction is reached (0.95 there);
-   * 1: never. The possible reduction is that to bestKnown, or an estimate from the decrease of the
-   * iterations so far.
+   * 1: never. The possible reduction is that to bestKnown, or an estimate from the decreases of
+   * the iterations so far: of two where the mean of the inverse mean ratio is below 3, of six where
+   * it is above, of three of other metrics.
    */
   double reduction = 1.0;
   /// The objective of the completely smoothed mesh; NaN: not known. 0 is that of untangling
@@ -108,8 +111,8 @@ struct OptimizeOptions
   const double* slidePlanes = nullptr;
   /// Unit directions of lines that points may slide along; 3 per point, zero elsewhere; or null.
   const double* slideLines = nullptr;
-  /// How far each point may go from its start, 3D distance; one per point (infinity = any), or
-  /// null.
+  /// How far each point may go from where it is in the input, 3D distance; one per point (infinity
+  /// = any), or null. An Error where untangling, which comes first, needs more.
   const double* limits = nullptr;
   /**
    * @brief One flag per point: nonzero for boundary points of a volume or planar mesh that slide on

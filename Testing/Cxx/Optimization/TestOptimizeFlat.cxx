@@ -9,8 +9,8 @@ using namespace tautline;
 
 namespace
 {
-/// Rows that become flat towards the lower side of a strip that is bent, so that the harmonic map of
-/// it is not valid.
+/// Rows that become flat towards the lower side of a strip, which is bent so that its harmonic map
+/// is not valid.
 MeshData bentStrip(CellType type, int cells, double power)
 {
   MeshData data = stretched(type, cells,
