@@ -81,6 +81,12 @@ std::string summarize(
        << (!result.untangled              ? "."
               : result.invertedAfter == 0 ? "; it was untangled first."
                                           : "; untangling came first and left some inverted.");
+  if (result.newlyInvalid > 0)
+  {
+    text << "\nUntangling has made " << result.newlyInvalid
+         << (result.newlyInvalid == 1 ? " element that was" : " elements that were")
+         << " valid inverted or degenerate.";
+  }
   if (result.restored > 0)
   {
     text
@@ -91,8 +97,10 @@ std::string summarize(
   }
   if (result.unchanged)
   {
-    text << "\nThe points are those of the input: without an element worse than its worst one, no "
-            "points with a smaller objective were found.";
+    text << "\nThe points are those "
+         << (result.untangled ? "that untangling left" : "of the input")
+         << ": none were found with a smaller objective, a worst element that is not worse, and no "
+            "more invalid elements.";
   }
   text << surfaceErrorSentence(result.surfaceError);
   if (result.leftSurface > 0)

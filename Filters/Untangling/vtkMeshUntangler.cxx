@@ -74,6 +74,14 @@ Remaining remainingOf(const tautline::UntangleResult& result, const tautline::Me
 }
 
 /// "All elements are valid", or how many are not, and for the first of them which, where and why.
+/// ", and N that were valid are not any more", or "".
+std::string newlySentence(tautline::Index newlyInvalid)
+{
+  return newlyInvalid == 0
+    ? ""
+    : ", and " + std::to_string(newlyInvalid) + " that were valid are not any more";
+}
+
 std::string verdict(
   const tautline::UntangleResult& result, const Remaining& remaining, const tautline::Mesh& moved)
 {
@@ -85,7 +93,7 @@ std::string verdict(
   }
   text << remaining.size() << " elements are not valid, " << result.impossible
        << " of them because of fixed points; " << result.invertedBefore
-       << " were inverted or degenerate before.";
+       << " were inverted or degenerate before" << newlySentence(result.newlyInvalid) << ".";
   const auto listed = std::min<std::size_t>(remaining.size(), ListedElements);
   for (std::size_t i = 0; i < listed; ++i)
   {
@@ -117,7 +125,8 @@ std::string verdict(const tautline::RankUntangleResult& untangled)
   }
   text << untangled.remaining.size() << " elements are not valid, " << untangled.result.impossible
        << " of them because of fixed points; " << untangled.result.invertedBefore
-       << " were inverted or degenerate before.";
+       << " were inverted or degenerate before" << newlySentence(untangled.result.newlyInvalid)
+       << ".";
   int listed = 0;
   for (const auto& [numbers, element] : untangled.remaining)
   {
@@ -214,6 +223,7 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   if (!unsettled.empty())
   {
     result.invertedAfter = result.invertedBefore;
+    result.newlyInvalid = 0;
     this->Warn(unsettled);
   }
 

@@ -136,12 +136,13 @@ bool Stage::mayGoOn() const
  */
 void Stage::takeTurns(const IterationRecord& first)
 {
-  const std::vector<double> start =
-    this->Steps.slidesOnSurface() ? std::vector<double>() : this->Steps.stored();
+  // On a rank without points, the start is empty.
+  const bool slides = this->Steps.slidesOnSurface();
+  const std::vector<double> start = slides ? std::vector<double>() : this->Steps.stored();
   for (int turn = 0; turn < maxTurns; ++turn)
   {
     Slowness slow = Slowness::Costly;
-    if (turn > 0 || start.empty() || !this->startsWithNewton(first))
+    if (turn > 0 || slides || !this->startsWithNewton(first))
     {
       slow = Slowness::None;
       this->sweep(&slow);
@@ -151,7 +152,7 @@ void Stage::takeTurns(const IterationRecord& first)
       }
     }
     const double reached = this->History.back().objective;
-    const bool fromStart = turn == 0 && !start.empty();
+    const bool fromStart = turn == 0 && !slides;
     const bool gained = this->useNewton(fromStart ? slow : Slowness::Near, start);
     if (this->Fits && !this->mayGoOn())
     {

@@ -547,6 +547,7 @@ bool untangleFirst(
   result.points = std::move(untangled.points);
   result.invertedAfter = untangled.invertedAfter;
   result.untangled = true;
+  result.newlyInvalid = untangled.newlyInvalid;
   if (proceed)
   {
     requireWithinLimits(
@@ -595,6 +596,7 @@ OptimizeResult optimize(
   QualityGuard guard(mesh, validity, options);
   // Elements left out join the objective as soon as they are valid: another stage.
   const Index invalid = result.invertedAfter;
+  const std::vector<double> untangled = result.untangled ? result.points : std::vector<double>();
   while (optimizeStage(mesh, options, guard, clock, result))
   {
   }
@@ -603,9 +605,17 @@ OptimizeResult optimize(
   if (result.invertedAfter > invalid && !options.allowInversion &&
     mesh.dimension() != Dimension::Surface)
   {
-    throw Error("Optimization would invert " + std::to_string(result.invertedAfter - invalid) +
-      " elements: the coordinates are of too different magnitudes. Remove points that are far from "
-      "all others.");
+    // Coordinates of too different magnitudes.
+    result.points = result.untangled
+      ? untangled
+      : std::vector<double>(view.points, view.points + 3 * view.numberOfPoints);
+    result.invertedAfter = invalid;
+    result.unchanged = true;
+    result.reason = StopReason::NoProgress;
+    result.restored = result.leftSurface = 0;
+    result.history.back().inverted = invalid;
+    result.history.back().objective = result.history.front().objective;
+    result.elements = {};
   }
   if (guard.judged().metric == options.objectives[0].metric && !result.elements.after.empty())
   {

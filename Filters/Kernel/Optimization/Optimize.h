@@ -34,6 +34,8 @@ struct OptimizeResult
   int iterations = 0;
   Index freeVertices = 0;
   Index invertedBefore = 0, invertedAfter = 0;
+  /// Elements that were valid in the input and that untangling, which came first, has made invalid.
+  Index newlyInvalid = 0;
   /// Largest distance between the output's surface (of a surface mesh, or of points that slide) and
   /// the input's, from either to the other, or from it to the geometry; else 0.
   double surfaceError = 0;
@@ -43,8 +45,8 @@ struct OptimizeResult
   /// Points that went back to their place in the input, because an element there would otherwise be
   /// worse than the worst one of the input.
   Index restored = 0;
-  /// The points are those of the input, because what was found was worse in one of the three
-  /// numbers.
+  /// The points are those of the input, or those that untangling left, because what was found from
+  /// there was worse in one of the three numbers.
   bool unchanged = false;
   VerifiedElements elements; ///< at `points`
 };

@@ -513,7 +513,9 @@ void OptimizationOnRanks::untangle()
     options.maximumSeconds = std::max(std::numeric_limits<double>::min(),
       this->Options.stopping.maximumSeconds - this->Clock.seconds());
   }
-  this->Points = untangleOnRanks(this->TheMesh, this->Mirrored, options).result.points;
+  UntangleResult found = untangleOnRanks(this->TheMesh, this->Mirrored, options).result;
+  this->Points = std::move(found.points);
+  this->Result.newlyInvalid = found.newlyInvalid;
   requireWithinLimits(this->Group.sum(beyondLimits(this->Options, this->TheMesh.points().data(),
     this->Points, [this](Index p) { return this->TheMesh.owned(p); })));
   this->Result.untangled = true;
@@ -547,6 +549,7 @@ OptimizeResult OptimizationOnRanks::run()
     metricInfo(metric).direction != Direction::Neutral;
   this->untangle();
   const Index invalid = countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
+  const std::vector<double> start = this->Points;
   while (this->stage())
   {
   }
@@ -557,10 +560,14 @@ OptimizeResult OptimizationOnRanks::run()
     countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
   if (this->Result.invertedAfter > invalid && !this->Options.allowInversion)
   {
-    throw Error("Optimization would invert " +
-      std::to_string(this->Result.invertedAfter - invalid) +
-      " elements: the coordinates are of too different magnitudes. Remove points that are far from "
-      "all others.");
+    // Coordinates of too different magnitudes.
+    this->Result.points = this->Points = start;
+    this->Result.invertedAfter = invalid;
+    this->Result.unchanged = true;
+    this->Result.reason = StopReason::NoProgress;
+    this->Result.restored = 0;
+    this->Result.history.back().inverted = invalid;
+    this->Result.history.back().objective = this->Result.history.front().objective;
   }
   return this->Result;
 }

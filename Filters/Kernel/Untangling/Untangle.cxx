@@ -231,6 +231,10 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
     validity = before;
     result.invertedAfter = result.history.back().inverted = result.invertedBefore;
   }
+  for (std::size_t cell = 0; cell < validity.size(); ++cell)
+  {
+    result.newlyInvalid += before[cell] == Valid && isInvalid(validity[cell]);
+  }
   findObstacles(mesh, simplices, validity, untangler.infeasible(), result);
 }
 }

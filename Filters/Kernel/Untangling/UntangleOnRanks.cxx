@@ -529,6 +529,7 @@ RankUntangleResult RankUntangler::run()
   UntangleResult& result = this->Result.result;
   result.points = this->Points;
   result.invertedBefore = result.invertedAfter = this->examine();
+  const std::vector<signed char> before = this->Validity;
   Index free = 0;
   for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
   {
@@ -559,6 +560,13 @@ RankUntangleResult RankUntangler::run()
     result.reason = result.invertedBefore == 0 ? StopReason::AllValid : StopReason::NoFreeVertices;
   }
   result.reason = result.invertedAfter == 0 ? StopReason::AllValid : result.reason;
+  Index newly = 0;
+  for (std::size_t cell = 0; cell < before.size(); ++cell)
+  {
+    newly +=
+      this->TheMesh.ownedCells()[cell] && before[cell] == Valid && isInvalid(this->Validity[cell]);
+  }
+  result.newlyInvalid = this->Group.sum(newly);
   this->listRemaining();
   return this->Result;
 }

@@ -61,7 +61,8 @@ struct UntangleResult
    */
   std::vector<IterationRecord> history;
   Index invertedBefore = 0, invertedAfter = 0;
-  Index impossible = 0; ///< elements with FixedElement or FixedNeighbours
+  Index newlyInvalid = 0; ///< elements of invertedAfter that were valid in the input
+  Index impossible = 0;   ///< elements with FixedElement or FixedNeighbours
   StopReason reason = StopReason::AllValid;
   double surfaceError = 0;
 };

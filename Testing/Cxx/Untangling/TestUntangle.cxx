@@ -277,7 +277,19 @@ void testFiles(const std::string& directory)
       }
       UntangleOptions options;
       options.fixed = fixed.data();
-      checkUntangles(data, std::string(name) + ", its own flags", options);
+      const UntangleResult own =
+        checkUntangles(data, std::string(name) + ", its own flags", options);
+      MeshData moved = data;
+      moved.points = own.points;
+      const std::vector<signed char> before = validityOf(data), after = validityOf(moved);
+      Index newly = 0;
+      for (std::size_t cell = 0; cell < before.size(); ++cell)
+      {
+        newly += before[cell] == Valid && after[cell] != Valid;
+      }
+      TAUTLINE_CHECK_EQUAL(own.newlyInvalid, newly);
+      // Its hole is turned over between fixed points.
+      TAUTLINE_CHECK(std::string(name) != "inverted-hole-1" || newly > 0);
     }
   }
 }
