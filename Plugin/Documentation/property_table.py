@@ -13,6 +13,7 @@ GROUPS = ("filters", "sources", "writers")  # those that users meet; readers are
 METRIC = "Inverse mean ratio"  # the first entry of a list of metrics
 COLUMNS = '<tr><th width="22%">Property</th><th width="16%">Default</th><th width="62%">Description</th></tr>'
 BULLET = re.compile(r"^[*-] ", re.MULTILINE)
+DEFAULT_VISIBILITY = "tautline_default_visibility"  # a hint: not advanced under a condition
 VTK_TYPES = {"vtkCompositeDataSet": None, "vtkSelection": "a selection"}  # None: stated otherwise
 
 
@@ -98,8 +99,8 @@ def range_of(item) -> str:
     return ""
 
 
-def condition_of(item, proxy) -> str:
-    """When the panel shows the property, in words; empty: always."""
+def condition_of(item, proxy, decorator="GenericDecorator") -> str:
+    """When the panel shows the property because of this kind of hint, in words; empty: always."""
     by_name = {other.get("name"): other for other in proxy if other.get("name")}
 
     def words(node) -> str:
@@ -108,7 +109,7 @@ def condition_of(item, proxy) -> str:
         if node.get("type") == "CompositeDecorator":
             return words(node.find("Expression"))
         other = by_name.get(node.get("property"))
-        if node.get("type") != "GenericDecorator" or other is None:
+        if node.get("type") != decorator or other is None:
             return ""
         values = (node.get("values") or node.get("value") or "").split() or [""]
         entries = entries_of(other)
@@ -131,7 +132,9 @@ def row_of(item, proxy) -> tuple:
     if item.tag == "InputProperty" and not text:
         text = "The input."
     shown = condition_of(item, proxy)
-    parts = [text, range_of(item), f"Shown if {shown}." if shown else ""]
+    usual = condition_of(item, proxy, DEFAULT_VISIBILITY)
+    conditions = [f"Shown if {shown}." if shown else "", f"Advanced unless {usual}." if usual else ""]
+    parts = [text, range_of(item), *conditions]
     return label, html.escape(default_of(item)), " ".join(filter(None, parts))
 
 
