@@ -213,30 +213,63 @@ std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
 //------------------------------------------------------------------------------
 std::string MovableMesh::move(vtkPointSet* output, const std::vector<double>& moved) const
 {
-  std::vector<double> points = moved;
-  spread(points, 3, this->representative());
-  const std::vector<double> actual = this->actual(points);
-  vtkPoints* like = this->Input->GetPoints();
+  bool single = this->isSingle();
   std::string note;
-  if (like->GetDataType() == VTK_FLOAT)
+  if (single)
   {
-    std::vector<double> rounded(points.size());
-    std::transform(actual.begin(), actual.end(), rounded.begin(),
-      [](double x) { return static_cast<double>(static_cast<float>(x)); });
-    const auto before = this->validityAt(points),
-               after = validityOf(this->actualMesh(rounded), this->Threads);
+    const auto before = this->validityAt(moved),
+               after = this->validityAt(this->rounded(moved, true));
     const auto lost = std::inner_product(before.begin(), before.end(), after.begin(), Index(0),
       std::plus<>(), [](signed char a, signed char b) { return Index(a == Valid && b != Valid); });
     if (lost > 0)
     {
-      like = nullptr;
+      single = false;
       note = "The points are given in double precision: in single precision " +
         std::to_string(lost) + " valid elements would not be valid.";
     }
   }
-  output->SetPoints(makePoints(actual, like));
-  addDisplacement(output, this->Adapter.inputView().points, actual);
+  this->move(output, moved, single);
   return note;
+}
+
+//------------------------------------------------------------------------------
+void MovableMesh::move(vtkPointSet* output, const std::vector<double>& moved, bool single) const
+{
+  const std::vector<double> actual = this->written(moved, single);
+  output->SetPoints(makePoints(actual, single ? this->Input->GetPoints() : nullptr));
+  addDisplacement(output, this->Adapter.inputView().points, actual);
+}
+
+//------------------------------------------------------------------------------
+bool MovableMesh::isSingle() const
+{
+  return this->Input->GetPoints()->GetDataType() == VTK_FLOAT;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> MovableMesh::written(const std::vector<double>& points, bool single) const
+{
+  std::vector<double> together = points;
+  spread(together, 3, this->representative());
+  std::vector<double> actual = this->actual(together);
+  if (single)
+  {
+    std::transform(actual.begin(), actual.end(), actual.begin(),
+      [](double x) { return static_cast<double>(static_cast<float>(x)); });
+  }
+  return actual;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> MovableMesh::rounded(const std::vector<double>& points, bool single) const
+{
+  if (!single && this->frame().isIdentity())
+  {
+    return points;
+  }
+  std::vector<double> result = this->written(points, single);
+  this->frame().enter(result);
+  return result;
 }
 
 //------------------------------------------------------------------------------
@@ -256,8 +289,7 @@ std::vector<double> MovableMesh::settle(const std::vector<double>& points, std::
   {
     return points;
   }
-  std::vector<double> settled = this->actual(points);
-  this->frame().enter(settled);
+  std::vector<double> settled = this->rounded(points, false);
   const auto invalid = [](const std::vector<signed char>& validity)
   { return std::count_if(validity.begin(), validity.end(), isInvalid); };
   const auto count = invalid(this->validityAt(settled));

@@ -62,6 +62,10 @@ public:
    * @param note gets a sentence if so
    */
   std::vector<double> settle(const std::vector<double>& points, std::string& note) const;
+  /// Whether the points of the input are in single precision.
+  bool isSingle() const;
+  /// Points, rounded to the digits that coordinates have in the input, or in double precision.
+  std::vector<double> rounded(const std::vector<double>& points, bool single) const;
   /// A sentence on coordinates that are too coarse, see MeshAdapter::coarseness().
   std::string coarseness() const { return this->Adapter.coarseness(); }
   /// One per cell of the input.
@@ -96,9 +100,13 @@ public:
    * @return a sentence if single precision did not do, else ""
    */
   std::string move(vtkPointSet* output, const std::vector<double>& moved) const;
+  /// The same in a given precision.
+  void move(vtkPointSet* output, const std::vector<double>& moved, bool single) const;
 
 private:
   void fixWhatStays();
+  /// Points in the coordinates of the input, those that are one at the same place.
+  std::vector<double> written(const std::vector<double>& points, bool single) const;
   void uniteFixed();
 
   vtkPointSet* Input;

@@ -81,6 +81,8 @@ enum OptimizerArrays
   RegionArray = 6
 };
 
+struct OptimizerRun;
+
 /**
  * @class tautline::OptimizerSetup
  * @brief The options of the kernel for one data set, and all that they point to. Throws Error for
@@ -99,6 +101,13 @@ public:
   OptimizeOptions& options() { return this->Options; }
   /// Adds the arrays `FeatureKind` and `PatchId` of points, of surfaces also `PatchId` of cells.
   void addFeatures(vtkDataSet* output) const;
+  /**
+   * @brief Rounds the points of a result from start() on to those that are written, in single
+   * precision if the input has that, and measures the result there. Where this would break what
+   * optimize() guarantees, the points are given in double precision, and, where not even that is
+   * enough so far from the origin, those of the input.
+   */
+  void round(OptimizerRun& run) const;
   /// The features found, as a sentence; "" if they were not looked for.
   std::string describeFeatures() const;
 
@@ -158,6 +167,9 @@ struct OptimizerRun
   std::vector<Frame> frames; ///< of the animation, every stride-th iteration
   int stride = 1;
   int iterations = 0;
+  bool single = false; ///< whether the points of the result are written in single precision
+  std::string note;    ///< a sentence if they are not, although the input has it, or ""
+  std::string warning; ///< a sentence if the points are those of the input instead, or ""
   std::string summary;
 
   /// Keeps the points of an iteration; drops every second frame when the memory is used up.

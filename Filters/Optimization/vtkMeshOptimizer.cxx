@@ -496,37 +496,41 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     const bool asGiven = &setup.start() == &mesh.mesh();
     run.result = tautline::optimize(
       setup.start(), options, asGiven ? mesh.validity() : std::vector<signed char>());
+    run.result.surfaceError *= mesh.frame().unit();
+    setup.round(run);
+    this->Warn(run.warning);
     if (!asGiven || !mesh.frame().isIdentity())
     {
       run.result.elements = {};
     }
-    run.result.surfaceError *= mesh.frame().unit();
-    std::string note;
-    run.result.points = mesh.settle(run.result.points, note);
-    if (!note.empty())
-    {
-      run.result.invertedAfter = run.result.invertedBefore;
-      this->Warn(note);
-    }
     run.iterations = std::max(run.iterations, run.result.iterations);
   }
   const std::vector<double> points = run.at(time, view);
-  const std::string note = mesh.move(vtkPointSet::SafeDownCast(block.output), points);
+  const bool ofResult = points == run.result.points;
+  std::string note = ofResult ? run.note : std::string();
+  if (ofResult)
+  {
+    mesh.move(vtkPointSet::SafeDownCast(block.output), points, run.single);
+  }
+  else
+  {
+    note = mesh.move(vtkPointSet::SafeDownCast(block.output), points);
+  }
   const auto metrics = tautline::measuredMetrics(options.objectives);
   if (this->ShowFeatures)
   {
     setup.addFeatures(block.output);
   }
   std::string qualities;
-  if (!done && points != run.result.points)
+  if (!done && !ofResult)
   {
     // The summary is that of the result, also if an iteration before it is shown.
-    tautline::TableRows ofResult;
+    tautline::TableRows rows;
     qualities = tautline::addBeforeAfter(
-      mesh, run.result.points, metrics, {}, this->Threads, block.name, block.output, ofResult);
+      mesh, run.result.points, metrics, {}, this->Threads, block.name, block.output, rows);
   }
   const tautline::VerifiedElements known =
-    points == run.result.points ? std::move(run.result.elements) : tautline::VerifiedElements();
+    ofResult ? std::move(run.result.elements) : tautline::VerifiedElements();
   run.result.elements = {};
   const std::string shown = tautline::addBeforeAfter(
     mesh, points, metrics, known, this->Threads, block.name, block.output, statistics);

@@ -32,8 +32,9 @@
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (new minus old), and cell arrays: for
  * each objective's metric its value after, named by the metric ("imr"), and before ("imr_before");
- * `Validity` after (see vtkElementQuality). Points that were in single precision stay so unless a
- * valid element would not be valid when rounded; the summary reports it.
+ * `Validity` after (see vtkElementQuality). Points that were in single precision stay so unless,
+ * rounded, a valid element would not be valid, or the objective or the worst element of a valid
+ * input would be worse; the summary reports it. The values after are those of the rounded points.
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric

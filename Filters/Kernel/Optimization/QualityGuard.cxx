@@ -172,8 +172,7 @@ QualityGuard::State QualityGuard::check(OptimizationProblem& problem) const
   problem.store();
   State state;
   state.validity = validityOf(problem.moving(), this->Judged.evaluation.threads);
-  state.violated =
-    this->Active && !this->offenders(problem.moving(), state.validity, state.values).empty();
+  state.violated = this->violatedAt(problem.moving(), state.validity, state.values);
   return state;
 }
 

@@ -60,6 +60,17 @@ public:
   State check(OptimizationProblem& problem) const;
   bool violated(OptimizationProblem& problem) const { return this->check(problem).violated; }
   /**
+   * @brief Whether an element of the same mesh with other points is invalid, or worse than all of
+   * the input; never if not active().
+   * @param validity of its cells
+   * @param values gets those of judged(), if active()
+   */
+  bool violatedAt(
+    const Mesh& mesh, const std::vector<signed char>& validity, std::vector<double>& values) const
+  {
+    return this->Active && !this->offenders(mesh, validity, values).empty();
+  }
+  /**
    * @brief Puts points back to where they were in the input, about the elements that are invalid or
    * worse than all of the input, until there is none.
    * @return the number of points put back

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two thousand random meshes of all cell types, valid and tangled, with every preset and boundary:
 // neither the number of invalid elements, nor the worst element, nor the objective gets worse.
-#include "Optimizing.h"
+#include "NeverWorse.h"
 
 #include "tautline/Mesh/BoundaryShape.h"
 
 #include <cmath>
-#include <numeric>
 
 using namespace tautline;
 
@@ -22,58 +21,6 @@ enum class Motion
 constexpr int motions = 4;
 constexpr int presets = 7;
 constexpr int meshes = 2000;
-
-/// A block with a wavy side, as a surface if wanted; inner points are moved by up to `amplitude`.
-MeshData randomMesh(CellType type, bool surface, double amplitude, unsigned seed)
-{
-  const Index n = topology(type).dimension == 2 ? 6 : 4;
-  MeshData data = perturbedBlock(type, n, amplitude, seed);
-  const double wave = 0.05 * (seed % 4);
-  data.transform(
-    [&](const Vec3& p)
-    {
-      return Vec3{ p[0] * (1 + wave * std::sin(1.3 * p[1])), p[1],
-        surface ? 0.3 * std::sin(p[0]) * std::cos(p[1]) : p[2] };
-    });
-  return data;
-}
-
-/// What a preset minimizes, computed from element values alone.
-double objectiveOf(Preset preset, const Mesh& mesh, const Targets* targets)
-{
-  const Index cells = mesh.view().numberOfCells;
-  const auto sum = [&](Metric metric, const Targets* of, bool reciprocal)
-  {
-    EvaluationOptions evaluation;
-    evaluation.targets = of;
-    std::vector<double> q(cells);
-    evaluateMetric(mesh, metric, evaluation, q.data());
-    return std::accumulate(q.begin(), q.end(), 0.0,
-      [reciprocal](double total, double v) { return total + (reciprocal ? 1 / (v * v) : v * v); });
-  };
-  const double shape = sum(Metric::InverseMeanRatio, targets, false);
-  switch (preset)
-  {
-    case Preset::UniformSize:
-      return shape * sum(Metric::Size, nullptr, false);
-    case Preset::LowInterpolationError:
-      return shape * sum(Metric::InterpolationSizeShape, nullptr, true);
-    default:
-      return shape;
-  }
-}
-
-/// The value of the worst element, as smaller is better.
-double worstOf(const Mesh& mesh, const OptimizeOptions& options, CellType type)
-{
-  const bool jacobian =
-    options.improveWorst > 0 && topology(type).samples > 1 && type != CellType::Pyramid;
-  EvaluationOptions evaluation = options.objectives[0].evaluation;
-  std::vector<double> q(mesh.view().numberOfCells);
-  evaluateMetric(
-    mesh, jacobian ? Metric::ScaledJacobian : Metric::InverseMeanRatio, evaluation, q.data());
-  return jacobian ? -*std::min_element(q.begin(), q.end()) : *std::max_element(q.begin(), q.end());
-}
 
 struct Totals
 {

@@ -98,7 +98,7 @@ void testKernel()
         improved = after;
       }
     }
-    // Of all tetrahedra, as stated: those that cannot move have larger angles than Best shape gives.
+    // Of all tetrahedra, as stated. Those that cannot move have larger ones than Best shape gives.
     const double angle = smallestAngle(improved, false);
     for (const Preset preset : presets)
     {

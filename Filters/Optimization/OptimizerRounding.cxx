@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The points of a result as they are written.
+#include "OptimizerSetup.h"
+
+#include "tautline/Optimization/RoundedResult.h"
+
+namespace tautline
+{
+namespace
+{
+/// What rounding would break, as the end of a sentence.
+std::string describeLoss(const RoundedResult& rounded)
+{
+  return rounded.lost > 0 ? std::to_string(rounded.lost) + " valid elements would not be valid"
+    : rounded.worseWorst  ? "the worst element would be worse than that of the input"
+                          : "the objective would be larger than that of the input";
+}
+
+std::vector<signed char> validityOf(const Mesh& mesh, int threads)
+{
+  std::vector<signed char> validity(mesh.view().numberOfCells);
+  mesh.classifyCells(validity.data(), threads);
+  return validity;
+}
+
+/// Takes over rounded points with what was measured there.
+void take(OptimizeResult& result, std::vector<double> points, RoundedResult& rounded)
+{
+  result.points = std::move(points);
+  result.elements = std::move(rounded.elements);
+  result.invertedAfter = rounded.inverted;
+  if (!result.history.empty() && !rounded.record.objectives.empty())
+  {
+    IterationRecord& last = result.history.back();
+    last.objective = rounded.record.objective;
+    last.objectives = std::move(rounded.record.objectives);
+    last.mean = std::move(rounded.record.mean);
+    last.worst = std::move(rounded.record.worst);
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::round(OptimizerRun& run) const
+{
+  OptimizeResult& result = run.result;
+  const MovableMesh& mesh = this->TheMesh;
+  const Mesh& start = this->start();
+  const MeshView& view = start.view();
+  const std::vector<signed char> validity =
+    &start == &mesh.mesh() ? mesh.validity() : validityOf(start, this->Options.threads);
+  RoundedResult rounded;
+  run.note.clear();
+  run.warning.clear();
+  for (run.single = mesh.isSingle();; run.single = false)
+  {
+    std::vector<double> points = mesh.rounded(result.points, run.single);
+    if (points == result.points)
+    {
+      return;
+    }
+    rounded = measureRounded(start, validity, this->Options, result, start.at(points.data()));
+    // Where the input has invalid elements, double precision may cost some that were repaired.
+    const bool kept = rounded.keepsGuarantees() ||
+      (!run.single && result.invertedBefore > 0 && rounded.inverted <= result.invertedBefore);
+    if (kept)
+    {
+      take(result, std::move(points), rounded);
+      return;
+    }
+    if (!run.single)
+    {
+      break;
+    }
+    run.note = "The points are given in double precision: in single precision " +
+      describeLoss(rounded) + ".";
+  }
+  run.note.clear();
+  run.warning = "The points stay where they are: so far from the origin coordinates have too few "
+                "digits, and rounded to these " +
+    describeLoss(rounded) + ". Create the mesh near the origin.";
+  const double* input = mesh.mesh().view().points;
+  result.points.assign(input, input + 3 * view.numberOfPoints);
+  result.elements = {};
+  result.invertedAfter = result.invertedBefore;
+  run.single = mesh.isSingle();
+}
+}

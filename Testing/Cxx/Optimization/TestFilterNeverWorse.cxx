@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Random meshes of all cell types through the filter Optimize Mesh, with every preset and boundary,
+// in single and double precision, listed in both orders, near and far from the origin: what is
+// written is not worse than the input, and the numbers reported are those of what is written.
+#include "NeverWorse.h"
+#include "VtkMeshes.h"
+
+#include "vtkIntArray.h"
+#include "vtkMeshOptimizer.h"
+#include "vtkTable.h"
+
+#include <cstdio>
+
+using namespace tautline;
+
+namespace
+{
+constexpr int presets = 7;
+constexpr int boundaries[] = { vtkMeshOptimizer::FIXED, vtkMeshOptimizer::SLIDING,
+  vtkMeshOptimizer::ON_SURFACE, vtkMeshOptimizer::FREE };
+constexpr int motions = 4;
+constexpr int meshes = 1008;      // all of the combinations twice
+constexpr double rounding = 1e-8; // relative, of what is computed in another order
+constexpr Index half = 3;         // the elements on both sides of it are two regions
+
+/// What one mesh is, from its number.
+struct Case
+{
+  int number;
+  Preset preset;
+  CellType type;
+  int boundary;
+  bool surface, single, mixed, regions;
+  double amplitude, offset;
+
+  explicit Case(int n)
+    : number(n)
+    , preset(static_cast<Preset>(1 + n / 6 % presets))
+    , type(allTypes[n % 6])
+    , boundary(boundaries[n / (6 * presets) % motions])
+    , surface(false)
+    , single(n % 3 > 0)
+    , mixed(n % 5 == 0)
+    , regions(n % 4 == 0)
+    , amplitude(0.1 + 0.08 * (n % 11))
+  {
+    if (this->preset == Preset::LowInterpolationError)
+    {
+      // The interpolation metric is one of simplices.
+      this->type = n % 2 == 0 ? CellType::Triangle : CellType::Tetrahedron;
+    }
+    this->surface = topology(this->type).dimension == 2 && n / (6 * presets * motions) % 3 == 2;
+    constexpr double offsets[] = { 0.0, 10.0, 1e3, 1e4 };
+    this->offset = offsets[n / 7 % 4];
+  }
+
+  std::string label() const
+  {
+    return "mesh " + std::to_string(this->number) + ", preset " +
+      std::to_string(static_cast<int>(this->preset)) + ", boundary " +
+      std::to_string(this->boundary) + (this->surface ? ", surface, " : ", ") +
+      topology(this->type).plural + (this->single ? ", float, " : ", double, ") +
+      std::to_string(this->offset) + " off" + (this->mixed ? ", mixed" : "");
+  }
+};
+
+/// The same element listed in the opposite order.
+std::vector<Index> opposite(CellType type, const Index* n)
+{
+  switch (type)
+  {
+    case CellType::Triangle:
+      return { n[0], n[2], n[1] };
+    case CellType::Quadrilateral:
+      return { n[0], n[3], n[2], n[1] };
+    case CellType::Tetrahedron:
+      return { n[0], n[2], n[1], n[3] };
+    case CellType::Pyramid:
+      return { n[0], n[3], n[2], n[1], n[4] };
+    case CellType::Wedge:
+      return { n[3], n[4], n[5], n[0], n[1], n[2] };
+    default:
+      return { n[4], n[5], n[6], n[7], n[0], n[1], n[2], n[3] };
+  }
+}
+
+/// A third of the cells in the opposite order.
+MeshData listedInBothOrders(const MeshData& data)
+{
+  MeshData mixed;
+  mixed.points = data.points;
+  Random random(5);
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    const Index* nodes = data.connectivity.data() + data.offsets[c];
+    const auto type = static_cast<CellType>(data.types[c]);
+    const bool turned = random.uniform(0, 1) < 1.0 / 3;
+    mixed.addCell(type,
+      turned ? opposite(type, nodes)
+             : std::vector<Index>(nodes, nodes + data.offsets[c + 1] - data.offsets[c]));
+  }
+  return mixed;
+}
+
+/// The mesh as it is in its precision, in one order.
+MeshData meshOf(const Case& test)
+{
+  MeshData data =
+    randomMesh(test.type, test.surface, test.amplitude, 3000U + static_cast<unsigned>(test.number));
+  data.transform([&](const Vec3& p) { return p + Vec3{ test.offset, test.offset, 0 }; });
+  for (double& x : data.points)
+  {
+    x = test.single ? static_cast<double>(static_cast<float>(x)) : x;
+  }
+  return data;
+}
+
+vtkSmartPointer<vtkUnstructuredGrid> gridOf(const Case& test, const MeshData& data)
+{
+  auto grid =
+    toGrid(test.mixed ? listedInBothOrders(data) : data, test.single ? VTK_FLOAT : VTK_DOUBLE);
+  vtkNew<vtkIntArray> region, number;
+  region->SetName("region");
+  for (Index c = 0; c < data.numberOfCells(); ++c)
+  {
+    const Index first = data.connectivity[data.offsets[c]];
+    region->InsertNextValue(data.point(first)[0] - test.offset < half ? 1 : 2);
+  }
+  number->SetName("number");
+  for (Index p = 0; p < data.numberOfPoints(); ++p)
+  {
+    number->InsertNextValue(static_cast<int>(p * p % 97));
+  }
+  grid->GetCellData()->AddArray(region);
+  grid->GetPointData()->AddArray(number);
+  return grid;
+}
+
+//------------------------------------------------------------------------------
+/// Cells and arrays of the input are in the output.
+void checkKept(vtkUnstructuredGrid* input, vtkUnstructuredGrid* output)
+{
+  TAUTLINE_CHECK_EQUAL(output->GetNumberOfPoints(), input->GetNumberOfPoints());
+  TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), input->GetNumberOfCells());
+  TAUTLINE_CHECK(toMesh(output).connectivity == toMesh(input).connectivity);
+  for (const auto& [before, after, name] :
+    { std::tuple<vtkDataSetAttributes*, vtkDataSetAttributes*, const char*>{
+        input->GetCellData(), output->GetCellData(), "region" },
+      { input->GetPointData(), output->GetPointData(), "number" } })
+  {
+    vtkDataArray *then = before->GetArray(name), *now = after->GetArray(name);
+    TAUTLINE_CHECK(now && now->GetNumberOfTuples() == then->GetNumberOfTuples());
+    for (vtkIdType i = 0; now && i < now->GetNumberOfTuples(); ++i)
+    {
+      TAUTLINE_CHECK_EQUAL(now->GetComponent(i, 0), then->GetComponent(i, 0));
+    }
+  }
+}
+
+/// What the preset minimizes; with a free boundary, sizes are compared with their mean.
+double objectiveAt(
+  const Case& test, const MeshData& input, const Mesh& mesh, const Targets* targets)
+{
+  if (test.preset != Preset::UniformSize || test.boundary != vtkMeshOptimizer::FREE)
+  {
+    return objectiveOf(test.preset, mesh, targets);
+  }
+  const std::vector<double> sizes = valuesOf(input, Metric::Size);
+  const double mean =
+    std::accumulate(sizes.begin(), sizes.end(), 0.0) / static_cast<double>(sizes.size());
+  const Targets ofMean = sizeTargets(mesh, std::vector<double>(sizes.size(), mean).data());
+  EvaluationOptions evaluation;
+  evaluation.targets = &ofMean;
+  std::vector<double> q(sizes.size());
+  evaluateMetric(mesh, Metric::SizeBarrier, evaluation, q.data());
+  return objectiveOf(Preset::BestShape, mesh, nullptr) + std::accumulate(q.begin(), q.end(), 0.0);
+}
+
+/// What is reported, of the points as they are written.
+void checkReported(vtkMeshOptimizer* filter, vtkUnstructuredGrid* output, const MeshData& after,
+  const Targets* targets)
+{
+  const Mesh now(after.view());
+  EvaluationOptions evaluation;
+  evaluation.targets = targets;
+  std::vector<double> q(after.numberOfCells());
+  evaluateMetric(now, Metric::InverseMeanRatio, evaluation, q.data());
+  const std::vector<signed char> validity = validityOf(after);
+  for (Index c = 0; c < after.numberOfCells(); ++c)
+  {
+    TAUTLINE_CHECK_EQUAL(component(output->GetCellData(), "Validity", c), double(validity[c]));
+    if (validity[c] == Valid)
+    {
+      TAUTLINE_CHECK_RELATIVE(component(output->GetCellData(), "imr", c), q[c], rounding);
+    }
+  }
+  if (std::all_of(validity.begin(), validity.end(), [](signed char v) { return v == Valid; }))
+  {
+    TAUTLINE_CHECK_RELATIVE(filter->GetStatistics()->GetValueByName(0, "WorstAfter").ToDouble(),
+      *std::max_element(q.begin(), q.end()), rounding);
+  }
+}
+
+struct Totals
+{
+  int valid = 0, tangled = 0, refused = 0, better = 0, doubled = 0, unchanged = 0, drifted = 0;
+};
+
+//------------------------------------------------------------------------------
+/// Runs the filter on a grid with the cells and points of `data`, one order of its cells.
+vtkSmartPointer<vtkUnstructuredGrid> runOne(
+  const Case& test, vtkUnstructuredGrid* grid, const MeshData& data, Totals& totals)
+{
+  const Mesh mesh(data.view());
+  vtkNew<vtkMeshOptimizer> filter;
+  filter->SetInputData(grid);
+  filter->SetPreset(static_cast<int>(test.preset));
+  filter->SetBoundary(test.boundary);
+  filter->SetShowFeatures(test.number % 2 == 1);
+  if (test.regions)
+  {
+    filter->SetInputArrayToProcess(6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "region");
+  }
+  Targets targets;
+  const Targets* of = nullptr;
+  if (test.preset == Preset::PreserveShape)
+  {
+    const MeshData reference =
+      randomMesh(test.type, test.surface, 0, static_cast<unsigned>(test.number));
+    filter->SetInputData(1, toGrid(test.mixed ? listedInBothOrders(reference) : reference));
+    targets = referenceTargets(mesh, Mesh(reference.view()));
+    of = &targets;
+  }
+  const Messages messages(filter);
+  filter->Update();
+  if (!messages.empty())
+  {
+    // Presets that depend on size would shrink a mesh whose boundary moves freely.
+    const bool sized =
+      test.preset == Preset::UniformSize || test.preset == Preset::LowInterpolationError;
+    TAUTLINE_CHECK(messages.has("shrink") && sized && test.boundary != vtkMeshOptimizer::FIXED);
+    ++totals.refused;
+    return nullptr;
+  }
+  vtkSmartPointer<vtkUnstructuredGrid> output =
+    vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  checkKept(grid, output);
+  const MeshData after = withPointsOf(data, output);
+  const Mesh now(after.view());
+  const Index before = invalid(data, data.points), left = invalid(data, after.points);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedBefore(), before);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), left);
+  TAUTLINE_CHECK(left <= before);
+  if (getenv("NW"))
+    checkReported(filter, output, after, of);
+  const bool doubled = grid->GetPoints()->GetDataType() == VTK_FLOAT &&
+    output->GetPoints()->GetDataType() == VTK_DOUBLE;
+  totals.doubled += doubled;
+  totals.unchanged += after.points == data.points;
+  if (before > 0)
+  {
+    ++totals.tangled;
+    return output;
+  }
+  ++totals.valid;
+  OptimizeOptions options;
+  applyPreset(test.preset, options);
+  options.objectives[0].evaluation.targets = of;
+  const double worst = worstOf(mesh, options, test.type);
+  TAUTLINE_CHECK(worstOf(now, options, test.type) <= worst + rounding * std::abs(worst));
+  const double first = objectiveAt(test, data, mesh, of), last = objectiveAt(test, data, now, of);
+  TAUTLINE_CHECK(last <= first * (1 + rounding));
+  totals.better += last < 0.999 * first;
+  return output;
+}
+
+/// Whether a mesh without a fixed point has gone so far that its coordinates have few digits left.
+bool hasDrifted(const Case& test, const MeshData& before, const MeshData& after)
+{
+  constexpr double far = 100; // elements
+  return test.boundary == vtkMeshOptimizer::FREE && norm(after.point(0) - before.point(0)) > far;
+}
+
+/// The output of a first run is an input, too: nearly as good as it gets, so that rounding matters.
+void testOne(int number, Totals& once, Totals& again)
+{
+  const Case test(number);
+  const Context context(test.label());
+  const MeshData data = meshOf(test);
+  vtkSmartPointer<vtkUnstructuredGrid> output = runOne(test, gridOf(test, data), data, once);
+  const bool drifted = output && hasDrifted(test, data, withPointsOf(data, output));
+  once.drifted += drifted;
+  if (output && !drifted && invalid(data, withPointsOf(data, output).points) == 0)
+  {
+    const Context repeated("repeated");
+    vtkNew<vtkUnstructuredGrid> grid;
+    grid->ShallowCopy(output);
+    runOne(test, grid, withPointsOf(data, grid), again);
+  }
+}
+
+void print(const char* run, const Totals& totals)
+{
+  std::printf("%s: %d valid meshes, %d of them better; %d tangled; %d refused; %d written in "
+              "double precision instead of single; %d unchanged; %d drifted\n",
+    run, totals.valid, totals.better, totals.tangled, totals.refused, totals.doubled,
+    totals.unchanged, totals.drifted);
+}
+}
+
+//------------------------------------------------------------------------------
+int TestFilterNeverWorse(int, char*[])
+{
+  Totals once, again;
+  for (int i = 0; i < meshes; ++i)
+  {
+    testOne(i, once, again);
+  }
+  print("input", once);
+  print("repeated", again);
+  TAUTLINE_CHECK(once.valid > meshes / 4);
+  TAUTLINE_CHECK(once.tangled > meshes / 4);
+  TAUTLINE_CHECK(once.better > 3 * once.valid / 4);
+  TAUTLINE_CHECK(once.refused < meshes / 5);
+  TAUTLINE_CHECK(again.valid > meshes / 2);
+  return exitCode();
+}
