@@ -6,7 +6,8 @@ are CPU time; those of the thread speed-up are wall time. Prints tables; writes 
 nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) of the quality of
 elements, optimization.json and .csv of the optimizer (see optimization.py), deformation.json and .csv of warping
 (see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py), stiff.json
-and .csv of stretched meshes (see stiff.py), and user-metric.json and .csv of metrics of one's own to the output
+and .csv of stretched meshes (see stiff.py), peers.json and .csv of meshes that other programs were run on (see
+peers.py), and user-metric.json and .csv of metrics of one's own to the output
 directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh compares with the program gmsh,
 where that is installed (see gmsh_comparison.py).
 """
@@ -20,6 +21,7 @@ from pathlib import Path
 
 import deformation
 import optimization
+import peers
 import reconnection
 import stiff
 
@@ -231,6 +233,10 @@ def run_stiff(build: Path, output: Path, repeats: int, quick: bool, huge: bool) 
     run_table(output, "stiff", *stiff.run(build / "bin" / "BenchmarkStiff", repeats, quick, huge))
 
 
+def run_peers(build: Path, output: Path, repeats: int, quick: bool) -> None:
+    run_table(output, "peers", *peers.run(build / "bin" / "BenchmarkPeers", repeats, quick))
+
+
 def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> None:
     unit = yardstick(build, repeats)["yardstick"]
     run_table(output, "reconnection", *reconnection.run(build / "bin" / "BenchmarkReconnection", unit, quick))
@@ -239,8 +245,8 @@ def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> No
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parts = ("quality", "optimization", "deformation", "reconnection", "reconnection-aims", "stiff", "user-metric",
-             "gmsh")
+    parts = ("quality", "optimization", "deformation", "reconnection", "reconnection-aims", "stiff", "peers",
+             "user-metric", "gmsh")
     parser.add_argument("--only", choices=parts, help="one part; all but reconnection-aims otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
@@ -267,6 +273,8 @@ def main() -> int:
         run_optimization(options.build, output, options.repeats or 3, options.quick, options.huge)
     if options.only in (None, "stiff"):
         run_stiff(options.build, output, options.repeats or 3, options.quick, options.huge and not options.quick)
+    if options.only in (None, "peers"):
+        run_peers(options.build, output, options.repeats or 3, options.quick)
     if options.only in (None, "user-metric"):
         run_user_metric(options.build, output, 4 if options.quick else 30, options.repeats or 9)
     if options.only in (None, "gmsh"):

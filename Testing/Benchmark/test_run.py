@@ -8,6 +8,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import optimization
+import peers
+
 
 def read(output: Path, name: str) -> tuple[dict[str, float], dict[str, float]]:
     """Both tables, after a check of the numbers and of the other file that has them."""
@@ -86,6 +89,30 @@ def check_stiff(output: Path) -> None:
     assert measured["quads-aspect1000 100: sum at the start / minimum"] > 8 * 304**2 / 100, measured
 
 
+def check_peers(output: Path) -> None:
+    measured, ratios = read(output, "peers")
+    assert measured["stretched box: elements"] == measured["stretched box: least sum"] == 4 * 4 * 3, measured
+    assert measured["isotropic: elements"] == 6 * 4**3, measured
+    for mesh in ("stretched disk", "stretched box"):
+        # What was reached does not depend on the machine: both methods find the same minimum, far below the start.
+        start, default, newton = (measured[f"{mesh}: {key}"] for key in ("sum at the start", "default sum", "Newton sum"))
+        assert abs(default / newton - 1) < 1e-3 and start > 1.05 * default, (mesh, measured)
+    reached = [number for key, number in ratios.items() if "sum / least known" in key]
+    assert len(reached) == 4 and all(1 - 1e-9 < number <= 1.001 for number in reached), ratios
+    assert any("default / Local Newton" in key for key in ratios), ratios
+
+
+def check_hexopt() -> None:
+    """The rows of HexOpt's meshes, with numbers in the place of the program's: the ratios and the aims."""
+    numbers = {"worst scaled Jacobian before": 0.07, "worst scaled Jacobian": 0.06, "surface error / diagonal": 2e-3,
+               "invalid": 0.0, "seconds": 1.0}
+    rows = peers.of_hexopt("CAD4", 0.12, numbers)
+    assert [number for what, number, _ in rows if "published" in what] == [0.5], rows
+    assert optimization.misses(rows) == 2, rows
+    assert optimization.misses(peers.of_hexopt("CAD4", 0.12, numbers | {
+        "worst scaled Jacobian": 0.13, "surface error / diagonal": 1e-3})) == 0
+
+
 def check_user_metric(output: Path) -> None:
     measured, ratios = read(output, "user-metric")
     # Four metrics, two types of cells, with gradient and without, two compilations.
@@ -103,6 +130,8 @@ def main(build: Path, output: Path) -> int:
     check_deformation(output)
     check_reconnection(output)
     check_stiff(output)
+    check_peers(output)
+    check_hexopt()
     check_user_metric(output)
     return 0
 
