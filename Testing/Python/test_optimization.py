@@ -6,8 +6,10 @@ import csv
 import numpy as np
 import tautline as tl
 from checks import DATA, OUT, points, refused, run_tests, shell as run
-from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_INT, vtkPoints
+from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_INT, vtkIntArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_QUAD, vtkImageData, vtkMultiBlockDataSet, vtkUnstructuredGrid
+from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkIOGeometry import vtkSTLWriter
 
 BRACKET, TANGLED, PLATE = DATA / "bracket.vtu", DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
 
@@ -102,6 +104,62 @@ def test_features():
     assert (array(tl.optimize(tl.read(out), maximum_iterations=0), "FeatureKind") == ends - 1).all()
     run("optimize", out, "-o", OUT / "cube-again.vtu", "--feature-kinds", "FeatureKind", "--geometry", other)
     run("optimize", out, "-o", OUT / "cube-cut.vtu", "--no-features")
+
+
+def test_regions_and_geometry_of_files():
+    """Regions by the name of an array, and a Geometry in a file of STL, in Python and on the shell."""
+    places, cells = cube_surface(6)
+    mesh = tl.optimize((places, cells), maximum_iterations=0).mesh
+    low = vtkIntArray()
+    low.SetName("low")
+    for triangle in cells:
+        low.InsertNextValue(int(places[triangle].mean(axis=0)[2] < 0.5))
+    mesh.GetCellData().AddArray(low)
+    source, regions = OUT / "cube-regions.vtu", OUT / "cube-regions-kept.vtu"
+    tl.write(mesh, source)
+    expected = tl.optimize(source, regions="low", show_features=True, hold_worst=False)
+    run("optimize", source, "-o", regions, "--regions", "low", "--show-features", "--no-hold-worst")
+    written = tl.read(regions)
+    assert (points(written) == points(expected.mesh)).all()
+    middle = places[:, 2] == 0.5
+    kinds = written.GetPointData().GetArray("FeatureKind")
+    assert all(kinds.GetComponent(i, 0) > 0 for i in np.flatnonzero(middle)) and middle.any()
+    patches = {written.GetCellData().GetArray("PatchId").GetComponent(i, 0) for i in range(len(cells))}
+    assert len(patches) == 10, patches  # four sides of the cube are cut in half
+    assert np.abs(points(written)[middle, 2] - 0.5).max() < 1e-12
+    free = tl.optimize(source, show_features=True, hold_worst=False)
+    assert np.abs(points(free.mesh)[middle, 2] - 0.5).max() > 1e-3
+
+    # The points of an STL file are in single precision, three to a triangle.
+    surface, sphere, stl = vtkSphereSource(), vtkSphereSource(), OUT / "sphere.stl"
+    surface.SetThetaResolution(12)
+    surface.SetPhiResolution(9)
+    sphere.SetThetaResolution(60)
+    sphere.SetPhiResolution(60)
+    sphere.SetRadius(0.52)
+    writer = vtkSTLWriter()
+    writer.SetInputConnection(sphere.GetOutputPort())
+    writer.SetFileName(str(stl))
+    writer.SetFileTypeToBinary()
+    assert writer.Write()
+    surface.Update()
+    ball = surface.GetOutput()
+    radius = np.linalg.norm(points(ball), axis=1)
+    assert np.abs(radius - 0.5).max() < 1e-6
+    result = tl.optimize(ball, geometry=stl)
+    radius = np.linalg.norm(points(result.mesh), axis=1)
+    assert radius.min() > 0.519 and radius.max() < 0.5201, (radius.min(), radius.max())
+    # The facets of the coarse mesh are chords: farthest from the sphere in their middle or in that of an edge.
+    corners = points(result.mesh)[[[ball.GetCell(c).GetPointId(k) for k in range(3)] for c in range(ball.GetNumberOfCells())]]
+    middles = np.concatenate([corners.mean(axis=1), *(corners[:, [k, k - 1]].mean(axis=1) for k in range(3))])
+    depth = (0.52 - np.linalg.norm(middles, axis=1)).max()
+    assert 0.9 * depth < result.surface_error < 1.1 * depth, (depth, result.surface_error)
+    before, after = (result.statistics["imr"][key] for key in ("mean_before", "mean_after"))
+    assert after < 0.99 * before, (before, after)
+    coarse, placed = OUT / "coarse-sphere.vtp", OUT / "placed-sphere.vtp"
+    tl.write(ball, coarse)
+    run("optimize", coarse, "-o", placed, "--geometry", stl)
+    assert np.allclose(points(tl.read(placed)), points(result.mesh), rtol=0, atol=1e-6)
 
 
 def test_objectives():

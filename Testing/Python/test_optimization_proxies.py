@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 from paraview import servermanager, simple
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
@@ -107,6 +108,32 @@ for use in (0, 1):
 assert "reduction" in reasons[0] and "Converged" in reasons[1], reasons
 simple.RenameSource("Known", known)
 
+# a Geometry from an STL file, features and regions
+STL = str(Path(os.environ["TAUTLINE_TEST_DIR"], "proxies-sphere.stl"))
+simple.SaveData(STL, proxy=simple.Sphere(ThetaResolution=60, PhiResolution=60, Radius=0.52))
+ball = simple.Sphere(ThetaResolution=12, PhiResolution=9)
+geometry = OptimizeMesh(registrationName="Ball", Input=ball, Geometry=simple.STLReader(FileNames=[STL]))  # noqa: F821
+radius = simple.Calculator(geometry, AttributeType="Point Data", ResultArrayName="radius", Function="mag(coords)")
+radius.UpdatePipeline()
+low, high = radius.PointData["radius"].GetRange()
+assert 0.519 < low <= high < 0.5201, (low, high)
+plain = simple.Calculator(ball, AttributeType="Point Data", ResultArrayName="radius", Function="mag(coords)")
+plain.UpdatePipeline()
+assert abs(plain.PointData["radius"].GetRange()[1] - 0.5) < 1e-6
+halves = simple.Calculator(simple.PointDatatoCellData(Input=simple.Elevation(Input=worse, LowPoint=[0, 0, 0],
+                           HighPoint=[1e-6, 0, 0])), AttributeType="Cell Data", ResultArrayName="side",
+                           Function="round(Elevation)")  # fmt: skip
+kept = OptimizeMesh(registrationName="Kept", Input=halves, Regions=["CELLS", "side"], ShowFeatures=1,  # noqa: F821
+                    Boundary="Slide on smooth parts")  # fmt: skip
+kept.UpdatePipeline()
+kept.UpdatePropertyInformation()
+shown = OptimizeMesh(Input=halves, ShowFeatures=1, Boundary="Slide on smooth parts")  # noqa: F821
+shown.UpdatePipeline()
+shown.UpdatePropertyInformation()
+kinds = [vtk_to_numpy(servermanager.Fetch(one).GetPointData().GetArray("FeatureKind")) for one in (kept, shown)]
+assert (kinds[0] > 0).sum() > (kinds[1] > 0).sum() > 0, kinds
+assert kept.PointData["PatchId"].GetNumberOfComponents() == 1 and "Features: " in kept.Summary, kept.Summary
+
 display = simple.Show(all_free, simple.CreateView("RenderView"))
 assert list(display.ColorArrayName) == ["CELLS", "imr"], display.ColorArrayName[:]
 chart = simple.CreateView("XYChartView")
@@ -129,3 +156,5 @@ assert again.CellData["rr"].GetRange() == expected
 assert (simple.FindSource("Known").UseBestKnown, simple.FindSource("Known").BestKnown) == (1, 0)
 assert simple.FindSource("Moving").Animation == 1 and simple.FindSource("Untangled").Effort == "Thorough"
 assert simple.FindSource("Untangled").Method == "Simultaneous untangling and smoothing"
+ball = simple.FindSource("Ball")
+assert ball.Geometry is not None and simple.FindSource("Kept").Regions[1] == "side"
