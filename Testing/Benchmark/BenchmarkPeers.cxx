@@ -101,8 +101,8 @@ void bothMethods(const Mesh& mesh, int repeats)
       results[m] = run(mesh, methods[m].second, seconds[m]);
     }
   }
-  print("sum at the start", results[0].history.front().objective);
-  print("mean at the start", results[0].history.front().mean[0]);
+  print("start sum", results[0].history.front().objective);
+  print("start mean", results[0].history.front().mean[0]);
   for (std::size_t m = 0; m < results.size(); ++m)
   {
     const std::string name = methods[m].first;
@@ -148,8 +148,8 @@ void diskPart(vtkIdType cells, int repeats)
   bothMethods(Mesh(data.view()), repeats);
 }
 
-/// Equal cells, of which the points inside are moved; the least sum is the number of cells times the
-/// square of the inverse mean ratio of one.
+/// Equal cells, of which the points inside are moved; the least sum is the number of cells times
+/// the square of the inverse mean ratio of one.
 void boxPart(Index nx, Index ny, Index nz, int repeats)
 {
   MeshData data = blockMesh(CellType::Hexahedron, nx, ny, nz);

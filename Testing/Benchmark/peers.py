@@ -45,7 +45,7 @@ def of_hexopt(mesh: str, published: float, m: dict[str, float]) -> list[Row]:
 def of_methods(name: str, m: dict[str, float], least: float) -> list[Row]:
     """The default and Newton's method on a stretched mesh. least: the smallest sum that is known."""
     return [
-        (f"{name}: mean IMR at the start", m["mean at the start"], ""),
+        (f"{name}: mean IMR at the start", m["start mean"], ""),
         ("  mean IMR, default", m["default mean"], ""),
         ("  mean IMR, Newton-CG", m["Newton mean"], ""),
         ("  sum / least known, default", m["default sum"] / least, f"<= {RATIO}"),

@@ -150,7 +150,8 @@ def test_regions_and_geometry_of_files():
     radius = np.linalg.norm(points(result.mesh), axis=1)
     assert radius.min() > 0.519 and radius.max() < 0.5201, (radius.min(), radius.max())
     # The facets of the coarse mesh are chords: farthest from the sphere in their middle or in that of an edge.
-    corners = points(result.mesh)[[[ball.GetCell(c).GetPointId(k) for k in range(3)] for c in range(ball.GetNumberOfCells())]]
+    triangles = [[ball.GetCell(c).GetPointId(k) for k in range(3)] for c in range(ball.GetNumberOfCells())]
+    corners = points(result.mesh)[triangles]
     middles = np.concatenate([corners.mean(axis=1), *(corners[:, [k, k - 1]].mean(axis=1) for k in range(3))])
     depth = (0.52 - np.linalg.norm(middles, axis=1)).max()
     assert 0.9 * depth < result.surface_error < 1.1 * depth, (depth, result.surface_error)
