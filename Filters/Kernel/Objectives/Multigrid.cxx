@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace tautline
@@ -22,6 +23,8 @@ constexpr double slowCoarsening = 0.8; // ratio of rows beyond which no coarser 
 constexpr int maxLevels = 30;
 constexpr double enough =
   0.25; // reduction by the first step on a coarse level, that needs no second
+constexpr double heldPivot = 1e-10;   // relative, below which a pivot is 0 but for rounding
+constexpr double floatingSum = 1e-10; // of a row, relative to the diagonals near it, likewise
 constexpr int rebuildAfter = 4; // matrices of one pattern, after which rows are aggregated anew
 }
 
@@ -213,7 +216,7 @@ std::unique_ptr<Level> coarsened(Level& fine, int threads)
   return coarse;
 }
 
-/// The Cholesky factor of the coarsest matrix, with pivots kept off 0.
+/// The Cholesky factor of the coarsest matrix; unknowns whose pivot is 0 but for rounding stay 0.
 template <int Dim>
 void factorizeDense(Level& level)
 {
@@ -249,8 +252,9 @@ void factorizeDense(Level& level)
       }
       else
       {
-        const double pivot = std::max(sum, flattestPivot * diagonal);
-        row[c] = pivot > 0 && std::isfinite(pivot) ? std::sqrt(pivot) : 1.0;
+        // Divided by infinity, what comes from rounding alone vanishes.
+        const bool held = !(sum > heldPivot * diagonal && std::isfinite(sum));
+        row[c] = held ? std::numeric_limits<double>::infinity() : std::sqrt(sum);
       }
     }
   }
@@ -273,6 +277,54 @@ void solveDense(const std::vector<double>& factor, std::size_t n, const double* 
     for (std::size_t k = 0; k < r; ++k)
     {
       x[k] -= factor[r * n + k] * x[r];
+    }
+  }
+}
+
+/// Whether the matrix maps translations of all rows to 0: no point is held.
+template <int Dim>
+bool isFloating(const BlockMatrixView& a)
+{
+  for (Index row = 0; row < a.rows; ++row)
+  {
+    // Entries are as exact as the largest of an element, which may be that of a neighbour.
+    double sum[Dim * Dim] = {}, size = 0;
+    for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
+    {
+      const auto block = static_cast<Index>(Dim * Dim);
+      const double* diagonal = a.blocks + block * a.diagonals[a.columns[i]];
+      for (int k = 0; k < Dim * Dim; ++k)
+      {
+        sum[k] += a.blocks[block * i + k];
+        size = std::max(size, std::abs(diagonal[k]));
+      }
+    }
+    if (!std::all_of(
+          sum, sum + Dim * Dim, [size](double x) { return std::abs(x) <= floatingSum * size; }))
+    {
+      return false;
+    }
+  }
+  return a.rows > 0;
+}
+
+/// Removes the mean of each component.
+template <int Dim>
+void removeTranslation(Index rows, double* z)
+{
+  double mean[Dim] = {};
+  for (Index row = 0; row < rows; ++row)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      mean[c] += z[Dim * row + c] / static_cast<double>(rows);
+    }
+  }
+  for (Index row = 0; row < rows; ++row)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      z[Dim * row + c] -= mean[c];
     }
   }
 }
@@ -444,6 +496,7 @@ void Multigrid::refill()
 
 void Multigrid::build(const BlockMatrixView& matrix)
 {
+  this->Floating = matrix.size == 2 ? isFloating<2>(matrix) : isFloating<3>(matrix);
   const bool same = !this->Levels.empty() && this->Size == matrix.size &&
     this->Levels[0]->matrix.rows == matrix.rows &&
     this->Levels[0]->matrix.columns == matrix.columns;
@@ -470,6 +523,7 @@ void Multigrid::cycle(std::size_t i, const double* r, double* z)
   if (!level.dense.empty())
   {
     solveDense(level.dense, n, r, z);
+    this->settle<Dim>(level, z);
     return;
   }
   forward<Dim>(level, this->Threads, r, z, level.rest.data());
@@ -516,6 +570,17 @@ void Multigrid::cycle(std::size_t i, const double* r, double* z)
       });
   }
   backward<Dim>(level, this->Threads, level.rest.data(), level.step.data(), z);
+  this->settle<Dim>(level, z);
+}
+
+/// Translations of everything, which rounding brings in where no point is held, would grow.
+template <int Dim>
+void Multigrid::settle(const Level& level, double* z) const
+{
+  if (this->Floating)
+  {
+    removeTranslation<Dim>(level.matrix.rows, z);
+  }
 }
 
 /// One or two steps of flexible conjugate gradients from 0.

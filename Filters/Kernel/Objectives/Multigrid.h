@@ -74,8 +74,11 @@ private:
   void cycle(std::size_t level, const double* r, double* z);
   template <int Dim>
   void solveCoarse(std::size_t level);
+  template <int Dim>
+  void settle(const Level& level, double* z) const;
 
   int Threads, Size = 0, Reused = 0;
+  bool Floating = false;                      ///< the matrix maps translations to 0
   std::vector<std::unique_ptr<Level>> Levels; ///< the finest first
 };
 }

@@ -274,11 +274,15 @@ vtkSmartPointer<vtkUnstructuredGrid> runOne(
   return output;
 }
 
-/// Whether a mesh without a fixed point has gone so far that its coordinates have few digits left.
-bool hasDrifted(const Case& test, const MeshData& before, const MeshData& after)
+/// By how much the center of a mesh has moved.
+double drift(const MeshData& before, const MeshData& after)
 {
-  constexpr double far = 100; // elements
-  return test.boundary == vtkMeshOptimizer::FREE && norm(after.point(0) - before.point(0)) > far;
+  Vec3 sum = { 0, 0, 0 };
+  for (Index p = 0; p < before.numberOfPoints(); ++p)
+  {
+    sum = sum + (after.point(p) - before.point(p));
+  }
+  return norm(sum) / static_cast<double>(before.numberOfPoints());
 }
 
 /// The output of a first run is an input, too: nearly as good as it gets, so that rounding matters.
@@ -288,9 +292,12 @@ void testOne(int number, Totals& once, Totals& again)
   const Context context(test.label());
   const MeshData data = meshOf(test);
   vtkSmartPointer<vtkUnstructuredGrid> output = runOne(test, gridOf(test, data), data, once);
-  const bool drifted = output && hasDrifted(test, data, withPointsOf(data, output));
-  once.drifted += drifted;
-  if (output && !drifted && invalid(data, withPointsOf(data, output).points) == 0)
+  if (output)
+  {
+    constexpr double far = 3; // elements, of some in a row; untangled meshes go farther than others
+    TAUTLINE_CHECK(drift(data, withPointsOf(data, output)) < far);
+  }
+  if (output && invalid(data, withPointsOf(data, output).points) == 0)
   {
     const Context repeated("repeated");
     vtkNew<vtkUnstructuredGrid> grid;
@@ -302,9 +309,9 @@ void testOne(int number, Totals& once, Totals& again)
 void print(const char* run, const Totals& totals)
 {
   std::printf("%s: %d valid meshes, %d of them better; %d tangled; %d refused; %d written in "
-              "double precision instead of single; %d unchanged; %d drifted\n",
+              "double precision instead of single; %d unchanged\n",
     run, totals.valid, totals.better, totals.tangled, totals.refused, totals.doubled,
-    totals.unchanged, totals.drifted);
+    totals.unchanged);
 }
 }
 
