@@ -35,6 +35,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <utility>
@@ -60,12 +61,26 @@ constexpr const char* Rank = "N rank"; // a column of Solver Study
 constexpr const char* XAxis = "XArrayName";
 constexpr const char* ByIndex = "UseIndexForXAxis";
 
-/// The columns of a table with their smallest values.
+/// The columns of a table with their smallest and largest values.
 struct Column
 {
   std::string name;
-  double smallest;
+  double smallest, largest;
 };
+
+/// Whether a logarithmic axis shows a column: not values of 0, as an objective of untangling ends
+/// at, and VTK draws no line where the logarithms differ by less than a hundredth of themselves.
+bool suitsLogarithms(const Column& column)
+{
+  constexpr double leastDifference = 0.02;
+  if (!(column.smallest > 0))
+  {
+    return false;
+  }
+  const double low = std::log10(column.smallest), high = std::log10(column.largest);
+  return high - low > leastDifference * std::max(std::abs(low), std::abs(high));
+}
+
 std::vector<Column> columnsOf(pqOutputPort* port)
 {
   std::vector<Column> columns;
@@ -74,7 +89,8 @@ std::vector<Column> columnsOf(pqOutputPort* port)
   for (int i = 0; i < rows->GetNumberOfArrays(); ++i)
   {
     vtkPVArrayInformation* array = rows->GetArrayInformation(i);
-    columns.push_back({ array->GetName(), array->GetComponentRange(0)[0] });
+    const double* range = array->GetComponentRange(0);
+    columns.push_back({ array->GetName(), range[0], range[1] });
   }
   return columns;
 }
@@ -146,8 +162,7 @@ void arrangeObjective(
     }
     title += right ? (title.empty() ? "" : ", ") + column.name : "";
   }
-  // An objective of untangling ends at 0.
-  vtkSMPropertyHelper(view, "LeftAxisLogScale").Set(objective.smallest > 0 ? 1 : 0);
+  vtkSMPropertyHelper(view, "LeftAxisLogScale").Set(suitsLogarithms(objective) ? 1 : 0);
   setTitle(view, "LeftAxisTitle", objective.name.c_str());
   setTitle(view, "RightAxisTitle", title.c_str());
   setTitle(view, "BottomAxisTitle", "Iteration");

@@ -5,11 +5,13 @@ import os
 
 import numpy
 from paraview import servermanager, simple
-from session_checks import check, find
+from session_checks import chart_in, check, find
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOImage import vtkPNGReader
 
 CORNER = 2  # of the array FeatureKind
 SMALLER, LARGER = 0.5, 0.52  # radii of spheres
+LINE_COLOR, NEAR = (31, 120, 181), 40  # of the objective in the chart
 
 
 def tetrahedron_volumes(mesh):
@@ -45,6 +47,27 @@ def features_kept():
     volumes = [[tetrahedron_volumes(mesh)[region == number].sum() for number in numpy.unique(region)]
                for mesh in (before, after)]  # fmt: skip
     assert numpy.allclose(*volumes, rtol=1e-5) and tetrahedron_volumes(after).min() > 0, volumes
+
+
+@check
+def objective_drawn():
+    """The line of an objective that falls by little, which VTK does not draw on a logarithmic axis."""
+    table = servermanager.Fetch(find("MeshOptimizer"), idx=1)
+    objective = vtk_to_numpy(table.GetColumnByName("Objective"))
+    assert 1 < objective.max() / objective.min() < 1.1, objective
+    view, _ = chart_in("XYChartView")
+    file = os.path.join(os.environ["TAUTLINE_TEST_DIR"], "history.png")
+    simple.SaveScreenshot(file, view)
+    reader = vtkPNGReader()
+    reader.SetFileName(file)
+    reader.Update()
+    image = reader.GetOutput()
+    width, height, _ = image.GetDimensions()
+    pixels = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(height, width, -1)[:, :, :3].astype(int)
+    # Its colour without the legend, which is at the top on the right.
+    drawn = (numpy.abs(pixels - LINE_COLOR) < NEAR).all(axis=2)
+    drawn[height // 2 :, width // 2 :] = False
+    assert drawn.sum() > width // 4, drawn.sum()
 
 
 @check
