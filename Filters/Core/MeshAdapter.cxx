@@ -2,6 +2,7 @@
 #include "MeshAdapter.h"
 
 #include "VtkCompatibility.h"
+#include "tautline/Core/RankGroup.h"
 #include "tautline/Mesh/CellOrder.h"
 
 #include "vtkCellArray.h"
@@ -47,8 +48,7 @@ void MeshAdapter::enterFrame(bool shifted)
   {
     return;
   }
-  this->FramedPoints.assign(
-    this->InputView.points, this->InputView.points + 3 * this->InputView.numberOfPoints);
+  this->FramedPoints.assign(this->View.points, this->View.points + 3 * this->View.numberOfPoints);
   this->Frame.enter(this->FramedPoints);
   this->View.points = this->FramedPoints.data();
   for (std::unique_ptr<Mesh>* mesh : { &this->Given, &this->TheMesh })
@@ -97,6 +97,35 @@ std::string MeshAdapter::coarseness() const
          << (this->SinglePrecision ? ", or in double precision." : ".");
   }
   return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::vector<Index> idsOf(vtkDataArray* globalIds)
+{
+  std::vector<Index> ids;
+  for (vtkIdType i = 0; globalIds && i < globalIds->GetNumberOfTuples(); ++i)
+  {
+    ids.push_back(static_cast<Index>(globalIds->GetComponent(i, 0)));
+  }
+  return ids;
+}
+
+//------------------------------------------------------------------------------
+JoinedCopies MeshAdapter::joinCopies(vtkDataArray* globalIds)
+{
+  SingleRank alone;
+  JoinedCopies result;
+  if (globalIds)
+  {
+    result = tautline::joinCopies(alone, this->View, idsOf(globalIds).data());
+  }
+  if (result.joined > 0)
+  {
+    this->JoinedPoints = result.points;
+    this->View.points = this->JoinedPoints.data();
+    this->TheMesh = std::make_unique<Mesh>(this->View, this->Threads);
+  }
+  return result;
 }
 
 //------------------------------------------------------------------------------

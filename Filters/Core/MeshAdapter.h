@@ -18,6 +18,7 @@
 #include "tautline/Mesh/CoincidentPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/Mesh.h"
+#include "tautline/Mesh/PointCopies.h"
 
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
@@ -26,6 +27,7 @@
 #include <string>
 #include <vector>
 
+class vtkDataArray;
 class vtkDataSet;
 class vtkPoints;
 
@@ -40,6 +42,12 @@ public:
   Mesh& mesh() { return *this->TheMesh; }
   const Mesh& mesh() const { return *this->TheMesh; }
 
+  /**
+   * @brief Gives copies of a point one place in mesh(), see joinCopies() of the kernel; to be
+   * called before mergeCoincidentPoints(). inputView() keeps their places.
+   * @param globalIds of the points of the data set; null: nothing is done
+   */
+  JoinedCopies joinCopies(vtkDataArray* globalIds);
   /**
    * @brief Treats coincident points on seams as one, see findCoincidentPoints(): in mesh(), cells
    * use the representatives, and the other points are of no cell. Ids do not change.
@@ -107,7 +115,7 @@ private:
   void takeCells(vtkDataSet* input);
   bool acrossY(Index first) const;
 
-  std::vector<double> Points;
+  std::vector<double> Points, JoinedPoints;
   vtkSmartPointer<vtkUnsignedCharArray> GivenTypes; ///< that the view refers to
   std::vector<unsigned char> Types;
   std::vector<Index> Offsets;
@@ -125,6 +133,9 @@ private:
   std::unique_ptr<Mesh> Given; ///< null if it is TheMesh
   std::unique_ptr<Mesh> TheMesh;
 };
+
+/// The ids of points as those of the kernel; empty without an array.
+TAUTLINECORE_EXPORT std::vector<Index> idsOf(vtkDataArray* globalIds);
 
 /// Says how the cells are oriented, in a sentence for the user; empty when all is well.
 TAUTLINECORE_EXPORT std::string describe(const Orientation& orientation, const Mesh& mesh);

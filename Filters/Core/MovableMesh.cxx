@@ -50,8 +50,11 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
 {
   if (mergePoints)
   {
+    const JoinedCopies copies = this->Adapter.joinCopies(input->GetPointData()->GetGlobalIds());
     this->Adapter.mergeCoincidentPoints(threads);
     this->Notice = describeMerged(this->Adapter.coincident(), this->given());
+    const std::string joined = describeJoined(copies);
+    this->Notice += (this->Notice.empty() || joined.empty() ? "" : " ") + joined;
   }
   if (framed)
   {

@@ -92,6 +92,21 @@ std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh)
 }
 
 //------------------------------------------------------------------------------
+std::string describeJoined(const JoinedCopies& copies)
+{
+  if (copies.joined == 0)
+  {
+    return "";
+  }
+  std::ostringstream text;
+  text.precision(2);
+  text << counted(copies.joined, "point") << (copies.joined == 1 ? " has" : " have")
+       << " copies with the same global id that are up to " << copies.farthest
+       << " apart: they were joined.";
+  return text.str();
+}
+
+//------------------------------------------------------------------------------
 std::string describeSeams(const CoincidentPoints& points, const Mesh& mesh)
 {
   std::string text;

@@ -11,6 +11,7 @@
 
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoincidentPoints.h"
+#include "tautline/Mesh/PointCopies.h"
 
 #include <algorithm>
 #include <string>
@@ -26,6 +27,9 @@ namespace tautline
  * @param mesh before its points were merged
  */
 TAUTLINECORE_EXPORT std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh);
+
+/// A sentence on copies of points that were joined by their global ids, or "".
+TAUTLINECORE_EXPORT std::string describeJoined(const JoinedCopies& copies);
 
 /// The same for a mesh whose points are not merged: how many, where, and what they do.
 TAUTLINECORE_EXPORT std::string describeSeams(const CoincidentPoints& points, const Mesh& mesh);

@@ -3,6 +3,7 @@
 
 #include "Blocks.h"
 #include "MovableMesh.h"
+#include "PointMerge.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
 #include "tautline/Mesh/CoordinateFrame.h"
@@ -197,9 +198,10 @@ RankMesh::RankMesh(
         }
       }
       vtkDataArray* given = input->GetPointData()->GetGlobalIds();
-      for (Index p = 0; !mergePoints && p < view.numberOfPoints; ++p)
+      ids = idsOf(given);
+      for (Index p = 0; !mergePoints && !given && p < view.numberOfPoints; ++p)
       {
-        ids.push_back(given ? static_cast<Index>(given->GetComponent(p, 0)) : p);
+        ids.push_back(p);
       }
       if (!mergePoints && !given && group.size() > 1 && view.numberOfPoints > 0)
       {
@@ -207,7 +209,11 @@ RankMesh::RankMesh(
                     "their global ids, and there are none: run Generate Global Ids first.");
       }
     });
+  const bool unnamed = static_cast<Index>(ids.size()) < this->piece().numberOfPoints;
+  this->Copies = tautline::joinCopies(group, this->piece(), unnamed ? nullptr : ids.data());
+  ids = mergePoints ? std::vector<Index>() : std::move(ids);
   MeshView view = this->piece();
+  view.points = this->joinedPoints();
   const unsigned char* ghosts = this->Adapter->ghostCells();
   if (copies)
   {
@@ -219,6 +225,13 @@ RankMesh::RankMesh(
   }
   this->divide({ view, mergePoints ? nullptr : ids.data(), ghosts });
   this->checkOrder();
+}
+
+//------------------------------------------------------------------------------
+/// The points of the piece with copies at one place.
+const double* RankMesh::joinedPoints() const
+{
+  return this->Copies.points.empty() ? this->piece().points : this->Copies.points.data();
 }
 
 //------------------------------------------------------------------------------
@@ -296,7 +309,9 @@ void RankMesh::checkOrder()
 //------------------------------------------------------------------------------
 std::string RankMesh::notice() const
 {
-  const std::string ofPiece = this->Adapter->notice();
+  std::string ofPiece = this->Adapter->notice();
+  const std::string joined = describeJoined(this->Copies);
+  ofPiece += (ofPiece.empty() || joined.empty() ? "" : "\n") + joined;
   const std::string division = this->Divided == Redistribution::None
     ? ""
     : "The mesh was divided anew among " + std::to_string(this->Group.size()) + " processes" +
@@ -515,7 +530,7 @@ std::vector<Index> RankMesh::idsOfPiece(const std::vector<Index>& ids) const
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {
     const Index local = mesh.localOfPiece()[p];
-    const PointQuery query = queryOf(view.points + 3 * p,
+    const PointQuery query = queryOf(this->joinedPoints() + 3 * p,
       given ? static_cast<Index>(given->GetComponent(p, 0)) : 0, local < 0 ? p : ids[local]);
     (local < 0 ? asked : known)[query.rank(ranks)].push_back(query);
   }

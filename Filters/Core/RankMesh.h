@@ -72,8 +72,10 @@ TAUTLINECORE_EXPORT std::string gatheredSentence(const std::string& why);
  * methods are collective but for const accessors.
  *
  * Cells marked as ghosts are copies. Points with the same coordinates are one, or, with
- * mergePoints off, those with the same global id. Cells of lower dimension than the others, and
- * those of unsupported types, hold their points, but on the boundary of a volume.
+ * mergePoints off, those with the same global id. Copies of a point with the same global id whose
+ * places differ by rounding are one, too, and get one place, see joinCopies(). Cells of lower
+ * dimension than the others, and those of unsupported types, hold their points, but on the boundary
+ * of a volume.
  */
 class TAUTLINECORE_EXPORT RankMesh
 {
@@ -155,6 +157,7 @@ public:
   std::string move(vtkPointSet* output, const std::vector<double>& local) const;
 
 private:
+  const double* joinedPoints() const;
   void divide(const MeshPiece& piece);
   void checkOrder();
 
@@ -168,6 +171,7 @@ private:
   bool Mirrored = false;
   Index InvertedElements = 0;
   std::unique_ptr<MeshAdapter> Adapter;
+  JoinedCopies Copies; ///< of the points of the pieces
   std::unique_ptr<DistributedMesh> TheMesh;
   std::vector<unsigned char> Skip, Held, Marked; // per cell, point and point of the piece
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WholeMesh.h"
 
+#include "PieceCopies.h"
 #include "PointOrder.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Types.h"
@@ -245,11 +246,6 @@ struct Keyed
   }
 };
 
-bool finitePlace(const Keyed& point)
-{
-  return std::isfinite(point.place[0] + point.place[1] + point.place[2]);
-}
-
 bool haveIds(const Pieces& pieces, bool ofPoints)
 {
   return std::all_of(pieces.begin(), pieces.end(),
@@ -286,6 +282,7 @@ void numberPoints(const Pieces& pieces, WholeMesh& whole, Origins& origins)
     }
   }
   std::sort(all.begin(), all.end());
+  PieceCopies copies(pieces);
   for (std::size_t begin = 0, end = 0; begin < all.size(); begin = end)
   {
     std::vector<int> counts(pieces.size(), 0);
@@ -293,10 +290,9 @@ void numberPoints(const Pieces& pieces, WholeMesh& whole, Origins& origins)
     for (end = begin; end < all.size() && !all[begin].before(all[end]); ++end)
     {
       highest = std::max(highest, all[end].own && !byId ? ++counts[all[end].piece] : 0);
-      if (byId && finitePlace(all[end]) && all[end].place != all[begin].place)
+      if (byId && all[end].place != all[begin].place)
       {
-        throw Error("Points at different places have the global id " +
-          std::to_string(all[begin].globalId) + ": run Generate Global Ids again.");
+        copies.require({ all[begin].piece, all[begin].id }, { all[end].piece, all[end].id });
       }
     }
     for (std::size_t k = begin; k < end; ++k)

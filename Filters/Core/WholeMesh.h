@@ -42,7 +42,8 @@ struct WholeMesh
 /**
  * @brief Puts pieces together. The result does not depend on how the mesh was divided.
  *
- * Points are identified by the global ids, if all pieces have some, and are in their order. Else
+ * Points are identified by the global ids, if all pieces have some, and are in their order; places
+ * of copies may differ by rounding, see areCopies(). Else
  * points with equal coordinates on several pieces are one, unless a piece has several points there
  * (a crack, a contact, a seam within the piece), which all stay apart; they are in the order of
  * their coordinates. Cells are in the order of their global ids, or else of the numbers of their

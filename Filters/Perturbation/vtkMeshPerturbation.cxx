@@ -135,8 +135,10 @@ void vtkMeshPerturbation::Perturb(
     return;
   }
   tautline::MeshAdapter adapter(points, this->Threads);
+  tautline::JoinedCopies copies;
   if (this->MergeCoincidentPoints)
   {
+    copies = adapter.joinCopies(points->GetPointData()->GetGlobalIds());
     adapter.mergeCoincidentPoints(this->Threads);
   }
   adapter.enterFrame(false);
@@ -178,6 +180,7 @@ void vtkMeshPerturbation::Perturb(
   total.stopped = total.stopped || result.stopped;
   for (const std::string& notice :
     { tautline::describeMerged(adapter.coincident(), adapter.given()),
+      tautline::describeJoined(copies),
       tautline::describeDuplicates(tautline::findSkin(mesh).duplicates) })
   {
     notices += (notices.empty() || notice.empty() ? "" : "\n") +
@@ -234,7 +237,9 @@ void vtkMeshPerturbation::PerturbPiece(tautline::RankMesh& mesh, vtkDataObject* 
   options.ids = ids.data();
   options.progress = [this](double fraction) { return this->Proceed(fraction); };
   total = tautline::perturbOnRanks(mesh.mesh(), mesh.mirrored(), fixed.data(), options);
-  notices = mesh.move(vtkPointSet::SafeDownCast(output), total.points);
+  notices = mesh.notice();
+  const std::string rounded = mesh.move(vtkPointSet::SafeDownCast(output), total.points);
+  notices += (notices.empty() || rounded.empty() ? "" : "\n") + rounded;
 }
 
 //------------------------------------------------------------------------------

@@ -10,6 +10,7 @@
 #include "vtkDataSetAttributes.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkUnsignedCharArray.h"
@@ -52,6 +53,8 @@ ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int th
   this->Fixed.assign(this->mesh().view().numberOfPoints, 0);
   if (mergePoints)
   {
+    const JoinedCopies copies =
+      this->Adapter->joinCopies(this->Taken->GetPointData()->GetGlobalIds());
     this->Adapter->mergeCoincidentPoints(threads);
     const CoincidentPoints& coincident = this->Adapter->coincident();
     this->Notice = describeMerged(coincident, this->Adapter->given());
@@ -59,6 +62,8 @@ ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int th
     {
       this->Notice += " The output has one point in place of each group.";
     }
+    const std::string joined = describeJoined(copies);
+    this->Notice += (this->Notice.empty() || joined.empty() ? "" : " ") + joined;
   }
   else
   {

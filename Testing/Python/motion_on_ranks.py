@@ -3,7 +3,7 @@
 
 Optimizes (by sweeps, and all points at once) and untangles a cube whose parts are on all ranks, cut in slabs or at
 random, and writes points, summaries and tables to FILE as JSON. So it does with cubes that are gathered on one rank,
-by their settings or their pieces, cut also by a k-d tree.
+by their settings or their pieces, and with copies of points that differ by rounding, cut also by a k-d tree.
 """
 
 import json
@@ -36,6 +36,12 @@ TURN = """  # half of the cells list their points in the opposite order: with sl
 half = points[cells].mean(axis=1)[:, 2] < {n} / 2
 cells[half, :2] = cells[half, 1::-1]
 """
+# The lowest rank with a point has it where it is; the copies of others differ by rounding, to larger coordinates.
+SHIFT = """
+lowest = np.full(len(points), RANKS)
+np.minimum.at(lowest, cells, divided(places[cells].mean(axis=1), "{cut}", RANKS)[:, None])
+points = points + 1e-12 * np.maximum(0, RANK - lowest)[:, None]
+"""
 BREAK = "points[np.flatnonzero(inner.all(axis=1))[3]] = np.nan"
 SLIDING = 1  # of the enumeration Boundary
 CUSTOM = 0  # of the enumeration Preset
@@ -48,7 +54,7 @@ def cube(n: int, amplitude: float, scattered: bool):
 
 
 def cut_cube(n: int, amplitude: float, cut: str, change: str = "", ids: bool = False):
-    script = CUBE.format(n=n, amplitude=amplitude, cut=cut, change=change.format(n=n), ids=ids)
+    script = CUBE.format(n=n, amplitude=amplitude, cut=cut, change=change.format(n=n, cut=cut), ids=ids)
     return simple.ProgrammableSource(OutputDataSetType="vtkUnstructuredGrid", Script=script)
 
 
@@ -103,6 +109,9 @@ for scattered in (0, 1):  # (scripts of sources import into this module: not "ra
 for cut in CUTS:
     note(f"turned {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, TURN, ids=True)))
     note(f"broken {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, BREAK, ids=True)))
+    note(f"copies {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, SHIFT, ids=True), ReproducibleOrder=1))
+    tangled = cut_cube(5, 0.45, cut, SHIFT, ids=True)
+    note(f"untangled copies {cut}", UntangleMesh(Input=tangled, ReproducibleOrder=1))
 
 with open(sys.argv[1], "w") as file:
     json.dump(results, file)

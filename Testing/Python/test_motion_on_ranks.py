@@ -32,6 +32,20 @@ def check_gathered(ranks: int, found: dict, one: dict) -> None:
             print(ranks, "ranks, gathered:", name, cut, "farthest", far)
 
 
+def check_copies(ranks: int, found: dict, one: dict) -> None:
+    """Copies of a point that differ by rounding are one point by their ids."""
+    for name in ("copies", "untangled copies"):
+        expected = one[f"{name} slabs"]
+        for cut in ("slabs", "tree", "random"):
+            case = found[f"{name} {cut}"]
+            far = np.abs(np.array(case["points"]) - np.array(expected["points"])).max()
+            assert far <= CLOSE, (ranks, name, cut, far)
+            assert case["inverted"] == expected["inverted"], (ranks, name, cut, case["inverted"])
+            stated = "copies with the same global id that are up to " in case["summary"]
+            assert stated == (ranks > 1), (ranks, name, cut, case["summary"])
+            print(ranks, "ranks:", name, cut, "farthest", far)
+
+
 one = run("motion_on_ranks.py", 1)
 assert one["ranks"] == 1
 history = one["optimize 0"]["history"]
@@ -45,6 +59,7 @@ for ranks in (1, 2, 3, 4):
     found = one if ranks == 1 else run("motion_on_ranks.py", ranks)
     assert found["ranks"] == ranks
     check_gathered(ranks, found, one)
+    check_copies(ranks, found, one)
     for name in ("optimize", *DIVISIONS, "slide", "rescaled", "untangle", *GLOBAL):
         expected = one["optimize 0" if name in DIVISIONS else f"{name} 0"]
         for cut in (0, 1):

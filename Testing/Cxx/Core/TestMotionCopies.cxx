@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Filters that move points, of pieces whose copies of a point have the same global id and places
+// that differ by rounding: seams move as those of one mesh, on processes, gathered on the first
+// one, and in one data set on one process.
+#include "MotionRanks.h"
+
+#include "vtkMeshImprover.h"
+#include "vtkMeshOptimizer.h"
+#include "vtkMeshPerturbation.h"
+#include "vtkMeshUntangler.h"
+
+#include "vtkAppendFilter.h"
+
+using namespace tautline;
+
+namespace
+{
+constexpr double rounding = 1e-12;
+constexpr char remark[] = "copies with the same global id that are up to ";
+
+/// Copies of the points of a part that no other piece has.
+RankPart shifted(const MeshData& whole, int piece, const std::function<int(Index)>& pieceOf)
+{
+  RankPart part = partOf(whole, piece, pieceOf);
+  Random random(11 + piece);
+  part.data.transform([&](const Vec3& p) { return p + random.vector(-rounding, rounding); });
+  return part;
+}
+
+/// The mesh with the places that the copies get: the first by the coordinates, or, of a mesh that
+/// is gathered, those of the first process.
+MeshData joined(
+  const MeshData& whole, int pieces, const std::function<int(Index)>& pieceOf, bool gathered)
+{
+  MeshData result = whole;
+  std::vector<char> known(whole.numberOfPoints(), 0);
+  Index differing = 0;
+  for (int piece = 0; piece < pieces; ++piece)
+  {
+    const RankPart part = shifted(whole, piece, pieceOf);
+    for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+    {
+      const Index point = part.pointOf[p];
+      const Vec3 place = part.data.point(static_cast<Index>(p));
+      differing += known[point] && place != result.point(point);
+      if (!known[point] || (!gathered && place < result.point(point)))
+      {
+        std::copy(place.begin(), place.end(), &result.points[3 * point]);
+      }
+      known[point] = 1;
+    }
+  }
+  TAUTLINE_CHECK(differing > 10);
+  return result;
+}
+
+const auto allOf = [](Index) { return 0; };
+
+/// The points that a filter gives by those of the whole mesh.
+template <class Filter, class Set>
+std::vector<double> moved(const MeshData& whole, const RankPart& part, vtkUnstructuredGrid* grid,
+  const Set& set, Filter* filter)
+{
+  filter->SetInputData(grid);
+  set(filter);
+  Messages messages(filter);
+  filter->Update();
+  TAUTLINE_CHECK(!messages.has("ERROR: "));
+  std::vector<double> points(whole.points.size(), HUGE_VAL);
+  auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK_EQUAL(output->GetNumberOfPoints(), grid->GetNumberOfPoints());
+  for (vtkIdType p = 0; p < output->GetNumberOfPoints(); ++p)
+  {
+    output->GetPoint(p, &points[3 * part.pointOf[p]]);
+  }
+  return points;
+}
+
+/// The same by one process, without the others.
+template <class Filter, class Set>
+std::vector<double> alone(
+  vtkMPIController* controller, const MeshData& whole, const Set& set, Filter* filter)
+{
+  const RankPart all = partOf(whole, 0, allOf);
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  std::vector<double> points = moved(whole, all, numberedGridOf(all), set, filter);
+  vtkMultiProcessController::SetGlobalController(controller);
+  return points;
+}
+
+bool remarked(const char* summary)
+{
+  return std::string(summary).find(remark) != std::string::npos;
+}
+
+/// On processes, against one process with the mesh of the joined copies.
+template <class Filter, class Set>
+void testFilter(const char* name, vtkMPIController* controller, const MeshData& whole,
+  bool gathered, const Set& set)
+{
+  const Context context(name);
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  for (const Cut cut : { Cut::Slabs, Cut::Random })
+  {
+    const Context inner("cut " + std::to_string(static_cast<int>(cut)));
+    const auto rankOf = cutBy(whole, cut, size);
+    vtkNew<Filter> serial, filter;
+    const std::vector<double> expected =
+      alone(controller, joined(whole, size, rankOf, gathered), set, serial.Get());
+    TAUTLINE_CHECK(!remarked(serial->GetSummary()));
+    const RankPart part = shifted(whole, rank, rankOf);
+    checkSame(moved(whole, part, numberedGridOf(part), set, filter.Get()), expected);
+    TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), serial->GetInvertedAfter());
+    TAUTLINE_CHECK_EQUAL(remarked(filter->GetSummary()), !gathered);
+  }
+}
+
+/// Pieces that number their points each from 0 are joined by the coordinates.
+void testOwnNumbers(vtkMPIController* controller)
+{
+  const Context context("own numbers");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const MeshData whole = jittered(CellType::Tetrahedron, 4, 0.25);
+  const auto set = [](vtkMeshOptimizer* filter) { filter->ReproducibleOrderOn(); };
+  vtkNew<vtkMeshOptimizer> serial, filter;
+  const std::vector<double> expected = alone(controller, whole, set, serial.Get());
+  const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Slabs, size));
+  const auto grid = numberedGridOf(part);
+  for (vtkIdType p = 0; p < grid->GetNumberOfPoints(); ++p)
+  {
+    grid->GetPointData()->GetGlobalIds()->SetComponent(p, 0, static_cast<double>(p));
+  }
+  checkSame(moved(whole, part, grid, set, filter.Get()), expected);
+  TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), serial->GetFreePoints());
+  TAUTLINE_CHECK(!remarked(filter->GetSummary()));
+}
+
+/// A mesh of several pieces as one data set on one process: the seam moves as the rest.
+void testOneProcess(vtkMPIController* controller)
+{
+  const Context context("one process");
+  const MeshData whole = jittered(CellType::Tetrahedron, 4, 0.25);
+  const auto pieceOf = cutBy(whole, Cut::Slabs, 2);
+  vtkNew<vtkAppendFilter> append;
+  append->MergePointsOff();
+  RankPart both;
+  for (int piece = 0; piece < 2; ++piece)
+  {
+    const RankPart part = shifted(whole, piece, pieceOf);
+    both.pointOf.insert(both.pointOf.end(), part.pointOf.begin(), part.pointOf.end());
+    append->AddInputData(numberedGridOf(part));
+  }
+  append->Update();
+  // vtkAppendFilter keeps the array of the ids, but not what it is.
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->ShallowCopy(append->GetOutput());
+  grid->GetPointData()->SetGlobalIds(grid->GetPointData()->GetArray("point ids"));
+  grid->GetCellData()->SetGlobalIds(nullptr);
+  TAUTLINE_CHECK(grid->GetNumberOfPoints() > whole.numberOfPoints());
+  const auto set = [](auto* filter) { filter->SetMergeCoincidentPoints(true); };
+  vtkNew<vtkMeshOptimizer> serial, optimizer, apart;
+  alone(controller, whole, set, serial.Get());
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  const std::vector<double> points = moved(whole, both, grid, set, optimizer.Get());
+  TAUTLINE_CHECK(remarked(optimizer->GetSummary()));
+  TAUTLINE_CHECK_EQUAL(optimizer->GetFreePoints(), serial->GetFreePoints());
+  auto* output = vtkUnstructuredGrid::SafeDownCast(optimizer->GetOutputDataObject(0));
+  for (vtkIdType p = 0; p < output->GetNumberOfPoints(); ++p)
+  {
+    // Copies stay together.
+    Vec3 place;
+    output->GetPoint(p, place.data());
+    const double* last = &points[3 * both.pointOf[p]];
+    TAUTLINE_CHECK(norm(place - Vec3{ last[0], last[1], last[2] }) <= 4 * rounding);
+  }
+  vtkNew<vtkMeshImprover> improver;
+  improver->SetInputData(grid);
+  improver->Update();
+  TAUTLINE_CHECK(remarked(improver->GetSummary()));
+  vtkNew<vtkMeshPerturbation> perturbation;
+  perturbation->SetInputData(grid);
+  perturbation->Update();
+  TAUTLINE_CHECK(remarked(perturbation->GetSummary()));
+  // Without ids they are apart, as before.
+  grid->GetPointData()->SetGlobalIds(nullptr);
+  moved(whole, both, grid, set, apart.Get());
+  TAUTLINE_CHECK(!remarked(apart->GetSummary()));
+  TAUTLINE_CHECK(apart->GetFreePoints() < serial->GetFreePoints());
+  vtkMultiProcessController::SetGlobalController(controller);
+}
+
+/// Improve Mesh, whose result depends on the number of processes: that of exact copies.
+void testImprover(vtkMPIController* controller)
+{
+  const MeshData whole = jittered(CellType::Tetrahedron, 5, 0.25);
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  for (const vtkIdType gatherBelow : { vtkIdType(0), vtkIdType(1000000) })
+  {
+    for (const Cut cut : { Cut::Slabs, Cut::Random })
+    {
+      const Context context("improve, gathered below " + std::to_string(gatherBelow) + ", cut " +
+        std::to_string(static_cast<int>(cut)));
+      const auto rankOf = cutBy(whole, cut, size);
+      vtkNew<vtkMeshImprover> exact, filter;
+      exact->SetInputData(numberedGridOf(partOf(whole, rank, rankOf)));
+      filter->SetInputData(numberedGridOf(shifted(whole, rank, rankOf)));
+      vtkIdType cells[2];
+      std::size_t i = 0;
+      for (vtkMeshImprover* one : { exact.Get(), filter.Get() })
+      {
+        one->SetGatherBelow(gatherBelow);
+        Messages messages(one);
+        one->Update();
+        TAUTLINE_CHECK(!messages.has("ERROR: "));
+        const vtkIdType own = one->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL);
+        controller->AllReduce(&own, &cells[i++], 1, vtkCommunicator::SUM_OP);
+      }
+      TAUTLINE_CHECK_EQUAL(cells[1], cells[0]);
+      TAUTLINE_CHECK(cells[0] != whole.numberOfCells()); // it has done something
+    }
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+int TestMotionCopies(int argc, char* argv[])
+{
+  vtkNew<vtkMPIController> controller;
+  controller->Initialize(&argc, &argv);
+  vtkMultiProcessController::SetGlobalController(controller);
+  const MeshData tets = jittered(CellType::Tetrahedron, 4, 0.25);
+  testFilter<vtkMeshOptimizer>("optimize", controller, tets, false,
+    [](vtkMeshOptimizer* filter) { filter->ReproducibleOrderOn(); });
+  testFilter<vtkMeshOptimizer>("optimize, gathered", controller, tets, true,
+    [](vtkMeshOptimizer* filter) { filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT); });
+  testFilter<vtkMeshUntangler>("untangle", controller, jittered(CellType::Tetrahedron, 5, 0.45),
+    false, [](vtkMeshUntangler* filter) { filter->ReproducibleOrderOn(); });
+  testFilter<vtkMeshPerturbation>("perturb, gathered", controller, tets, true,
+    [](vtkMeshPerturbation* filter) { filter->SetTangledFraction(0.01); });
+  testFilter<vtkMeshPerturbation>("perturb", controller, tets, false, [](vtkMeshPerturbation*) {});
+  testOwnNumbers(controller);
+  testImprover(controller);
+  testOneProcess(controller);
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  controller->Finalize();
+  return exitCode();
+}
