@@ -45,6 +45,14 @@ using Pipeline = vtkStreamingDemandDrivenPipeline;
 using Rebuilt = vtkSmartPointer<vtkDataSet>;
 
 //------------------------------------------------------------------------------
+/// A piece that another process sends, and its place in a GatheredMesh.
+struct ExpectedPiece
+{
+  int process;
+  std::size_t group, index;
+};
+
+//------------------------------------------------------------------------------
 /// The mesh on an input port: the pieces of this process and, on the first, the whole.
 struct PortMesh
 {
@@ -56,6 +64,7 @@ struct PortMesh
 
   // On the first process:
   GatheredMesh gathered;
+  std::vector<ExpectedPiece> expected;
   vtkSmartPointer<vtkDataObject> structure, whole;
 };
 
@@ -183,7 +192,8 @@ private:
   std::string announce();
   void exchangeStructures();
   void gather();
-  void gatherPiece(PortMesh& mesh, int process, const PieceSize& size, std::size_t& own);
+  void preparePieces();
+  void preparePiece(PortMesh& mesh, int process, const PieceSize& size, std::size_t& own);
   void assembleAll();
   void execute(const std::function<int()>& execute);
   void prepareOutputs(ReplacedData& replaced);
@@ -378,21 +388,11 @@ void GatheredExecution::exchangeStructures()
 }
 
 //------------------------------------------------------------------------------
-void GatheredExecution::gather()
+/// On the first process: places for the pieces, with those that are not sent.
+void GatheredExecution::preparePieces()
 {
   for (PortMesh& mesh : this->Meshes)
   {
-    if (this->Rank != FirstProcess)
-    {
-      for (const auto& piece : mesh.sent)
-      {
-        if (piece->GetNumberOfPoints() > 0)
-        {
-          this->Controller->Send(piece.Get(), FirstProcess, DataTag);
-        }
-      }
-      continue;
-    }
     std::size_t own = 0;
     mesh.gathered.groups.resize(static_cast<std::size_t>(mesh.groups));
     for (int process = 0; process < this->Count; ++process)
@@ -401,7 +401,7 @@ void GatheredExecution::gather()
       {
         if (&mesh == &this->Meshes[static_cast<std::size_t>(size.mesh)])
         {
-          this->gatherPiece(mesh, process, size, own);
+          this->preparePiece(mesh, process, size, own);
         }
       }
     }
@@ -409,9 +409,10 @@ void GatheredExecution::gather()
 }
 
 //------------------------------------------------------------------------------
-void GatheredExecution::gatherPiece(
+void GatheredExecution::preparePiece(
   PortMesh& mesh, int process, const PieceSize& size, std::size_t& own)
 {
+  GatheredGroup& group = mesh.gathered.groups[static_cast<std::size_t>(size.group)];
   vtkSmartPointer<vtkDataObject> data;
   if (process == FirstProcess)
   {
@@ -419,15 +420,36 @@ void GatheredExecution::gatherPiece(
   }
   else if (size.points > 0)
   {
-    data.TakeReference(this->Controller->ReceiveDataObject(process, DataTag));
+    mesh.expected.push_back({ process, static_cast<std::size_t>(size.group), group.pieces.size() });
   }
   else
   {
     data.TakeReference(vtkDataObjectTypes::NewDataObject(size.type.c_str()));
   }
-  GatheredGroup& group = mesh.gathered.groups[static_cast<std::size_t>(size.group)];
   group.pieces.push_back(vtkDataSet::SafeDownCast(data));
   group.processes.push_back(process);
+}
+
+//------------------------------------------------------------------------------
+/// Only sends and receives: whoever failed here would leave others waiting.
+void GatheredExecution::gather()
+{
+  for (PortMesh& mesh : this->Meshes)
+  {
+    for (std::size_t i = 0; this->Rank != FirstProcess && i < mesh.sent.size(); ++i)
+    {
+      if (mesh.sent[i]->GetNumberOfPoints() > 0)
+      {
+        this->Controller->Send(mesh.sent[i].Get(), FirstProcess, DataTag);
+      }
+    }
+    for (const ExpectedPiece& expected : mesh.expected)
+    {
+      const auto data = vtkSmartPointer<vtkDataObject>::Take(
+        this->Controller->ReceiveDataObject(expected.process, DataTag));
+      mesh.gathered.groups[expected.group].pieces[expected.index] = vtkDataSet::SafeDownCast(data);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -578,6 +600,15 @@ int GatheredExecution::run(const std::function<int()>& execute)
     return this->fail(problem);
   }
   this->exchangeStructures();
+  if (this->Rank == FirstProcess)
+  {
+    problem = this->attempt([this] { this->preparePieces(); });
+  }
+  problem = shareText(this->Controller, problem);
+  if (!problem.empty())
+  {
+    return this->fail(problem);
+  }
   this->gather();
   if (this->Rank == FirstProcess)
   {

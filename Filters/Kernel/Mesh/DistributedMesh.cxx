@@ -46,19 +46,25 @@ struct IdAndPlace
 /// Throws Error, on all ranks, where an id is at two places.
 void checkIds(RankGroup& group, const std::vector<IdAndPlace>& own)
 {
-  std::vector<std::vector<IdAndPlace>> sent(group.size());
-  for (const IdAndPlace& item : own)
-  {
-    sent[SplitMix::mixed(static_cast<std::uint64_t>(item.id)) % sent.size()].push_back(item);
-  }
-  std::vector<IdAndPlace> all;
-  for (const auto& list : group.exchangeItems(sent))
-  {
-    all.insert(all.end(), list.begin(), list.end());
-  }
+  std::vector<std::vector<IdAndPlace>> sent;
   group.together(
     [&]
     {
+      sent.resize(group.size());
+      for (const IdAndPlace& item : own)
+      {
+        sent[SplitMix::mixed(static_cast<std::uint64_t>(item.id)) % sent.size()].push_back(item);
+      }
+    });
+  const auto received = group.exchangeItems(sent);
+  group.together(
+    [&]
+    {
+      std::vector<IdAndPlace> all;
+      for (const auto& list : received)
+      {
+        all.insert(all.end(), list.begin(), list.end());
+      }
       std::sort(all.begin(), all.end(),
         [](const IdAndPlace& a, const IdAndPlace& b) { return a.id < b.id; });
       for (std::size_t i = 1; i < all.size(); ++i)
@@ -204,12 +210,8 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
 
   std::vector<PointKey> keys;
   std::vector<IdAndPlace> ids;
-  for (Index p = 0; p < n; ++p)
+  const auto keyOf = [&](Index p)
   {
-    if (!used[p])
-    {
-      continue;
-    }
     PointKey key = { 0, { 0, 0, 0 }, withIds ? piece.globalIds[p] : 0, p, group.rank(), used[p] > 1,
       piece.owners ? piece.owners[p] : -1 };
     for (int c = 0; c < 3; ++c)
@@ -219,17 +221,31 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
       key.curve |=
         spreadBits(static_cast<std::uint64_t>(cell > 0 ? std::min(cell, mortonCells) : 0.0)) << c;
     }
-    keys.push_back(key);
-    if (withIds)
+    return key;
+  };
+  group.together(
+    [&]
     {
-      ids.push_back({ key.id, { key.x[0], key.x[1], key.x[2] } });
-    }
-  }
+      for (Index p = 0; p < n; ++p)
+      {
+        if (used[p])
+        {
+          keys.push_back(keyOf(p));
+        }
+      }
+      for (const PointKey& key : keys)
+      {
+        if (withIds)
+        {
+          ids.push_back({ key.id, { key.x[0], key.x[1], key.x[2] } });
+        }
+      }
+      std::sort(keys.begin(), keys.end());
+    });
   if (withIds)
   {
     checkIds(group, ids);
   }
-  std::sort(keys.begin(), keys.end());
   return keys;
 }
 
@@ -239,38 +255,50 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
   const std::vector<PointKey>& keys) const
 {
   RankGroup& group = *this->Group;
-  std::vector<PointKey> samples;
-  for (std::size_t i = 0; i < samplesPerRank && !keys.empty(); ++i)
-  {
-    samples.push_back(keys[i * keys.size() / samplesPerRank]);
-  }
-  std::vector<PointKey> all;
-  for (const auto& list : group.gatherItems(samples))
-  {
-    all.insert(all.end(), list.begin(), list.end());
-  }
-  std::sort(all.begin(), all.end());
-  std::vector<PointKey> limits;
-  for (int r = 1; r < group.size() && !all.empty(); ++r)
-  {
-    limits.push_back(all[r * all.size() / group.size()]);
-  }
-  std::vector<std::vector<PointKey>> sent(group.size());
-  for (const PointKey& key : keys)
-  {
-    sent[std::upper_bound(limits.begin(), limits.end(), key) - limits.begin()].push_back(key);
-  }
-  const std::vector<std::vector<PointKey>> received = group.exchangeItems(sent);
-  std::vector<PointKey> range;
-  for (const auto& list : received)
-  {
-    range.insert(range.end(), list.begin(), list.end());
-  }
-  std::sort(range.begin(), range.end(),
-    [&](const PointKey& a, const PointKey& b)
+  std::vector<PointKey> samples, range;
+  std::vector<std::vector<PointKey>> sent;
+  group.together(
+    [&]
     {
-      return std::make_tuple(a.place(), a.rank, a.source) <
-        std::make_tuple(b.place(), b.rank, b.source);
+      for (std::size_t i = 0; i < samplesPerRank && !keys.empty(); ++i)
+      {
+        samples.push_back(keys[i * keys.size() / samplesPerRank]);
+      }
+    });
+  const std::vector<std::vector<PointKey>> sampled = group.gatherItems(samples);
+  group.together(
+    [&]
+    {
+      std::vector<PointKey> all, limits;
+      for (const auto& list : sampled)
+      {
+        all.insert(all.end(), list.begin(), list.end());
+      }
+      std::sort(all.begin(), all.end());
+      for (int r = 1; r < group.size() && !all.empty(); ++r)
+      {
+        limits.push_back(all[r * all.size() / group.size()]);
+      }
+      sent.resize(group.size());
+      for (const PointKey& key : keys)
+      {
+        sent[std::upper_bound(limits.begin(), limits.end(), key) - limits.begin()].push_back(key);
+      }
+    });
+  const std::vector<std::vector<PointKey>> received = group.exchangeItems(sent);
+  group.together(
+    [&]
+    {
+      for (const auto& list : received)
+      {
+        range.insert(range.end(), list.begin(), list.end());
+      }
+      std::sort(range.begin(), range.end(),
+        [&](const PointKey& a, const PointKey& b)
+        {
+          return std::make_tuple(a.place(), a.rank, a.source) <
+            std::make_tuple(b.place(), b.rank, b.source);
+        });
     });
   return range;
 }
@@ -285,10 +313,14 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
   if (piece.divideAnew)
   {
     std::vector<Vec3> places;
-    for (const PointKey& key : keys)
-    {
-      places.push_back({ key.x[0], key.x[1], key.x[2] });
-    }
+    group.together(
+      [&]
+      {
+        for (const PointKey& key : keys)
+        {
+          places.push_back({ key.x[0], key.x[1], key.x[2] });
+        }
+      });
     division = std::make_unique<PointDivision>(group, places);
   }
   const std::vector<PointKey> range = this->distribute(keys);
@@ -309,34 +341,39 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
   {
     Index source, number, owner;
   };
-  std::vector<std::vector<Reply>> replies(group.size());
-  for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end, ++first)
+  std::vector<std::vector<Reply>> replies;
+  const auto reply = [&]
   {
-    Index owner = range[begin].rank;
-    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
-    for (end = begin; end < range.size() && !(range[begin] < range[end]); ++end)
+    replies.resize(group.size());
+    for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end, ++first)
     {
-      const std::uint64_t hash = ownerHash(first, static_cast<int>(range[end].rank));
-      if (range[end].withCell && hash < least)
+      Index owner = range[begin].rank;
+      std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+      for (end = begin; end < range.size() && !(range[begin] < range[end]); ++end)
       {
-        least = hash;
-        owner = range[end].rank;
+        const std::uint64_t hash = ownerHash(first, static_cast<int>(range[end].rank));
+        if (range[end].withCell && hash < least)
+        {
+          least = hash;
+          owner = range[end].rank;
+        }
+      }
+      if (least < std::numeric_limits<std::uint64_t>::max()) // an element has it
+      {
+        const PointKey& key = range[begin];
+        owner = key.owner >= 0 ? key.owner
+          : division           ? division->find({ key.x[0], key.x[1], key.x[2] })
+                               : owner;
+      }
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        replies[range[i].rank].push_back({ range[i].source, first, owner });
       }
     }
-    if (least < std::numeric_limits<std::uint64_t>::max()) // an element has it
-    {
-      const PointKey& key = range[begin];
-      owner = key.owner >= 0 ? key.owner
-        : division           ? division->find({ key.x[0], key.x[1], key.x[2] })
-                             : owner;
-    }
-    for (std::size_t i = begin; i < end; ++i)
-    {
-      replies[range[i].rank].push_back({ range[i].source, first, owner });
-    }
-  }
-  this->PieceNumbers.assign(piece.view.numberOfPoints, -1);
-  this->PieceOwners.assign(piece.view.numberOfPoints, -1);
+    this->PieceNumbers.assign(piece.view.numberOfPoints, -1);
+    this->PieceOwners.assign(piece.view.numberOfPoints, -1);
+  };
+  group.together(reply);
   for (const auto& list : group.exchangeItems(replies))
   {
     for (const Reply& reply : list)
@@ -350,7 +387,7 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
 //------------------------------------------------------------------------------
 /// The local points, and where each number is among them.
 void DistributedMesh::takePoints(
-  const MeshPiece& piece, const std::vector<char>& used, std::vector<SentPoint> points)
+  const MeshPiece& piece, const std::vector<char>& used, std::vector<SentPoint>& points)
 {
   std::sort(points.begin(), points.end(),
     [](const SentPoint& a, const SentPoint& b) { return a.number < b.number; });
@@ -363,12 +400,8 @@ void DistributedMesh::takePoints(
       this->Points.insert(this->Points.end(), point.x, point.x + 3);
     }
   }
-  this->Group->together(
-    [this]
-    {
-      this->Intervals =
-        NumberIntervals(this->localPoints(), [this](Index p) { return this->Numbers[p]; });
-    });
+  this->Intervals =
+    NumberIntervals(this->localPoints(), [this](Index p) { return this->Numbers[p]; });
   this->LocalOfPiece.assign(piece.view.numberOfPoints, -1);
   for (Index p = 0; p < piece.view.numberOfPoints; ++p)
   {
@@ -397,28 +430,38 @@ void DistributedMesh::exchangePoints(
     std::copy_n(view.points + 3 * p, 3, point.x);
     return point;
   };
-  std::vector<std::vector<SentPoint>> sent(group.size());
-  for (int rank = 0; rank < group.size(); ++rank)
-  {
-    std::vector<Index>& points = needed[rank];
-    std::sort(points.begin(), points.end());
-    points.erase(std::unique(points.begin(), points.end()), points.end());
-    std::transform(points.begin(), points.end(), std::back_inserter(sent[rank]), pointAt);
-  }
+  std::vector<std::vector<SentPoint>> sent;
   std::vector<SentPoint> points;
-  points.reserve(static_cast<std::size_t>(view.numberOfPoints));
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    if (used[p])
+  group.together(
+    [&]
     {
-      points.push_back(pointAt(p));
-    }
-  }
-  for (const auto& list : group.exchangeItems(sent))
-  {
-    points.insert(points.end(), list.begin(), list.end());
-  }
-  this->takePoints(piece, used, std::move(points));
+      sent.resize(group.size());
+      for (int rank = 0; rank < group.size(); ++rank)
+      {
+        std::vector<Index>& some = needed[rank];
+        std::sort(some.begin(), some.end());
+        some.erase(std::unique(some.begin(), some.end()), some.end());
+        std::transform(some.begin(), some.end(), std::back_inserter(sent[rank]), pointAt);
+      }
+      points.reserve(static_cast<std::size_t>(view.numberOfPoints));
+      for (Index p = 0; p < view.numberOfPoints; ++p)
+      {
+        if (used[p])
+        {
+          points.push_back(pointAt(p));
+        }
+      }
+    });
+  const auto received = group.exchangeItems(sent);
+  group.together(
+    [&]
+    {
+      for (const auto& list : received)
+      {
+        points.insert(points.end(), list.begin(), list.end());
+      }
+      this->takePoints(piece, used, points);
+    });
 }
 
 //------------------------------------------------------------------------------
@@ -432,77 +475,109 @@ std::vector<std::vector<std::int32_t>> DistributedMesh::exchangeCells(
   const auto takes = [&](Index cell)
   { return !(piece.ghosts && piece.ghosts[cell]) && takesPart(view, cell); };
   const auto isOwn = [&](Index point) { return this->PieceOwners[point] == self; };
-  std::vector<std::vector<Index>> sent(group.size()), needed(group.size());
-  std::vector<int> ranks;
+  std::vector<std::vector<Index>> sent, needed;
   std::size_t staying = 0; // length of the list of those of this rank
-  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  const auto list = [&]
   {
-    if (!takes(cell))
+    sent.resize(group.size());
+    needed.resize(group.size());
+    std::vector<int> ranks;
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
     {
-      continue;
-    }
-    const Index *begin = view.connectivity + view.offsets[cell],
-                *end = view.connectivity + view.offsets[cell + 1];
-    const auto own = std::count_if(begin, end, isOwn);
-    staying += own > 0 ? 2 + static_cast<std::size_t>(end - begin) : 0;
-    if (own == end - begin) // most cells stay
-    {
-      continue;
-    }
-    ranks.clear();
-    for (const Index* node = begin; node != end; ++node)
-    {
-      ranks.push_back(this->PieceOwners[*node]);
-    }
-    std::sort(ranks.begin(), ranks.end());
-    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
-    for (const int rank : ranks)
-    {
-      if (rank == self)
+      if (!takes(cell))
       {
         continue;
       }
-      sent[rank].push_back(view.cellTypes[cell]);
-      sent[rank].push_back(end - begin);
+      const Index *begin = view.connectivity + view.offsets[cell],
+                  *end = view.connectivity + view.offsets[cell + 1];
+      const auto own = std::count_if(begin, end, isOwn);
+      staying += own > 0 ? 2 + static_cast<std::size_t>(end - begin) : 0;
+      if (own == end - begin) // most cells stay
+      {
+        continue;
+      }
+      ranks.clear();
       for (const Index* node = begin; node != end; ++node)
       {
-        sent[rank].push_back(this->PieceNumbers[*node]);
-        needed[rank].push_back(*node);
+        ranks.push_back(this->PieceOwners[*node]);
+      }
+      std::sort(ranks.begin(), ranks.end());
+      ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+      for (const int rank : ranks)
+      {
+        if (rank == self)
+        {
+          continue;
+        }
+        sent[rank].push_back(view.cellTypes[cell]);
+        sent[rank].push_back(end - begin);
+        for (const Index* node = begin; node != end; ++node)
+        {
+          sent[rank].push_back(this->PieceNumbers[*node]);
+          needed[rank].push_back(*node);
+        }
       }
     }
-  }
+  };
+  group.together(list);
   this->exchangePoints(piece, used, std::move(needed));
 
-  std::vector<std::vector<std::int32_t>> lists(group.size());
+  std::vector<std::vector<std::int32_t>> lists;
   const std::vector<std::vector<Index>> received = group.exchangeItems(sent);
-  for (int rank = 0; rank < group.size(); ++rank)
+  const auto take = [&]
   {
-    const std::vector<Index>& list = received[rank];
-    for (std::size_t i = 0; i < list.size(); i += 2 + static_cast<std::size_t>(list[i + 1]))
+    lists.resize(group.size());
+    for (int rank = 0; rank < group.size(); ++rank)
     {
-      lists[rank].push_back(static_cast<std::int32_t>(list[i]));
-      lists[rank].push_back(static_cast<std::int32_t>(list[i + 1]));
-      std::transform(list.begin() + static_cast<std::ptrdiff_t>(i) + 2,
-        list.begin() + static_cast<std::ptrdiff_t>(i) + 2 +
-          static_cast<std::ptrdiff_t>(list[i + 1]),
-        std::back_inserter(lists[rank]),
-        [this](Index number) { return static_cast<std::int32_t>(this->local(number)); });
+      const std::vector<Index>& from = received[rank];
+      for (std::size_t i = 0; i < from.size(); i += 2 + static_cast<std::size_t>(from[i + 1]))
+      {
+        const auto begin = from.begin() + static_cast<std::ptrdiff_t>(i) + 2;
+        lists[rank].push_back(static_cast<std::int32_t>(from[i]));
+        lists[rank].push_back(static_cast<std::int32_t>(from[i + 1]));
+        std::transform(begin, begin + static_cast<std::ptrdiff_t>(from[i + 1]),
+          std::back_inserter(lists[rank]),
+          [this](Index number) { return static_cast<std::int32_t>(this->local(number)); });
+      }
     }
-  }
-  lists[self].reserve(staying);
-  for (Index cell = 0; cell < view.numberOfCells; ++cell)
-  {
-    const Index *begin = view.connectivity + view.offsets[cell],
-                *end = view.connectivity + view.offsets[cell + 1];
-    if (takes(cell) && std::any_of(begin, end, isOwn))
+    lists[self].reserve(staying);
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
     {
-      lists[self].push_back(view.cellTypes[cell]);
-      lists[self].push_back(static_cast<std::int32_t>(end - begin));
-      std::transform(begin, end, std::back_inserter(lists[self]),
-        [this](Index point) { return static_cast<std::int32_t>(this->LocalOfPiece[point]); });
+      const Index *begin = view.connectivity + view.offsets[cell],
+                  *end = view.connectivity + view.offsets[cell + 1];
+      if (takes(cell) && std::any_of(begin, end, isOwn))
+      {
+        lists[self].push_back(view.cellTypes[cell]);
+        lists[self].push_back(static_cast<std::int32_t>(end - begin));
+        std::transform(begin, end, std::back_inserter(lists[self]),
+          [this](Index point) { return static_cast<std::int32_t>(this->LocalOfPiece[point]); });
+      }
     }
-  }
+  };
+  group.together(take);
   return lists;
+}
+
+//------------------------------------------------------------------------------
+void DistributedMesh::copyCells(const TakenCells& taken)
+{
+  this->Offsets.assign(1, 0);
+  std::size_t nodes = 0;
+  for (const TakenCells::Cell& cell : taken.cells())
+  {
+    nodes += static_cast<std::size_t>(taken.end(cell) - taken.begin(cell));
+  }
+  this->CellTypes.reserve(taken.cells().size());
+  this->OwnedCells.reserve(taken.cells().size());
+  this->Offsets.reserve(taken.cells().size() + 1);
+  this->Connectivity.reserve(nodes);
+  for (const TakenCells::Cell& cell : taken.cells())
+  {
+    this->CellTypes.push_back(static_cast<unsigned char>(taken.type(cell)));
+    this->Connectivity.insert(this->Connectivity.end(), taken.begin(cell), taken.end(cell));
+    this->Offsets.push_back(static_cast<Index>(this->Connectivity.size()));
+    this->OwnedCells.push_back(this->owned(cell.least));
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -527,27 +602,10 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
             "or mark copies in the array vtkGhostType.");
         }
       }
+      this->copyCells(*taken);
     });
 
-  this->Offsets.assign(1, 0);
-  Index own = 0;
-  std::size_t nodes = 0;
-  for (const TakenCells::Cell& cell : taken->cells())
-  {
-    nodes += static_cast<std::size_t>(taken->end(cell) - taken->begin(cell));
-  }
-  this->CellTypes.reserve(taken->cells().size());
-  this->OwnedCells.reserve(taken->cells().size());
-  this->Offsets.reserve(taken->cells().size() + 1);
-  this->Connectivity.reserve(nodes);
-  for (const TakenCells::Cell& cell : taken->cells())
-  {
-    this->CellTypes.push_back(static_cast<unsigned char>(taken->type(cell)));
-    this->Connectivity.insert(this->Connectivity.end(), taken->begin(cell), taken->end(cell));
-    this->Offsets.push_back(static_cast<Index>(this->Connectivity.size()));
-    this->OwnedCells.push_back(this->owned(cell.least));
-    own += this->OwnedCells.back();
-  }
+  const Index own = std::count(this->OwnedCells.begin(), this->OwnedCells.end(), 1);
   this->GlobalCells = group.sum(own);
   this->View.numberOfPoints = this->localPoints();
   this->View.points = this->Points.data();
@@ -562,28 +620,38 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
 void DistributedMesh::connect()
 {
   RankGroup& group = *this->Group;
-  std::vector<std::vector<Index>> wanted(group.size());
-  std::vector<std::vector<std::int32_t>> received(group.size());
-  for (Index p = 0; p < this->localPoints(); ++p)
-  {
-    if (!this->owned(p))
+  std::vector<std::vector<Index>> wanted;
+  std::vector<std::vector<std::int32_t>> received;
+  group.together(
+    [&]
     {
-      wanted[this->Owners[p]].push_back(this->Numbers[p]);
-      received[this->Owners[p]].push_back(static_cast<std::int32_t>(p));
-    }
-  }
+      wanted.resize(group.size());
+      received.resize(group.size());
+      for (Index p = 0; p < this->localPoints(); ++p)
+      {
+        if (!this->owned(p))
+        {
+          wanted[this->Owners[p]].push_back(this->Numbers[p]);
+          received[this->Owners[p]].push_back(static_cast<std::int32_t>(p));
+        }
+      }
+    });
   const auto asked = group.exchangeItems(wanted);
-  for (int rank = 0; rank < group.size(); ++rank)
+  const auto pair = [&]
   {
-    Subset::Neighbour neighbour = { rank, {}, std::move(received[rank]) };
-    for (const Index number : asked[rank])
+    for (int rank = 0; rank < group.size(); ++rank)
     {
-      neighbour.sent.push_back(static_cast<std::int32_t>(this->local(number)));
+      Subset::Neighbour neighbour = { rank, {}, std::move(received[rank]) };
+      for (const Index number : asked[rank])
+      {
+        neighbour.sent.push_back(static_cast<std::int32_t>(this->local(number)));
+      }
+      if (!neighbour.sent.empty() || !neighbour.received.empty())
+      {
+        this->Halo.push_back(std::move(neighbour));
+      }
     }
-    if (!neighbour.sent.empty() || !neighbour.received.empty())
-    {
-      this->Halo.push_back(std::move(neighbour));
-    }
-  }
+  };
+  group.together(pair);
 }
 }

@@ -14,6 +14,8 @@
 
 namespace tautline
 {
+class TakenCells;
+
 /// What a rank has of the mesh; the arrays must outlive the construction only.
 struct MeshPiece
 {
@@ -124,8 +126,9 @@ private:
   void numberPoints(const MeshPiece& piece, const std::vector<char>& used);
   std::vector<PointKey> distribute(const std::vector<PointKey>& keys) const;
   void takeCells(const MeshPiece& piece, const std::vector<char>& used);
+  void copyCells(const TakenCells& taken);
   void takePoints(
-    const MeshPiece& piece, const std::vector<char>& used, std::vector<SentPoint> points);
+    const MeshPiece& piece, const std::vector<char>& used, std::vector<SentPoint>& points);
   void exchangePoints(
     const MeshPiece& piece, const std::vector<char>& used, std::vector<std::vector<Index>> needed);
   std::vector<std::vector<std::int32_t>> exchangeCells(

@@ -47,6 +47,45 @@ struct Region
   }
 };
 
+/// Each point once, in the order of the numbers.
+void unify(std::vector<RegionPoint>& points)
+{
+  std::sort(points.begin(), points.end(),
+    [](const RegionPoint& a, const RegionPoint& b) { return a.number < b.number; });
+  points.erase(std::unique(points.begin(), points.end(),
+                 [](const RegionPoint& a, const RegionPoint& b) { return a.number == b.number; }),
+    points.end());
+}
+
+/// @param cells type, number of points and their numbers of each, by ranks
+Region makeRegion(
+  const std::vector<std::vector<RegionPoint>>& points, const std::vector<std::vector<Index>>& cells)
+{
+  Region region;
+  for (const auto& list : points)
+  {
+    region.points.insert(region.points.end(), list.begin(), list.end());
+  }
+  unify(region.points);
+  for (const auto& list : cells)
+  {
+    for (std::size_t i = 0; i < list.size();)
+    {
+      RegionCell cell;
+      cell.type = static_cast<unsigned char>(list[i]);
+      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 2;
+      cell.numbers.assign(begin, begin + list[i + 1]);
+      cell.sorted = cell.numbers;
+      std::sort(cell.sorted.begin(), cell.sorted.end());
+      i += 2 + cell.numbers.size();
+      region.cells.push_back(std::move(cell));
+    }
+  }
+  std::sort(region.cells.begin(), region.cells.end(),
+    [](const RegionCell& a, const RegionCell& b) { return a.key() < b.key(); });
+  return region;
+}
+
 /// A connected part of a region as a mesh of its own.
 struct Part
 {
@@ -150,9 +189,13 @@ private:
   Index examine();
   bool fitsWhole();
   void untangleWithin(int width);
+  void listNear(const std::vector<unsigned char>& near, std::vector<RegionPoint>& points,
+    std::vector<Index>& cells) const;
   Region gather(int width);
   void solve(const Region& region, int width);
+  void note(const std::vector<std::vector<Index>>& lists, int width);
   void take(const std::vector<RegionPoint>& moved);
+  void listInvalid(std::vector<Index>& lists, std::vector<Vec3>& centers) const;
   void listRemaining();
   bool report();
   bool outOfTime() { return this->Group.any(this->Clock.reached(this->Options.maximumSeconds)); }
@@ -177,9 +220,13 @@ RankUntangler::RankUntangler(DistributedMesh& mesh, bool mirrored, const Untangl
   , Group(mesh.group())
   , Mirrored(mirrored)
   , Options(options)
-  , Fixed(options.fixed, options.fixed + mesh.localPoints())
-  , Points(mesh.points())
 {
+  this->Group.together(
+    [&]
+    {
+      this->Fixed.assign(options.fixed, options.fixed + mesh.localPoints());
+      this->Points = mesh.points();
+    });
   mesh.exchange(this->Fixed.data());
 }
 
@@ -210,41 +257,12 @@ Index RankUntangler::examine()
 }
 
 //------------------------------------------------------------------------------
-/// The cells with a point within `width` cells of an invalid one that can be repaired, on all
-/// ranks; all cells if width is negative, on the first rank: they are one part as a rule, and each
-/// copy takes as much memory as the whole mesh.
-Region RankUntangler::gather(int width)
+/// The owned cells with a free point that is marked: type, number of points, their numbers; and
+/// their points.
+void RankUntangler::listNear(const std::vector<unsigned char>& near,
+  std::vector<RegionPoint>& points, std::vector<Index>& cells) const
 {
   const MeshView& view = this->TheMesh.view();
-  std::vector<unsigned char> near(this->TheMesh.localPoints(), width < 0);
-  const auto mark = [&](auto wanted)
-  {
-    std::vector<unsigned char> next = near;
-    for (Index cell = 0; cell < view.numberOfCells; ++cell)
-    {
-      const Index* begin = view.connectivity + view.offsets[cell];
-      const Index* end = view.connectivity + view.offsets[cell + 1];
-      if (wanted(cell, begin, end))
-      {
-        std::for_each(begin, end, [&](Index p) { next[p] = 1; });
-      }
-    }
-    near.swap(next);
-    this->TheMesh.exchange(near.data());
-  };
-  mark(
-    [&](Index cell, const Index* begin, const Index* end)
-    {
-      return isInvalid(this->Validity[cell]) &&
-        std::any_of(begin, end, [&](Index p) { return !this->Fixed[p]; });
-    });
-  for (int ring = 0; ring < width; ++ring)
-  {
-    mark([&](Index, const Index* begin, const Index* end)
-      { return std::any_of(begin, end, [&](Index p) { return near[p] != 0; }); });
-  }
-  std::vector<RegionPoint> points;
-  std::vector<Index> cells;
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     const Index* begin = view.connectivity + view.offsets[cell];
@@ -264,47 +282,70 @@ Region RankUntangler::gather(int width)
       points.push_back(point);
     }
   }
+  unify(points);
+}
+
+//------------------------------------------------------------------------------
+/// The cells with a point within `width` cells of an invalid one that can be repaired, on all
+/// ranks; all cells if width is negative, on the first rank: they are one part as a rule, and each
+/// copy takes as much memory as the whole mesh.
+Region RankUntangler::gather(int width)
+{
+  const MeshView& view = this->TheMesh.view();
+  std::vector<unsigned char> near, next;
+  const auto mark = [&](auto wanted)
+  {
+    this->Group.together(
+      [&]
+      {
+        next = near;
+        for (Index cell = 0; cell < view.numberOfCells; ++cell)
+        {
+          const Index* begin = view.connectivity + view.offsets[cell];
+          const Index* end = view.connectivity + view.offsets[cell + 1];
+          if (wanted(cell, begin, end))
+          {
+            std::for_each(begin, end, [&](Index p) { next[p] = 1; });
+          }
+        }
+        near.swap(next);
+      });
+    this->TheMesh.exchange(near.data());
+  };
+  this->Group.together([&] { near.assign(this->TheMesh.localPoints(), width < 0); });
+  mark(
+    [&](Index cell, const Index* begin, const Index* end)
+    {
+      return isInvalid(this->Validity[cell]) &&
+        std::any_of(begin, end, [&](Index p) { return !this->Fixed[p]; });
+    });
+  for (int ring = 0; ring < width; ++ring)
+  {
+    mark([&](Index, const Index* begin, const Index* end)
+      { return std::any_of(begin, end, [&](Index p) { return near[p] != 0; }); });
+  }
+  std::vector<RegionPoint> points;
+  std::vector<Index> cells;
+  this->Group.together([&] { this->listNear(near, points, cells); });
   const auto collect = [&](const auto& items)
   {
     if (width >= 0)
     {
       return this->Group.gatherItems(items);
     }
-    std::vector<std::decay_t<decltype(items)>> sent(this->Group.size());
-    sent.front() = items;
+    std::vector<std::decay_t<decltype(items)>> sent;
+    this->Group.together(
+      [&]
+      {
+        sent.resize(this->Group.size());
+        sent.front() = items;
+      });
     return this->Group.exchangeItems(sent);
   };
-  const auto byNumber = [](const RegionPoint& a, const RegionPoint& b)
-  { return a.number < b.number; };
-  const auto same = [](const RegionPoint& a, const RegionPoint& b) { return a.number == b.number; };
-  const auto unify = [&](std::vector<RegionPoint>& list)
-  {
-    std::sort(list.begin(), list.end(), byNumber);
-    list.erase(std::unique(list.begin(), list.end(), same), list.end());
-  };
-  unify(points);
+  const auto allPoints = collect(points);
+  const auto allCells = collect(cells);
   Region region;
-  for (const auto& list : collect(points))
-  {
-    region.points.insert(region.points.end(), list.begin(), list.end());
-  }
-  unify(region.points);
-  for (const auto& list : collect(cells))
-  {
-    for (std::size_t i = 0; i < list.size();)
-    {
-      RegionCell cell;
-      cell.type = static_cast<unsigned char>(list[i]);
-      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 2;
-      cell.numbers.assign(begin, begin + list[i + 1]);
-      cell.sorted = cell.numbers;
-      std::sort(cell.sorted.begin(), cell.sorted.end());
-      i += 2 + cell.numbers.size();
-      region.cells.push_back(std::move(cell));
-    }
-  }
-  std::sort(region.cells.begin(), region.cells.end(),
-    [](const RegionCell& a, const RegionCell& b) { return a.key() < b.key(); });
+  this->Group.together([&] { region = makeRegion(allPoints, allCells); });
   return region;
 }
 
@@ -364,7 +405,15 @@ void RankUntangler::solve(const Region& region, int width)
   {
     this->take(list);
   }
-  for (const auto& list : this->Group.gatherItems(obstacles))
+  const auto found = this->Group.gatherItems(obstacles);
+  this->Group.together([&] { this->note(found, width); });
+}
+
+//------------------------------------------------------------------------------
+/// @param lists by ranks, of elements: the obstacle, how many points, their numbers
+void RankUntangler::note(const std::vector<std::vector<Index>>& lists, int width)
+{
+  for (const std::vector<Index>& list : lists)
   {
     for (std::size_t i = 0; i < list.size(); i += 2 + static_cast<std::size_t>(list[i + 1]))
     {
@@ -419,17 +468,25 @@ bool RankUntangler::report()
 bool RankUntangler::fitsWhole()
 {
   const double bytes = bytesPerCell * static_cast<double>(this->TheMesh.globalCells());
-  const bool lacks = this->Group.rank() == 0 && !(bytes <= availableMemory());
-  this->Result.exceededMemory = this->Group.any(lacks);
+  std::string lack;
+  try
+  {
+    requireMemory(this->Group.rank() == 0 ? bytes : 0.0,
+      "untangling the whole mesh on the first process, where what is about the invalid elements is "
+      "not enough,",
+      "choose the Effort Local");
+  }
+  catch (const MemoryError& error)
+  {
+    lack = error.what();
+  }
+  this->Result.exceededMemory = this->Group.any(!lack.empty());
   this->Group.together(
     [&]
     {
-      if (lacks && this->Result.result.invertedAfter == this->Result.result.invertedBefore)
+      if (!lack.empty() && this->Result.result.invertedAfter == this->Result.result.invertedBefore)
       {
-        requireMemory(bytes,
-          "untangling the whole mesh on the first process, where what is about the invalid "
-          "elements is not enough,",
-          "choose the Effort Local");
+        throw MemoryError(lack);
       }
     });
   return !this->Result.exceededMemory;
@@ -444,15 +501,21 @@ void RankUntangler::untangleWithin(int width)
     return;
   }
   const Index before = result.invertedAfter;
-  const std::vector<double> kept = this->Points;
-  const std::vector<signed char> validity = this->Validity;
+  std::vector<double> kept;
+  std::vector<signed char> validity;
+  this->Group.together(
+    [&]
+    {
+      kept = this->Points;
+      validity = this->Validity;
+    });
   const Region region = this->gather(width);
   this->solve(region, width);
   result.invertedAfter = this->examine();
   if (result.invertedAfter > before)
   {
-    this->Points = kept;
-    this->Validity = validity;
+    this->Points.swap(kept);
+    this->Validity.swap(validity);
     result.invertedAfter = before;
   }
   if (!this->report())
@@ -468,12 +531,11 @@ void RankUntangler::untangleWithin(int width)
 }
 
 //------------------------------------------------------------------------------
-/// The invalid elements of the whole mesh with their obstacles.
-void RankUntangler::listRemaining()
+/// The owned invalid elements: the obstacle, the type, how many points, their numbers; and their
+/// centers.
+void RankUntangler::listInvalid(std::vector<Index>& lists, std::vector<Vec3>& centers) const
 {
   const MeshView& view = this->TheMesh.view();
-  std::vector<Index> lists; // the obstacle, the type, how many points, their numbers
-  std::vector<Vec3> centers;
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     if (!this->TheMesh.ownedCells()[cell] || !isInvalid(this->Validity[cell]))
@@ -503,19 +565,32 @@ void RankUntangler::listRemaining()
     lists.insert(lists.end(), sorted.begin(), sorted.end());
     centers.push_back(center);
   }
+}
+
+//------------------------------------------------------------------------------
+/// The invalid elements of the whole mesh with their obstacles.
+void RankUntangler::listRemaining()
+{
+  std::vector<Index> lists;
+  std::vector<Vec3> centers;
+  this->Group.together([&] { this->listInvalid(lists, centers); });
   const auto allCenters = this->Group.gatherItems(centers);
   const auto allLists = this->Group.gatherItems(lists);
-  for (std::size_t rank = 0; rank < allLists.size(); ++rank)
-  {
-    const std::vector<Index>& list = allLists[rank];
-    for (std::size_t i = 0, k = 0; i < list.size(); i += 3 + list[i + 2], ++k)
+  this->Group.together(
+    [&]
     {
-      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 3;
-      const auto obstacle = static_cast<Obstacle>(list[i]);
-      this->Result.remaining[{ begin, begin + list[i + 2] }] = { obstacle,
-        static_cast<unsigned char>(list[i + 1]), allCenters[rank][k] };
-    }
-  }
+      for (std::size_t rank = 0; rank < allLists.size(); ++rank)
+      {
+        const std::vector<Index>& list = allLists[rank];
+        for (std::size_t i = 0, k = 0; i < list.size(); i += 3 + list[i + 2], ++k)
+        {
+          const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 3;
+          const auto obstacle = static_cast<Obstacle>(list[i]);
+          this->Result.remaining[{ begin, begin + list[i + 2] }] = { obstacle,
+            static_cast<unsigned char>(list[i + 1]), allCenters[rank][k] };
+        }
+      }
+    });
   for (const auto& element : this->Result.remaining)
   {
     this->Result.result.impossible += element.second.obstacle == Obstacle::FixedElement ||
