@@ -10,7 +10,7 @@
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DistributedMesh.h"
 
-#include <initializer_list>
+#include <vector>
 
 namespace tautline
 {
@@ -54,7 +54,7 @@ Moved<Result> moveOnRanks(const MeshData& whole, Cut cut, int ranks, const Work&
 
 /** Calls test(cut, ranks) with all cuts. */
 template <class Test>
-void forEachCut(std::initializer_list<int> numbers, const Test& test)
+void forEachCut(const std::vector<int>& numbers, const Test& test)
 {
   for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
   {

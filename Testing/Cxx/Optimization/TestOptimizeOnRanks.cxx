@@ -8,14 +8,16 @@ using namespace tautline;
 
 namespace
 {
-/// Runs on 1 to 4 ranks and compares; returns the run on one.
+std::vector<int> numbersOfRanks = { 2, 3, 4 };
+
+/// Runs on one rank and on several, and compares; returns the run on one.
 Run testCuts(const char* name, const MeshData& whole, const OptimizeOptions& options,
   Constraint constraint = Constraint::FixedBoundary, double limit = 0,
   const SetElements& set = nullptr)
 {
   const Context context(name);
   const Run one = runOn(whole, Cut::FirstOnly, 1, options, constraint, limit, set);
-  forEachCut({ 2, 3, 4 },
+  forEachCut(numbersOfRanks,
     [&](Cut cut, int ranks)
     {
       const Run run = runOn(whole, cut, ranks, options, constraint, limit, set);
@@ -246,8 +248,13 @@ void testRefusals()
 }
 
 //------------------------------------------------------------------------------
-int TestOptimizeOnRanks(int, char*[])
+int TestOptimizeOnRanks(int argc, char* argv[])
 {
+  constexpr int most = 3; // the argument that is another number of ranks
+  if (argc > most)
+  {
+    numbersOfRanks = { std::stoi(argv[most]) };
+  }
   const MeshData tets = jittered(CellType::Tetrahedron, 5, 0.2);
   const MeshData hexes = jittered(CellType::Hexahedron, 5, 0.2);
   const MeshData triangles = jittered(CellType::Triangle, 9, 0.25);
