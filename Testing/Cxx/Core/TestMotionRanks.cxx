@@ -317,6 +317,48 @@ void testRefusals(vtkMPIController* controller)
     { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "wrong"); },
     none);
 }
+
+/// What one process alone has wrong, whichever, of a mesh to untangle.
+void testUntanglerFailures(vtkMPIController* controller)
+{
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const MeshData whole = jittered(CellType::Tetrahedron, 5, 0.45);
+  for (int wrong = 0; wrong < size; ++wrong)
+  {
+    const Context context("process " + std::to_string(wrong));
+    // It has not the array of the fixed points: an error on all.
+    RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
+    const auto grid = gridOf(part);
+    if (rank == wrong)
+    {
+      grid->GetPointData()->RemoveArray("fixed");
+    }
+    vtkNew<vtkMeshUntangler> filter;
+    filter->SetInputData(grid);
+    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "fixed");
+    Messages messages(filter);
+    filter->Update();
+    TAUTLINE_CHECK(messages.has("In process " + std::to_string(wrong) + ": "));
+    TAUTLINE_CHECK(messages.has("'fixed'"));
+    TAUTLINE_CHECK_EQUAL(
+      filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL), 0);
+    // A point of it is not finite: the mesh is gathered, and all say why.
+    part.data.points[7] = rank == wrong ? std::nan("") : part.data.points[7];
+    vtkNew<vtkMeshUntangler> gathered;
+    gathered->SetInputData(gridOf(part));
+    Messages others(gathered);
+    gathered->Update();
+    TAUTLINE_CHECK(!others.has("ERROR: "));
+    const std::string why = "its pieces could not be joined. In process " + std::to_string(wrong) +
+      ": Point 2 has a coordinate that is not finite";
+    TAUTLINE_CHECK(std::string(gathered->GetSummary()).find(why) != std::string::npos);
+    TAUTLINE_CHECK(gathered->GetInvertedAfter() > 0);
+    TAUTLINE_CHECK(gathered->GetInvertedAfter() < gathered->GetInvertedBefore());
+    TAUTLINE_CHECK_EQUAL(
+      gathered->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL),
+      part.data.numberOfCells());
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -330,6 +372,7 @@ int TestMotionRanks(int argc, char* argv[])
   testWholeMeshes(controller);
   testUntangler(controller);
   testRefusals(controller);
+  testUntanglerFailures(controller);
   testBlocks(controller);
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
