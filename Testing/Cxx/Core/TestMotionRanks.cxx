@@ -354,8 +354,7 @@ void testUntanglerFailures(vtkMPIController* controller)
     TAUTLINE_CHECK(std::string(gathered->GetSummary()).find(why) != std::string::npos);
     TAUTLINE_CHECK(gathered->GetInvertedAfter() > 0);
     TAUTLINE_CHECK(gathered->GetInvertedAfter() < gathered->GetInvertedBefore());
-    TAUTLINE_CHECK_EQUAL(
-      gathered->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL),
+    TAUTLINE_CHECK_EQUAL(gathered->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL),
       part.data.numberOfCells());
   }
 }
