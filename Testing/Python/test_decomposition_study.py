@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The study of divisions for ranks in the small size: divisions, counts, the model, verdicts."""
 
+import math
+from pathlib import Path
+
 import numpy as np
 import tautline as tl
 from checks import OUT, refused
@@ -21,7 +24,7 @@ def run_all() -> None:
     assert "What breaks it" in printed
     parts = len(decomposition.SMALL_PARTS)
     tables = {f"{domain}_{method}": parts for domain in DOMAINS for method in METHODS}
-    tables |= {"weak": parts + 1, "sizes": len(decomposition.SMALL_SIZES), "model": 3, "efficiency": 3}
+    tables |= {"weak": parts + 1, "sizes": len(decomposition.SMALL_SIZES), "model": 3, "efficiency": 3, "anchor": 1}
     studies.check("decomposition", FINDINGS, ("halos",), tables)
 
 
@@ -97,6 +100,12 @@ def test_model() -> None:
     assert parts.keys() == expected.keys()
     assert all(abs(parts[name] / expected[name] - 1) < 1e-12 for name in parts), parts
     assert abs(model.efficiency(1000, 64) - 2e-4 / sum(expected.values())) < 1e-12
+    functions = {"sqrt": math.sqrt, "ceil": math.ceil, "log2": math.log2}
+    for cells, ranks in ((1000, 64), (20000, 100), (decomposition.ANCHOR_CELLS, decomposition.ANCHOR_RANKS)):
+        seconds = eval(decomposition.FORMULA, functions | model.symbols() | {"n": cells, "P": ranks})
+        assert abs(seconds / sum(model.parts_of(cells, ranks).values()) - 1) < 1e-12, (cells, ranks, seconds)
+    page = " ".join((Path(__file__).parents[2] / "Plugin/Site/ranks.md").read_text(encoding="utf-8").split())
+    assert decomposition.FORMULA in page, "the page of ranks has another model"
     assert model.efficiency(1000, 1024) < model.efficiency(1000, 64) < model.efficiency(10000, 64) < 1
     factor, exponent = decomposition.slope([10, 100, 1000], [3 * n**0.6 for n in (10, 100, 1000)])
     assert abs(factor - 3) < 1e-9 and abs(exponent - 0.6) < 1e-12

@@ -41,6 +41,11 @@ RUNS = 3
 SWEEPS = 6  # of which the time is measured
 RANKS = (16, 64, 256, 1024)
 RANK_CELLS = (1_000, 10_000, 100_000)
+#: A mesh and cores as a parallel mesh optimizer of today has them: what the model says of it.
+ANCHOR_CELLS, ANCHOR_RANKS = 160_000_000, 128
+#: Seconds of a sweep with n cells on each of P ranks (Model.parts_of); Model.symbols names the others.
+FORMULA = ("t * f * n + t * w * sqrt(f * n * S) + L * K * S + 32 * s * h * n**b / B "
+           "+ 6 * (2 * ceil(log2(P)) * L + 16 * P / B)")
 BALANCE, WIDEST, SAME_HALO, SAME_MODEL, EFFICIENT = 1.1, 32, 1.3, 0.2, 0.8
 SURFACE, SURFACE_TOLERANCE = 2 / 3, 0.1
 METHODS = ("slabs", "k-d tree", "curve", "graph", "random")
@@ -197,6 +202,11 @@ class Model:
             "collective": REDUCTIONS * (OPERATIONS * rounds * self.latency + ranks * REDUCED_BYTES / self.bandwidth),
         }
 
+    def symbols(self) -> dict[str, float]:
+        """The numbers of FORMULA."""
+        return {"t": self.second, "f": self.points, "w": self.waiting, "S": self.sets, "L": self.latency,
+                "K": self.neighbours, "s": self.sent, "h": self.halo, "b": self.exponent, "B": self.bandwidth}
+
     def efficiency(self, cells: float, ranks: int) -> float:
         """The time of one rank with as many cells over that of many ranks."""
         parts = self.parts_of(cells, ranks)
@@ -299,6 +309,13 @@ def scaling(report: Report, given: argparse.Namespace, parts: Sequence[int]) -> 
                  [[n, *(1e6 * s for s in model.parts_of(n, max(RANKS)).values())] for n in RANK_CELLS])
     report.table("efficiency", "Efficiency of weak scaling by the model", ["cells per rank", *map(str, RANKS)],
                  [[n, *(model.efficiency(n, ranks) for ranks in RANKS)] for n in RANK_CELLS])
+    cells = ANCHOR_CELLS / ANCHOR_RANKS
+    parts_of = model.parts_of(cells, ANCHOR_RANKS)
+    efficiency = model.efficiency(cells, ANCHOR_RANKS)
+    report.table("anchor", f"{ANCHOR_CELLS:,} cells on {ANCHOR_RANKS} ranks by the model, milliseconds per sweep",
+                 ["cells per rank", *parts_of, "sweep", "efficiency", "speed-up"],
+                 [[round(cells), *(1e3 * s for s in parts_of.values()), 1e3 * sum(parts_of.values()), efficiency,
+                   ANCHOR_RANKS * efficiency]])
     on_each = weak[beyond].cells / beyond
     scaling_findings(report, weak, model.exponent, {"slowest": model.slowest(on_each), "halo": model.halo_of(on_each)},
                      {n: model.efficiency(n, max(RANKS)) for n in RANK_CELLS},
@@ -319,7 +336,9 @@ def explained(model: Model) -> str:
         f"The model: a point takes {1e6 * model.second:.3g} microseconds in a sweep; a part of n cells has "
         f"{model.points:.3g} n free points, a halo of {model.halo:.3g} n^{model.exponent:.3g} points and "
         f"{model.neighbours:g} neighbours; {model.sets:g} sets follow each other. All ranks wait for the slowest one "
-        f"after each set, for {model.waiting:.3g} times the root of (free points x sets), in points. With "
+        f"after each set, for {model.waiting:.3g} times the root of (free points x sets), in points. A rank sends "
+        f"{model.sent:.3g} times the points of its halo. In seconds, with n cells on each of P ranks: {FORMULA}, where "
+        f"{', '.join(f'{name} = {value:.4g}' for name, value in model.symbols().items())}. With "
         f"{rank_cells:,} cells on each of {max(RANKS):,} ranks, of what is not the moving of own points "
         f"{max(rest, key=lambda name: rest[name])} takes the most: {others}. The halo is that of {SIZE_PARTS} parts, "
         "most of which are at the boundary of the domain: parts inside have larger ones, whose bytes cost little.\n"
