@@ -228,7 +228,6 @@ RankMesh::RankMesh(
 }
 
 //------------------------------------------------------------------------------
-/// The points of the piece with copies at one place.
 const double* RankMesh::joinedPoints() const
 {
   return this->Copies.points.empty() ? this->piece().points : this->Copies.points.data();

@@ -102,6 +102,8 @@ public:
   bool inSpaceOrPlane() const;
   /// The piece as it is given, with all cells.
   const MeshView& piece() const { return this->Adapter->inputView(); }
+  /// The points of the piece with copies at one place, where the mesh has them.
+  const double* joinedPoints() const;
   /// One flag per cell of the piece: ghosts, and cells of lower dimension; they do not count.
   const std::vector<unsigned char>& skipped() const { return this->Skip; }
   /// Remarks for the user on this piece, or "".
@@ -157,7 +159,6 @@ public:
   std::string move(vtkPointSet* output, const std::vector<double>& local) const;
 
 private:
-  const double* joinedPoints() const;
   void divide(const MeshPiece& piece);
   void checkOrder();
 

@@ -21,7 +21,7 @@ void takeCells(const RankMesh& mesh, ReconnectablePiece& piece)
 {
   const MeshView& view = mesh.piece();
   RankTetrahedra& taken = piece.mesh;
-  taken.points.assign(view.points, view.points + 3 * view.numberOfPoints);
+  taken.points.assign(mesh.joinedPoints(), mesh.joinedPoints() + 3 * view.numberOfPoints);
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     pollInterruption(cell);
