@@ -126,6 +126,32 @@ void testOptimizer(vtkMPIController* controller)
     checkOptimizer);
 }
 
+/// Equal sizes at the cost of the shape of single elements: points about these go back, as many as
+/// on one process.
+void testGuard(vtkMPIController* controller)
+{
+  const auto sentence = [](vtkMeshOptimizer* filter)
+  {
+    const std::string summary = filter->GetSummary();
+    const std::size_t at = summary.find(" points were put back to where they were:");
+    TAUTLINE_CHECK(at != std::string::npos);
+    const std::size_t from = summary.rfind('\n', at);
+    return summary.substr(from, summary.find('\n', at) - from); // with their number
+  };
+  testFilter<vtkMeshOptimizer>(
+    "guard", controller, jittered(CellType::Tetrahedron, 5, 0.25),
+    [](vtkMeshOptimizer* filter)
+    {
+      filter->AddObjective(static_cast<int>(Metric::SizeNonBarrier));
+      filter->SetWorstMetric(static_cast<int>(Metric::ScaledJacobian));
+    },
+    [&](vtkMeshOptimizer* serial, vtkMeshOptimizer* ranks, int rank)
+    {
+      TAUTLINE_CHECK_EQUAL(sentence(ranks), sentence(serial));
+      checkOptimizer(serial, ranks, rank);
+    });
+}
+
 /// Weights and targets are of cells: each process has those of its own.
 void testElementArrays(vtkMPIController* controller)
 {
@@ -367,6 +393,7 @@ int TestMotionRanks(int argc, char* argv[])
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
   testOptimizer(controller);
+  testGuard(controller);
   testElementArrays(controller);
   testWholeMeshes(controller);
   testUntangler(controller);
