@@ -94,15 +94,22 @@ std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh)
 //------------------------------------------------------------------------------
 std::string describeJoined(const JoinedCopies& copies)
 {
-  if (copies.joined == 0)
-  {
-    return "";
-  }
   std::ostringstream text;
   text.precision(2);
-  text << counted(copies.joined, "point") << (copies.joined == 1 ? " has" : " have")
-       << " copies with the same global id that are up to " << copies.farthest
-       << " apart: they were joined.";
+  if (copies.joined > 0)
+  {
+    text << counted(copies.joined, "point") << (copies.joined == 1 ? " has" : " have")
+         << " copies with the same global id that are up to " << copies.farthest
+         << " apart: they were joined.";
+  }
+  if (copies.apart > 0)
+  {
+    text << (copies.joined > 0 ? " " : "") << counted(copies.apart, "global id")
+         << (copies.apart == 1 ? " is" : " are")
+         << " at places that are farther apart, which are not joined: where they are copies of one "
+            "point, its seam is a boundary. Make their places equal, or run Generate Global Ids "
+            "again.";
+  }
   return text.str();
 }
 

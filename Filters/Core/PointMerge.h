@@ -28,7 +28,8 @@ namespace tautline
  */
 TAUTLINECORE_EXPORT std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh);
 
-/// A sentence on copies of points that were joined by their global ids, or "".
+/// Sentences on copies of points that were joined by their global ids, and on those that are too
+/// far apart for it; or "".
 TAUTLINECORE_EXPORT std::string describeJoined(const JoinedCopies& copies);
 
 /// The same for a mesh whose points are not merged: how many, where, and what they do.

@@ -96,7 +96,7 @@ std::vector<std::vector<Copy>> candidates(RankGroup& group, const MeshView& view
   for (Index p = 0; p < view.numberOfPoints; ++p)
   {
     const double* x = view.points + 3 * p;
-    const double distance = nearFraction * shortest[p];
+    const double distance = shortest[p]; // copies that are farther apart are counted, too
     if (!std::isfinite(x[0] + x[1] + x[2] + distance))
     {
       continue;
@@ -116,8 +116,9 @@ std::vector<std::vector<Copy>> candidates(RankGroup& group, const MeshView& view
 }
 
 /// The copies that move, by their ranks; adds what is found to `result`.
+/// @param together gets the number of ids of several points that are at one place then
 std::vector<std::vector<Moved>> findMoved(
-  std::vector<Copy>& copies, std::size_t ranks, JoinedCopies& result)
+  std::vector<Copy>& copies, std::size_t ranks, JoinedCopies& result, Index& together)
 {
   std::vector<std::vector<Moved>> moved(ranks);
   std::sort(copies.begin(), copies.end(),
@@ -133,12 +134,16 @@ std::vector<std::vector<Moved>> findMoved(
     bool several;
   };
   std::vector<Place> places; // of an id
+  std::size_t first = 0;     // its first copy
   for (std::size_t i = 0; i < copies.size(); ++i)
   {
     const Copy& copy = copies[i];
-    if (i > 0 && copies[i - 1].id != copy.id)
+    if (copies[first].id != copy.id)
     {
+      result.apart += places.size() > 1;
+      together += places.size() == 1 && i - first > 1;
       places.clear();
+      first = i;
     }
     const auto last = std::find_if(places.rbegin(), places.rend(),
       [&](const Place& place)
@@ -162,6 +167,8 @@ std::vector<std::vector<Moved>> findMoved(
         result.farthest, std::hypot(copy.x[0] - to[0], copy.x[1] - to[1], copy.x[2] - to[2]));
     }
   }
+  result.apart += places.size() > 1;
+  together += places.size() == 1 && copies.size() - first > 1;
   return moved;
 }
 }
@@ -208,6 +215,7 @@ JoinedCopies joinCopies(RankGroup& group, const MeshView& view, const Index* ids
   {
     return result;
   }
+  Index together = 0;
   std::vector<double> shortest;
   std::vector<Box> boxes(1), all;
   std::vector<std::vector<Copy>> sent;
@@ -243,8 +251,10 @@ JoinedCopies joinCopies(RankGroup& group, const MeshView& view, const Index* ids
       {
         copies.insert(copies.end(), list.begin(), list.end());
       }
-      moved = findMoved(copies, received.size(), result);
+      moved = findMoved(copies, received.size(), result, together);
     });
+  result.apart = group.sum(result.apart);
+  result.apart = group.sum(together) > result.apart ? result.apart : 0;
   result.joined = group.sum(result.joined);
   result.farthest = group.maximum(result.farthest);
   if (result.joined == 0)

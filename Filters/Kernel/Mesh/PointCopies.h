@@ -19,6 +19,9 @@ struct JoinedCopies
   std::vector<double> points; ///< three per point; empty where none of this rank has moved
   Index joined = 0;           ///< points of the whole mesh whose copies were at several places
   double farthest = 0;        ///< the longest way of a copy
+  /// Ids of points that are farther apart, where more ids are of points at one place: the ids are
+  /// those of one mesh. Only of points within an edge of the box of another rank's points.
+  Index apart = 0;
 };
 
 /// The length of the shortest edge, but for those of length zero, of the cells at each point;

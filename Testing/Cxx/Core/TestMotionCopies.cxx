@@ -136,6 +136,32 @@ void testOwnNumbers(vtkMPIController* controller)
   checkSame(moved(whole, part, grid, set, filter.Get()), expected);
   TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), serial->GetFreePoints());
   TAUTLINE_CHECK(!remarked(filter->GetSummary()));
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("global id") == std::string::npos);
+}
+
+/// Copies that are too far apart stay so, and the summary says it on all processes.
+void testApart(vtkMPIController* controller)
+{
+  const Context context("apart");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const MeshData whole = jittered(CellType::Tetrahedron, 4, 0.25);
+  const auto rankOf = cutBy(whole, Cut::Slabs, size);
+  const RankPart first = partOf(whole, 0, rankOf);
+  RankPart part = partOf(whole, rank, rankOf);
+  const auto shared = std::find_if(part.pointOf.begin(), part.pointOf.end(),
+    [&](Index p) { return std::count(first.pointOf.begin(), first.pointOf.end(), p) > 0; });
+  if (rank == 1)
+  {
+    part.data.points[3 * (shared - part.pointOf.begin())] += 0.05;
+  }
+  vtkNew<vtkMeshOptimizer> filter;
+  moved(
+    whole, part, numberedGridOf(part),
+    [](vtkMeshOptimizer* optimizer) { optimizer->ReproducibleOrderOn(); }, filter.Get());
+  TAUTLINE_CHECK(!remarked(filter->GetSummary()));
+  TAUTLINE_CHECK(std::string(filter->GetSummary())
+                   .find("1 global id is at places that are farther apart, which are not joined") !=
+    std::string::npos);
 }
 
 /// A mesh of several pieces as one data set on one process: the seam moves as the rest.
@@ -265,6 +291,7 @@ int TestMotionCopies(int argc, char* argv[])
     [](vtkMeshPerturbation* filter) { filter->SetTangledFraction(0.01); });
   testFilter<vtkMeshPerturbation>("perturb", controller, tets, false, [](vtkMeshPerturbation*) {});
   testOwnNumbers(controller);
+  testApart(controller);
   testImprover(controller);
   testOneProcess(controller);
   vtkMultiProcessController::SetGlobalController(nullptr);

@@ -85,11 +85,44 @@ void testOtherIds()
       std::iota(own.begin(), own.end(), 0);
       const JoinedCopies none = joinCopies(group, part.data.view(), own.data());
       TAUTLINE_CHECK_EQUAL(none.joined, 0);
+      TAUTLINE_CHECK_EQUAL(none.apart, 0);
       TAUTLINE_CHECK(none.points.empty());
       shift(part, group.rank(), rounding);
       const Index* ids = group.rank() == 1 ? nullptr : part.pointOf.data();
       TAUTLINE_CHECK_EQUAL(joinCopies(group, part.data.view(), ids).joined, 0);
     });
+}
+
+/// Copies that are farther apart, of a few points: they stay, and are counted.
+void testApart()
+{
+  const MeshData whole = jittered(CellType::Tetrahedron, cubes, 0.2);
+  for (const int ranks : { 2, 3, 5 })
+  {
+    const Context context(std::to_string(ranks) + " ranks");
+    const auto rankOf = cutBy(whole, Cut::Slabs, ranks);
+    onRanks(ranks,
+      [&](RankGroup& group)
+      {
+        RankPart part = partOf(whole, group.rank(), rankOf);
+        const RankPart first = partOf(whole, 0, rankOf);
+        Index moved = 0;
+        for (std::size_t p = 0; p < part.pointOf.size() && group.rank() == 1; ++p)
+        {
+          const bool shared =
+            std::count(first.pointOf.begin(), first.pointOf.end(), part.pointOf[p]) > 0;
+          if (shared && moved < 3)
+          {
+            part.data.points[3 * p + 1] += far;
+            ++moved;
+          }
+        }
+        const JoinedCopies found = joinCopies(group, part.data.view(), part.pointOf.data());
+        TAUTLINE_CHECK_EQUAL(found.joined, 0);
+        TAUTLINE_CHECK_EQUAL(found.apart, group.sum(moved));
+        TAUTLINE_CHECK_EQUAL(found.apart, 3);
+      });
+  }
 }
 
 /// Pieces that are one data set: the copies are on one rank.
@@ -142,6 +175,7 @@ int TestPointCopies(int, char*[])
   testParts(CellType::Hexahedron);
   testParts(CellType::Triangle);
   testOtherIds();
+  testApart();
   testOneRank();
   return exitCode();
 }
