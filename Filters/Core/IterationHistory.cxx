@@ -99,8 +99,8 @@ std::string summarize(
   {
     text << "\nThe points are those "
          << (result.untangled ? "that untangling left" : "of the input")
-         << ": none were found with a smaller objective, a worst element that is not worse, and no "
-            "more invalid elements.";
+         << ": no others with a smaller objective were found without a worse worst element or more "
+            "invalid elements.";
   }
   text << surfaceErrorSentence(result.surfaceError);
   if (result.leftSurface > 0)

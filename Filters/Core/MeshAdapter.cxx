@@ -71,9 +71,11 @@ std::vector<double> MeshAdapter::leaveFrame(const std::vector<double>& points) c
   if (!this->Frame.isIdentity())
   {
     this->Frame.leave(result);
+    const double* given =
+      this->JoinedPoints.empty() ? this->InputView.points : this->JoinedPoints.data();
     for (std::size_t i = 0; i < result.size(); ++i)
     {
-      result[i] = points[i] == this->View.points[i] ? this->InputView.points[i] : result[i];
+      result[i] = points[i] == this->View.points[i] ? given[i] : result[i];
     }
   }
   return result;

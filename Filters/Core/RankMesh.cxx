@@ -459,8 +459,10 @@ std::vector<Index> RankMesh::pointIds() const
   }
   std::sort(received.begin(), received.end());
   const auto twice = std::adjacent_find(received.begin(), received.end());
-  const Index wrong = this->Group.maximum(twice == received.end() ? Index(-1) : *twice);
-  if (wrong >= 0)
+  const bool some = this->Group.any(twice != received.end());
+  const Index wrong =
+    this->Group.maximum(twice == received.end() ? std::numeric_limits<Index>::lowest() : *twice);
+  if (some)
   {
     throw Error("Points at different places have the global id " + std::to_string(wrong) +
       ": run Generate Global Ids again.");

@@ -36,6 +36,7 @@ void take(OptimizeResult& result, std::vector<double> points, RoundedResult& rou
     last.objectives = std::move(rounded.record.objectives);
     last.mean = std::move(rounded.record.mean);
     last.worst = std::move(rounded.record.worst);
+    last.inverted = rounded.inverted;
   }
 }
 }
@@ -80,9 +81,10 @@ void OptimizerSetup::round(OptimizerRun& run) const
                 "digits, and rounded to these " +
     describeLoss(rounded) + ". Create the mesh near the origin.";
   const double* input = mesh.mesh().view().points;
-  result.points.assign(input, input + 3 * view.numberOfPoints);
-  result.elements = {};
-  result.invertedAfter = result.invertedBefore;
+  result.keepStart(
+    std::vector<double>(input, input + 3 * view.numberOfPoints), result.invertedBefore);
+  result.untangled = false;
+  result.newlyInvalid = 0;
   run.single = mesh.isSingle();
 }
 }

@@ -54,7 +54,7 @@ ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int th
   if (mergePoints)
   {
     const JoinedCopies copies =
-      this->Adapter->joinCopies(this->Taken->GetPointData()->GetGlobalIds());
+      this->Adapter->joinCopies(this->Input->GetPointData()->GetGlobalIds());
     this->Adapter->mergeCoincidentPoints(threads);
     const CoincidentPoints& coincident = this->Adapter->coincident();
     this->Notice = describeMerged(coincident, this->Adapter->given());

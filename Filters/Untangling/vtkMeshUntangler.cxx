@@ -73,7 +73,6 @@ Remaining remainingOf(const tautline::UntangleResult& result, const tautline::Me
   return remaining;
 }
 
-/// "All elements are valid", or how many are not, and for the first of them which, where and why.
 /// ", and N that were valid are not any more", or "".
 std::string newlySentence(tautline::Index newlyInvalid)
 {
@@ -82,6 +81,7 @@ std::string newlySentence(tautline::Index newlyInvalid)
     : ", and " + std::to_string(newlyInvalid) + " that were valid are not any more";
 }
 
+/// "All elements are valid", or how many are not, and for the first of them which, where and why.
 std::string verdict(
   const tautline::UntangleResult& result, const Remaining& remaining, const tautline::Mesh& moved)
 {

@@ -13,7 +13,9 @@ namespace tautline
 {
 namespace
 {
-constexpr double nearFraction = 1e-3; ///< of the shortest edge
+constexpr double nearFraction = 1e-5; ///< of the shortest edge
+/// Places of an id that are compared: more are not copies, but ids that mean nothing.
+constexpr std::size_t mostPlaces = 64;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Copy
@@ -145,6 +147,10 @@ std::vector<std::vector<Moved>> findMoved(
       places.clear();
       first = i;
     }
+    if (places.size() == mostPlaces)
+    {
+      continue;
+    }
     const auto last = std::find_if(places.rbegin(), places.rend(),
       [&](const Place& place)
       {
@@ -253,8 +259,12 @@ JoinedCopies joinCopies(RankGroup& group, const MeshView& view, const Index* ids
       }
       moved = findMoved(copies, received.size(), result, together);
     });
+  // Ids of which most are at several places are not those of one mesh.
   result.apart = group.sum(result.apart);
-  result.apart = group.sum(together) > result.apart ? result.apart : 0;
+  if (group.sum(together) <= result.apart)
+  {
+    return JoinedCopies();
+  }
   result.joined = group.sum(result.joined);
   result.farthest = group.maximum(result.farthest);
   if (result.joined == 0)

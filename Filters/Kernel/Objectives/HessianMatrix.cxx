@@ -350,6 +350,17 @@ bool HessianMatrix::hasConvexPart(const ObjectiveSum& objective)
 }
 
 //------------------------------------------------------------------------------
+void HessianMatrix::addToDiagonal(Index row, double value)
+{
+  double* block =
+    this->Blocks.data() + static_cast<Index>(this->Size * this->Size) * this->Diagonal[row];
+  for (int c = 0; c < this->Size; ++c)
+  {
+    block[(this->Size + 1) * c] += value;
+  }
+}
+
+//------------------------------------------------------------------------------
 void HessianMatrix::restrict(Index row, const double* projector)
 {
   const int n = this->Size;

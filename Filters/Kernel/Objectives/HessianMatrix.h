@@ -76,6 +76,8 @@ public:
    * @param projector the point's block of P, row by row
    */
   void restrict(Index row, const double* projector);
+  /// Adds a number to the diagonal of a row's own block.
+  void addToDiagonal(Index row, double value);
   /// Prepares precondition(): to be called when the matrix is complete.
   void factorize();
   /**

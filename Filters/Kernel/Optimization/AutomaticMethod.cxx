@@ -65,7 +65,7 @@ bool Stage::startsWithNewton(const IterationRecord& first)
 void Stage::takeHarmonicStart(const std::vector<double>& start)
 {
   const IterationRecord& first = this->History.front();
-  if (this->Steps.slidesOrHasTargets() ||
+  if (this->Steps.hasConstraintsOrTargets() ||
     this->Options.objectives[0].metric != Metric::InverseMeanRatio || this->Steps.outOfTime() ||
     first.mean[0] < enoughForHarmonicStart)
   {
@@ -111,8 +111,10 @@ bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
   // Where the harmonic map is the minimum, no iteration is recorded.
   IterationRecord& last = this->History.back();
   const IterationRecord found = this->Steps.record(last.iteration);
-  last = found.objective < last.objective ? found : last;
-  if (found.objective < reached)
+  // Inverted elements do not count in the objective.
+  const bool valid = found.inverted <= this->History.front().inverted;
+  last = valid && found.objective < last.objective ? found : last;
+  if (valid && found.objective < reached)
   {
     return true;
   }
@@ -136,7 +138,7 @@ bool Stage::mayGoOn() const
  */
 void Stage::takeTurns(const IterationRecord& first)
 {
-  // On a rank without points, the start is empty.
+  // The same on all ranks, also on one whose points, and so the start, are empty.
   const bool slides = this->Steps.slidesOnSurface();
   const std::vector<double> start = slides ? std::vector<double>() : this->Steps.stored();
   for (int turn = 0; turn < maxTurns; ++turn)

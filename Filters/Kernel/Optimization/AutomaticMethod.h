@@ -37,8 +37,8 @@ public:
   virtual bool hasMostlyCorners() const = 0;
   /// See HessianMatrix::hasConvexPart(), of the first objective.
   virtual bool hasConvexPart() = 0;
-  /// Whether points slide on lines or planes, or an objective has targets.
-  virtual bool slidesOrHasTargets() const = 0;
+  /// Whether points slide on lines or planes or have limits, or an objective has targets.
+  virtual bool hasConstraintsOrTargets() const = 0;
   /// Whether points slide on the surface, which only sweeps keep where it is curved.
   virtual bool slidesOnSurface() const = 0;
   /// Whether methods that move all points at once hold some of these.

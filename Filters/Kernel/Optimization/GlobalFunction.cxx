@@ -46,6 +46,10 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
     this->Surface = std::make_unique<SurfaceSlides>(problem);
     this->Origin = problem.points();
   }
+  if (this->bends())
+  {
+    this->move(std::vector<double>(this->size(), 0.0).data());
+  }
   findValidityLevels(problem.moving(), problem.options().threads, this->Start);
   // An objective that is infinite on inverted elements needs no other check, if these have no
   // inside.
@@ -193,7 +197,7 @@ bool GlobalFunction::hasConstraints() const
 
 bool GlobalFunction::isHeld(std::size_t p) const
 {
-  return !this->Slides.held.empty() && this->Slides.held[p];
+  return (!this->Slides.held.empty() && this->Slides.held[p]) || this->Problem.limitOf(p) == 0;
 }
 
 //------------------------------------------------------------------------------
@@ -360,33 +364,63 @@ bool GlobalFunction::fillMatrix()
   }
   if (this->hasConstraints())
   {
-    this->forEachFree([&](std::size_t i, std::size_t p) { this->restrict(i, p); });
+    this->forEachFree(
+      [&](std::size_t i, std::size_t p)
+      {
+        this->bendAtLimit(i, p);
+        this->restrict(i, p);
+      });
   }
   return convex;
 }
 
 //------------------------------------------------------------------------------
-void GlobalFunction::linearize(const double* x)
+/// Adds the second derivative of a way along the limit, which is a sphere: a force that draws a
+/// point outwards by so much draws it back to where the limit is farthest out.
+void GlobalFunction::bendAtLimit(std::size_t row, std::size_t p)
 {
+  const Vec3 outward = this->outwardOf(p);
+  const double limit = this->Problem.limitOf(p);
+  if (!(dot(outward, outward) > 0) || !(limit > 0))
+  {
+    return;
+  }
+  const double* g = &this->Gradient[3 * p];
+  const double force = -dot(Vec3{ g[0], g[1], g[2] }, outward);
+  this->Hessian->addToDiagonal(static_cast<Index>(row), std::max(0.0, force) / limit);
+}
+
+//------------------------------------------------------------------------------
+void GlobalFunction::rebase(const double* x)
+{
+  if (!this->bends())
+  {
+    return;
+  }
+  this->put(x);
+  this->forEachFree(
+    [&](std::size_t i, std::size_t p)
+    {
+      for (int c = 0; c < 3; ++c)
+      {
+        double by = 0;
+        for (int a = 0; a < this->Size; ++a)
+        {
+          by += x[this->Size * i + a] * this->Axes[a][c];
+        }
+        this->Origin[3 * p + c] = this->Problem.points()[3 * p + c] - by;
+      }
+    });
   if (this->Surface)
   {
-    // Steps are added to tangents of the surface: from where the points are by now.
-    this->put(x);
-    this->forEachFree(
-      [&](std::size_t i, std::size_t p)
-      {
-        for (int c = 0; c < 3; ++c)
-        {
-          double by = 0;
-          for (int a = 0; a < this->Size; ++a)
-          {
-            by += x[this->Size * i + a] * this->Axes[a][c];
-          }
-          this->Origin[3 * p + c] = this->Problem.points()[3 * p + c] - by;
-        }
-      });
     this->Surface->keepNormals();
   }
+}
+
+//------------------------------------------------------------------------------
+void GlobalFunction::linearize(const double* x)
+{
+  this->rebase(x);
   if (!this->Hessian)
   {
     this->makeMatrix();

@@ -57,6 +57,11 @@ public:
   void findGradient(const std::vector<double>& slopes, double* gradient, double* terms);
   /// Takes the memory for the Hessian.
   void makeMatrix();
+  /// Takes the points at x, where they are, for those that further steps are added to: points at
+  /// limits and on surfaces are elsewhere than the steps alone lead.
+  void rebase(const double* x);
+  /// Whether points may be elsewhere than the steps alone lead.
+  bool bends() const { return this->Surface || !this->Outward.empty(); }
   /// The Hessian with the slopes of findGradient(), not factorized; whether it is the positive
   /// semidefinite part.
   bool fillMatrix();
@@ -74,6 +79,7 @@ private:
   bool isHeld(std::size_t p) const;
   void restrict(std::size_t row, std::size_t p);
   void keepLimit(std::size_t p);
+  void bendAtLimit(std::size_t row, std::size_t p);
   Vec3 outwardOf(std::size_t p) const;
   Vec3 project(std::size_t p, Vec3 g) const;
 

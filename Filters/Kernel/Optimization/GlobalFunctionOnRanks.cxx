@@ -151,6 +151,14 @@ void GlobalFunctionOnRanks::makeMatrix()
 void GlobalFunctionOnRanks::linearize(const double* x)
 {
   this->put(x);
+  this->TheMesh.group().together(
+    [&]
+    {
+      if (this->Local)
+      {
+        this->Local->rebase(this->All.data());
+      }
+    });
   this->makeMatrix();
   bool convex = this->Newton;
   this->TheMesh.group().together(

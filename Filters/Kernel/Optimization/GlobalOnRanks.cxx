@@ -101,11 +101,11 @@ bool OptimizationOnRanks::hasConvexPart()
 }
 
 //------------------------------------------------------------------------------
-bool OptimizationOnRanks::slidesOrHasTargets() const
+bool OptimizationOnRanks::hasConstraintsOrTargets() const
 {
   const OptimizeOptions& options = this->Options;
-  return this->Group.any(
-    options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets);
+  return this->Group.any(options.slidePlanes || options.slideLines || options.limits ||
+    options.objectives[0].evaluation.targets);
 }
 
 //------------------------------------------------------------------------------

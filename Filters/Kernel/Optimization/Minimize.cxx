@@ -559,8 +559,8 @@ bool Minimizer::crawls()
   {
     return false;
   }
-  const double before = this->Values[this->Values.size() - 1 - gainWindow];
-  return before - this->F<least&& this->Promised> least;
+  const double gain = this->Values[this->Values.size() - 1 - gainWindow] - this->F;
+  return (gain < least) && (this->Promised > least);
 }
 
 //------------------------------------------------------------------------------
@@ -623,7 +623,8 @@ MinimizeResult Minimizer::run()
     const bool flat = this->Norm <= this->Options.gradientNorm * this->FirstNorm;
     const bool slow = this->Options.relativeChange > 0 &&
       before - this->F <= this->Options.relativeChange * std::abs(this->F);
-    if (this->Norm == 0 || (flat && this->isNear()))
+    const bool near = (flat || slow) && this->isNear();
+    if (this->Norm == 0 || (flat && near))
     {
       this->Result.reason = StopReason::GradientNorm;
       return this->Result;
@@ -635,7 +636,7 @@ MinimizeResult Minimizer::run()
       return this->Result;
     }
     if ((everyTime && this->Promised <= this->Options.decrement * std::abs(this->F)) ||
-      (slow && this->isNear()))
+      (slow && near))
     {
       this->Result.reason = StopReason::RelativeChange;
       return this->Result;

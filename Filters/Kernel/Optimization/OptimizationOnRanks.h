@@ -53,7 +53,7 @@ private:
   StopReason minimizeAll(Optimizer method) override;
   bool hasMostlyCorners() const override;
   bool hasConvexPart() override;
-  bool slidesOrHasTargets() const override;
+  bool hasConstraintsOrTargets() const override;
   bool slidesOnSurface() const override { return false; } // such meshes are gathered
   bool holdsPoints() override
   {

@@ -649,8 +649,9 @@ bool OptimizationProblem::someAtLimit() const
     const auto p = static_cast<std::size_t>(this->Simplices->point(v));
     const double* now = &this->Points[3 * p];
     const double* start = this->start() + 3 * p;
-    if (std::hypot(now[0] - start[0], now[1] - start[1], now[2] - start[2]) >=
-      insideLimit * this->limitOf(p))
+    const double limit = this->limitOf(p);
+    if (limit > 0 &&
+      std::hypot(now[0] - start[0], now[1] - start[1], now[2] - start[2]) >= insideLimit * limit)
     {
       return true;
     }

@@ -6,6 +6,7 @@
 #include "HarmonicStart.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
+#include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "ImproveWorst.h"
 #include "LeaveSurface.h"
@@ -249,10 +250,11 @@ public:
   }
 
   bool hasConvexPart() override { return HessianMatrix::hasConvexPart(this->Problem.sum(0)); }
-  bool slidesOrHasTargets() const override
+  bool hasConstraintsOrTargets() const override
   {
     const OptimizeOptions& options = this->Problem.options();
-    return options.slidePlanes || options.slideLines || options.objectives[0].evaluation.targets ||
+    return options.slidePlanes || options.slideLines || options.limits ||
+      options.objectives[0].evaluation.targets ||
       this->Problem.moving().dimension() == Dimension::Surface;
   }
   bool slidesOnSurface() const override
@@ -526,7 +528,13 @@ bool untangleFirst(
   const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)
 {
   UntangleOptions untangling;
-  const std::vector<unsigned char> held = heldInUntangling(options, mesh.view().numberOfPoints);
+  std::vector<unsigned char> held = heldInUntangling(options, mesh.view().numberOfPoints);
+  if (!options.fixed && !held.empty())
+  {
+    const std::vector<char> boundary = boundaryPoints(mesh);
+    std::transform(held.begin(), held.end(), boundary.begin(), held.begin(),
+      [](unsigned char h, char b) { return static_cast<unsigned char>(h || b); });
+  }
   untangling.fixed = held.empty() ? nullptr : held.data();
   untangling.threads = options.threads;
   if (options.stopping.maximumSeconds > 0)
@@ -555,6 +563,29 @@ bool untangleFirst(
   }
   return proceed;
 }
+}
+
+//------------------------------------------------------------------------------
+void OptimizeResult::keepStart(std::vector<double> start, Index inverted)
+{
+  this->points = std::move(start);
+  this->elements = {};
+  this->invertedAfter = inverted;
+  this->unchanged = true;
+  this->restored = this->leftSurface = this->heldOnSurface = 0;
+  this->surfaceError = 0;
+  if (!this->history.empty())
+  {
+    IterationRecord last = this->history.front();
+    last.iteration = this->history.back().iteration;
+    last.seconds = this->history.back().seconds;
+    last.inverted = inverted;
+    this->history.back() = last;
+  }
+  if (this->reason != StopReason::Aborted && this->reason != StopReason::TimeLimit)
+  {
+    this->reason = StopReason::NoProgress;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -606,16 +637,10 @@ OptimizeResult optimize(
     mesh.dimension() != Dimension::Surface)
   {
     // Coordinates of too different magnitudes.
-    result.points = result.untangled
-      ? untangled
-      : std::vector<double>(view.points, view.points + 3 * view.numberOfPoints);
-    result.invertedAfter = invalid;
-    result.unchanged = true;
-    result.reason = StopReason::NoProgress;
-    result.restored = result.leftSurface = 0;
-    result.history.back().inverted = invalid;
-    result.history.back().objective = result.history.front().objective;
-    result.elements = {};
+    result.keepStart(result.untangled
+        ? untangled
+        : std::vector<double>(view.points, view.points + 3 * view.numberOfPoints),
+      invalid);
   }
   if (guard.judged().metric == options.objectives[0].metric && !result.elements.after.empty())
   {

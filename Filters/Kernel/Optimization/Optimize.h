@@ -49,6 +49,10 @@ struct OptimizeResult
   /// there was worse in one of the three numbers.
   bool unchanged = false;
   VerifiedElements elements; ///< at `points`
+
+  /// Goes back to the points of the start, as what was found is worse: sets all else to what it is
+  /// there.
+  TAUTLINE_KERNEL_EXPORT void keepStart(std::vector<double> start, Index inverted);
 };
 
 /**

@@ -561,13 +561,8 @@ OptimizeResult OptimizationOnRanks::run()
   if (this->Result.invertedAfter > invalid && !this->Options.allowInversion)
   {
     // Coordinates of too different magnitudes.
-    this->Result.points = this->Points = start;
-    this->Result.invertedAfter = invalid;
-    this->Result.unchanged = true;
-    this->Result.reason = StopReason::NoProgress;
-    this->Result.restored = 0;
-    this->Result.history.back().inverted = invalid;
-    this->Result.history.back().objective = this->Result.history.front().objective;
+    this->Points = start;
+    this->Result.keepStart(start, invalid);
   }
   return this->Result;
 }

@@ -26,8 +26,8 @@ enum class Optimizer : int
    * smaller there; near the minimum, where more than 25 sweeps are to be expected, from where they
    * are. Where that stops short of the minimum, or holds points, sweeps and
    * NewtonConjugateGradient in turn: with slideSurface, or a model of the boundary, it moves points
-   * on flat patches and straight curves and holds the others; with limits it leaves it to sweeps to
-   * move points at their limit inwards. Meshes of surfaces in space need a model for it. Not with a
+   * on flat patches and straight curves and holds the others; with limits, only sweeps move points
+   * inwards from their limit. Meshes of surfaces in space need a model for it. Not with a
    * maximum as objective, nor several in lexicographic order. Should a sweep fail to reduce several
    * objectives, LimitedMemoryBFGS from there, unless points slide on the surface.
    */

@@ -153,15 +153,16 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
 std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Index points)
 {
   std::vector<unsigned char> held;
-  if (!options.fixed && !options.model)
+  if (!options.fixed && !options.model && !options.limits)
   {
     return held;
   }
   for (Index p = 0; p < points; ++p)
   {
     held.push_back((options.fixed && options.fixed[p]) ||
-      (options.model && options.parts[p] >= 0) || slides(options.slidePlanes, p) ||
-      slides(options.slideLines, p) || (options.slideSurface && options.slideSurface[p]));
+      (options.limits && !(options.limits[p] > 0)) || (options.model && options.parts[p] >= 0) ||
+      slides(options.slidePlanes, p) || slides(options.slideLines, p) ||
+      (options.slideSurface && options.slideSurface[p]));
   }
   return held;
 }

@@ -28,7 +28,7 @@ public:
   /// @param outOfTime whether the time limit is reached; of several ranks, on any
   StoppingTest(const OptimizeOptions& options, std::function<bool()> outOfTime)
     : Stop(options.stopping)
-    , Shape(options.objectives[0].metric == Metric::InverseMeanRatio)
+    , Shape(!options.objectives.empty() && options.objectives[0].metric == Metric::InverseMeanRatio)
     , OutOfTime(std::move(outOfTime))
   {
   }
@@ -274,7 +274,8 @@ inline bool converged(const StoppingCriteria& stop, const SweepResult& sweep, bo
   StopReason& reason)
 {
   constexpr double little = 1e-3; // of the objective
-  if (all && sweep.gradientNorm <= stop.gradientNorm * firstGradient && possible <= little * size)
+  const bool near = stop.relativeChange == 0 || possible <= little * size;
+  if (all && near && sweep.gradientNorm <= stop.gradientNorm * firstGradient)
   {
     reason = StopReason::GradientNorm;
     return true;

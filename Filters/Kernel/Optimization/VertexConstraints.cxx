@@ -360,6 +360,7 @@ bool VertexOptimizer<Dim>::turnAlongLimit(
   return true;
 }
 
+/// Shortens the displacement of v to its limit.
 template <int Dim>
 void VertexOptimizer<Dim>::keepLimit(std::int32_t v, double* to) const
 {

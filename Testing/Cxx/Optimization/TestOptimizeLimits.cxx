@@ -136,6 +136,58 @@ void testWide()
   TAUTLINE_CHECK_RELATIVE(result.history.back().objective, 1.0 * cells * cells, 1e-6);
 }
 
+/// Limits on some points, also of 0: where the harmonic map would take these farther, it is no start.
+void testSome(double limit)
+{
+  const Context context("limit " + std::to_string(limit));
+  constexpr int cells = 30;
+  const MeshData data = stretched(CellType::Triangle, cells,
+    [](const Vec3& p) {
+      return Vec3{ p[0], p[1] * p[1], p[2] };
+    });
+  Random random(5);
+  std::vector<double> limits(data.numberOfPoints(), 10.0);
+  for (double& l : limits)
+  {
+    l = random.vector(0, 1)[0] < 0.1 ? limit : l;
+  }
+  OptimizeOptions options;
+  options.limits = limits.data();
+  options.holdWorst = false; // points that cannot move keep the worst element from improving
+  OptimizeOptions sweeps = options;
+  sweeps.optimizer = Optimizer::LocalNewton;
+  sweeps.stopping.maximumIterations = 3000;
+  const OptimizeResult result = run(data, options), swept = run(data, sweeps);
+  TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
+  TAUTLINE_CHECK(result.history.front().objective > 2 * result.history.back().objective);
+  TAUTLINE_CHECK(result.history.back().objective <= 1.001 * swept.history.back().objective);
+  TAUTLINE_CHECK(result.iterations < swept.iterations);
+  double over = 0;
+  for (Index p = 0; p < data.numberOfPoints(); ++p)
+  {
+    over = std::max(over, wayOf(data, result.points, p) - limits[p]);
+  }
+  TAUTLINE_CHECK(over <= 1e-14);
+}
+
+/// Limits that are small beside the elements: the curvature of the limits is what counts.
+void testSmall(CellType type, int cells)
+{
+  const Context context(topology(type).name);
+  const MeshData data = stretched(type, cells,
+    [](const Vec3& p) {
+      return Vec3{ p[0], std::pow(p[1], 1.5), p[2] };
+    });
+  const std::vector<double> limits(data.numberOfPoints(), 1e-3);
+  OptimizeOptions options;
+  options.limits = limits.data();
+  const OptimizeResult result = run(data, options);
+  options.optimizer = Optimizer::LocalNewton;
+  const OptimizeResult swept = run(data, options);
+  TAUTLINE_CHECK_RELATIVE(result.history.back().objective, swept.history.back().objective, 1e-4);
+  TAUTLINE_CHECK(result.iterations <= 15);
+}
+
 /// Points that slide in planes stay there, with limits, too.
 void testSliding()
 {
@@ -185,6 +237,16 @@ void testUntangling()
   const OptimizeResult result = run(data, options);
   TAUTLINE_CHECK(result.untangled && result.invertedAfter == 0);
   TAUTLINE_CHECK(longestWay(data, result.points) <= (1 + 1e-12) * limits[0]);
+  // Points with a limit of 0 are held in untangling.
+  limits.assign(limits.size(), 10.0);
+  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+  Index held = 0;
+  while (held < data.numberOfPoints() && boundary[held])
+  {
+    ++held;
+  }
+  limits[held] = 0;
+  TAUTLINE_CHECK(wayOf(data, run(data, options).points, held) <= 1e-14);
   limits.assign(limits.size(), 0.9 * way);
   TAUTLINE_CHECK_THROWS(run(data, options), "points farther than their limits");
   int errors = 0;
@@ -256,6 +318,13 @@ int TestOptimizeLimits(int, char*[])
   testMethods("tetrahedra", CellType::Tetrahedron, 10, 0.1);
   testMethods("hexahedra", CellType::Hexahedron, 10, 0.1);
   testWide();
+  for (const double limit : { 0.0, 0.02, 0.05 })
+  {
+    testSome(limit);
+  }
+  testSmall(CellType::Quadrilateral, 30);
+  testSmall(CellType::Tetrahedron, 8);
+  testSmall(CellType::Hexahedron, 10);
   testSliding();
   testUntangling();
   testRanks(CellType::Hexahedron, 8, 0.1);
