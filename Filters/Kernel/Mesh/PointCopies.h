@@ -19,7 +19,8 @@ struct JoinedCopies
   std::vector<double> points; ///< three per point; empty where none of this rank has moved
   Index joined = 0;           ///< points of the whole mesh whose copies were at several places
   double farthest = 0;        ///< the longest way of a copy
-  /// Ids of points that are farther apart. Only of points within an edge of the box of another rank's points.
+  /// Ids of points that are farther apart. Only of points within an edge of the box of another
+  /// rank's points.
   Index apart = 0;
 };
 

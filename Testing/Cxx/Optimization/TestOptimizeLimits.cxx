@@ -136,7 +136,7 @@ void testWide()
   TAUTLINE_CHECK_RELATIVE(result.history.back().objective, 1.0 * cells * cells, 1e-6);
 }
 
-/// Limits on some points, also of 0: where the harmonic map would take these farther, it is no start.
+/// Limits on some points, also of 0, beyond which the harmonic map takes them: it is no start then.
 void testSome(double limit)
 {
   const Context context("limit " + std::to_string(limit));
