@@ -206,6 +206,22 @@ void testOneProcess(vtkMPIController* controller)
   improver->SetInputData(grid);
   improver->Update();
   TAUTLINE_CHECK(remarked(improver->GetSummary()));
+  const auto pointsOf = [](vtkMeshImprover* filter)
+  { return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPoints(); };
+  const vtkIdType joined = pointsOf(improver);
+  TAUTLINE_CHECK(joined < grid->GetNumberOfPoints());
+  // Also beside triangles, which the output does not have.
+  vtkNew<vtkUnstructuredGrid> mixed;
+  mixed->DeepCopy(grid);
+  vtkNew<vtkIdList> corners;
+  mixed->GetCellPoints(0, corners);
+  corners->SetNumberOfIds(3);
+  mixed->InsertNextCell(VTK_TRIANGLE, corners);
+  mixed->GetCellData()->Initialize();
+  improver->SetInputData(mixed);
+  improver->Update();
+  TAUTLINE_CHECK(remarked(improver->GetSummary()));
+  TAUTLINE_CHECK(pointsOf(improver) < grid->GetNumberOfPoints());
   vtkNew<vtkMeshPerturbation> perturbation;
   perturbation->SetInputData(grid);
   perturbation->Update();
