@@ -105,6 +105,7 @@ std::string MeshAdapter::coarseness() const
 std::vector<Index> idsOf(vtkDataArray* globalIds)
 {
   std::vector<Index> ids;
+  ids.reserve(globalIds ? globalIds->GetNumberOfTuples() : 0);
   for (vtkIdType i = 0; globalIds && i < globalIds->GetNumberOfTuples(); ++i)
   {
     ids.push_back(static_cast<Index>(globalIds->GetComponent(i, 0)));
@@ -123,7 +124,7 @@ JoinedCopies MeshAdapter::joinCopies(vtkDataArray* globalIds)
   }
   if (result.joined > 0)
   {
-    this->JoinedPoints = result.points;
+    this->JoinedPoints = std::move(result.points);
     this->View.points = this->JoinedPoints.data();
     this->TheMesh = std::make_unique<Mesh>(this->View, this->Threads);
   }

@@ -46,6 +46,7 @@ public:
    * @brief Gives copies of a point one place in mesh(), see joinCopies() of the kernel; to be
    * called before mergeCoincidentPoints(). inputView() keeps their places.
    * @param globalIds of the points of the data set; null: nothing is done
+   * @return what was joined, without the points
    */
   JoinedCopies joinCopies(vtkDataArray* globalIds);
   /**

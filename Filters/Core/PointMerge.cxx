@@ -106,9 +106,8 @@ std::string describeJoined(const JoinedCopies& copies)
   {
     text << (copies.joined > 0 ? " " : "") << counted(copies.apart, "global id")
          << (copies.apart == 1 ? " is" : " are")
-         << " at places that are farther apart, which are not joined: where they are copies of one "
-            "point, its seam is a boundary. Make their places equal, or run Generate Global Ids "
-            "again.";
+         << " at places that are too far apart to be joined: where they are copies of one point, "
+            "the mesh is open there. Make their places equal, or run Generate Global Ids again.";
   }
   return text.str();
 }

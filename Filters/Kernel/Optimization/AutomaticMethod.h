@@ -39,7 +39,8 @@ public:
   virtual bool hasConvexPart() = 0;
   /// Whether points slide on lines or planes or have limits, or an objective has targets.
   virtual bool hasConstraintsOrTargets() const = 0;
-  /// Whether points slide on the surface, which only sweeps keep where it is curved.
+  /// Whether points slide on the boundary of a planar or volume mesh, which only sweeps keep where
+  /// it is curved.
   virtual bool slidesOnSurface() const = 0;
   /// Whether methods that move all points at once hold some of these.
   virtual bool holdsPoints() = 0;

@@ -20,9 +20,9 @@ namespace tautline
  * @class tautline::GlobalFunction
  * @brief The variables are how far the free points are from where they were at construction, in the
  * axes of coordinateAxes(): two a point in a planar mesh, three in others. Points that slide have
- * gradients along their line or plane only, those that are held none. A point that would
- * go farther than its limit is at the closest place within; while it is at its limit it moves
- * across its way from the start only, see keepLimit().
+ * gradients along their line or plane only, those that are held none. A point that would go
+ * farther than its limit is at the closest place within; while it is at its limit it moves across
+ * its way from the start only, see keepLimit(). Points of a surface stay on it, see SurfaceSlides.
  */
 class GlobalFunction : public SmoothFunction
 {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RoundedResult.h"
 
+#include "SweepControl.h"
+
 #include "QualityGuard.h"
 
 #include "tautline/Objectives/ObjectiveSum.h"
@@ -12,9 +14,6 @@ namespace tautline
 {
 namespace
 {
-/// Sums of the same values differ by so much, relatively, with their order.
-constexpr double roundingOfSums = 1e-12;
-
 std::vector<signed char> validityOf(const Mesh& mesh, int threads)
 {
   std::vector<signed char> validity(mesh.view().numberOfCells);

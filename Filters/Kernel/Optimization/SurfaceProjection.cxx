@@ -401,11 +401,19 @@ Vec3 SurfaceProjection::closest(const Vec3& x) const
 }
 
 //------------------------------------------------------------------------------
+Vec3 SurfaceProjection::closest(const Vec3& x, Vec3& direction) const
+{
+  const Place place = this->find(x);
+  const double length = norm(place.direction);
+  direction = length > 0 ? (1.0 / length) * place.direction : Vec3{ 0, 0, 0 };
+  return place.point;
+}
+
 Vec3 SurfaceProjection::direction(const Vec3& x) const
 {
-  const Vec3 d = this->find(x).direction;
-  const double length = norm(d);
-  return length > 0 ? (1.0 / length) * d : Vec3{ 0, 0, 0 };
+  Vec3 direction;
+  this->closest(x, direction);
+  return direction;
 }
 
 //------------------------------------------------------------------------------

@@ -60,7 +60,8 @@ public:
 
   /// The point of the surface closest to x.
   Vec3 closest(const Vec3& x) const;
-  /// The unit normal there, of a curve the unit tangent; zero if there is none.
+  /// The same with the unit normal there, of a curve the unit tangent; zero if there is none.
+  Vec3 closest(const Vec3& x, Vec3& direction) const;
   Vec3 direction(const Vec3& x) const;
 
   /**

@@ -69,9 +69,9 @@ void SurfaceSlides::place()
         double* p =
           &this->Problem
              .points()[3 * static_cast<std::size_t>(s.point(static_cast<std::int32_t>(v)))];
-        const Vec3 on = this->Surfaces[v]->closest(s.transform({ p[0], p[1], p[2] }));
+        Vec3 d;
+        const Vec3 on = this->Surfaces[v]->closest(s.transform({ p[0], p[1], p[2] }), d);
         s.storeVertex(on.data(), p);
-        const Vec3 d = this->Surfaces[v]->direction(on);
         this->Directions[v] = unit(d[0] * s.axis(0) + d[1] * s.axis(1) + d[2] * s.axis(2));
       }
     });
@@ -133,6 +133,10 @@ bool SurfaceSlides::turned() const
   this->forEachElement(
     [&](Index cell, const Corners& corners)
     {
+      if (turned)
+      {
+        return;
+      }
       // The surface at the points of the element that slide on a patch.
       Vec3 outwards = { 0, 0, 0 };
       for (int s = 0; s < corners.count; ++s)

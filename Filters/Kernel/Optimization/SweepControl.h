@@ -232,10 +232,10 @@ inline bool mayUseNewton(const OptimizeOptions& options)
 {
   const auto rough = [](const Objective& o)
   { return o.objectiveTemplate == ObjectiveTemplate::Maximum; };
-  const bool several =
+  const bool lexicographic =
     options.objectives.size() > 1 && options.scalarization.method == Scalarization::Lexicographic;
   const StoppingCriteria& stop = options.stopping;
-  return options.optimizer == Optimizer::Automatic && !several &&
+  return options.optimizer == Optimizer::Automatic && !lexicographic &&
     std::none_of(options.objectives.begin(), options.objectives.end(), rough) &&
     !options.allowInversion && !(stop.reduction < 1) && !stop.twoDigits && !stop.allValid;
 }

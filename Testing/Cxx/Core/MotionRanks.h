@@ -93,12 +93,11 @@ inline vtkSmartPointer<vtkUnstructuredGrid> numberedGridOf(const RankPart& part)
   return grid;
 }
 
-/// What a filter gives: points by those of the whole mesh (0 elsewhere), and numbers.
+/// The points that a filter gives by those of the whole mesh; HUGE_VAL elsewhere.
 template <class Filter, class Set>
-std::vector<double> pointsOf(const MeshData& whole, const RankPart& part, const Set& set,
-  Filter* filter, bool numbered = false)
+std::vector<double> moved(const MeshData& whole, const RankPart& part, vtkUnstructuredGrid* grid,
+  const Set& set, Filter* filter)
 {
-  const auto grid = numbered ? numberedGridOf(part) : gridOf(part);
   filter->SetInputData(grid);
   set(filter);
   Messages messages(filter);
@@ -111,9 +110,23 @@ std::vector<double> pointsOf(const MeshData& whole, const RankPart& part, const 
   for (vtkIdType p = 0; p < output->GetNumberOfPoints(); ++p)
   {
     output->GetPoint(p, &points[3 * part.pointOf[p]]);
-    double moved[3];
-    output->GetPointData()->GetArray("Displacement")->GetTuple(p, moved);
-    TAUTLINE_CHECK(std::abs(grid->GetPoint(p)[0] + moved[0] - output->GetPoint(p)[0]) <= 1e-14);
+  }
+  return points;
+}
+
+/// The same of a part of the mesh, with a check of the displacements.
+template <class Filter, class Set>
+std::vector<double> pointsOf(const MeshData& whole, const RankPart& part, const Set& set,
+  Filter* filter, bool numbered = false)
+{
+  const auto grid = numbered ? numberedGridOf(part) : gridOf(part);
+  std::vector<double> points = moved(whole, part, grid.Get(), set, filter);
+  auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  for (vtkIdType p = 0; p < output->GetNumberOfPoints(); ++p)
+  {
+    double way[3];
+    output->GetPointData()->GetArray("Displacement")->GetTuple(p, way);
+    TAUTLINE_CHECK(std::abs(grid->GetPoint(p)[0] + way[0] - output->GetPoint(p)[0]) <= 1e-14);
   }
   return points;
 }
