@@ -28,7 +28,8 @@ constexpr const char* elsewhere = "Another rank has rejected its part of the dat
 RankGroup::~RankGroup() = default;
 
 //------------------------------------------------------------------------------
-std::vector<Bytes> RankGroup::exchange(const std::vector<Bytes>& sent)
+std::vector<Bytes> RankGroup::exchange(
+  const std::vector<Bytes>& sent, const std::function<void(const std::vector<Index>&)>& prepare)
 {
   std::vector<Index> lengths;
   for (const Bytes& bytes : sent)
@@ -38,21 +39,30 @@ std::vector<Bytes> RankGroup::exchange(const std::vector<Bytes>& sent)
   const std::vector<Index> expected = this->transpose(std::move(lengths));
   const int own = this->rank();
   std::vector<RankMessage> out, in;
-  for (int r = 0; r < this->size(); ++r)
-  {
-    if (r != own && !sent[r].empty())
+  std::vector<Bytes> received(sent.size());
+  // All that grows with what is sent.
+  this->together(
+    [&]
     {
-      out.push_back({ r, sent[r] });
-    }
-    if (r != own && expected[r] > 0)
-    {
-      in.push_back({ r, Bytes(static_cast<std::size_t>(expected[r])) });
-    }
-  }
+      if (prepare)
+      {
+        prepare(expected);
+      }
+      received[own] = sent[own];
+      for (int r = 0; r < this->size(); ++r)
+      {
+        if (r != own && !sent[r].empty())
+        {
+          out.push_back({ r, sent[r] });
+        }
+        if (r != own && expected[r] > 0)
+        {
+          in.push_back({ r, Bytes(static_cast<std::size_t>(expected[r])) });
+        }
+      }
+    });
   this->start(out, in);
   this->finish();
-  std::vector<Bytes> received(sent.size());
-  received[own] = sent[own];
   for (RankMessage& message : in)
   {
     received[message.rank] = std::move(message.bytes);

@@ -9,7 +9,9 @@
 
 #include "Types.h"
 
+#include <algorithm>
 #include <cstring>
+#include <exception>
 #include <functional>
 #include <type_traits>
 #include <vector>
@@ -58,9 +60,15 @@ public:
    * Trans. Parallel Distrib. Syst. 8 (1997), the index operation.
    */
   std::vector<Index> transpose(std::vector<Index> numbers);
-  /// Sends bytes to each rank (sent[r], also to itself) and returns those of each rank.
-  std::vector<Bytes> exchange(const std::vector<Bytes>& sent);
-  /// The same with lists of items.
+  /**
+   * @brief Sends bytes to each rank (sent[r], also to itself) and returns those of each rank. A
+   * rank without memory for what it receives is an error on all, as in together().
+   * @param prepare called before they are sent, with how many come from each rank; what it throws
+   * on any rank is thrown on all
+   */
+  std::vector<Bytes> exchange(const std::vector<Bytes>& sent,
+    const std::function<void(const std::vector<Index>&)>& prepare = nullptr);
+  /// The same with lists of items; also a rank without memory for copies of these is one on all.
   template <class Item>
   std::vector<std::vector<Item>> exchangeItems(const std::vector<std::vector<Item>>& sent);
   /// The items of every rank, on every rank.
@@ -120,15 +128,37 @@ std::vector<Item> itemsOf(const Bytes& bytes)
 template <class Item>
 std::vector<std::vector<Item>> RankGroup::exchangeItems(const std::vector<std::vector<Item>>& sent)
 {
-  std::vector<Bytes> bytes;
-  for (const std::vector<Item>& items : sent)
+  // What fails here is reported where all ranks are.
+  std::vector<Bytes> bytes(sent.size());
+  std::exception_ptr failure;
+  try
   {
-    bytes.push_back(bytesOf(items));
+    std::transform(sent.begin(), sent.end(), bytes.begin(), bytesOf<Item>);
   }
-  std::vector<std::vector<Item>> received;
-  for (const Bytes& one : this->exchange(bytes))
+  catch (const std::exception&)
   {
-    received.push_back(itemsOf<Item>(one));
+    failure = std::current_exception();
+    std::fill(bytes.begin(), bytes.end(), Bytes());
+  }
+  std::vector<std::vector<Item>> received(sent.size());
+  const std::vector<Bytes> arrived = this->exchange(bytes,
+    [&](const std::vector<Index>& lengths)
+    {
+      if (failure)
+      {
+        std::rethrow_exception(failure);
+      }
+      for (std::size_t r = 0; r < lengths.size(); ++r)
+      {
+        received[r].resize(static_cast<std::size_t>(lengths[r]) / sizeof(Item));
+      }
+    });
+  for (std::size_t r = 0; r < arrived.size(); ++r)
+  {
+    if (!arrived[r].empty())
+    {
+      std::memcpy(received[r].data(), arrived[r].data(), received[r].size() * sizeof(Item));
+    }
   }
   return received;
 }

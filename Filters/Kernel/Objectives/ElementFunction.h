@@ -106,18 +106,20 @@ struct ElementFunction
     return w;
   }
 
+  /// The elements at fault; also those without a value of a user's metric, see replaceNonFinite().
   Mask faults(const BatchContext& context, const Batch& batch) const
   {
+    const Mask none = batch.value != batch.value;
     switch (this->fault)
     {
       case Fault::Zero:
-        return batch.value == 0.0;
+        return none | (batch.value == 0.0);
       case Fault::NotPositive:
         return ~(batch.value > 0.0);
       case Fault::Jacobian:
-        return jacobianFaults(context, batch);
+        return none | jacobianFaults(context, batch);
       default:
-        return Mask{};
+        return none;
     }
   }
 
@@ -143,7 +145,7 @@ struct ElementFunction
       value = squared ? Packet(inverse * inverse) : inverse;
       slope = squared ? Packet(-2.0 * value * inverse) : Packet(-inverse * inverse);
     }
-    if (this->fault != Fault::None)
+    if (this->fault != Fault::None || context.user)
     {
       const Mask faulty = this->faults(context, batch);
       value = select(faulty, broadcast(HUGE_VAL), value);

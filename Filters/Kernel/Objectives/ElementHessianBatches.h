@@ -420,7 +420,7 @@ void differences(
         point[c] = start[c] + sign * step * axis[c];
       }
       evaluate(context, batch);
-      batch.value = finiteOrZero(batch.value);
+      replaceNonFinite(context, batch);
       const Packet factor = sign * over * slope(context, batch);
       for (int i = 0; i < rows; ++i)
       {

@@ -5,6 +5,7 @@
 
 #include "ElementHessianBatches.h"
 #include "tautline/Core/Parallel.h"
+#include "tautline/Mesh/MeshElements.h"
 
 #include <algorithm>
 #include <limits>
@@ -14,12 +15,6 @@ namespace tautline
 {
 namespace
 {
-
-bool isElement(const Mesh& mesh, CellType type)
-{
-  return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
-}
-
 /// Of the elements of a surface.
 const CellTopology& topologyWith(int nodes)
 {

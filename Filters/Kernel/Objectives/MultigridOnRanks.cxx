@@ -6,6 +6,9 @@
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 
+#include <algorithm>
+#include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace tautline
@@ -14,6 +17,7 @@ namespace
 {
 constexpr int pairings = 3;            // of rows
 constexpr double slowCoarsening = 0.8; // ratio of rows beyond which there is no coarser level
+constexpr double floatingSum = 1e-10;  // of a row, relative to the diagonals near it: rounding
 constexpr int rebuildAfter = 4;        // matrices, after which rows are aggregated anew
 constexpr double atOnce = 1 << 30;     // bytes that ranks gather; MPI takes twice as many
 
@@ -135,6 +139,53 @@ void MultigridOnRanks::invertDiagonals()
         invert<Dim>(block, this->Inverse.data() + Dim * Dim * i);
       }
     });
+}
+
+//------------------------------------------------------------------------------
+/// See isFloating() in Multigrid.cxx. Uses the diagonals of all rows.
+template <int Dim>
+bool MultigridOnRanks::isFloating() const
+{
+  const BlockMatrixView& a = this->Matrix;
+  const std::vector<std::int32_t>& owned = this->Rows.owned();
+  const bool held = std::any_of(owned.begin(), owned.end(),
+    [&](std::int32_t row)
+    {
+      double sum[Dim * Dim] = {}, size = 0;
+      for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
+      {
+        const double* block = a.blocks + static_cast<Index>(Dim * Dim) * i;
+        const double* diagonal = this->Diagonal.data() + static_cast<Index>(Dim) * a.columns[i];
+        std::transform(block, block + Dim * Dim, sum, sum, std::plus<>());
+        // Of a positive semidefinite block the largest entry is on the diagonal.
+        size = std::max(size, *std::max_element(diagonal, diagonal + Dim));
+      }
+      return !std::all_of(
+        sum, sum + Dim * Dim, [size](double x) { return std::abs(x) <= floatingSum * size; });
+    });
+  RankGroup& group = this->Rows.group();
+  return !group.any(held) && group.any(!owned.empty());
+}
+
+template <int Dim>
+void MultigridOnRanks::removeTranslation(double* z)
+{
+  RankGroup& group = this->Rows.group();
+  const std::size_t count = this->Rows.numberOfOwned();
+  const auto total = static_cast<double>(group.sum(static_cast<Index>(count)));
+  this->Component.resize(count);
+  for (int c = 0; c < Dim; ++c)
+  {
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      this->Component[i] = z[Dim * i + c];
+    }
+    const double mean = group.orderlessSum(this->Component) / total;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      z[Dim * i + c] -= mean;
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -305,6 +356,7 @@ void MultigridOnRanks::build(const BlockMatrixView& matrix)
   this->Matrix = matrix;
   const bool flat = matrix.size == 2;
   flat ? this->invertDiagonals<2>() : this->invertDiagonals<3>();
+  this->Floating = flat ? this->isFloating<2>() : this->isFloating<3>();
   if (!this->Coarse || ++this->Reused >= rebuildAfter)
   {
     this->Reused = 0;
@@ -384,6 +436,11 @@ void MultigridOnRanks::cycle(const double* r, double* z)
     this->subtractProduct<Dim>(this->All.data(), this->Rest.data());
   }
   smooth(this->Rest.data());
+  // Translations of everything, which the smoother brings in where no point is held, would grow.
+  if (this->Floating)
+  {
+    this->removeTranslation<Dim>(z);
+  }
 }
 
 void MultigridOnRanks::apply(const double* r, double* z)

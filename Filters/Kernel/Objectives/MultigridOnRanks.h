@@ -39,6 +39,12 @@ public:
 private:
   template <int Dim>
   void invertDiagonals();
+  /// Whether the matrix maps translations of all rows of all ranks to 0: no point is held.
+  template <int Dim>
+  bool isFloating() const;
+  /// Removes the mean of each component, over the rows of all ranks.
+  template <int Dim>
+  void removeTranslation(double* z);
   template <int Dim>
   Graph couplings(const std::vector<std::int32_t>& numbers) const;
   template <int Dim>
@@ -56,10 +62,12 @@ private:
 
   const RankRows& Rows;
   int Threads, Reused = 0;
+  bool Floating = false; ///< see isFloating()
   BlockMatrixView Matrix;
   std::vector<double> Diagonal;       ///< entries, of all rows
   std::vector<double> Inverse;        ///< blocks, of own rows
   std::vector<double> All, Rest, Own; ///< work space: of all rows, of own rows, of own aggregates
+  std::vector<double> Component;      ///< of own rows, where the matrix is floating
 
   // The next level, on all ranks.
   std::unique_ptr<Multigrid> Coarse; ///< null where rows hardly couple

@@ -24,12 +24,13 @@
  * - the template is SumOfSquaredReciprocals, or PowerMean where larger is better, and q <= 0;
  * - the template is SumOfReciprocals and q = 0. Negative q give the finite negative terms of the
  *   dissertation: lowering them drives an inverted element *towards* degeneration, and it takes an
- *   untangling objective beside it to turn the element round.
+ *   untangling objective beside it to turn the element round;
+ * - the metric is a user's and its formula has no finite value.
  * All else is finite on any element: UntangleBeta and the other metrics that grow as elements
  * invert (InvertedValue::Larger), and Sum and Maximum of signed metrics where larger is better.
  * Elements at fault add nothing to the gradient, which never has a NaN; elements of weight 0 add
- * nothing at all. A cell with a coordinate that is not finite has q = 0: at fault for barriers and
- * reciprocals, no contribution to other templates but that of q = 0.
+ * nothing at all. A cell with a coordinate that is not finite has q = 0: at fault for barriers,
+ * reciprocals and metrics of a user, no contribution to other templates but that of q = 0.
  *
  * Cells the metric is not defined on are left out.
  */

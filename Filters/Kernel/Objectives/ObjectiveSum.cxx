@@ -213,7 +213,7 @@ void ObjectiveSumState::findTerms(double scale, OrderlessSums* gradient, double*
             const int count = static_cast<int>(std::min<Index>(PacketWidth, chunk.end - begin));
             gather<Nodes>(context, this->elements.order(chunk), begin, count, batch, nodes);
             evaluate(context, batch);
-            batch.value = finiteOrZero(batch.value);
+            replaceNonFinite(context, batch);
             Packet value, slope;
             (f.*term)(context, batch, value, slope);
             for (int l = 0; l < count; ++l)
@@ -267,5 +267,10 @@ void ObjectiveSum::elementValues(double* values) const
 const Objective& ObjectiveSum::objective() const
 {
   return this->Impl->objective;
+}
+
+void ObjectiveSum::setTotalWeight(double weight)
+{
+  this->Impl->function.totalWeight = weight;
 }
 }

@@ -53,6 +53,9 @@ public:
   /// As given, with the template Default replaced by the one it stands for.
   const Objective& objective() const;
 
+  /// Where the mesh is a part, of a p-mean: the weight of all elements of the whole.
+  void setTotalWeight(double weight);
+
   /// For other parts of the kernel.
   const ObjectiveSumState& state() const { return *this->Impl; }
 

@@ -9,6 +9,8 @@
 #include "Metrics.h"
 #include "tautline/Mesh/CellBatch.h"
 
+#include <limits>
+
 namespace tautline
 {
 /// Everything a batch evaluator needs that is the same for all batches of a block.
@@ -26,7 +28,20 @@ struct Batch : CellVertices
 {
   Packet value;
   Packet gradient[MaxNodes][3];
+  /// 1 where a node is the vertex that moves, else 0. If set, an evaluator of a user's metric adds
+  /// up the gradients of these nodes and puts the sum in place of that of the first node.
+  const Packet* moving = nullptr;
 };
+
+/// Replaces values that are not finite: by 0, or by NaN where a user's metric has none, which an
+/// objective must not take for a good one.
+inline void replaceNonFinite(const BatchContext& context, Batch& batch)
+{
+  const Packet finite = finiteOrZero(batch.value);
+  batch.value = context.user
+    ? select(finite == batch.value, finite, broadcast(std::numeric_limits<double>::quiet_NaN()))
+    : finite;
+}
 
 /// x times the unit of the cells to a power, for cells that normalizeExtents() has scaled.
 inline Packet timesUnit(const CellVertices& batch, Packet x, int power)
@@ -52,6 +67,8 @@ struct MetricCode
 MetricCode targetMetricCode(Metric metric);
 MetricCode simplexMetricCode(Metric metric);
 MetricCode cellMetricCode(Metric metric);
+/// Those of cellMetricCode() that work on packets.
+MetricCode extremalMetricCode(Metric metric);
 /// For metrics that were registered: of T, and of the corners.
 MetricCode userTargetMetricCode(bool singular);
 MetricCode userCornerMetricCode();

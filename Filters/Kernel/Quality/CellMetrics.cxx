@@ -4,13 +4,15 @@
  * @brief Metrics of whole cells: lengths, angles, sizes. Scalar code, one function a metric.
  *
  * A function returns the value and, on request, adds the gradient; where an extremum is taken it is
- * the gradient of the extremal term. Facts in MetricRegistry.cxx.
+ * the gradient of the extremal term. Those that take most time are in ExtremalMetrics.cxx. Facts in
+ * MetricRegistry.cxx.
  */
 #include "Batch.h"
 
 #include "tautline/Mesh/JacobianBounds.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace tautline
 {
@@ -164,30 +166,6 @@ double lengthRatio(const Vec3& a, const Vec3& b, Vec3* da, Vec3* db)
   return q;
 }
 
-/// Longest over shortest edge.
-double edgeRatio(const Cell& cell, Gradient g)
-{
-  const CellTopology& t = cell.topology;
-  auto edge = [&](int e)
-  { return cell.points[t.edgeNodes[e][1]] - cell.points[t.edgeNodes[e][0]]; };
-  int longest = 0, shortest = 0;
-  for (int e = 1; e < t.edges; ++e)
-  {
-    longest = norm(edge(e)) > norm(edge(longest)) ? e : longest;
-    shortest = norm(edge(e)) < norm(edge(shortest)) ? e : shortest;
-  }
-  Vec3 da, db;
-  const double q = lengthRatio(edge(longest), edge(shortest), g ? &da : nullptr, &db);
-  if (g && q > 0)
-  {
-    g[t.edgeNodes[longest][1]] += da;
-    g[t.edgeNodes[longest][0]] -= da;
-    g[t.edgeNodes[shortest][1]] += db;
-    g[t.edgeNodes[shortest][0]] -= db;
-  }
-  return q;
-}
-
 /// Longest over shortest principal axis of a quadrilateral or hexahedron.
 double principalAxisRatio(const Cell& cell, Gradient g)
 {
@@ -324,82 +302,6 @@ double widthRatio(const Cell& cell, Gradient g)
 }
 
 //------------------------------------------------------------------------------
-/// Interior angle at a node of a 2D cell in [0, 2 pi), reflex when the corner turns the other way.
-double cornerAngle(const Cell& cell, int corner, Gradient g)
-{
-  const auto& nodes = cell.topology.cornerNodes[corner];
-  const Vec3* p = cell.points;
-  const Vec3 a = p[nodes[1]] - p[nodes[0]], b = p[nodes[2]] - p[nodes[0]];
-  Vec3 da, db;
-  double angle = angleBetween(a, b, g ? &da : nullptr, &db);
-  double sign = 1;
-  if (cell.topology.nodes == 4 && dot(cross(a, b), FaceNormal(p, allNodes, 4).normal) < 0)
-  {
-    angle = 2 * Pi - angle;
-    sign = -1;
-  }
-  if (g)
-  {
-    g[nodes[1]] += (sign * degreesPerRadian) * da;
-    g[nodes[2]] += (sign * degreesPerRadian) * db;
-    g[nodes[0]] -= (sign * degreesPerRadian) * (da + db);
-  }
-  return degreesPerRadian * angle;
-}
-
-/// Dihedral angle inside the cell at an edge, between the planes of its two faces, in [0, pi].
-double dihedralAngle(const Cell& cell, int edge, Gradient g)
-{
-  const CellTopology& t = cell.topology;
-  const auto& faces = t.edgeFaces[edge];
-  const FaceNormal first(cell.points, t.faceNodes[faces[0]].data(), t.faceSizes[faces[0]]);
-  const FaceNormal second(cell.points, t.faceNodes[faces[1]].data(), t.faceSizes[faces[1]]);
-  Vec3 da, db;
-  const double angle = angleBetween(first.normal, -1.0 * second.normal, g ? &da : nullptr, &db);
-  if (g)
-  {
-    first.addGradient(degreesPerRadian * da, g);
-    second.addGradient(-degreesPerRadian * db, g);
-  }
-  return degreesPerRadian * angle;
-}
-
-double angle(const Cell& cell, int i, Gradient g)
-{
-  return cell.topology.dimension == 2 ? cornerAngle(cell, i, g) : dihedralAngle(cell, i, g);
-}
-
-double extremeAngle(const Cell& cell, Gradient g, double sign)
-{
-  const int count = cell.topology.dimension == 2 ? cell.topology.corners : cell.topology.edges;
-  int best = 0;
-  double value = angle(cell, 0, nullptr);
-  for (int i = 1; i < count; ++i)
-  {
-    const double a = angle(cell, i, nullptr);
-    if (sign * a > sign * value)
-    {
-      value = a;
-      best = i;
-    }
-  }
-  if (g)
-  {
-    angle(cell, best, g);
-  }
-  return value;
-}
-
-double minimumAngle(const Cell& cell, Gradient g)
-{
-  return extremeAngle(cell, g, -1.0);
-}
-
-double maximumAngle(const Cell& cell, Gradient g)
-{
-  return extremeAngle(cell, g, 1.0);
-}
-
 /// max((largest - e) / (180 - e), (e - smallest) / e) over the faces, e = 60 or 90 degrees.
 double equiangleSkew(const Cell& cell, Gradient g)
 {
@@ -440,63 +342,6 @@ double equiangleSkew(const Cell& cell, Gradient g)
     g[worstNodes[0]] -= factor * (da + db);
   }
   return worst;
-}
-
-//------------------------------------------------------------------------------
-/// Corner Jacobian over its edge lengths, scaled so that the ideal corner has 1.
-double scaledJacobianAt(const Cell& cell, int corner, Gradient g)
-{
-  const CellTopology& t = cell.topology;
-  const auto& nodes = t.cornerNodes[corner];
-  Vec3 e[3];
-  double lengths = 1;
-  for (int k = 0; k < t.dimension; ++k)
-  {
-    e[k] = cell.points[nodes[k + 1]] - cell.points[nodes[0]];
-    lengths *= norm(e[k]);
-  }
-  if (t.dimension == 2)
-  {
-    // The third edge is the unit normal on the side that counts as positive.
-    const Vec3 own = cross(e[0], e[1]);
-    const Vec3 side = cell.planar ? cell.normal : FaceNormal(cell.points, allNodes, t.nodes).normal;
-    const double length = norm(own);
-    e[2] = length > 0 ? (dot(own, side) < 0 ? -1 / length : 1 / length) * own : Vec3{ 0, 0, 0 };
-  }
-  if (lengths == 0)
-  {
-    return 0;
-  }
-  const Vec3 derivative[3] = { cross(e[1], e[2]), cross(e[2], e[0]), cross(e[0], e[1]) };
-  const double scale = t.scaledJacobianFactor / lengths;
-  const double q = scale * dot(e[0], derivative[0]);
-  for (int k = 0; g && k < t.dimension; ++k)
-  {
-    const Vec3 d = scale * derivative[k] - (q / dot(e[k], e[k])) * e[k];
-    g[nodes[k + 1]] += d;
-    g[nodes[0]] -= d;
-  }
-  return q;
-}
-
-double scaledJacobian(const Cell& cell, Gradient g)
-{
-  int worst = 0;
-  double value = scaledJacobianAt(cell, 0, nullptr);
-  for (int c = 1; c < cell.topology.corners; ++c)
-  {
-    const double q = scaledJacobianAt(cell, c, nullptr);
-    if (q < value)
-    {
-      value = q;
-      worst = c;
-    }
-  }
-  if (g)
-  {
-    scaledJacobianAt(cell, worst, g);
-  }
-  return value;
 }
 
 //------------------------------------------------------------------------------
@@ -607,24 +452,16 @@ MetricCode cellMetricCode(Metric metric)
   {
     case Metric::Size:
       return codeOf<size>();
-    case Metric::EdgeRatio:
-      return codeOf<edgeRatio>();
     case Metric::AspectRatio:
       return codeOf<aspectRatio>();
     case Metric::WidthRatio:
       return codeOf<widthRatio>();
-    case Metric::MinimumAngle:
-      return codeOf<minimumAngle>();
-    case Metric::MaximumAngle:
-      return codeOf<maximumAngle>();
     case Metric::EquiangleSkew:
       return codeOf<equiangleSkew>();
-    case Metric::ScaledJacobian:
-      return codeOf<scaledJacobian>();
     case Metric::MinimumJacobian:
       return codeOf<smallestJacobian>();
     default:
-      return {};
+      return extremalMetricCode(metric);
   }
 }
 }

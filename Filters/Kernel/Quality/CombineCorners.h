@@ -84,6 +84,11 @@ inline Packet combine(
       break;
     }
   }
+  // A user's formula may have no value at a corner: the cell has none then.
+  for (int s = 0; s < samples && context.user; ++s)
+  {
+    result += select(active[s] > 0.0, 0.0 * q[s], Packet{});
+  }
   return result;
 }
 }

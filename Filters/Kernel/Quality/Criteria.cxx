@@ -328,8 +328,9 @@ Grade CriteriaTotals::verdict() const
 
 //------------------------------------------------------------------------------
 void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed char* validity,
-  const unsigned char* skip, const std::vector<const double*>& values, signed char* grades,
-  double* indices, CriteriaTotals& totals)
+  const unsigned char* uncounted, const unsigned char* skip,
+  const std::vector<const double*>& values, signed char* grades, double* indices,
+  CriteriaTotals& totals)
 {
   const std::size_t count = criteria.criteria.size();
   totals.criteria.resize(count);
@@ -344,6 +345,7 @@ void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed 
       continue;
     }
     const bool valid = validity[cell] == Valid;
+    const bool counts = !uncounted || !uncounted[cell];
     const int typeIndex = topologyIndex(type);
     Grade grade = Grade::None;
     double penalty = 0, weights = 0;
@@ -365,6 +367,10 @@ void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed 
       grade = std::max(grade, mine);
       penalty += criteria.criteria[c].weight * penaltyHere;
       weights += criteria.criteria[c].weight;
+      if (!counts)
+      {
+        continue;
+      }
       CriteriaTotals::PerCriterion& total = totals.criteria[c];
       ++total.graded;
       total.warned += mine == Grade::Warning;
@@ -377,6 +383,10 @@ void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed 
     }
     grades[cell] = static_cast<signed char>(grade);
     indices[cell] = !valid ? 1.0 : weights > 0 ? penalty / weights : 0.0;
+    if (!counts)
+    {
+      continue;
+    }
     ++totals.graded;
     totals.warned += grade == Grade::Warning;
     totals.failed += grade == Grade::Failed;

@@ -114,14 +114,16 @@ struct TAUTLINE_KERNEL_EXPORT CriteriaTotals
  * @param criteria nothing else is graded
  * @param mesh its cell types
  * @param validity per cell, see Validity
- * @param skip nonzero: the cell does not count and gets no grade; may be null
+ * @param uncounted nonzero: the cell does not count in the totals; may be null
+ * @param skip nonzero: the cell gets no grade; may be null
  * @param values per criterion the values of its metric, one per cell
  * @param grades per cell a Grade, overwritten
  * @param indices per cell the quality index, overwritten; 0 without a grade
  * @param totals what the cells add
  */
 TAUTLINE_KERNEL_EXPORT void gradeCells(const QualityCriteria& criteria, const Mesh& mesh,
-  const signed char* validity, const unsigned char* skip, const std::vector<const double*>& values,
-  signed char* grades, double* indices, CriteriaTotals& totals);
+  const signed char* validity, const unsigned char* uncounted, const unsigned char* skip,
+  const std::vector<const double*>& values, signed char* grades, double* indices,
+  CriteriaTotals& totals);
 }
 #endif

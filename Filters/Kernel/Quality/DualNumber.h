@@ -12,7 +12,7 @@
  * are always 0 then cost nothing.
  *
  * Where a function is singular (1 / 0, sqrt of a negative number) value and derivatives are not
- * finite; the evaluation replaces such values by 0.
+ * finite. Measured values are 0 then; an objective is infinite, so that no step leads there.
  */
 #ifndef tautline_DualNumber_h
 #define tautline_DualNumber_h
@@ -32,6 +32,75 @@ struct DualMask
   friend DualMask operator|(DualMask a, DualMask b) { return { a.mask | b.mask }; }
   friend DualMask operator~(DualMask a) { return { ~a.mask }; }
 };
+
+namespace dual_number
+{
+inline Mask isFinite(Packet x)
+{
+  return tautline::abs(x) <= std::numeric_limits<double>::max();
+}
+
+/// Of x > 0 and 0; NaN elsewhere.
+inline Packet cubeRoot(Packet x)
+{
+  const Packet inverse = inverseCbrt(x);
+  const Packet special =
+    select((x == 0.0) | (x == HUGE_VAL), x, broadcast(std::numeric_limits<double>::quiet_NaN()));
+  return select((x > 0.0) & isFinite(x), x * inverse * inverse, special);
+}
+
+/// A power of x > 0, as of std::pow() elsewhere, and its derivatives. If the exponent is one of
+/// few thirds, all are whole powers of the same number: x or its cube root.
+class Power
+{
+public:
+  Power(Packet x, double exponent)
+    : X(x)
+    , Exponent(exponent)
+  {
+    constexpr double most = 12;
+    const double thirds = 3 * exponent, rounded = std::round(thirds);
+    this->Few = std::abs(thirds - rounded) <= 8 * std::numeric_limits<double>::epsilon() &&
+      std::abs(rounded) <= most;
+    if (this->Few)
+    {
+      const int count = static_cast<int>(rounded);
+      const bool whole = count % 3 == 0;
+      this->Base = whole ? x : cubeRoot(x);
+      this->Count = whole ? count / 3 : count;
+      this->One = whole ? 1 : 3;
+    }
+  }
+
+  /// The derivative of an order.
+  Packet lowered(int order) const
+  {
+    double factor = 1;
+    for (int i = 0; i < order; ++i)
+    {
+      factor *= this->Exponent - i;
+    }
+    if (!this->Few)
+    {
+      return factor * tautline::pow(this->X, this->Exponent - order);
+    }
+    const int count = this->Count - order * this->One;
+    Packet result = broadcast(1.0), base = this->Base;
+    for (int n = std::abs(count); n > 0; n >>= 1)
+    {
+      result = n & 1 ? Packet(result * base) : result;
+      base *= base;
+    }
+    return count < 0 ? Packet(factor / result) : Packet(factor * result);
+  }
+
+private:
+  Packet X, Base;
+  double Exponent;
+  bool Few;
+  int Count = 0, One = 1;
+};
+}
 
 template <int Variables>
 struct DualNumber
@@ -242,7 +311,7 @@ struct DualNumber
   friend DualNumber cbrt(const DualNumber& x)
   {
     const Packet inverse = inverseCbrt(tautline::abs(x.value)), square = inverse * inverse;
-    const Mask finite = DualNumber::isFinite(x.value);
+    const Mask finite = dual_number::isFinite(x.value);
     return chain(x, tautline::select(finite, x.value * square, x.value),
       tautline::select(finite, square * (1.0 / 3.0), Packet{}));
   }
@@ -290,81 +359,46 @@ struct DualNumber
   /// x^exponent for x > 0, as std::pow() elsewhere; thirds of whole numbers are fast.
   friend DualNumber pow(const DualNumber& x, double exponent)
   {
-    const Packet f = powerOf(x.value, exponent);
-    return chain(x, f, exponent * powerOf(x.value, exponent - 1.0));
-  }
-
-private:
-  static Mask isFinite(Packet x)
-  {
-    return tautline::abs(x) <= std::numeric_limits<double>::max();
-  }
-
-  static Packet powerOf(Packet x, double exponent)
-  {
-    constexpr double largest = 12;
-    const double thirds = 3 * exponent;
-    const double whole = std::round(thirds);
-    if (std::abs(thirds - whole) > 8 * std::numeric_limits<double>::epsilon() ||
-      std::abs(whole) > largest)
-    {
-      return tautline::pow(x, exponent);
-    }
-    int n = static_cast<int>(std::abs(whole));
-    Packet base = x;
-    if (n % 3 == 0)
-    {
-      n /= 3;
-    }
-    else
-    {
-      const Packet inverse = inverseCbrt(x);
-      base = tautline::select((x > 0.0) & DualNumber::isFinite(x), x * inverse * inverse,
-        each(x, [](double v) { return v == 0 || v == HUGE_VAL ? v : NAN; }));
-    }
-    Packet result = broadcast(1.0);
-    for (; n > 0; n >>= 1)
-    {
-      result = n & 1 ? Packet(result * base) : result;
-      base *= base;
-    }
-    return exponent < 0 ? Packet(1.0 / result) : result;
+    const dual_number::Power power(x.value, exponent);
+    return chain(x, power.lowered(0), Variables > 0 ? power.lowered(1) : Packet{});
   }
 };
 
-/// x y z of a point or vector.
+/// x y z of a point or vector. Its functions are inlined whatever their size: numbers would go
+/// through memory otherwise.
 template <class Number>
 using DualVector = std::array<Number, 3>;
 
 template <int K>
-DualVector<DualNumber<K>> operator-(
+inline __attribute__((always_inline)) DualVector<DualNumber<K>> operator-(
   const DualVector<DualNumber<K>>& a, const DualVector<DualNumber<K>>& b)
 {
   return { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
 }
 
 template <int K>
-DualVector<DualNumber<K>> operator+(
+inline __attribute__((always_inline)) DualVector<DualNumber<K>> operator+(
   const DualVector<DualNumber<K>>& a, const DualVector<DualNumber<K>>& b)
 {
   return { a[0] + b[0], a[1] + b[1], a[2] + b[2] };
 }
 
 template <int K>
-DualNumber<K> dot(const DualVector<DualNumber<K>>& a, const DualVector<DualNumber<K>>& b)
+inline __attribute__((always_inline)) DualNumber<K> dot(
+  const DualVector<DualNumber<K>>& a, const DualVector<DualNumber<K>>& b)
 {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 template <int K>
-DualVector<DualNumber<K>> cross(
+inline __attribute__((always_inline)) DualVector<DualNumber<K>> cross(
   const DualVector<DualNumber<K>>& a, const DualVector<DualNumber<K>>& b)
 {
   return { a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0] };
 }
 
 template <int K>
-DualNumber<K> norm(const DualVector<DualNumber<K>>& a)
+inline __attribute__((always_inline)) DualNumber<K> norm(const DualVector<DualNumber<K>>& a)
 {
   return sqrt(dot(a, a));
 }

@@ -195,7 +195,7 @@ public:
               }
               gatherPacked<Nodes>(context, connectivity, points, begin, count, batch, nodes);
               evaluate(context, batch);
-              batch.value = finiteOrZero(batch.value);
+              replaceNonFinite(context, batch);
               Packet slope = {};
               function(context, batch, total, slope);
               if constexpr (WithGradient)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ElementSum.h"
+#include "JudgedValues.h"
 #include "UserMetric.h"
 
 #include "tautline/Mesh/CoordinateFrame.h"
@@ -81,13 +82,21 @@ BatchContext contextFor(
 }
 
 //------------------------------------------------------------------------------
+std::string objectiveProblem(Metric metric)
+{
+  const MetricInfo& info = metricInfo(metric);
+  return !info.user || info.user->hasDerivatives() ? ""
+                                                   : std::string(info.label) +
+      " has no derivatives: it measures elements and cannot be optimized. Register it in C++ "
+      "(tautline/Quality/UserMetric.h), or choose another metric.";
+}
+
+//------------------------------------------------------------------------------
 void requireDerivatives(const MetricInfo& info)
 {
   if (info.user && !info.user->hasDerivatives())
   {
-    throw Error(std::string(info.label) +
-      " has no derivatives: it measures elements and cannot be optimized. Register it in C++ "
-      "(tautline/Quality/UserMetric.h), or choose another metric.");
+    throw Error(objectiveProblem(info.metric));
   }
 }
 
@@ -154,7 +163,8 @@ Index countBeyond(const BatchContext& context, const MetricInfo& info, const Bat
 }
 
 /// Evaluates a metric of many elements at once, block by block, in the calling thread.
-void evaluateElementsMetric(const Mesh& mesh, const MetricInfo& info, double* values)
+void evaluateElementsMetric(
+  const Mesh& mesh, const MetricInfo& info, double* values, double undefined)
 {
   const MeshView& view = mesh.view();
   std::fill(values, values + view.numberOfCells, 0.0);
@@ -178,13 +188,14 @@ void evaluateElementsMetric(const Mesh& mesh, const MetricInfo& info, double* va
     info.user->evaluateElements(block.type, block.count, points.data(), found.data());
     for (Index i = 0; i < block.count; ++i)
     {
-      values[block.cell(i)] = std::isfinite(found[i]) ? found[i] : 0.0;
+      values[block.cell(i)] = std::isfinite(found[i]) ? found[i] : undefined;
     }
   }
 }
 
+/// @param undefined the value where that of the metric is not finite
 Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values,
-  double* gradients)
+  double* gradients, double undefined = 0.0)
 {
   checkEvaluation(mesh, metricInfo(metric), options);
   if (const UserMetric* user = metricInfo(metric).user; user && !user->hasDerivatives())
@@ -193,7 +204,7 @@ Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& opti
     {
       requireDerivatives(metricInfo(metric));
     }
-    evaluateElementsMetric(mesh, metricInfo(metric), values);
+    evaluateElementsMetric(mesh, metricInfo(metric), values, undefined);
     return 0;
   }
   const MeshView& view = mesh.view();
@@ -244,7 +255,8 @@ Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& opti
               {
                 beyond += countBeyond(context, info, batch, measured, nodes, ordinary);
               }
-              batch.value = finiteOrZero(batch.value);
+              const Packet finite = finiteOrZero(batch.value);
+              batch.value = select(finite == batch.value, finite, broadcast(undefined));
               for (int l = 0; l < count; ++l)
               {
                 values[batch.cells[l]] = batch.value[l];
@@ -268,6 +280,16 @@ Index evaluateMetric(
   const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values)
 {
   return evaluateAll(mesh, metric, options, values, nullptr);
+}
+
+//------------------------------------------------------------------------------
+void evaluateJudged(
+  const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values)
+{
+  const MetricInfo& info = metricInfo(metric);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  const double worst = info.direction == Direction::LargerIsBetter ? -infinity : infinity;
+  evaluateAll(mesh, metric, options, values, nullptr, info.user ? worst : 0.0);
 }
 
 //------------------------------------------------------------------------------

@@ -23,6 +23,20 @@ void loadCorners(
   }
 }
 
+/// Derivatives by the coordinates of the batch, which are those of the mesh per unit.
+template <int Nodes>
+void carryBack(const Packet (*slopes)[3], const Packet (*axes)[3], Packet unit, Batch& batch)
+{
+  for (int k = 0; k < Nodes; ++k)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      batch.gradient[k][c] = unit *
+        (axes ? Packet(axes[0][c] * slopes[k][0] + axes[1][c] * slopes[k][1]) : slopes[k][c]);
+    }
+  }
+}
+
 template <int Nodes, bool WithGradient>
 void evaluateCorners(const BatchContext& context, Batch& batch)
 {
@@ -40,20 +54,20 @@ void evaluateCorners(const BatchContext& context, Batch& batch)
   const Packet unit = batch.scaled ? batch.unit : broadcast(1.0);
   Packet points[Nodes][3], slopes[Nodes][3];
   loadCorners<Nodes>(batch, planar ? axes : nullptr, unit, points);
+  if (WithGradient && batch.moving)
+  {
+    context.user->evaluateAlong(context.topology->type, PacketWidth, PacketWidth,
+      reinterpret_cast<const double*>(points), reinterpret_cast<const double*>(batch.moving),
+      reinterpret_cast<double*>(&batch.value), reinterpret_cast<double*>(slopes));
+    carryBack<1>(slopes, planar ? axes : nullptr, unit, batch);
+    return;
+  }
   context.user->evaluate(context.topology->type, PacketWidth, PacketWidth,
     reinterpret_cast<const double*>(points), reinterpret_cast<double*>(&batch.value),
     WithGradient ? reinterpret_cast<double*>(slopes) : nullptr);
   if constexpr (WithGradient)
   {
-    // By the coordinates of the batch, which are those of the mesh per unit.
-    for (int k = 0; k < Nodes; ++k)
-    {
-      for (int c = 0; c < 3; ++c)
-      {
-        batch.gradient[k][c] = unit *
-          (planar ? Packet(axes[0][c] * slopes[k][0] + axes[1][c] * slopes[k][1]) : slopes[k][c]);
-      }
-    }
+    carryBack<Nodes>(slopes, planar ? axes : nullptr, unit, batch);
   }
 }
 

@@ -261,8 +261,9 @@ const MetricInfo& metricInfo(Metric metric)
   {
     return *info;
   }
-  throw Error("There is no metric number " + std::to_string(number) + "." +
-    (number > 0 ? " A user's metric of this number is not registered." : ""));
+  const std::string missing = missingMetric(number);
+  throw Error(
+    missing.empty() ? "There is no metric number " + std::to_string(number) + "." : missing);
 }
 
 int MetricInfo::lengthPower(int dimension) const
@@ -315,17 +316,6 @@ std::string metricFields()
   return "number\tname\tlabel\tsymbol\taliases\tformula\tsource\tdimensions\tcell types\tfull 2D\t"
          "full 3D\tacceptable 2D\tacceptable 3D\tideal 2D\tideal 3D\tdirection\tinverted\tbarrier\t"
          "differentiable\tscale invariant\trotation invariant\tunit";
-}
-
-std::string listUserMetrics()
-{
-  std::string lines;
-  for (const MetricInfo& info : metricRegistry())
-  {
-    lines += info.user ? std::to_string(static_cast<int>(info.metric)) + "\t" + info.label + "\n"
-                       : std::string();
-  }
-  return lines;
 }
 
 std::string describeMetric(const MetricInfo& info)

@@ -176,8 +176,27 @@ TAUTLINE_KERNEL_EXPORT const MetricInfo* findMetric(const std::string& name);
  */
 TAUTLINE_KERNEL_EXPORT std::string describeMetric(const MetricInfo& info);
 
-/// Numbers and labels of the registered metrics, tab-separated, a line each: for menus.
+/**
+ * @brief The metrics that are registered in this process, a line each: number, label and the other
+ * facts, tab-separated, for the menus of a client and for mirrorUserMetrics().
+ */
 TAUTLINE_KERNEL_EXPORT std::string listUserMetrics();
+
+/**
+ * @brief Makes the metrics of a server, as listUserMetrics() has them there, known in its client:
+ * their facts, also for criteria. They are not evaluated here: that throws Error. A metric of the
+ * same name that is registered here stays.
+ */
+TAUTLINE_KERNEL_EXPORT void mirrorUserMetrics(const std::string& list);
+
+/// Why a metric cannot be the objective of an optimization, or "".
+TAUTLINE_KERNEL_EXPORT std::string objectiveProblem(Metric metric);
+
+/**
+ * @brief What is wrong with the number of a user's metric that is not registered in this process: a
+ * state file or another process may have it. "" for all others.
+ */
+TAUTLINE_KERNEL_EXPORT std::string missingMetric(int number);
 
 /// The names of the fields of describeMetric(), tab-separated.
 TAUTLINE_KERNEL_EXPORT std::string metricFields();

@@ -37,6 +37,7 @@ struct Registered
   std::unique_ptr<const UserMetric> metric;
   MetricInfo info;
   bool listed;
+  std::string mirrored; ///< the facts that another process has sent of its metric; "": one of this
 };
 
 /**
@@ -119,6 +120,48 @@ MetricInfo infoOf(const MetricDescription& d, const UserMetric& metric)
     d.barrier, d.differentiable, d.scaleInvariant, d.rotationInvariant, d.unit.c_str(), &metric };
 }
 
+/// A metric of another process.
+class MirroredMetric : public UserMetric
+{
+public:
+  MirroredMetric(MetricArgument argument, std::string name)
+    : UserMetric(argument)
+    , Name(std::move(name))
+  {
+  }
+  void evaluate(CellType, int, int, const double*, double*, double*) const override
+  {
+    this->refuse();
+  }
+  void evaluateElements(CellType, Index, const double*, double*) const override { this->refuse(); }
+
+private:
+  [[noreturn]] void refuse() const
+  {
+    throw Error("The metric " + this->Name +
+      " is registered on a server that was connected, but not in this process.");
+  }
+
+  std::string Name;
+};
+
+/// Adds a metric to the lists; the registry is locked.
+void addTo(Registry& all, MetricDescription description, std::unique_ptr<const UserMetric> metric,
+  const std::string& mirrored = {})
+{
+  // The facts point to the texts in their final place.
+  all.metrics.push_back({ std::move(description), std::move(metric), {}, true, mirrored });
+  Registered& added = all.metrics.back();
+  added.info = infoOf(added.description, *added.metric);
+  publish(all);
+}
+
+/// Whether the metric is one of another process.
+bool isMirrored(const MetricInfo& info)
+{
+  return dynamic_cast<const MirroredMetric*>(info.user) != nullptr;
+}
+
 /// Throws Error if another metric is found by one of the names.
 void requireFree(const MetricDescription& d)
 {
@@ -130,7 +173,8 @@ void requireFree(const MetricDescription& d)
   }
   for (const std::string& name : names)
   {
-    if (const MetricInfo* other = findMetric(name))
+    const MetricInfo* other = findMetric(name);
+    if (other && !(isMirrored(*other) && other->name == d.name))
     {
       throw Error("The metric " + d.name + " cannot be registered: there is a metric '" + name +
         "' (" + other->label + ") already. Choose another name, label, symbol or alias" +
@@ -186,6 +230,36 @@ void UserMetric::evaluateElements(
 }
 
 //------------------------------------------------------------------------------
+void UserMetric::evaluateAlong(CellType type, int count, int stride, const double* arguments,
+  const double* along, double* values, double* slopes) const
+{
+  const CellTopology& t = topology(type);
+  const bool ofCorners = this->Argument == MetricArgument::Corners;
+  // The derivative by argument (r, c) of T, or (c, r) of the corners, counts along[c].
+  const int rows = ofCorners ? 3 : t.dimension, columns = ofCorners ? t.nodes : t.dimension;
+  std::vector<double> all(static_cast<std::size_t>(rows) * columns * stride);
+  this->evaluate(type, count, stride, arguments, values, all.data());
+  std::fill_n(slopes, static_cast<std::size_t>(rows) * stride, 0.0);
+  for (int r = 0; r < rows; ++r)
+  {
+    for (int c = 0; c < columns; ++c)
+    {
+      const int argument = ofCorners ? rows * c + r : columns * r + c;
+      for (int i = 0; i < count; ++i)
+      {
+        slopes[r * stride + i] += along[c * stride + i] * all[argument * stride + i];
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+bool UserMetric::evaluateInvariants(CellType, int, int, const double*, double*, double*) const
+{
+  return false;
+}
+
+//------------------------------------------------------------------------------
 Metric registerMetric(
   const MetricDescription& description, std::unique_ptr<const UserMetric> metric)
 {
@@ -202,20 +276,52 @@ Metric registerMetric(
   Registry& all = registry();
   const std::lock_guard<std::mutex> lock(all.mutex);
   const Metric number = static_cast<Metric>(numberOf(complete.name));
-  for (const Registered& r : all.metrics)
+  for (Registered& r : all.metrics)
   {
+    r.listed = r.listed && !(!r.mirrored.empty() && r.description.name == complete.name);
     if (r.listed && r.info.metric == number)
     {
       throw Error("The names " + complete.name + " and " + r.info.name +
         " have the same number: choose another name for one of the metrics.");
     }
   }
-  // The facts point to the texts in their final place.
-  all.metrics.push_back({ std::move(complete), std::move(metric), {}, true });
-  Registered& added = all.metrics.back();
-  added.info = infoOf(added.description, *added.metric);
-  publish(all);
+  addTo(all, std::move(complete), std::move(metric));
   return number;
+}
+
+//------------------------------------------------------------------------------
+bool isRegisteredHere(Metric metric)
+{
+  const MetricInfo* info = registeredMetric(metric);
+  return info && !isMirrored(*info);
+}
+
+//------------------------------------------------------------------------------
+bool isNumberOfUserMetric(int number)
+{
+  return number >= static_cast<int>(firstNumber);
+}
+
+//------------------------------------------------------------------------------
+void mirrorMetric(MetricDescription description, MetricArgument argument, const std::string& facts)
+{
+  completeDescription(description);
+  Registry& all = registry();
+  const std::lock_guard<std::mutex> lock(all.mutex);
+  const Metric number = static_cast<Metric>(numberOf(description.name));
+  for (Registered& r : all.metrics)
+  {
+    if (r.listed && r.info.metric == number)
+    {
+      if (r.mirrored.empty() || r.mirrored == facts)
+      {
+        return;
+      }
+      r.listed = false;
+    }
+  }
+  auto metric = std::make_unique<const MirroredMetric>(argument, description.name);
+  addTo(all, std::move(description), std::move(metric), facts);
 }
 
 namespace
@@ -261,7 +367,7 @@ void unregisterMetric(const std::string& name)
   const std::lock_guard<std::mutex> lock(all.mutex);
   for (Registered& r : all.metrics)
   {
-    if (r.listed && r.description.name == name)
+    if (r.listed && r.mirrored.empty() && r.description.name == name)
     {
       r.listed = false;
       publish(all);

@@ -13,6 +13,7 @@
 namespace tautline
 {
 struct MetricDescription;
+enum class MetricArgument;
 
 /// The metrics of the enumeration.
 const std::vector<MetricInfo>& builtInMetrics();
@@ -22,6 +23,20 @@ const std::vector<MetricInfo>& knownMetrics();
 
 /// The facts of a metric that is or was registered, or null.
 const MetricInfo* registeredMetric(Metric metric);
+
+/// Whether a number is that of a metric that is or was registered, and not of another process only.
+bool isRegisteredHere(Metric metric);
+
+/// Whether a number is above those of the built-in metrics, as that of every registered one.
+bool isNumberOfUserMetric(int number);
+
+/**
+ * @brief Makes a metric of another process known, without its function.
+ *
+ * One of the same name that is registered here stays.
+ * @param facts what the process has sent; a metric with the same facts stays as it is
+ */
+void mirrorMetric(MetricDescription description, MetricArgument argument, const std::string& facts);
 
 /// Loads the libraries of TAUTLINE_METRICS, once.
 void loadMetricsOfEnvironment();

@@ -33,11 +33,15 @@
  * A struct that also has `template <class Number, int N> void slope(const CornerJacobian<Number,
  * N>& T, Number (&dT)[N][N]) const` gives its derivatives itself; registration compares them with
  * finite differences. Testing/Install/metric_consumer is a complete example.
+ *
+ * A formula that reads T by norm2() and det() alone is the fastest to optimize on triangles and
+ * tetrahedra: it is evaluated for these two numbers, which are known functions of each vertex. The
+ * formula is instantiated with several types of Number, so helper functions are templates, too.
  */
 #ifndef tautline_UserMetric_h
 #define tautline_UserMetric_h
 
-#include "DualNumber.h"
+#include "MetricArguments.h"
 #include "Metrics.h"
 
 #include <functional>
@@ -118,179 +122,38 @@ public:
   virtual void evaluateElements(
     CellType type, Index count, const double* points, double* values) const;
 
+  /**
+   * @brief Evaluates several elements with the derivatives by the displacement d of one vertex of
+   * each.
+   * @param along n numbers w, of Jacobian: T becomes T + d w^t. One per corner, of Corners: the
+   * corner moves by that times d. Laid out as the arguments
+   * @param slopes by d: n numbers of Jacobian, 3 of Corners
+   *
+   * Unless it is overridden, all derivatives are evaluated.
+   */
+  virtual void evaluateAlong(CellType type, int count, int stride, const double* arguments,
+    const double* along, double* values, double* slopes) const;
+
+  /**
+   * @brief Evaluates a metric that depends on |T|^2 and det T alone.
+   * @param arguments |T|^2, then det T; laid out as those of evaluate()
+   * @param derivatives by |T|^2 and det T, then the second ones: by |T|^2 twice, by one each, by
+   * det T twice; laid out as the arguments. Null: not wanted
+   * @return false, without values, if the metric is no such function, or this is not overridden
+   */
+  virtual bool evaluateInvariants(CellType type, int count, int stride, const double* arguments,
+    double* values, double* derivatives) const;
+
 private:
   MetricArgument Argument;
-};
-
-/// T = A W^-1 at a corner. N is the dimension.
-template <class Number, int N>
-class CornerJacobian
-{
-public:
-  static constexpr int dimension = N;
-  explicit CornerJacobian(const Packet (&t)[N][N])
-    : T(t)
-  {
-  }
-  /// The entry in a row and a column, 0 to N - 1.
-  Number operator()(int row, int column) const
-  {
-    return Number::variable(this->T[row][column], N * row + column);
-  }
-  /// |T|^2, the sum of the squares of the entries.
-  Number norm2() const
-  {
-    Packet sum = {};
-    return this->assemble(sum,
-      [&](int r, int c)
-      {
-        sum += this->T[r][c] * this->T[r][c];
-        return 2.0 * this->T[r][c];
-      });
-  }
-  /// tau = det T: negative where the corner is inverted.
-  Number det() const
-  {
-    Packet sum = {};
-    return this->assemble(sum,
-      [&](int r, int c)
-      {
-        const Packet cofactor = this->cofactor(r, c);
-        sum += r == 0 ? this->T[r][c] * cofactor : Packet{};
-        return cofactor;
-      });
-  }
-  /// tr T, the sum of the diagonal.
-  Number trace() const
-  {
-    Packet sum = {};
-    return this->assemble(sum,
-      [&](int r, int c)
-      {
-        sum += r == c ? this->T[r][c] : Packet{};
-        return broadcast(r == c ? 1.0 : 0.0);
-      });
-  }
-  /// |adj T|^2 = |T^-1|^2 tau^2; in 2D it is |T|^2.
-  Number adjugate2() const
-  {
-    if constexpr (N == 2)
-    {
-      return this->norm2();
-    }
-    else
-    {
-      // d|adj T|^2 / dT = 2 (|T|^2 T - T T^t T)
-      Packet gram[3][3], norm2 = {}, sum = {};
-      for (int r = 0; r < 3; ++r)
-      {
-        for (int c = 0; c < 3; ++c)
-        {
-          gram[r][c] = this->T[0][r] * this->T[0][c] + this->T[1][r] * this->T[1][c] +
-            this->T[2][r] * this->T[2][c];
-        }
-        norm2 += gram[r][r];
-      }
-      return this->assemble(sum,
-        [&](int r, int c)
-        {
-          const Packet cofactor = this->cofactor(r, c);
-          sum += cofactor * cofactor;
-          return 2.0 *
-            (norm2 * this->T[r][c] -
-              (this->T[r][0] * gram[0][c] + this->T[r][1] * gram[1][c] +
-                this->T[r][2] * gram[2][c]));
-        });
-    }
-  }
-
-private:
-  /// A number whose derivative by entry r c is slope(r, c), which also adds to the value.
-  template <class Slope>
-  static Number assemble(Packet& sum, const Slope& slope)
-  {
-    Number result;
-    for (int r = 0; r < N; ++r)
-    {
-      for (int c = 0; c < N; ++c)
-      {
-        const Packet part = slope(r, c);
-        if (Number::variables > 0)
-        {
-          result.slope[Number::variables > 0 ? N * r + c : 0] = part;
-        }
-      }
-    }
-    result.value = sum;
-    return result;
-  }
-  Packet cofactor(int r, int c) const
-  {
-    if constexpr (N == 2)
-    {
-      return r == c ? this->T[1 - r][1 - c] : -this->T[1 - r][1 - c];
-    }
-    else
-    {
-      const int r1 = (r + 1) % 3, r2 = (r + 2) % 3, c1 = (c + 1) % 3, c2 = (c + 2) % 3;
-      return this->T[r1][c1] * this->T[r2][c2] - this->T[r1][c2] * this->T[r2][c1];
-    }
-  }
-
-  const Packet (&T)[N][N];
-};
-
-/**
- * @brief The corners of an element. A planar mesh is seen in its plane: z is 0 and a valid element
- * counter-clockwise; a mesh that is reversed throughout is seen mirrored.
- */
-template <class Number, int Nodes>
-class ElementCorners
-{
-public:
-  static constexpr int nodes = Nodes;
-  ElementCorners(CellType type, const Packet (&points)[Nodes][3])
-    : Type(type)
-    , Points(points)
-  {
-  }
-  CellType type() const { return this->Type; }
-  /// x y z of a corner.
-  DualVector<Number> point(int node) const
-  {
-    DualVector<Number> result;
-    for (int c = 0; c < 3; ++c)
-    {
-      result[c] = Number::variable(this->Points[node][c], 3 * node + c);
-    }
-    return result;
-  }
-  /// The vector from one corner to another.
-  DualVector<Number> edge(int from, int to) const
-  {
-    DualVector<Number> result;
-    for (int c = 0; c < 3; ++c)
-    {
-      result[c] = Number(this->Points[to][c] - this->Points[from][c]);
-      if (Number::variables > 0)
-      {
-        result[c].slope[Number::variables > 0 ? 3 * to + c : 0] = broadcast(1.0);
-        result[c].slope[Number::variables > 0 ? 3 * from + c : 0] = broadcast(-1.0);
-      }
-    }
-    return result;
-  }
-
-private:
-  CellType Type;
-  const Packet (&Points)[Nodes][3];
 };
 
 namespace user_metric
 {
 /// Loads the arguments of elements [first, first + PacketWidth); the last one fills the packet.
 template <int Count>
-void load(const double* arguments, int first, int count, int stride, Packet* to)
+inline __attribute__((always_inline)) void load(
+  const double* arguments, int first, int count, int stride, Packet* to)
 {
   for (int k = 0; k < Count; ++k)
   {
@@ -312,7 +175,12 @@ void load(const double* arguments, int first, int count, int stride, Packet* to)
 /// Stores a packet where there is room.
 inline void store(Packet x, int first, int stride, double* to)
 {
-  const int room = stride - first < PacketWidth ? stride - first : PacketWidth;
+  const int room = stride - first;
+  if (room >= PacketWidth)
+  {
+    std::memcpy(to + first, &x, sizeof(Packet)); // of fixed length: no call
+    return;
+  }
   std::memcpy(to + first, &x, room * sizeof(double));
 }
 
@@ -342,12 +210,103 @@ public:
   void evaluate(CellType type, int count, int stride, const double* arguments, double* values,
     double* slopes) const override
   {
-    const bool flat = type == CellType::Triangle || type == CellType::Quadrilateral;
-    flat ? this->evaluateIn<2>(count, stride, arguments, values, slopes)
-         : this->evaluateIn<3>(count, stride, arguments, values, slopes);
+    isFlat(type) ? this->evaluateIn<2>(count, stride, arguments, values, slopes)
+                 : this->evaluateIn<3>(count, stride, arguments, values, slopes);
+  }
+  void evaluateAlong(CellType type, int count, int stride, const double* arguments,
+    const double* along, double* values, double* slopes) const override
+  {
+    if constexpr (!derives<2> || !derives<3>)
+    {
+      UserMetric::evaluateAlong(type, count, stride, arguments, along, values, slopes);
+    }
+    else if (isFlat(type))
+    {
+      this->evaluateAlongIn<2>(count, stride, arguments, along, values, slopes);
+    }
+    else
+    {
+      this->evaluateAlongIn<3>(count, stride, arguments, along, values, slopes);
+    }
+  }
+  bool evaluateInvariants(CellType type, int count, int stride, const double* arguments,
+    double* values, double* derivatives) const override
+  {
+    if constexpr (derives<2> && derives<3>)
+    {
+      return isFlat(type)
+        ? this->evaluateInvariantsIn<2>(count, stride, arguments, values, derivatives)
+        : this->evaluateInvariantsIn<3>(count, stride, arguments, values, derivatives);
+    }
+    return false;
   }
 
 private:
+  static bool isFlat(CellType type)
+  {
+    return type == CellType::Triangle || type == CellType::Quadrilateral;
+  }
+  /// Whether the derivatives are found here, and not given by the formula.
+  template <int N>
+  static constexpr bool derives =
+    !user_metric::HasSlope<Function, CornerJacobian<DualNumber<0>, N>, DualNumber<0>[N][N]>::value;
+
+  template <int N>
+  void evaluateAlongIn(int count, int stride, const double* arguments, const double* along,
+    double* values, double* slopes) const
+  {
+    for (int first = 0; first < count; first += PacketWidth)
+    {
+      Packet t[N][N], w[N];
+      user_metric::load<N * N>(arguments, first, count, stride, &t[0][0]);
+      user_metric::load<N>(along, first, count, stride, w);
+      const auto q = this->Formula.value(CornerJacobian<DualNumber<N>, N>(t, w));
+      user_metric::store(q.value, first, stride, values);
+      for (int k = 0; k < N; ++k)
+      {
+        user_metric::store(q.slope[k], first, stride, slopes + k * stride);
+      }
+    }
+  }
+
+  template <int N>
+  bool evaluateInvariantsIn(
+    int count, int stride, const double* arguments, double* values, double* derivatives) const
+  {
+    for (int first = 0; first < count; first += PacketWidth)
+    {
+      Packet invariants[2];
+      user_metric::load<2>(arguments, first, count, stride, invariants);
+      if (!derivatives)
+      {
+        const CornerJacobian<DualNumber<0>, N> plain(invariants);
+        const Packet value = this->Formula.value(plain).value;
+        if (plain.readsMore())
+        {
+          return false;
+        }
+        user_metric::store(value, first, stride, values);
+        continue;
+      }
+      const CornerJacobian<DualNumber<ByInvariants>, N> T(invariants);
+      const auto q = this->Formula.value(T);
+      if (T.readsMore())
+      {
+        return false;
+      }
+      user_metric::store(q.value, first, stride, values);
+      for (int k = 0; k < 2; ++k)
+      {
+        user_metric::store(q.slope[k], first, stride, derivatives + k * stride);
+      }
+      for (int k = 0; k < 3; ++k)
+      {
+        user_metric::store(q.curvature[k], first, stride, derivatives + (2 + k) * stride);
+      }
+    }
+    return true;
+  }
+
   template <int N>
   void evaluateIn(
     int count, int stride, const double* arguments, double* values, double* slopes) const
@@ -402,23 +361,69 @@ public:
   void evaluate(CellType type, int count, int stride, const double* arguments, double* values,
     double* slopes) const override
   {
-    switch (type)
-    {
-      case CellType::Triangle:
-        return this->evaluateOn<3>(type, count, stride, arguments, values, slopes);
-      case CellType::Quadrilateral:
-      case CellType::Tetrahedron:
-        return this->evaluateOn<4>(type, count, stride, arguments, values, slopes);
-      case CellType::Pyramid:
-        return this->evaluateOn<5>(type, count, stride, arguments, values, slopes);
-      case CellType::Wedge:
-        return this->evaluateOn<6>(type, count, stride, arguments, values, slopes);
-      default:
-        return this->evaluateOn<8>(type, count, stride, arguments, values, slopes);
-    }
+    withNodes(type,
+      [&](auto nodes) {
+        this->evaluateOn<decltype(nodes)::value>(type, count, stride, arguments, values, slopes);
+      });
+  }
+  void evaluateAlong(CellType type, int count, int stride, const double* arguments,
+    const double* along, double* values, double* slopes) const override
+  {
+    withNodes(type,
+      [&](auto nodesOfType)
+      {
+        constexpr int Nodes = decltype(nodesOfType)::value;
+        if constexpr (user_metric::HasSlope<Function, ElementCorners<DualNumber<0>, Nodes>,
+                        DualNumber<0>[Nodes][3]>::value)
+        {
+          UserMetric::evaluateAlong(type, count, stride, arguments, along, values, slopes);
+        }
+        else
+        {
+          this->evaluateAlongOn<Nodes>(type, count, stride, arguments, along, values, slopes);
+        }
+      });
   }
 
 private:
+  /// Calls work with the number of corners as a constant.
+  template <class Work>
+  static void withNodes(CellType type, const Work& work)
+  {
+    switch (type)
+    {
+      case CellType::Triangle:
+        return work(std::integral_constant<int, 3>());
+      case CellType::Quadrilateral:
+      case CellType::Tetrahedron:
+        return work(std::integral_constant<int, 4>());
+      case CellType::Pyramid:
+        return work(std::integral_constant<int, 5>());
+      case CellType::Wedge:
+        return work(std::integral_constant<int, 6>());
+      default:
+        return work(std::integral_constant<int, 8>());
+    }
+  }
+
+  template <int Nodes>
+  void evaluateAlongOn(CellType type, int count, int stride, const double* arguments,
+    const double* along, double* values, double* slopes) const
+  {
+    for (int first = 0; first < count; first += PacketWidth)
+    {
+      Packet points[Nodes][3], moves[Nodes];
+      user_metric::load<3 * Nodes>(arguments, first, count, stride, &points[0][0]);
+      user_metric::load<Nodes>(along, first, count, stride, moves);
+      const auto q = this->Formula.value(ElementCorners<DualNumber<3>, Nodes>(type, points, moves));
+      user_metric::store(q.value, first, stride, values);
+      for (int c = 0; c < 3; ++c)
+      {
+        user_metric::store(q.slope[c], first, stride, slopes + c * stride);
+      }
+    }
+  }
+
   template <int Nodes>
   void evaluateOn(CellType type, int count, int stride, const double* arguments, double* values,
     double* slopes) const

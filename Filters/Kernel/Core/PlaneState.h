@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PlaneState.h
+ * @brief What a 2D elastic body is held by in the third direction.
+ */
+#ifndef tautline_PlaneState_h
+#define tautline_PlaneState_h
+
+namespace tautline
+{
+/// What a 2D elastic body is held by in the third direction.
+enum class PlaneState : int
+{
+  Strain = 0, ///< no strain: a slice of a long body
+  Stress = 1  ///< no stress: a thin sheet
+};
+}
+#endif
