@@ -10,7 +10,7 @@
 #ifndef tautline_CellOrder_h
 #define tautline_CellOrder_h
 
-#include "Mesh.h"
+#include "RankPieces.h"
 
 namespace tautline
 {
@@ -36,6 +36,34 @@ struct CellOrder
  * @param validity as Mesh::classifyCells() gives it
  */
 TAUTLINE_KERNEL_EXPORT CellOrder consistentOrder(const Mesh& mesh, const signed char* validity);
+
+/// The order of the cells of a mesh in pieces on ranks; found by consistentOrderOnRanks().
+struct RankOrder
+{
+  Orientation orientation; ///< of the whole mesh
+  /// Of the whole mesh, without ghost cells; firstAmbiguous only where there is one rank.
+  CellOrder order;
+  /// Per piece: CellOrder::reverse, also of its ghost cells. Empty unless the orientation is Mixed.
+  std::vector<std::vector<unsigned char>> reverse;
+};
+
+/**
+ * @brief Mesh::orientation() and consistentOrder() of the whole mesh. Collective.
+ *
+ * Points of different pieces, or of one, are one as RankPiece has it where they make two boundary
+ * facets one. Two cells that walk round such a facet in one sense are neighbours in opposite orders
+ * or overlap. Valid cells, as well as inverted ones, overlap, as they are on one side of it; but
+ * cells in the opposite order may be inverted elements, too. Hence these are neighbours where the
+ * other facets tell that the orders are opposite, or where most such facets are between a valid and
+ * an inverted cell. Inside of a piece all cells with the same facet are neighbours.
+ *
+ * The first rank gets what is known of the parts of the pieces that are connected, and of each two
+ * that meet, but no points and cells.
+ * @param pieces with Mesh::setSpace() of the whole
+ * @param validity as Mesh::classifyCells() gives it, of each piece
+ */
+TAUTLINE_KERNEL_EXPORT RankOrder consistentOrderOnRanks(RankGroup& group,
+  const std::vector<RankPiece>& pieces, const std::vector<const signed char*>& validity);
 
 /// Lists the corners of a cell in the order of its mirror image. Throws Error for
 /// CellType::Unsupported.

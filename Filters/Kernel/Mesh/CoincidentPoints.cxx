@@ -230,10 +230,10 @@ SeamFacet seamFacet(const Index* nodes, int size, Index cell, const Places& plac
   return facet;
 }
 
-/// The facets of cells of the mesh's dimension with a point that has others at its place; marks the
-/// places where a cell has two points.
+/// The facets of cells of the mesh's dimension with a point that has others at its place, but for
+/// ghosts; marks the places where a cell has two points.
 std::vector<SeamFacet> seamFacets(
-  const Mesh& mesh, const Places& places, std::vector<char>& collapses)
+  const Mesh& mesh, const Places& places, const unsigned char* ghosts, std::vector<char>& collapses)
 {
   const MeshView& view = mesh.view();
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
@@ -246,7 +246,8 @@ std::vector<SeamFacet> seamFacets(
     {
       const Index cell = block.cell(i);
       const Index* node = view.connectivity + view.offsets[cell];
-      if (std::none_of(node, node + t.nodes, [&](Index p) { return places.several[p] != 0; }))
+      if ((ghosts && ghosts[cell]) ||
+        std::none_of(node, node + t.nodes, [&](Index p) { return places.several[p] != 0; }))
       {
         continue;
       }
@@ -274,6 +275,62 @@ std::vector<SeamFacet> seamFacets(
     }
   }
   return facets;
+}
+
+/// The corners of a cell by their places.
+struct CellAtPlace
+{
+  std::array<std::pair<Index, Index>, MaxNodes> corners; ///< place and node, in increasing order
+  bool ghost;
+  Index cell;
+
+  bool samePlaces(const CellAtPlace& other) const
+  {
+    return std::equal(this->corners.begin(), this->corners.end(), other.corners.begin(),
+      [](const auto& a, const auto& b) { return a.first == b.first; });
+  }
+  bool operator<(const CellAtPlace& other) const
+  {
+    for (int k = 0; k < MaxNodes; ++k)
+    {
+      if (this->corners[k].first != other.corners[k].first)
+      {
+        return this->corners[k].first < other.corners[k].first;
+      }
+    }
+    return this->ghost != other.ghost ? other.ghost : this->cell < other.cell;
+  }
+};
+
+/// The cells with a point that has others at its place, those at the same places together: first
+/// those that are no ghosts.
+std::vector<CellAtPlace> cellsByPlace(
+  const Mesh& mesh, const Places& places, const unsigned char* ghosts)
+{
+  const MeshView& view = mesh.view();
+  std::vector<CellAtPlace> cells;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      const Index* node = view.connectivity + view.offsets[cell];
+      if (std::any_of(node, node + t.nodes, [&](Index p) { return places.several[p] != 0; }))
+      {
+        CellAtPlace found = { {}, ghosts[cell] != 0, cell };
+        found.corners.fill({ -1, -1 });
+        for (int k = 0; k < t.nodes; ++k)
+        {
+          found.corners[k] = { places.of[node[k]], node[k] };
+        }
+        std::sort(found.corners.begin(), found.corners.end());
+        cells.push_back(found);
+      }
+    }
+  }
+  std::sort(cells.begin(), cells.end());
+  return cells;
 }
 
 /// What becomes of the uses of the facets at one place.
@@ -331,10 +388,66 @@ public:
     }
   }
 
+  /// Joins the points of ghosts with those of the cells that they are copies of.
+  void joinGhosts(const Mesh& mesh, const Places& places, const unsigned char* ghosts)
+  {
+    const std::vector<CellAtPlace> cells = cellsByPlace(mesh, places, ghosts);
+    for (std::size_t i = 0, first = 0; i < cells.size(); ++i)
+    {
+      first = cells[i].samePlaces(cells[first]) ? first : i;
+      for (int k = 0; cells[i].ghost && k < MaxNodes; ++k)
+      {
+        if (cells[i].corners[k].first >= 0)
+        {
+          this->Points.join(cells[first].corners[k].second, cells[i].corners[k].second);
+        }
+      }
+    }
+    // A ghost whose cell is elsewhere may have points that another piece has.
+    std::vector<char> ofOwn(this->OnSeam.size(), 0);
+    for (const CellAtPlace& cell : cells)
+    {
+      for (int k = 0; !cell.ghost && k < MaxNodes; ++k)
+      {
+        if (cell.corners[k].first >= 0)
+        {
+          ofOwn[cell.corners[k].second] = 1;
+        }
+      }
+    }
+    constexpr Index None = -1, Ambiguous = -2;
+    std::vector<Index> pointAt(this->OnSeam.size(), None); // that all ghosts at a place get
+    const auto count = static_cast<Index>(places.several.size());
+    for (const char own : { 1, 0 })
+    {
+      for (Index p = 0; p < count; ++p)
+      {
+        Index& point = pointAt[places.of[p]];
+        if (!places.several[p] || ofOwn[p] != own)
+        {
+          continue;
+        }
+        if (point == None)
+        {
+          point = p;
+        }
+        else if (own && point != Ambiguous)
+        {
+          point = this->Points.find(point) == this->Points.find(p) ? point : Ambiguous;
+        }
+        else if (!own && point != Ambiguous)
+        {
+          this->Points.join(point, p);
+        }
+      }
+    }
+    this->Ghosts = true;
+  }
+
   CoincidentPoints finish()
   {
     const Index points = static_cast<Index>(this->OnSeam.size());
-    if (this->Found.facets > 0)
+    if (this->Found.facets > 0 || this->Ghosts)
     {
       this->Found.representative.resize(points);
       for (Index p = 0; p < points; ++p)
@@ -345,6 +458,10 @@ public:
         this->Found.first = this->Found.first < 0 && one != p ? p : this->Found.first;
         this->Found.seams += this->OnSeam[p] && this->Seams.find(p) == p;
       }
+    }
+    if (this->Found.merged == 0)
+    {
+      this->Found.representative.clear();
     }
     return std::move(this->Found);
   }
@@ -368,12 +485,14 @@ private:
   bool Sided;
   UnionFind Points, Seams;
   std::vector<char> OnSeam;
+  bool Ghosts = false; ///< their points were joined
   CoincidentPoints Found;
 };
 }
 
 //------------------------------------------------------------------------------
-CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* reversed, int threads)
+CoincidentPoints findCoincidentPoints(
+  const Mesh& mesh, const unsigned char* reversed, int threads, const unsigned char* ghosts)
 {
   const Places places = findPlaces(mesh, threads);
   if (!places.any)
@@ -381,7 +500,7 @@ CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* rev
     return {};
   }
   std::vector<char> collapses(mesh.view().numberOfPoints, 0);
-  std::vector<SeamFacet> facets = seamFacets(mesh, places, collapses);
+  std::vector<SeamFacet> facets = seamFacets(mesh, places, ghosts, collapses);
   for (SeamFacet& facet : facets)
   {
     facet.collapsing = std::any_of(facet.places.begin(), facet.places.end(),
@@ -406,7 +525,31 @@ CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* rev
     joiner.visit(&facets[i], static_cast<Index>(j - i));
     i = j;
   }
+  if (ghosts)
+  {
+    joiner.joinGhosts(mesh, places, ghosts);
+  }
   return joiner.finish();
+}
+
+//------------------------------------------------------------------------------
+Index countForeignCells(const Mesh& mesh, const unsigned char* ghosts)
+{
+  Places places = findPlaces(mesh, 1);
+  if (!places.any)
+  {
+    places.of.resize(mesh.view().numberOfPoints);
+    std::iota(places.of.begin(), places.of.end(), Index(0));
+  }
+  places.several.assign(mesh.view().numberOfPoints, 1); // so that all cells are listed
+  const std::vector<CellAtPlace> cells = cellsByPlace(mesh, places, ghosts);
+  Index foreign = 0;
+  for (std::size_t i = 0, first = 0; i < cells.size(); ++i)
+  {
+    first = cells[i].samePlaces(cells[first]) ? first : i;
+    foreign += cells[first].ghost;
+  }
+  return foreign;
 }
 
 namespace

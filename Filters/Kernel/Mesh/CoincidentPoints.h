@@ -44,9 +44,16 @@ struct CoincidentPoints
  * which side of a facet a cell is follows from the order of its points, so that inverted elements
  * are on the side of the valid ones.
  * @param threads the most that are used; 0 means all
+ * @param ghosts one flag per cell: it is a copy of a cell of another piece and has no facets; may
+ * be null. Its points are one with those of a cell at the same place, or of other copies of it;
+ * else with the one point, if there is one, that other cells have at the same place.
  */
-TAUTLINE_KERNEL_EXPORT CoincidentPoints findCoincidentPoints(
-  const Mesh& mesh, const unsigned char* reversed = nullptr, int threads = 1);
+TAUTLINE_KERNEL_EXPORT CoincidentPoints findCoincidentPoints(const Mesh& mesh,
+  const unsigned char* reversed = nullptr, int threads = 1, const unsigned char* ghosts = nullptr);
+
+/// The number of cells with a flag that have the places of no cell without one: those of other
+/// pieces of the mesh, which is not here as a whole. Only supported cells count.
+TAUTLINE_KERNEL_EXPORT Index countForeignCells(const Mesh& mesh, const unsigned char* ghosts);
 
 /**
  * @brief The number of points of the boundary that are near another one but not at its place:

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoordinateOrder.h"
 
+#include "MeshElements.h"
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace tautline
 {
@@ -22,6 +25,12 @@ struct PlacedPoint
     return this->place != other.place ? this->place < other.place : this->number < other.number;
   }
 };
+
+/// @param x its coordinates, of which -0 becomes 0
+PlacedPoint placedAt(const double* x, Index number, Index local)
+{
+  return { { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 }, number, local };
+}
 
 /// The first point of each range but the first one; the same on all ranks.
 std::vector<PlacedPoint> rangesOf(RankGroup& group, const std::vector<PlacedPoint>& sorted)
@@ -56,9 +65,7 @@ std::vector<Index> coordinateOrder(const DistributedMesh& mesh)
   {
     if (mesh.owned(p))
     {
-      const double* x = &mesh.points()[3 * p];
-      // -0 is 0.
-      own.push_back({ { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 }, mesh.numbers()[p], p });
+      own.push_back(placedAt(&mesh.points()[3 * p], mesh.numbers()[p], p));
     }
   }
   std::sort(own.begin(), own.end());
@@ -111,5 +118,54 @@ std::vector<Index> coordinateOrder(const DistributedMesh& mesh)
   }
   mesh.exchange(order.data(), 1);
   return std::vector<Index>(order.begin(), order.end());
+}
+
+//------------------------------------------------------------------------------
+std::vector<Index> coordinateOrder(
+  const Mesh& mesh, const double* places, const std::vector<Index>& representative)
+{
+  const MeshView& view = mesh.view();
+  std::vector<char> used(view.numberOfPoints, 0);
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const int nodes = topology(block.type).nodes;
+    for (Index i = 0; isElement(mesh, block.type) && i < block.count; ++i)
+    {
+      const Index* points = view.connectivity + view.offsets[block.cell(i)];
+      std::for_each(points, points + nodes, [&used](Index p) { used[p] = 1; });
+    }
+  }
+  const auto isOne = [&](Index p) { return representative.empty() || representative[p] == p; };
+  std::vector<PlacedPoint> ordered;
+  std::vector<Index> others;
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    const double* x = places + 3 * p;
+    const bool finite = std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2]);
+    if (isOne(p) && used[p] && finite)
+    {
+      ordered.push_back(placedAt(x, p, p));
+    }
+    else if (isOne(p))
+    {
+      others.push_back(p);
+    }
+  }
+  std::sort(ordered.begin(), ordered.end());
+  std::vector<Index> order(view.numberOfPoints, 0);
+  Index next = 0;
+  for (const PlacedPoint& point : ordered)
+  {
+    order[point.local] = next++;
+  }
+  for (const Index p : others)
+  {
+    order[p] = next++;
+  }
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    order[p] = isOne(p) ? order[p] : order[representative[p]];
+  }
+  return order;
 }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CoordinateOrder.h
- * @brief The order of the points of a mesh on several ranks by their coordinates.
+ * @brief The order of the points of a mesh by their coordinates.
  */
 #ifndef tautline_CoordinateOrder_h
 #define tautline_CoordinateOrder_h
@@ -19,5 +19,15 @@ namespace tautline
  * Ranks sort their points; samples of them divide the order into one range per rank.
  */
 TAUTLINE_KERNEL_EXPORT std::vector<Index> coordinateOrder(const DistributedMesh& mesh);
+
+/**
+ * @brief The same of the points of the elements of a mesh on one process. Other points, and those
+ * that are not finite, follow in the order of their numbers.
+ * @param places of the points, three numbers each
+ * @param representative of points that are one, the first of them, which they have the place of;
+ * empty: all are themselves
+ */
+TAUTLINE_KERNEL_EXPORT std::vector<Index> coordinateOrder(
+  const Mesh& mesh, const double* places, const std::vector<Index>& representative);
 }
 #endif

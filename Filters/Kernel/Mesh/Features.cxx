@@ -4,6 +4,7 @@
 #include "FacetTable.h"
 #include "tautline/Core/UnionFind.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -152,14 +153,18 @@ void FeatureFinder::takeFaces()
         this->Candidates.push_back({ smallest, uses->others[0], borderCosine, true, facetClass });
         return;
       }
+      // Out of the cell of the smallest region: the facets of an interface face the same way then.
+      const FacetUse& use = *std::min_element(uses, uses + count,
+        [this](const FacetUse& a, const FacetUse& b)
+        { return this->regionOf(a.cell) < this->regionOf(b.cell); });
       Features::Facet facet = { {}, 0, -1, count > 1 };
-      facet.size = uses->others[2] < 0 ? 3 : 4;
+      facet.size = use.others[2] < 0 ? 3 : 4;
       facet.nodes[0] = smallest;
-      facet.nodes[1] = uses->others[uses->forward ? 0 : 1];
-      facet.nodes[facet.size - 1] = uses->others[uses->forward ? 1 : 0];
+      facet.nodes[1] = use.others[use.forward ? 0 : 1];
+      facet.nodes[facet.size - 1] = use.others[use.forward ? 1 : 0];
       if (facet.size == 4)
       {
-        facet.nodes[2] = uses->others[2];
+        facet.nodes[2] = use.others[2];
       }
       this->Result.facets.push_back(facet);
       this->Classes.push_back(facetClass);

@@ -44,7 +44,8 @@ struct FeatureOptions
 
 struct Features
 {
-  /// A facet with its nodes in the order of its cell; of an interface, in that of the first cell.
+  /// A facet with its nodes in the order of its cell; of an interface, of that in the smaller
+  /// region, so that the facets of an interface face the same way.
   struct Facet
   {
     std::array<Index, MaxFaceNodes> nodes;

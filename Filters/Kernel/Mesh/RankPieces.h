@@ -38,7 +38,8 @@ TAUTLINE_KERNEL_EXPORT MeshSpace spaceOnRanks(
  * @brief Mesh::orientation() of the whole mesh. Collective.
  *
  * Only what is on the boundary of the pieces is sent, and only if there are valid and inverted
- * cells. Points at the same place are one, without global ids also those of a crack.
+ * cells; the first rank gets what is known of the connected parts of the pieces, and of each two
+ * that meet. Points at the same place are one, without global ids also those of a crack.
  *
  * A facet has at most two cells, as in a manifold mesh. Where three or more meet, none of them are
  * neighbours there in one piece; but two of them in one piece are, if the others are in others. The

@@ -58,7 +58,10 @@ std::vector<PartPoint> pointsOf(
   used.reserve(4 * cells.size());
   for (const PartCell& cell : cells)
   {
-    std::transform(cell.points.begin(), cell.points.end(), std::back_inserter(used), places);
+    for (const Index number : cell.points)
+    {
+      used.push_back(places(number));
+    }
   }
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());

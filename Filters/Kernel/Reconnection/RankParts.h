@@ -77,6 +77,9 @@ public:
     , Intervals(static_cast<Index>(points.size()), [&](Index p) { return points[p].number; })
   {
   }
+  /// It has a table in proportion to the points; algorithms take a function by value.
+  PointPlaces(const PointPlaces&) = delete;
+  PointPlaces& operator=(const PointPlaces&) = delete;
   /// As placeOf().
   Index operator()(Index number) const
   {

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "BlocksOnRanks.h"
+
+#include "SeamFacets.h"
+#include "tautline/Core/UnionFind.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace tautline
+{
+namespace
+{
+/// A facet on the boundary of a piece.
+struct BlockFacet : SeamFacet
+{
+  int block;
+};
+
+/// The box of a piece.
+struct BlockBox
+{
+  int block;
+  Vec3 low, high;
+
+  bool contains(const Vec3& x) const
+  {
+    bool inside = true;
+    for (int c = 0; c < 3; ++c)
+    {
+      inside = inside && this->low[c] <= x[c] && x[c] <= this->high[c];
+    }
+    return inside;
+  }
+};
+
+BlockBox boxOf(const BlockPiece& piece)
+{
+  BlockBox box = { piece.block, { HUGE_VAL, HUGE_VAL, HUGE_VAL },
+    { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL } };
+  const MeshView& view = piece.piece.mesh->view();
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    const Vec3 x = pointOf(view, p);
+    for (int c = 0; c < 3; ++c)
+    {
+      box.low[c] = std::min(box.low[c], x[c]);
+      box.high[c] = std::max(box.high[c], x[c]);
+    }
+  }
+  return box;
+}
+
+/// The facets of the boundary that may be those of another block, too, filed under their homes.
+std::vector<std::vector<BlockFacet>> facetsToSend(
+  const RankGroup& group, const std::vector<BlockPiece>& pieces, const std::vector<BlockBox>& boxes)
+{
+  std::vector<std::vector<BlockFacet>> sent(static_cast<std::size_t>(group.size()));
+  for (const BlockPiece& piece : pieces)
+  {
+    const Mesh& mesh = *piece.piece.mesh;
+    const RankPiece places = { &mesh, nullptr, nullptr };
+    const auto meetsOther = [&](Index point)
+    {
+      const Vec3 x = pointOf(mesh.view(), point); // one that is not finite is in no box
+      return std::any_of(boxes.begin(), boxes.end(),
+        [&](const BlockBox& box) { return box.block != piece.block && box.contains(x); });
+    };
+    FacetTable(mesh, piece.piece.ghosts)
+      .forEachFacet(
+        [&](Index smallest, const FacetUse* uses, Index count)
+        {
+          if (count == 1 && meetsOther(smallest))
+          {
+            BlockFacet facet = { seamFacetOf(places, smallest, *uses), piece.block };
+            facet.forward = facet.forward != piece.reversed;
+            sent[homeOf(facet.hash, group)].push_back(facet);
+          }
+        });
+  }
+  return sent;
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<int> connectedBlocks(
+  RankGroup& group, const std::vector<BlockPiece>& pieces, int blocks)
+{
+  std::vector<BlockBox> boxes;
+  group.together(
+    [&] { std::transform(pieces.begin(), pieces.end(), std::back_inserter(boxes), boxOf); });
+  std::vector<BlockBox> allBoxes;
+  for (const std::vector<BlockBox>& list : group.gatherItems(boxes))
+  {
+    allBoxes.insert(allBoxes.end(), list.begin(), list.end());
+  }
+  std::vector<std::vector<BlockFacet>> facets;
+  group.together([&] { facets = facetsToSend(group, pieces, allBoxes); });
+  facets = group.exchangeItems(facets);
+
+  using Pair = std::array<int, 2>;
+  std::vector<Pair> pairs;
+  const bool sided = group.any(std::any_of(pieces.begin(), pieces.end(),
+    [](const BlockPiece& piece) { return piece.piece.mesh->dimension() != Dimension::Surface; }));
+  group.together(
+    [&]
+    {
+      forEachSeamPair(facets,
+        [&](const SeamPlace& one, const SeamPlace& other)
+        {
+          const BlockFacet &a = facets[one.rank][one.number], &b = facets[other.rank][other.number];
+          // Cells on the two sides walk round it in opposite senses.
+          if (a.block != b.block && (!sided || a.forward != b.forward))
+          {
+            pairs.push_back({ std::min(a.block, b.block), std::max(a.block, b.block) });
+          }
+        });
+      std::sort(pairs.begin(), pairs.end());
+      pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    });
+  UnionFind sets(blocks);
+  for (const std::vector<Pair>& list : group.gatherItems(pairs))
+  {
+    for (const Pair& pair : list)
+    {
+      sets.join(pair[0], pair[1]);
+    }
+  }
+  std::vector<int> connected;
+  for (int block = 0; block < blocks; ++block)
+  {
+    connected.push_back(static_cast<int>(sets.find(block)));
+  }
+  return connected;
+}
+}

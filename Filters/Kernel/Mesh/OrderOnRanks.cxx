@@ -1,0 +1,553 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The orders of the cells of a mesh in pieces on ranks, and its orientation.
+#include "CellOrder.h"
+#include "SeamFacets.h"
+#include "tautline/Core/UnionFind.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace tautline
+{
+namespace
+{
+constexpr Index Enough = 10; // cells of a part, so that it is not a piece of inverted ones
+
+/// Cells in the orders that they have, c, and in the opposite ones, c + n: orders that agree are in
+/// one set.
+class OrderSets
+{
+public:
+  explicit OrderSets(Index count)
+    : Count(count)
+    , Sets(2 * count)
+  {
+  }
+
+  void join(Index a, Index b, bool agree)
+  {
+    this->Sets.join(a, agree ? b : b + this->Count);
+    this->Sets.join(a + this->Count, agree ? b + this->Count : b);
+  }
+  /// The first member of the part of a.
+  Index part(Index a) { return std::min(this->Sets.find(a), this->Sets.find(a + this->Count)); }
+  /// Whether the order of a is the opposite one of that of the first member.
+  bool opposite(Index a) { return this->Sets.find(a) != this->part(a); }
+  /// Whether the part of a has no consistent order.
+  bool ambiguous(Index a) { return this->Sets.find(a) == this->Sets.find(a + this->Count); }
+  bool joined(Index a, Index b) { return this->part(a) == this->part(b); }
+  bool agree(Index a, Index b)
+  {
+    return this->ambiguous(a) || this->Sets.find(a) == this->Sets.find(b);
+  }
+
+private:
+  Index Count;
+  UnionFind Sets;
+};
+
+/// A connected part of a piece, in the order of its first cell.
+struct PiecePart
+{
+  PartSign inOrder;   ///< with all cells in the order of the first
+  PartSign given;     ///< with the cells as they are
+  Index cells = 0;    ///< of the part
+  Index opposite = 0; ///< of these: in the opposite order of the first
+  Index first = -1;   ///< the smallest cell
+  bool ambiguous = false;
+};
+
+/// A facet on the boundary of a piece, with what its cell tells.
+struct OrderFacet : SeamFacet
+{
+  Index part;
+  bool opposite; ///< its cell is in the opposite order of its part
+  signed char validity;
+};
+
+/// Facets between two parts.
+struct PartPair
+{
+  Index a, b;    ///< numbers of the parts, a not above b
+  bool agree;    ///< the orders of the parts
+  bool doubtful; ///< the cells are neighbours in opposite orders, or overlap
+  Index facets, disagreeing;
+
+  auto key() const { return std::tie(this->a, this->b, this->agree, this->doubtful); }
+};
+
+/// What becomes of a part.
+enum class Turn : char
+{
+  Stays,  ///< its cells have the order of the first
+  Turned, ///< they have the opposite one
+  None    ///< all have the order that they are given in
+};
+
+/// What the first rank tells the others.
+struct OrderTotals
+{
+  Index disagreeing = 0, parts = 0, reversedParts = 0;
+  Index reversed = 0, cells = 0, ambiguous = 0, firstAmbiguous = -1;
+};
+
+/// The parts of the pieces of one rank.
+class PieceOrders
+{
+public:
+  PieceOrders(const std::vector<RankPiece>& pieces, const std::vector<const signed char*>& validity,
+    int dimension, bool haveSigns)
+    : Pieces(pieces)
+    , Validity(validity)
+    , Dimension(dimension)
+    , HaveSigns(haveSigns)
+  {
+  }
+
+  void find(const Vec3& origin);
+  std::vector<std::vector<unsigned char>> reverse(const std::vector<Turn>& turns) const;
+
+  std::vector<PiecePart> Parts;
+  std::vector<OrderFacet> Facets;
+  Index Disagreeing = 0;
+
+private:
+  void addPiece(std::size_t number, const Vec3& origin);
+  void flagGhosts(const RankPiece& piece, std::vector<unsigned char>& flags) const;
+
+  const std::vector<RankPiece>& Pieces;
+  const std::vector<const signed char*>& Validity;
+  int Dimension;
+  bool HaveSigns;
+  std::vector<std::vector<Index>> PartOf;        ///< per piece and cell; -1: of none
+  std::vector<std::vector<unsigned char>> Other; ///< per piece and cell: opposite in its part
+};
+
+//------------------------------------------------------------------------------
+void PieceOrders::find(const Vec3& origin)
+{
+  for (std::size_t i = 0; i < this->Pieces.size(); ++i)
+  {
+    this->addPiece(i, origin);
+  }
+}
+
+//------------------------------------------------------------------------------
+void PieceOrders::addPiece(std::size_t number, const Vec3& origin)
+{
+  const RankPiece& piece = this->Pieces[number];
+  const Mesh& mesh = *piece.mesh;
+  const Index cells = mesh.view().numberOfCells;
+  OrderSets sets(cells);
+  struct OpenFacet
+  {
+    Index smallest;
+    FacetUse use;
+  };
+  std::vector<OpenFacet> open;
+  FacetTable(mesh, piece.ghosts)
+    .forEachFacet(
+      [&](Index smallest, const FacetUse* uses, Index count)
+      {
+        if (count == 2)
+        {
+          const bool agree = uses[0].forward != uses[1].forward;
+          this->Disagreeing += !agree;
+          sets.join(uses[0].cell, uses[1].cell, agree);
+        }
+        else if (count == 1)
+        {
+          open.push_back({ smallest, uses[0] });
+        }
+      });
+  this->PartOf.emplace_back(cells, -1);
+  this->Other.emplace_back(cells, 0);
+  std::vector<Index> partAt(cells, -1); // by the first member
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; i < block.count && t.dimension == this->Dimension; ++i)
+    {
+      const Index cell = block.cell(i);
+      if (piece.ghosts && piece.ghosts[cell])
+      {
+        continue;
+      }
+      Index& part = partAt[sets.part(cell)];
+      if (part < 0)
+      {
+        part = static_cast<Index>(this->Parts.size());
+        this->Parts.emplace_back();
+      }
+      this->PartOf.back()[cell] = part;
+      PiecePart& of = this->Parts[part];
+      const bool opposite = sets.opposite(cell);
+      this->Other.back()[cell] = opposite;
+      ++of.cells;
+      of.opposite += opposite;
+      of.first = of.first < 0 ? cell : std::min(of.first, cell);
+      of.ambiguous = sets.ambiguous(cell);
+      const signed char validity = this->Validity[number][cell];
+      if (this->HaveSigns && validity >= Inverted)
+      {
+        const double size =
+          signedSize(mesh, t, mesh.view().connectivity + mesh.view().offsets[cell], origin);
+        of.given.add(size, validity);
+        of.inOrder.add(opposite ? -size : size, opposite ? -static_cast<int>(validity) : validity);
+      }
+    }
+  }
+  for (const OpenFacet& facet : open)
+  {
+    const Index cell = facet.use.cell;
+    this->Facets.push_back({ seamFacetOf(piece, facet.smallest, facet.use),
+      this->PartOf.back()[cell], this->Other.back()[cell] != 0, this->Validity[number][cell] });
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The flags of the cells to list in the opposite order.
+std::vector<std::vector<unsigned char>> PieceOrders::reverse(const std::vector<Turn>& turns) const
+{
+  std::vector<std::vector<unsigned char>> reverse;
+  for (std::size_t i = 0; i < this->Pieces.size(); ++i)
+  {
+    std::vector<unsigned char>& flags = reverse.emplace_back(this->PartOf[i].size(), 0);
+    for (std::size_t cell = 0; cell < flags.size(); ++cell)
+    {
+      const Index part = this->PartOf[i][cell];
+      const Turn turn = part < 0 ? Turn::None : turns[part];
+      flags[cell] = turn != Turn::None && (this->Other[i][cell] != 0) != (turn == Turn::Turned);
+    }
+    if (this->Pieces[i].ghosts)
+    {
+      this->flagGhosts(this->Pieces[i], flags);
+    }
+  }
+  return reverse;
+}
+
+//------------------------------------------------------------------------------
+/// Ghost cells get the order of the other cells that they are connected with.
+void PieceOrders::flagGhosts(const RankPiece& piece, std::vector<unsigned char>& flags) const
+{
+  const Mesh& mesh = *piece.mesh;
+  const auto cells = static_cast<Index>(flags.size());
+  OrderSets sets(cells);
+  FacetTable(mesh).forEachFacet(
+    [&](Index, const FacetUse* uses, Index count)
+    {
+      if (count == 2)
+      {
+        sets.join(uses[0].cell, uses[1].cell, uses[0].forward != uses[1].forward);
+      }
+    });
+  std::vector<signed char> firstReversed(cells, -1); // by the first member; -1: not known
+  for (Index cell = 0; cell < cells; ++cell)
+  {
+    if (!piece.ghosts[cell] && !sets.ambiguous(cell))
+    {
+      firstReversed[sets.part(cell)] = (flags[cell] != 0) != sets.opposite(cell);
+    }
+  }
+  for (Index cell = 0; cell < cells; ++cell)
+  {
+    const signed char first = firstReversed[sets.part(cell)];
+    if (piece.ghosts[cell] && first >= 0 && !sets.ambiguous(cell))
+    {
+      flags[cell] = (first > 0) != sets.opposite(cell);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The pairs of parts that meet at the facets that a rank has got.
+std::vector<PartPair> pairsAt(const std::vector<std::vector<OrderFacet>>& received,
+  const std::vector<Index>& firsts, bool sided)
+{
+  std::vector<PartPair> pairs;
+  forEachSeamPair(received,
+    [&](const SeamPlace& at, const SeamPlace& other)
+    {
+      const OrderFacet& f = received[at.rank][at.number];
+      const OrderFacet& g = received[other.rank][other.number];
+      const bool agree = f.forward != g.forward;
+      const bool oneSide =
+        f.validity == g.validity && (f.validity == Valid || f.validity == Inverted);
+      PartPair pair = { firsts[at.rank] + f.part, firsts[other.rank] + g.part,
+        agree == (f.opposite == g.opposite), sided && !agree && oneSide, 1, !agree };
+      if (pair.b < pair.a)
+      {
+        std::swap(pair.a, pair.b);
+      }
+      pairs.push_back(pair);
+    });
+  return pairs;
+}
+
+/// Adds up the facets of equal pairs.
+void unitePairs(std::vector<PartPair>& pairs)
+{
+  std::sort(pairs.begin(), pairs.end(),
+    [](const PartPair& a, const PartPair& b) { return a.key() < b.key(); });
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+  {
+    if (kept > 0 && pairs[kept - 1].key() == pairs[i].key())
+    {
+      pairs[kept - 1].facets += pairs[i].facets;
+      pairs[kept - 1].disagreeing += pairs[i].disagreeing;
+    }
+    else
+    {
+      pairs[kept++] = pairs[i];
+    }
+  }
+  pairs.resize(kept);
+}
+
+/// Joins the parts at their facets. @return the facets whose cells have opposite orders
+Index joinParts(OrderSets& sets, const std::vector<PartPair>& pairs, Index disagreeing)
+{
+  for (const PartPair& pair : pairs)
+  {
+    if (!pair.doubtful)
+    {
+      sets.join(pair.a, pair.b, pair.agree);
+      disagreeing += pair.disagreeing;
+    }
+  }
+  // Of the doubtful ones, those that the others confirm; the rest by the majority.
+  std::vector<PartPair> open;
+  Index doubtful = 0;
+  for (const PartPair& pair : pairs)
+  {
+    if (pair.doubtful && sets.joined(pair.a, pair.b))
+    {
+      const bool confirmed = sets.agree(pair.a, pair.b) == pair.agree;
+      disagreeing += confirmed ? pair.disagreeing : 0;
+      doubtful += confirmed ? 0 : pair.facets;
+    }
+    else if (pair.doubtful)
+    {
+      open.push_back(pair);
+      doubtful += pair.facets;
+    }
+  }
+  const bool opposite = disagreeing > doubtful;
+  for (const PartPair& pair : open)
+  {
+    if (sets.joined(pair.a, pair.b) ? sets.agree(pair.a, pair.b) == pair.agree : opposite)
+    {
+      sets.join(pair.a, pair.b, pair.agree);
+      disagreeing += pair.disagreeing;
+    }
+  }
+  return disagreeing;
+}
+
+/// What the connected parts of the whole mesh tell, and what becomes of those of the pieces.
+OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPair>& pairs,
+  bool haveSigns, double sign, Index disagreeing, std::vector<Turn>& turns)
+{
+  const auto count = static_cast<Index>(parts.size());
+  OrderSets sets(count);
+  for (Index p = 0; p < count; ++p)
+  {
+    if (parts[p].ambiguous)
+    {
+      sets.join(p, p, false);
+    }
+  }
+  OrderTotals totals;
+  totals.disagreeing = joinParts(sets, pairs, disagreeing);
+  const auto add = [](PartSign& to, const PartSign& own, double by)
+  {
+    to.sum += by * own.sum;
+    to.magnitude += own.magnitude;
+    to.majority += static_cast<Index>(by) * own.majority;
+  };
+  std::vector<PiecePart> whole(count);
+  for (Index p = 0; p < count; ++p)
+  {
+    PiecePart& of = whole[sets.part(p)];
+    const bool opposite = sets.opposite(p);
+    add(of.given, parts[p].given, 1);
+    add(of.inOrder, parts[p].inOrder, opposite ? -1 : 1);
+    of.cells += parts[p].cells;
+    of.opposite += opposite ? parts[p].cells - parts[p].opposite : parts[p].opposite;
+    of.first = of.first < 0 ? parts[p].first : std::min(of.first, parts[p].first);
+  }
+  turns.assign(count, Turn::None);
+  for (Index p = 0; p < count; ++p)
+  {
+    const PiecePart& of = whole[sets.part(p)];
+    const bool one = sets.part(p) == p; // once for each part of the whole
+    totals.parts += one;
+    totals.reversedParts += one && haveSigns && of.given.reversed(sign);
+    totals.cells += parts[p].cells;
+    if (sets.ambiguous(p))
+    {
+      totals.ambiguous += one;
+      totals.firstAmbiguous = totals.firstAmbiguous < 0 || of.first < totals.firstAmbiguous
+        ? of.first
+        : totals.firstAmbiguous;
+      continue;
+    }
+    bool turn = haveSigns ? of.inOrder.reversed(sign) : 2 * of.opposite > of.cells;
+    if (haveSigns && of.opposite == 0)
+    {
+      // Nothing but the sign of the part tells its order. A few cells may be inverted ones.
+      turn = turn && of.cells >= Enough && of.inOrder.majority == -of.cells;
+    }
+    turns[p] = turn != sets.opposite(p) ? Turn::Turned : Turn::Stays;
+    totals.reversed +=
+      turns[p] == Turn::Turned ? parts[p].cells - parts[p].opposite : parts[p].opposite;
+  }
+  return totals;
+}
+
+/// The lists of all ranks, one after the other.
+template <class Item>
+std::vector<Item> together(const std::vector<std::vector<Item>>& lists)
+{
+  std::vector<Item> all;
+  for (const std::vector<Item>& list : lists)
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  return all;
+}
+
+/// The lists of all ranks, on the first.
+template <class Item>
+std::vector<std::vector<Item>> onFirst(RankGroup& group, const std::vector<Item>& own)
+{
+  std::vector<std::vector<Item>> sent(group.size());
+  sent[0] = own;
+  return group.exchangeItems(sent);
+}
+
+/// The order of the whole mesh. Two cells on one side of a facet are neighbours in opposite orders;
+/// with `overlapping`, they may be cells that overlap instead.
+RankOrder orderOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
+  const std::vector<const signed char*>& validity, bool overlapping)
+{
+  RankOrder result;
+  Orientation& found = result.orientation;
+  bool haveSigns = true, mirrored = false;
+  int dimension = 0;
+  for (const RankPiece& piece : pieces)
+  {
+    haveSigns = haveSigns && piece.mesh->dimension() != Dimension::Surface;
+    mirrored = mirrored || piece.mesh->mirrored();
+    dimension = std::max(dimension, piece.mesh->dimension() == Dimension::Volume ? 3 : 2);
+  }
+  haveSigns = !group.any(!haveSigns);
+  mirrored = group.any(mirrored);
+  dimension = static_cast<int>(group.maximum(static_cast<Index>(dimension)));
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    for (const CellBlock& block : pieces[i].mesh->blocks())
+    {
+      for (Index k = 0; k < block.count && topology(block.type).dimension == dimension; ++k)
+      {
+        const Index cell = block.cell(k);
+        const bool counts = !(pieces[i].ghosts && pieces[i].ghosts[cell]);
+        found.positiveCells += counts && validity[i][cell] == Valid;
+        found.negativeCells += counts && validity[i][cell] == Inverted;
+      }
+    }
+  }
+  found.positiveCells = group.sum(found.positiveCells);
+  found.negativeCells = group.sum(found.negativeCells);
+  if (haveSigns && (found.negativeCells == 0 || found.positiveCells == 0))
+  {
+    found.state = found.negativeCells > 0 ? Orientation::Reversed : Orientation::Consistent;
+    return result;
+  }
+
+  // Signs differ (a tangled or a mixed mesh), or there are none (a surface): compare neighbours.
+  const Vec3 origin = commonOrigin(group, pieces);
+  PieceOrders own(pieces, validity, dimension, haveSigns);
+  std::vector<std::vector<OrderFacet>> sent(group.size());
+  group.together(
+    [&]
+    {
+      own.find(origin);
+      for (const OrderFacet& facet : own.Facets)
+      {
+        sent[homeOf(facet.hash, group)].push_back(facet);
+      }
+    });
+  std::vector<Index> firsts = { 0 };
+  for (const auto& count : group.gatherItems(std::vector<std::size_t>{ own.Parts.size() }))
+  {
+    firsts.push_back(firsts.back() + static_cast<Index>(count[0]));
+  }
+  const std::vector<std::vector<OrderFacet>> received = group.exchangeItems(sent);
+  std::vector<PartPair> pairs;
+  group.together(
+    [&]
+    {
+      pairs = pairsAt(received, firsts, haveSigns && overlapping);
+      unitePairs(pairs);
+    });
+  const Index disagreeing = group.sum(own.Disagreeing);
+  const auto allParts = onFirst(group, own.Parts);
+  const auto allPairs = onFirst(group, pairs);
+  std::vector<std::vector<Turn>> turns(group.size());
+  std::vector<OrderTotals> totals;
+  group.together(
+    [&]
+    {
+      if (group.rank() > 0)
+      {
+        return;
+      }
+      std::vector<PartPair> joined = together(allPairs);
+      unitePairs(joined);
+      std::vector<Turn> all;
+      totals.push_back(
+        decide(together(allParts), joined, haveSigns, mirrored ? -1.0 : 1.0, disagreeing, all));
+      for (int rank = 0; rank < group.size(); ++rank)
+      {
+        turns[rank].assign(all.begin() + firsts[rank], all.begin() + firsts[rank + 1]);
+      }
+    });
+  const OrderTotals all = group.gatherItems(totals)[0][0];
+  const std::vector<Turn> ownTurns = group.exchangeItems(turns)[0];
+  found.disagreeing = all.disagreeing;
+  found.parts = all.parts;
+  found.reversedParts = all.reversedParts;
+  if (found.disagreeing > 0 || (found.reversedParts > 0 && found.reversedParts < found.parts))
+  {
+    found.state = Orientation::Mixed;
+    result.order.reversed = all.reversed;
+    result.order.cells = all.cells;
+    result.order.ambiguous = all.ambiguous;
+    result.order.firstAmbiguous = group.size() == 1 ? all.firstAmbiguous : -1;
+    group.together([&] { result.reverse = own.reverse(ownTurns); });
+  }
+  else if (found.reversedParts > 0)
+  {
+    found.state = Orientation::Reversed;
+  }
+  return result;
+}
+}
+
+//------------------------------------------------------------------------------
+RankOrder consistentOrderOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
+  const std::vector<const signed char*>& validity)
+{
+  return orderOnRanks(group, pieces, validity, true);
+}
+
+//------------------------------------------------------------------------------
+Orientation orientationOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
+  const std::vector<const signed char*>& validity)
+{
+  return orderOnRanks(group, pieces, validity, false).orientation;
+}
+}
