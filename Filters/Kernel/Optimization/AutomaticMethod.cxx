@@ -59,7 +59,7 @@ bool Stage::startsWithNewton(const IterationRecord& first)
 }
 
 //------------------------------------------------------------------------------
-/// Starts at the harmonic map of the input if elements are free of targets there, valid, and the
+/// Starts near the harmonic map of the input if elements are free of targets there, valid, and the
 /// objective is smaller. It does not depend on how the input is stretched, and is often close to
 /// the minimum.
 void Stage::takeHarmonicStart(const std::vector<double>& start)
@@ -76,12 +76,29 @@ void Stage::takeHarmonicStart(const std::vector<double>& start)
   {
     return;
   }
-  this->Steps.restart(harmonic);
-  const IterationRecord record = this->Steps.record(0);
-  if (record.inverted > 0 || !(record.objective < first.objective))
+  const auto leads = [&](const std::vector<double>& points)
+  {
+    this->Steps.restart(points);
+    const IterationRecord record = this->Steps.record(0);
+    return record.inverted == 0 && record.objective < first.objective;
+  };
+  if (!leads(harmonic))
   {
     this->Steps.restart(start);
+    return;
   }
+  // As far from a saddle as elements stay valid.
+  constexpr double mostShifted = 0.2, leastShifted = 0.02;
+  for (double part = mostShifted; part > leastShifted; part *= 0.5)
+  {
+    std::vector<double> shifted = harmonic;
+    this->Steps.shiftPoints(part, shifted);
+    if (leads(shifted))
+    {
+      return;
+    }
+  }
+  this->Steps.restart(harmonic);
 }
 
 //------------------------------------------------------------------------------
@@ -108,7 +125,7 @@ bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
     this->Steps.restart(swept);
     return false;
   }
-  // Where the harmonic map is the minimum, no iteration is recorded.
+  // From close to the minimum, no iteration may be recorded.
   IterationRecord& last = this->History.back();
   const IterationRecord found = this->Steps.record(last.iteration);
   // Inverted elements do not count in the objective.

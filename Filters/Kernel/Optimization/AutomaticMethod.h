@@ -55,6 +55,8 @@ public:
   /// Replaces points by their harmonicPoints(); false if there are none. Throws MemoryError if the
   /// matrix does not fit.
   virtual bool findHarmonicPoints(std::vector<double>& points) = 0;
+  /// See shiftFreePoints().
+  virtual void shiftPoints(double part, std::vector<double>& points) = 0;
   /// The record of the points as they are.
   virtual IterationRecord record(int iteration) = 0;
 };

@@ -397,7 +397,6 @@ void GlobalFunction::rebase(const double* x)
   {
     return;
   }
-  this->put(x);
   this->forEachFree(
     [&](std::size_t i, std::size_t p)
     {
@@ -420,7 +419,11 @@ void GlobalFunction::rebase(const double* x)
 //------------------------------------------------------------------------------
 void GlobalFunction::linearize(const double* x)
 {
-  this->rebase(x);
+  if (this->bends())
+  {
+    this->put(x);
+    this->rebase(x);
+  }
   if (!this->Hessian)
   {
     this->makeMatrix();

@@ -57,7 +57,7 @@ public:
   void findGradient(const std::vector<double>& slopes, double* gradient, double* terms);
   /// Takes the memory for the Hessian.
   void makeMatrix();
-  /// Takes the points at x, where they are, for those that further steps are added to: points at
+  /// Takes the points, which put(x) has moved, for those that further steps are added to: points at
   /// limits and on surfaces are elsewhere than the steps alone lead.
   void rebase(const double* x);
   /// Whether points may be elsewhere than the steps alone lead.

@@ -2,11 +2,13 @@
 #include "HarmonicStart.h"
 
 #include "tautline/Core/Memory.h"
+#include "tautline/Core/Random.h"
 #include "tautline/Core/VectorAlgebra.h"
 #include "tautline/Objectives/MultigridOnRanks.h"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 #include <utility>
 
@@ -210,6 +212,45 @@ std::vector<double> harmonicPoints(OptimizationProblem& problem, const std::vect
       points.begin() + 3 * static_cast<std::size_t>(s.point(v)));
   }
   return points;
+}
+
+//------------------------------------------------------------------------------
+void shiftFreePoints(const Mesh& mesh, const std::vector<unsigned char>& free, const Index* numbers,
+  double part, std::vector<double>& points)
+{
+  constexpr std::uint64_t seed = 1, stream = 0;
+  const MeshView& view = mesh.view();
+  const auto at = [&](Index p) {
+    return Vec3{ points[3 * p], points[3 * p + 1], points[3 * p + 2] };
+  };
+  std::vector<double> shortest(free.size(), std::numeric_limits<double>::infinity());
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index* nodes = view.connectivity + view.offsets[block.cell(i)];
+      for (int e = 0; e < t.edges; ++e)
+      {
+        const Index a = nodes[t.edgeNodes[e][0]], b = nodes[t.edgeNodes[e][1]];
+        const double length = norm(at(b) - at(a));
+        shortest[a] = std::min(shortest[a], length);
+        shortest[b] = std::min(shortest[b], length);
+      }
+    }
+  }
+  for (Index p = 0; p < static_cast<Index>(free.size()); ++p)
+  {
+    if (free[p] && std::isfinite(shortest[p]))
+    {
+      SplitMix random(seed, stream, numbers ? numbers[p] : p);
+      const Vec3 direction = mesh.dimension() == Dimension::Planar
+        ? random.direction(mesh.frame()[0], mesh.frame()[1])
+        : random.direction();
+      const Vec3 shifted = at(p) + part * random.uniform() * shortest[p] * direction;
+      std::copy(shifted.begin(), shifted.end(), points.begin() + 3 * p);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

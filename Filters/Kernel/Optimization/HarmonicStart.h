@@ -23,8 +23,18 @@ constexpr double enoughForHarmonicStart = 1.1;
 std::vector<double> harmonicPoints(OptimizationProblem& problem, const std::vector<double>& start);
 
 /**
- * @brief The same for a mesh on several ranks. Does not depend on the ranks, to rounding.
- * Collective.
+ * @brief Shifts free points by up to a part of the shortest edge at each, which depends on their
+ * numbers only. The harmonic map of a symmetric mesh may be a saddle of the objective, with a
+ * gradient of 0.
+ * @param free one flag per point
+ * @param numbers one per point, or null: 0, 1, ...
+ */
+void shiftFreePoints(const Mesh& mesh, const std::vector<unsigned char>& free, const Index* numbers,
+  double part, std::vector<double>& points);
+
+/**
+ * @brief The same as harmonicPoints() for a mesh on several ranks. Does not depend on the ranks, to
+ * rounding. Collective.
  * @param problem of the local part; null on a rank without cells
  * @param points the local points at the start, which are moved; not if the solver does not converge
  * @return whether it does

@@ -10,7 +10,6 @@ namespace tautline
 namespace
 {
 constexpr int maxRounds = 100;
-constexpr int sweepsPerRound = 4;
 /// A round that reduces the worst value by less than this fraction is the last.
 constexpr double worthwhile = 1e-3;
 /// p, one after the other: with the first, elements at 0.8 of the worst value have a thousandth of
@@ -19,35 +18,30 @@ constexpr double powers[] = { 32, 128 };
 /// How much more the elements near the worst one count where a round no longer pays, and at most.
 constexpr double stronger = 4;
 constexpr double strongest = 256;
-/// In closed form, sweeps begin at elements above this fraction of the worst value: the others have
-/// a share below 1e-5.
-constexpr double nearWorst = 0.7;
+/// A p-mean that has fallen below this fraction is computed anew: its change in units of the p-th
+/// power has lost digits.
+constexpr double trusted = 0.9;
 
 /// What a round minimizes.
 class WorstObjectives
 {
 public:
-  /// @param power of the second sum
+  /// @param mean the second sum
   /// @param pull how much more that counts than the first
-  WorstObjectives(
-    OptimizationProblem& problem, const Objective& judged, double worst, double power, double pull)
+  WorstObjectives(OptimizationProblem& problem, double worst, const ObjectiveSum* mean, double pull)
     : Pull(pull)
     , Terms(problem.localTerms())
-    , Fast(Terms[0].shapePower > 0 && judged.metric == Metric::InverseMeanRatio)
+    , Mean(mean)
   {
     this->Terms.resize(1);
-    if (this->Fast)
+    if (!this->Mean)
     {
       this->Terms[0].worst = worst;
       return;
     }
-    Objective mean = judged;
-    mean.objectiveTemplate = ObjectiveTemplate::PowerMean;
-    mean.power = power;
     this->Sum = &problem.sum(0);
-    this->Mean = std::make_unique<ObjectiveSum>(problem.moving(), mean, problem.options().threads);
     LocalTerm second;
-    second.metric = this->Mean.get();
+    second.metric = this->Mean;
     this->Terms.push_back(second);
     this->First = this->values();
   }
@@ -56,38 +50,27 @@ public:
 
   std::vector<double> values() const
   {
-    return this->Fast ? std::vector<double>{ 1.0 }
-                      : std::vector<double>{ this->Sum->value(), this->Mean->value() };
+    return this->Mean ? std::vector<double>{ this->Sum->value(), this->Mean->value() }
+                      : std::vector<double>{ 1.0 };
   }
 
-  /// Both by the changes relative to where they start.
-  Scalarizer scalarizer() const
-  {
-    ScalarizationOptions options;
-    options.method = Scalarization::WeightedSum;
-    std::vector<double> weights = { 1.0 };
-    if (!this->Fast)
-    {
-      weights = { 1.0 / std::abs(this->First[0]), this->Pull / std::abs(this->First[1]) };
-    }
-    return Scalarizer(options, weights, this->values());
-  }
+  /// The values at the points of the start.
+  std::vector<double> first() const { return this->Mean ? this->First : this->values(); }
 
-  bool fast() const { return this->Fast; }
+  Scalarizer scalarizer() const { return worstScalarizer(this->First, this->Pull, this->first()); }
 
   /// Whether both can be reduced relative to where they start: a sum of values that are all 0 is
   /// at its best.
   bool canImprove() const
   {
-    return this->Fast || (std::abs(this->First[0]) > 0 && std::abs(this->First[1]) > 0);
+    return !this->Mean || (std::abs(this->First[0]) > 0 && std::abs(this->First[1]) > 0);
   }
 
 private:
   double Pull;
   std::vector<LocalTerm> Terms;
-  bool Fast;
   const ObjectiveSum* Sum = nullptr;
-  std::unique_ptr<ObjectiveSum> Mean;
+  const ObjectiveSum* Mean; ///< null: one closed form
   std::vector<double> First;
 };
 }
@@ -97,87 +80,197 @@ namespace
 /// The first objective, with the metric of the worst element.
 Objective judgedBy(OptimizationProblem& problem)
 {
-  Objective judged = problem.sum(0).objective();
-  const Metric metric = worstMetric(problem.moving(), problem.options());
-  if (metric != judged.metric)
-  {
-    judged.metric = metric;
-    judged.evaluation = EvaluationOptions();
-    judged.evaluation.threads = problem.options().threads;
-  }
-  return judged;
-}
+  return judgedAs(problem.sum(0).objective(), worstMetric(problem.moving(), problem.options()),
+    problem.options().threads);
 }
 
-//------------------------------------------------------------------------------
-bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
-  const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report)
+/// The steps on one process.
+class StepsOfWorst : public WorstSteps
 {
-  problem.shareTolerance(1.0);
-  const Objective judged = judgedBy(problem);
-  const auto isLarger = [](Metric metric)
-  { return metricInfo(metric).direction == Direction::LargerIsBetter; };
-  const bool larger = isLarger(judged.metric);
-  const IterationRecord start = problem.record(0);
-  double worst = problem.worstMovable(judged); // elements that cannot move do not count
-  if (!std::isfinite(worst) || metricInfo(judged.metric).direction == Direction::Neutral)
+public:
+  explicit StepsOfWorst(OptimizationProblem& problem)
+    : Problem(problem)
+    , Judged(judgedBy(problem))
+    , Fast(problem.localTerms()[0].shapePower > 0 && Judged.metric == Metric::InverseMeanRatio)
+    , Best(problem.simplices().coordinates(), problem.simplices().coordinates() + this->size())
   {
-    return false;
   }
-  const auto better = [=](double a, double b) { return larger ? a > b : a < b; };
-  const double sign = isLarger(problem.options().objectives[0].metric) ? -1 : 1;
-  const double mean = limits.mean.value_or(start.mean[0]);
-  const double bound = mean + sign * limits.allowance * std::abs(mean);
 
-  SimplexMesh& simplices = problem.simplices();
-  const std::size_t size = VertexStride * static_cast<std::size_t>(simplices.freeVertices());
-  std::vector<double> best(simplices.coordinates(), simplices.coordinates() + size);
-  const double* power = std::begin(powers);
-  double pull = 1.0;
-  bool lowered = false; // the pull, once, because its cost was too high
-  for (int round = 0; round < maxRounds && !problem.outOfTime(); ++round)
+  const Objective& judged() const { return this->Judged; }
+  bool outOfTime() const override { return this->Problem.outOfTime(); }
+  IterationRecord record() override { return this->Problem.record(0); }
+  /// Elements that cannot move do not count.
+  double worst() override
   {
-    const WorstObjectives objectives(problem, judged, worst, *power, pull);
+    this->AtBest = this->Problem.measure(this->Judged);
+    return this->Problem.worstMovable(this->Judged, this->AtBest);
+  }
+  double reached() override
+  {
+    if (this->OfSimplices)
+    {
+      return this->Problem.worstRatioMovable();
+    }
+    this->Now = this->Problem.measure(this->Judged);
+    return this->Problem.worstMovable(this->Judged, this->Now);
+  }
+  bool isFast() override { return this->Fast; }
+
+  bool sweep(double worst, double power, double pull) override
+  {
+    const WorstObjectives objectives(
+      this->Problem, worst, this->Fast ? nullptr : this->meanOf(power), pull);
     if (!objectives.canImprove())
     {
       return false;
     }
-    LocalOptions options = problem.localOptions();
-    options.newton = true;
-    options.relaxation = 1.0;
-    LocalSweeper sweeper(
-      simplices, problem.moving(), problem.points().data(), objectives.terms(), options);
+    SimplexMesh& simplices = this->Problem.simplices();
+    LocalSweeper sweeper(simplices, this->Problem.moving(), this->Problem.points().data(),
+      objectives.terms(), worstOptions(this->Problem));
     const Scalarizer scalarizer = objectives.scalarizer();
     // The simplices have the targets of the objective, the metric that judges may have none.
-    const bool ofSimplices = objectives.fast() && simplices.uniform();
-    if (ofSimplices)
+    this->OfSimplices = this->Fast && simplices.uniform();
+    if (this->OfSimplices)
     {
-      sweeper.wakeOnly(problem.verticesAbove(nearWorst * worst));
+      sweeper.wakeOnly(this->Problem.verticesAbove(nearWorst * worst));
     }
+    else if (!this->Fast)
+    {
+      sweeper.wakeOnly(this->Problem.verticesNear(this->Judged, this->AtBest, worst, power));
+    }
+    std::vector<double> values = objectives.first();
     for (int i = 0; i < sweepsPerRound; ++i)
     {
-      std::vector<double> values = objectives.values();
+      const double before = values.back();
       sweeper.sweep(scalarizer, values);
+      if (i + 1 < sweepsPerRound && (this->Fast || !(values.back() > trusted * before)))
+      {
+        values = objectives.values();
+      }
     }
-    problem.store();
-    IterationRecord now = problem.record(0);
-    const double reached = ofSimplices ? problem.worstRatioMovable() : problem.worstMovable(judged);
-    const bool affordable = sign * (now.mean[0] - bound) <= 0 || guard.worse(worst);
+    this->Problem.store();
+    return true;
+  }
+
+  void keep() override
+  {
+    std::copy_n(this->Problem.simplices().coordinates(), this->size(), this->Best.begin());
+    std::swap(this->AtBest, this->Now);
+  }
+  void goBack() override
+  {
+    std::copy(this->Best.begin(), this->Best.end(), this->Problem.simplices().coordinates());
+    this->Problem.store();
+  }
+
+private:
+  std::size_t size() const
+  {
+    return VertexStride * static_cast<std::size_t>(this->Problem.simplices().freeVertices());
+  }
+
+  /// The p-mean of the metric that judges. Kept from round to round.
+  const ObjectiveSum* meanOf(double power)
+  {
+    if (!this->Mean || this->Power != power)
+    {
+      Objective mean = this->Judged;
+      mean.objectiveTemplate = ObjectiveTemplate::PowerMean;
+      mean.power = this->Power = power;
+      this->Mean = std::make_unique<ObjectiveSum>(
+        this->Problem.moving(), mean, this->Problem.options().threads);
+    }
+    return this->Mean.get();
+  }
+
+  OptimizationProblem& Problem;
+  Objective Judged;
+  bool Fast, OfSimplices = false;
+  std::unique_ptr<ObjectiveSum> Mean;
+  double Power = 0;
+  std::vector<double> Best;
+  OptimizationProblem::Measured AtBest, Now; ///< by the metric that judges, not of simplices
+};
+}
+
+//------------------------------------------------------------------------------
+Objective judgedAs(Objective objective, Metric metric, int threads)
+{
+  if (metric != objective.metric)
+  {
+    objective.metric = metric;
+    objective.evaluation = EvaluationOptions();
+    objective.evaluation.threads = threads;
+  }
+  return objective;
+}
+
+LocalOptions worstOptions(const OptimizationProblem& problem)
+{
+  LocalOptions options = problem.localOptions();
+  options.newton = true;
+  options.relaxation = 1.0;
+  return options;
+}
+
+Scalarizer worstScalarizer(
+  const std::vector<double>& first, double pull, const std::vector<double>& now)
+{
+  ScalarizationOptions options;
+  options.method = Scalarization::WeightedSum;
+  std::vector<double> weights = { 1.0 };
+  if (!first.empty())
+  {
+    weights = { 1.0 / std::abs(first[0]), pull / std::abs(first[1]) };
+  }
+  return Scalarizer(options, weights, now);
+}
+
+//------------------------------------------------------------------------------
+bool improveWorst(WorstSteps& steps, Metric judged, Metric ofMean,
+  const std::function<bool(double)>& isWorse, const WorstLimits& limits,
+  const std::function<bool(const IterationRecord&)>& report)
+{
+  const auto isLarger = [](Metric metric)
+  { return metricInfo(metric).direction == Direction::LargerIsBetter; };
+  const bool larger = isLarger(judged);
+  const IterationRecord start = steps.record();
+  double worst = steps.worst();
+  if (!std::isfinite(worst) || metricInfo(judged).direction == Direction::Neutral)
+  {
+    return false;
+  }
+  const auto better = [=](double a, double b) { return larger ? a > b : a < b; };
+  const double sign = isLarger(ofMean) ? -1 : 1;
+  const double mean = limits.mean.value_or(start.mean[0]);
+  const double bound = mean + sign * limits.allowance * std::abs(mean);
+
+  const double* power = std::begin(powers);
+  double pull = 1.0;
+  bool lowered = false; // the pull, once, because its cost was too high
+  for (int round = 0; round < maxRounds && !steps.outOfTime(); ++round)
+  {
+    if (!steps.sweep(worst, *power, pull))
+    {
+      return false;
+    }
+    IterationRecord now = steps.record();
+    const double reached = steps.reached();
+    const bool affordable = sign * (now.mean[0] - bound) <= 0 || isWorse(worst);
     const bool kept = better(reached, worst) && affordable && now.inverted <= start.inverted;
     const double gain = kept ? std::abs(worst - reached) / std::abs(worst) : 0.0;
     if (kept)
     {
       worst = reached;
-      std::copy_n(simplices.coordinates(), size, best.begin());
-      if (!report(now) || (limits.onlyAsInput && !guard.worse(worst)))
+      steps.keep();
+      if (!report(now) || (limits.onlyAsInput && !isWorse(worst)))
       {
         return false;
       }
     }
     else
     {
-      std::copy(best.begin(), best.end(), simplices.coordinates());
-      problem.store();
+      steps.goBack();
     }
     if (!affordable && !lowered && pull > 1)
     {
@@ -187,9 +280,9 @@ bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
     else if (gain < worthwhile)
     {
       pull *= stronger;
-      if (objectives.fast() || !affordable || lowered || pull > strongest)
+      if (steps.isFast() || !affordable || lowered || pull > strongest)
       {
-        if (objectives.fast() || ++power == std::end(powers))
+        if (steps.isFast() || ++power == std::end(powers))
         {
           return false;
         }
@@ -198,6 +291,16 @@ bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
       }
     }
   }
-  return problem.outOfTime();
+  return steps.outOfTime();
+}
+
+bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
+  const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report)
+{
+  problem.shareTolerance(1.0);
+  StepsOfWorst steps(problem);
+  return improveWorst(
+    steps, steps.judged().metric, problem.options().objectives[0].metric,
+    [&guard](double worst) { return guard.worse(worst); }, limits, report);
 }
 }

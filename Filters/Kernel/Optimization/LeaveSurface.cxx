@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LeaveSurface.h"
 
+#include "tautline/Quality/JudgedValues.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +28,7 @@ std::vector<char> worstElements(const OptimizationProblem& problem, const Object
   std::vector<signed char> validity(view.numberOfCells);
   mesh.classifyCells(validity.data(), problem.options().threads);
   std::vector<double> q(view.numberOfCells);
-  evaluateMetric(mesh, judged.metric, judged.evaluation, q.data());
+  evaluateJudged(mesh, judged.metric, judged.evaluation, q.data());
   const bool larger = metricInfo(judged.metric).direction == Direction::LargerIsBetter;
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
   std::vector<char> candidates(view.numberOfCells, 0);

@@ -12,7 +12,7 @@
 
 namespace tautline
 {
-/// One of the objectives in the form the sweeps use: power, size or metric, whichever is set.
+/// One of the objectives in the form the sweeps use: whichever is set.
 struct LocalTerm
 {
   /// The power (1 or 2) of an inverse mean ratio; 0: see metric.
@@ -22,7 +22,16 @@ struct LocalTerm
   double worst = 0;
   /// The size to the power of 2, times this; 0: see metric.
   double sizeSquared = 0;
+  /// Above 0: a user's metric that depends on |T|^2 and det T alone, with T that of the simplices
+  /// times this; also sets metric. See InvariantFunction.
+  double invariantScale = 0;
   const ObjectiveSum* metric = nullptr;
+
+  /// Whether the simplices suffice to evaluate it.
+  bool ofSimplices() const
+  {
+    return this->shapePower > 0 || this->sizeSquared > 0 || this->invariantScale > 0;
+  }
 };
 
 /// Points farther from their start than this times their limit are at the limit: rounding.
@@ -43,10 +52,11 @@ struct LocalOptions
   std::vector<double> limits, start;
   /// Per vertex, or empty: what it slides on, or null.
   std::vector<const SurfaceProjection*> surfaces;
-  /// Per vertex, or empty: whether it is on the surface, with no more to hold it than surfaceLimit.
+  /// Per vertex, or empty: whether it is on the surface, with no more to hold it than
+  /// surfaceLimits.
   std::vector<unsigned char> loose;
-  /// How far these steps may take the surface; or null.
-  SurfaceLimit* surfaceLimit = nullptr;
+  /// How far these steps may take the surface and the interfaces; all have to allow a step.
+  std::vector<SurfaceLimit*> surfaceLimits;
   /// Per simplex, or empty; of the fast terms. Needs SimplexMesh::indexPatches().
   std::vector<double> weights;
 };

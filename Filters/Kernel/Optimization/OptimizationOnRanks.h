@@ -9,6 +9,7 @@
 #include "AutomaticMethod.h"
 #include "OptimizationProblem.h"
 #include "Optimize.h"
+#include "RankGuard.h"
 #include "tautline/Mesh/DistributedMesh.h"
 #include "tautline/Objectives/RankRows.h"
 
@@ -19,17 +20,6 @@
 namespace tautline
 {
 constexpr double infinity = std::numeric_limits<double>::infinity();
-
-/// The local part with other points.
-inline Mesh movedMesh(
-  const DistributedMesh& mesh, bool mirrored, const std::vector<double>& points, int threads)
-{
-  MeshView view = mesh.view();
-  view.points = points.data();
-  Mesh moved(view, threads);
-  moved.setMirrored(mirrored);
-  return moved;
-}
 
 /**
  * @class tautline::OptimizationOnRanks
@@ -60,9 +50,8 @@ private:
     return this->Group.any(this->Problem && this->Problem->someAtLimit());
   }
   bool findHarmonicPoints(std::vector<double>& points) override;
+  void shiftPoints(double part, std::vector<double>& points) override;
   IterationRecord record(int iteration) override;
-  void addObjective(
-    std::size_t i, const std::vector<signed char>& validity, IterationRecord& record);
   bool report(const IterationRecord& record);
   bool outOfTime() const override
   {
@@ -72,10 +61,11 @@ private:
   const std::vector<double>& stored() const override { return this->Points; }
   void store() override;
   void restart(const std::vector<double>& points) override;
+  // The guards: RankGuards.cxx.
+  class StepsOfWorst;
+  void settleWorst();
   Index restoreWorst();
   void keepInput(const IterationRecord& first);
-  double judge(const std::vector<double>& points, std::vector<double>& values,
-    std::vector<signed char>& validity) const;
 
   DistributedMesh& TheMesh;
   RankGroup& Group;
@@ -93,10 +83,7 @@ private:
   std::unique_ptr<Scalarizer> TheScalarizer;
   StoppingTest Watch;
   OptimizeResult Result;
-  // The worst element of the input.
-  Objective Judged;
-  bool HoldsWorst = false, ValidInput = false;
-  double Worst = 0;
+  std::unique_ptr<RankGuard> Guard; ///< of the worst element of the input
 };
 }
 #endif

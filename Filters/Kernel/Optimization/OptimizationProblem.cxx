@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OptimizationProblem.h"
 
+#include "tautline/Mesh/MeshElements.h"
+#include "tautline/Quality/UserMetric.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,17 +12,22 @@ namespace tautline
 {
 namespace
 {
-/// How much of the surface tolerance the other elements may use before the worst one is improved:
-/// points at the limit are in its way.
-constexpr double beforeWorst = 0.3;
-/// How much of the surface tolerance is used at the places where distances are measured: places in
-/// between may be farther, most of all at points that leave the surface.
-constexpr double marginOfSliding = 0.85, marginOfLeaving = 0.7;
-
-/// Cells of the mesh's own dimension: those that are optimized.
-bool isElement(const Mesh& mesh, CellType type)
+/// Whether the terms of a template are functions of single elements.
+bool addsUp(ObjectiveTemplate form)
 {
-  return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
+  return form != ObjectiveTemplate::PowerMean && form != ObjectiveTemplate::Maximum;
+}
+
+/// Whether a metric is one of a user's that depends on |T|^2 and det T alone.
+bool isOfInvariants(const MetricInfo& info, CellType type)
+{
+  if (!info.user || info.user->argument() != MetricArgument::Jacobian)
+  {
+    return false;
+  }
+  const double ideal[2] = { static_cast<double>(topology(type).dimension), 1.0 };
+  double value = 0, derivatives[5];
+  return info.user->evaluateInvariants(type, 1, 1, ideal, &value, derivatives);
 }
 }
 
@@ -64,7 +72,7 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
     // Simplices carry the objective's targets, or the ideal ones.
     const LocalTerm& term = this->Terms.back();
     this->AllFast = this->AllFast && (term.shapePower > 0 || term.sizeSquared > 0);
-    if (objective.evaluation.targets != targets && term.shapePower > 0)
+    if (objective.evaluation.targets != targets && (term.shapePower > 0 || term.invariantScale > 0))
     {
       this->Terms.back() = LocalTerm();
       this->AllFast = false;
@@ -92,76 +100,12 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
 }
 
 //------------------------------------------------------------------------------
-void OptimizationProblem::makeSurface()
-{
-  const OptimizeOptions& options = this->Options;
-  if (options.model)
-  {
-    for (const SurfacePart& part : options.model->parts)
-    {
-      this->Parts.emplace_back(part, this->Simplices.get());
-    }
-  }
-  const bool slides = this->TheMesh.dimension() == Dimension::Surface
-    ? options.surface.project
-    : options.slideSurface != nullptr;
-  if (options.model && options.onGeometry)
-  {
-    this->Surface = std::make_unique<SurfaceProjection>(
-      SurfaceProjection::ofFacets(*options.model, this->Simplices.get()));
-  }
-  else if (options.model || slides)
-  {
-    this->Surface = std::make_unique<SurfaceProjection>(this->TheMesh, *this->Simplices);
-  }
-  if (this->Surface && options.surfaceTolerance > 0)
-  {
-    const double margin = options.leaving ? marginOfLeaving : marginOfSliding;
-    this->Limit = std::make_unique<SurfaceLimit>(this->TheMesh, *this->Simplices, *this->Surface,
-      margin * options.surfaceTolerance / this->Simplices->scale(), !options.onGeometry);
-    this->shareTolerance(options.improveWorst > 0 ? beforeWorst : 1.0);
-  }
-}
-
-//------------------------------------------------------------------------------
-double OptimizationProblem::surfaceError() const
-{
-  if (!this->Surface)
-  {
-    return 0.0;
-  }
-  const int threads = this->Options.threads;
-  const int divisions = this->Limit ? SurfaceLimit::divisions : 2;
-  const SurfaceProjection now(*this->Moving, *this->Simplices);
-  const double there = now.distanceTo(*this->Surface, threads, divisions);
-  // A mesh may be of a part of a geometry.
-  const double back =
-    this->Options.onGeometry ? 0.0 : this->Surface->distanceTo(now, threads, divisions);
-  return this->Simplices->scale() * std::max(there, back);
-}
-
-//------------------------------------------------------------------------------
-void OptimizationProblem::shareTolerance(double share)
-{
-  if (this->Limit)
-  {
-    this->Limit->setShare(share);
-  }
-}
-
-//------------------------------------------------------------------------------
-Index OptimizationProblem::heldOnSurface() const
-{
-  return this->Limit ? this->Limit->held() : 0;
-}
-
-//------------------------------------------------------------------------------
 std::vector<unsigned char> OptimizationProblem::closedForms() const
 {
   std::vector<unsigned char> flags;
   for (const LocalTerm& term : this->Terms)
   {
-    flags.push_back(term.shapePower > 0 || term.sizeSquared > 0);
+    flags.push_back(term.ofSimplices());
   }
   return flags;
 }
@@ -218,6 +162,14 @@ LocalTerm OptimizationProblem::fastTerm(const Objective& objective) const
     const double size = t.sizePerDeterminant / this->Simplices->target(0).det *
       std::pow(this->Simplices->scale(), t.dimension);
     term.sizeSquared = size * size;
+  }
+  else if (!this->Options.allowInversion && addsUp(objectiveTemplate) &&
+    isOfInvariants(metricInfo(objective.metric), this->Moving->blocks()[0].type))
+  {
+    const bool ideal = !objective.evaluation.targets && this->Simplices->uniform();
+    term.invariantScale = metricInfo(objective.metric).scaleInvariant ? 1.0
+      : ideal                                                         ? this->Simplices->scale()
+                                                                      : 0.0;
   }
   return term;
 }
@@ -428,7 +380,13 @@ LocalOptions OptimizationProblem::localOptions() const
       local.loose.push_back(loose);
     }
   }
-  local.surfaceLimit = this->Limit.get();
+  for (SurfaceLimit* limit : { this->Limit.get(), this->BetweenLimit.get() })
+  {
+    if (limit)
+    {
+      local.surfaceLimits.push_back(limit);
+    }
+  }
   if (this->Options.limits)
   {
     // From the input, even where untangling has moved the points since.
@@ -554,40 +512,6 @@ bool OptimizationProblem::isSumOfSquaresOf(const Objective& judged) const
 }
 
 //------------------------------------------------------------------------------
-double OptimizationProblem::worstMovable(const Objective& judged) const
-{
-  const MeshView& view = this->Moving->view();
-  std::vector<signed char> validity(view.numberOfCells);
-  this->Moving->classifyCells(validity.data(), this->Options.threads);
-  std::vector<double> q(view.numberOfCells);
-  evaluateMetric(*this->Moving, judged.metric, judged.evaluation, q.data());
-  // Elements without a free vertex cannot improve.
-  std::vector<char> free(view.numberOfPoints, 0);
-  for (std::int32_t v = 0; v < this->Simplices->freeVertices(); ++v)
-  {
-    free[this->Simplices->point(v)] = 1;
-  }
-  const bool larger = metricInfo(judged.metric).direction == Direction::LargerIsBetter;
-  const double infinity = std::numeric_limits<double>::infinity();
-  double worst = larger ? infinity : -infinity;
-  for (const CellBlock& block : this->Moving->blocks())
-  {
-    const int nodes = topology(block.type).nodes;
-    for (Index i = 0; isElement(*this->Moving, block.type) && i < block.count; ++i)
-    {
-      const Index cell = block.cell(i);
-      const Index* node = view.connectivity + view.offsets[cell];
-      const bool movable = std::any_of(node, node + nodes, [&](Index p) { return free[p] != 0; });
-      if (movable && validity[cell] == Valid)
-      {
-        worst = larger ? std::min(worst, q[cell]) : std::max(worst, q[cell]);
-      }
-    }
-  }
-  return worst;
-}
-
-//------------------------------------------------------------------------------
 void OptimizationProblem::start(const IterationRecord& first)
 {
   std::vector<double> weights;
@@ -611,9 +535,12 @@ void OptimizationProblem::restart(const std::vector<double>& points)
 //------------------------------------------------------------------------------
 void OptimizationProblem::coordinatesChanged()
 {
-  if (this->Limit)
+  for (SurfaceLimit* limit : { this->Limit.get(), this->BetweenLimit.get() })
   {
-    this->Limit->forget();
+    if (limit)
+    {
+      limit->forget();
+    }
   }
 }
 

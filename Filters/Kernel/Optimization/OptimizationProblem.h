@@ -34,14 +34,19 @@ public:
   SimplexMesh& simplices() { return *this->Simplices; }
   /// The facets of the surface that points are kept on, or null.
   const SurfaceProjection* surface() const { return this->Surface.get(); }
-  /// The distance between it and the surface at the stored points, see OptimizeOptions.
+  /// The distance between it, or the interfaces of the model, and the surface, or the interfaces,
+  /// at the stored points, see OptimizeOptions.
   double surfaceError() const;
+  /// Whether that is within the tolerance, if there is one; a geometry may have been farther.
+  bool isWithinTolerance() const;
   /// How much of the surface tolerance steps may use from now on, 0 to 1.
   void shareTolerance(double share);
   /// Lets points, one flag each, leave what they slide on; only the surface tolerance holds them.
   void loosen(std::vector<unsigned char> points) { this->Loose = std::move(points); }
-  /// Points that the surface tolerance holds: their last steps were refused.
+  /// Points that the surface tolerance holds: their last steps were refused, at the surface or, if
+  /// not there, at the interfaces.
   Index heldOnSurface() const;
+  Index heldOnInterfaces() const;
   std::size_t objectives() const { return this->Resolved.size(); }
   /// The objectives with their templates, and weights of 0 for the cells that are left out.
   const std::vector<Objective>& resolved() const { return this->Resolved; }
@@ -85,12 +90,23 @@ public:
   IterationRecord firstRecord(int iteration);
   /// Whether the objective is the sum of the squares of the values that a metric has.
   bool isSumOfSquaresOf(const Objective& judged) const;
+  /// The values of a metric on all cells at the stored points, and which of them are valid.
+  struct Measured
+  {
+    std::vector<double> values;
+    std::vector<signed char> validity;
+  };
+  Measured measure(const Objective& judged) const;
   /// The worst value of a metric among the valid elements with a free vertex.
-  double worstMovable(const Objective& judged) const;
+  double worstMovable(const Objective& judged, const Measured& measured) const;
   /// That of the inverse mean ratio, of simplices alone: where the coordinates are, stored or not.
   double worstRatioMovable() const;
   /// One flag per free vertex: it has a simplex whose inverse mean ratio exceeds a bound.
   std::vector<unsigned char> verticesAbove(double ratio) const;
+  /// The same: it has an element with a share in the p-mean of a metric, beside that of the worst
+  /// value. @param power p of the mean
+  std::vector<unsigned char> verticesNear(
+    const Objective& judged, const Measured& measured, double worst, double power) const;
   /// Prepares the scalarization with the objectives of the start.
   void start(const IterationRecord& first);
   /// Whether the time limit is reached.
@@ -108,6 +124,10 @@ public:
 
 private:
   void makeSurface();
+  void makeInterfaces();
+  double distanceOf(const SurfaceProjection& now, const SurfaceProjection& before) const;
+  double errorOfBoundary() const;
+  double errorOfInterfaces() const;
   LocalTerm fastTerm(const Objective& objective) const;
   void leaveOut(std::vector<signed char> validity);
   bool hasSimplexTotals() const;
@@ -121,9 +141,10 @@ private:
   std::unique_ptr<Mesh> Moving;
   std::unique_ptr<SimplexMesh> Simplices;
   std::unique_ptr<SurfaceProjection> Surface;
-  std::unique_ptr<SurfaceLimit> Limit;  ///< of steps on it
-  std::vector<SurfaceProjection> Parts; ///< of the model
-  std::vector<unsigned char> Loose;     ///< per point, or empty
+  std::unique_ptr<SurfaceProjection> Interfaces;     ///< of the model, as they were; or null
+  std::unique_ptr<SurfaceLimit> Limit, BetweenLimit; ///< of steps on these two
+  std::vector<SurfaceProjection> Parts;              ///< of the model
+  std::vector<unsigned char> Loose;                  ///< per point, or empty
   std::vector<Objective> Resolved;
   std::vector<LocalTerm> Terms; ///< of each objective; with the metric's sum only once it was used
   bool AllFast = false;

@@ -4,6 +4,7 @@
 #include "AutomaticMethod.h"
 #include "GlobalFunction.h"
 #include "HarmonicStart.h"
+#include "HoldingSweeps.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Mesh/BoundaryPoints.h"
@@ -13,6 +14,8 @@
 #include "Minimize.h"
 #include "OptionChecks.h"
 #include "QualityGuard.h"
+#include "tautline/Quality/JudgedValues.h"
+#include "SurfaceSlides.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include <algorithm>
@@ -29,7 +32,7 @@ namespace
 bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result,
   const IterationRecord& record)
 {
-  result.history.push_back(record);
+  result.history.push_back(presentable(problem.scalarizer(), record));
   const auto& observer = problem.options().observer;
   if (!observer)
   {
@@ -279,6 +282,16 @@ public:
     points = this->inMemory([&] { return harmonicPoints(this->Problem, points); });
     return !points.empty();
   }
+  void shiftPoints(double part, std::vector<double>& points) override
+  {
+    const SimplexMesh& simplices = this->Problem.simplices();
+    std::vector<unsigned char> free(points.size() / 3, 0);
+    for (std::int32_t v = 0; v < simplices.freeVertices(); ++v)
+    {
+      free[simplices.point(v)] = 1;
+    }
+    shiftFreePoints(this->Problem.moving(), free, nullptr, part, points);
+  }
   IterationRecord record(int iteration) override { return this->Problem.record(iteration); }
 
 private:
@@ -396,23 +409,10 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
   return state;
 }
 
-double sumOfSquares(const std::vector<double>& values, int threads)
-{
-  std::vector<double> ofChunk(numberOfChunks(static_cast<Index>(values.size())));
-  forEachChunk(static_cast<Index>(values.size()), threads,
-    [&](Index chunk, Index begin, Index end)
-    {
-      for (Index i = begin; i < end; ++i)
-      {
-        ofChunk[chunk] += values[i] * values[i];
-      }
-    });
-  return std::accumulate(ofChunk.begin(), ofChunk.end(), 0.0);
-}
-
 /**
  * @brief Goes back to the input if the result, computed anew from its points, has an invalid
- * element, a worse worst element or a larger objective.
+ * element, a worse worst element or a larger objective, or if points that were put back have taken
+ * the surface farther than the tolerance.
  * @param state of the elements at the stored points, which become those of the result
  */
 void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecord& first,
@@ -434,7 +434,9 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
     problem.restart(std::vector<double>(result.points));
     larger = isLargerThere(problem.record(0));
   }
-  if (larger || state.violated)
+  // Points put back are between others that have moved on.
+  const bool far = result.restored > 0 && !problem.isWithinTolerance();
+  if (larger || state.violated || far)
   {
     const double* start = mesh.view().points;
     problem.restart(std::vector<double>(start, start + result.points.size()));
@@ -447,24 +449,44 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
     }
     result.unchanged = true;
     result.restored = result.leftSurface = 0;
-    state.validity = validityOf(problem.moving(), problem.options().threads);
+    problem.moving().classifyCells(state.validity.data(), problem.options().threads);
     state.values = guard.values();
   }
 }
 
-/// Whether Newton's method keeps what holds the points of a surface in space.
-bool keepsSurface(const OptimizationProblem& problem)
+/**
+ * @brief After verify() has gone back to the input: where the objective had been reduced by more
+ * than the criterion of convergence, sweeps from the input on, each of which keeps the worst
+ * element. Points that slide cannot go far back one by one: those between them would be squeezed.
+ * Otherwise the input has converged, and the reason is the one it `ended` for.
+ */
+void holdWorst(const Mesh& mesh, OptimizationProblem& problem, const IterationRecord& first,
+  const QualityGuard& guard, const StoppingTest& watch, StopReason ended,
+  QualityGuard::State& state, OptimizeResult& result)
 {
-  const OptimizeOptions& options = problem.options();
-  // Without its features, steps would lead across sharp edges.
-  if (!problem.surface() || !options.model || options.limits || options.surfaceTolerance > 0 ||
-    options.slidePlanes || options.slideLines || problem.moving().nonFinitePoints() > 0)
+  if (ended == StopReason::Aborted || ended == StopReason::TimeLimit)
   {
-    return false;
+    return;
   }
-  const std::vector<const SurfaceProjection*> surfaces = problem.localOptions().surfaces;
-  return std::all_of(surfaces.begin(), surfaces.end(),
-    [](const SurfaceProjection* surface) { return surface && !surface->empty(); });
+  double least = first.objective;
+  for (const IterationRecord& record : result.history)
+  {
+    least = record.iteration > first.iteration ? std::min(least, record.objective) : least;
+  }
+  const double size = std::abs(first.objective);
+  if (first.objective - least <= problem.options().stopping.relativeChange * size)
+  {
+    result.reason = ended;
+    return;
+  }
+  result.unchanged = false;
+  result.reason = sweepHoldingWorst(
+    problem, guard, watch,
+    [&](const IterationRecord& record) { return report(problem, watch, result, record); },
+    result.history);
+  state = guard.check(problem);
+  verify(mesh, problem, first, guard, state, result);
+  result.unchanged = std::equal(result.points.begin(), result.points.end(), mesh.view().points);
 }
 
 /// Optimizes from result.points on; returns whether there is more to do, with elements that have
@@ -477,6 +499,10 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   const StoppingTest watch(options, [&problem] { return problem.outOfTime(); });
   const bool again = !result.history.empty();
   IterationRecord first = problem.firstRecord(again ? result.history.back().iteration : 0);
+  if (!again)
+  {
+    requireValues(options.objectives, first.objectives);
+  }
   problem.start(first);
   first.objective =
     problem.objectives() > 1 ? problem.scalarizer().value(first.objectives) : first.objectives[0];
@@ -511,7 +537,12 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   else
   {
     state = settleWorst(mesh, problem, watch, first, guard, clock, result);
+    const StopReason ended = result.reason;
     verify(mesh, problem, first, guard, state, result);
+    if (result.unchanged && steps.slidesOnSurface())
+    {
+      holdWorst(mesh, problem, first, guard, watch, ended, state, result);
+    }
   }
   result.iterations = result.history.back().iteration;
   result.invertedAfter = countInvalid(state.validity);
@@ -519,6 +550,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   result.elements.after = std::move(state.values);
   result.surfaceError = problem.surfaceError();
   result.heldOnSurface = problem.heldOnSurface();
+  result.heldOnInterfaces = problem.heldOnInterfaces();
   return repaired;
 }
 
@@ -572,7 +604,7 @@ void OptimizeResult::keepStart(std::vector<double> start, Index inverted)
   this->elements = {};
   this->invertedAfter = inverted;
   this->unchanged = true;
-  this->restored = this->leftSurface = this->heldOnSurface = 0;
+  this->restored = this->leftSurface = this->heldOnSurface = this->heldOnInterfaces = 0;
   this->surfaceError = 0;
   if (!this->history.empty())
   {
@@ -614,8 +646,7 @@ OptimizeResult optimize(
     {
       throw Error(std::to_string(result.invertedBefore) +
         " elements are inverted or degenerate, and no objective repairs them: untangle first, or "
-        "add the "
-        "untangling metric.");
+        "add the untangling metric.");
     }
     if (!untangleFirst(mesh, options, clock, result))
     {
@@ -650,6 +681,8 @@ OptimizeResult optimize(
   {
     result.elements.after.clear();
   }
+  asMeasured(result.elements.before);
+  asMeasured(result.elements.after);
   return result;
 }
 }

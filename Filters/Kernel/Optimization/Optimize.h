@@ -36,12 +36,14 @@ struct OptimizeResult
   Index invertedBefore = 0, invertedAfter = 0;
   /// Elements that were valid in the input and that untangling, which came first, has made invalid.
   Index newlyInvalid = 0;
-  /// Largest distance between the output's surface (of a surface mesh, or of points that slide) and
-  /// the input's, from either to the other, or from it to the geometry; else 0.
+  /// Largest distance between the output's surface (of a surface mesh, or of points that slide) or
+  /// interfaces and the input's, from either to the other, or from the surface to the geometry;
+  /// else 0.
   double surfaceError = 0;
-  Index heldOnSurface = 0; ///< points whose last steps surfaceTolerance refused
-  Index leftSurface = 0;   ///< points of OptimizeOptions::leaving that left it
-  bool untangled = false;  ///< untangle() was run first
+  /// Points whose last steps surfaceTolerance refused: on the surface, and others on interfaces.
+  Index heldOnSurface = 0, heldOnInterfaces = 0;
+  Index leftSurface = 0;  ///< points of OptimizeOptions::leaving that left it
+  bool untangled = false; ///< untangle() was run first
   /// Points that went back to their place in the input, because an element there would otherwise be
   /// worse than the worst one of the input.
   Index restored = 0;

@@ -19,22 +19,6 @@ namespace tautline
 {
 namespace
 {
-/// What an element of value q adds to an objective.
-double termOf(const Objective& objective, double q)
-{
-  switch (objective.objectiveTemplate)
-  {
-    case ObjectiveTemplate::SumOfSquares:
-      return q * q;
-    case ObjectiveTemplate::SumOfSquaredReciprocals:
-      return 1.0 / (q * q);
-    case ObjectiveTemplate::SumOfReciprocals:
-      return 1.0 / q;
-    default:
-      return metricInfo(objective.metric).direction == Direction::LargerIsBetter ? -q : q;
-  }
-}
-
 /// The bounds of points and the scale of edges of the whole mesh.
 SimplexFrame frameOf(const DistributedMesh& mesh, const std::vector<double>& points)
 {
@@ -240,58 +224,6 @@ void OptimizationOnRanks::checkWeights(const std::vector<unsigned char>& closed)
 }
 
 //------------------------------------------------------------------------------
-void OptimizationOnRanks::addObjective(
-  std::size_t i, const std::vector<signed char>& validity, IterationRecord& record)
-{
-  std::vector<double> terms, values;
-  double worst = -infinity;
-  const MetricInfo& info = metricInfo(this->Options.objectives[i].metric);
-  const bool larger = info.direction == Direction::LargerIsBetter;
-  this->Group.together(
-    [&]
-    {
-      if (!this->Problem)
-      {
-        return;
-      }
-      const Objective& objective = this->Resolved[i];
-      const Mesh& mesh = this->Problem->moving();
-      std::vector<double> q(mesh.view().numberOfCells);
-      evaluateMetric(mesh, objective.metric, objective.evaluation, q.data());
-      for (const CellBlock& block : mesh.blocks())
-      {
-        for (Index k = 0; info.definedOn(block.type) && k < block.count; ++k)
-        {
-          const Index cell = block.cell(k);
-          const double weight = objective.elementWeights ? objective.elementWeights[cell] : 1.0;
-          if (!this->TheMesh.ownedCells()[cell])
-          {
-            continue;
-          }
-          const bool fault = info.barrier && validity[cell] != Valid && weight > 0 &&
-            cornerValidity(mesh, cell) != Valid;
-          if (weight > 0)
-          {
-            terms.push_back(fault ? infinity : weight * termOf(objective, q[cell]));
-          }
-          if (validity[cell] == Valid)
-          {
-            values.push_back(q[cell]);
-            worst = std::max(worst, larger ? -q[cell] : q[cell]);
-          }
-        }
-      }
-    });
-  const double sum = this->Group.orderlessSum(terms);
-  record.objectives.push_back(std::isnan(sum) ? infinity : sum);
-  const Index count = this->Group.sum(static_cast<Index>(values.size()));
-  const double total = this->Group.orderlessSum(values);
-  worst = this->Group.maximum(worst);
-  record.mean.push_back(count > 0 ? total / static_cast<double>(count) : 0.0);
-  record.worst.push_back(count == 0 ? 0.0 : larger ? -worst : worst);
-}
-
-//------------------------------------------------------------------------------
 IterationRecord OptimizationOnRanks::record(int iteration)
 {
   IterationRecord record;
@@ -314,7 +246,9 @@ IterationRecord OptimizationOnRanks::record(int iteration)
   record.inverted = this->Group.sum(invalid);
   for (std::size_t i = 0; i < this->Options.objectives.size(); ++i)
   {
-    this->addObjective(i, validity, record);
+    addObjectiveOnRanks(this->TheMesh,
+      this->Problem ? this->Resolved[i] : this->Options.objectives[i],
+      this->Problem ? &this->Problem->moving() : nullptr, validity, record);
   }
   record.objective = this->TheScalarizer && record.objectives.size() > 1
     ? this->TheScalarizer->value(record.objectives)
@@ -327,14 +261,15 @@ IterationRecord OptimizationOnRanks::record(int iteration)
 /// Adds a record to the history and calls the observers; false if one stops the run.
 bool OptimizationOnRanks::report(const IterationRecord& record)
 {
-  this->Result.history.push_back(record);
+  this->Result.history.push_back(presentable(*this->TheScalarizer, record));
   bool proceed = true;
   const auto points = [&](double* to) { std::copy(this->Points.begin(), this->Points.end(), to); };
   this->Group.together(
     [&]
     {
       proceed = !this->Options.observer ||
-        this->Options.observer({ record, this->Watch.progress(record), points });
+        this->Options.observer(
+          { this->Result.history.back(), this->Watch.progress(record), points });
     });
   return !this->Group.any(!proceed);
 }
@@ -450,6 +385,10 @@ bool OptimizationOnRanks::stage()
   const bool again = !this->Result.history.empty();
   this->TheScalarizer.reset();
   IterationRecord first = this->record(again ? this->Result.history.back().iteration : 0);
+  if (!again)
+  {
+    requireValues(this->Options.objectives, first.objectives);
+  }
   std::vector<double> weights;
   for (const Objective& objective : this->Options.objectives)
   {
@@ -478,11 +417,7 @@ bool OptimizationOnRanks::stage()
     movePoints(*this, this->Options, false, first, this->Result.history, this->Result.reason);
   if (!repaired)
   {
-    this->Result.restored = this->restoreWorst();
-    if (this->Result.restored > 0)
-    {
-      this->report(this->record(this->Result.history.back().iteration + 1));
-    }
+    this->settleWorst();
     this->keepInput(first);
   }
   return repaired;
@@ -533,20 +468,8 @@ OptimizeResult OptimizationOnRanks::run()
   const int threads = this->Options.threads;
   this->Result.invertedBefore =
     countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
-  this->Judged = this->Options.objectives[0];
-  const Metric metric = this->Options.worstMetric.value_or(this->Judged.metric);
-  if (metric != this->Judged.metric)
-  {
-    this->Judged = Objective();
-    this->Judged.metric = metric;
-  }
-  this->Judged.evaluation.threads = threads;
-  std::vector<double> values;
-  std::vector<signed char> validity;
-  this->Worst = this->judge(this->Points, values, validity);
-  this->ValidInput = !this->Options.allowInversion && this->Result.invertedBefore == 0;
-  this->HoldsWorst = this->Options.holdWorst && std::isfinite(this->Worst) &&
-    metricInfo(metric).direction != Direction::Neutral;
+  this->Guard = std::make_unique<RankGuard>(
+    this->TheMesh, this->Mirrored, this->Options, this->Result.invertedBefore == 0);
   this->untangle();
   const Index invalid = countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
   const std::vector<double> start = this->Points;

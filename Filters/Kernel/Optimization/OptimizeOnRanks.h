@@ -49,8 +49,9 @@ TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
  *
  * Elements that are invalid and that no objective repairs are untangled first (untangleOnRanks());
  * those that stay invalid are left out. Unless allowInversion, the result of the whole mesh is
- * never worse than the input, as that of optimize(); where the worst element would be, points about
- * it go back to the input, without the attempt of optimize() to improve it.
+ * never worse than the input, as that of optimize(); where the worst element would be, it is
+ * improved by the rules of optimize(), and where that does not do, points about it go back to the
+ * input.
  * @param mesh planar meshes at right angles to an axis, and volume meshes; all cells of one
  * dimension. Its points are where the optimization starts; not changed.
  * @param mirrored the mesh is reversed throughout, see Mesh::setMirrored(); the same on all ranks

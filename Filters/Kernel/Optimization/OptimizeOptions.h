@@ -133,7 +133,7 @@ struct OptimizeOptions
    * @brief The largest distance that steps may leave between a surface whose points slide (of a
    * volume or planar mesh, the boundary) and the surface as it was, at points of either; 0: any.
    * With onGeometry, from the surface to the model. What is farther at the start does not go
-   * farther.
+   * farther. The same between the interfaces of the model and where they were, not with onGeometry.
    */
   double surfaceTolerance = 0.0;
   /**

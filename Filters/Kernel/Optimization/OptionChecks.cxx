@@ -192,4 +192,20 @@ void requireWithinLimits(Index beyond)
       "Mesh before, from whose result the limits then count.");
   }
 }
+
+//------------------------------------------------------------------------------
+void requireValues(const std::vector<Objective>& objectives, const std::vector<double>& values)
+{
+  for (std::size_t i = 0; i < objectives.size(); ++i)
+  {
+    const MetricInfo& info = metricInfo(objectives[i].metric);
+    if (info.user && !std::isfinite(values[i]))
+    {
+      throw Error("The metric \"" + std::string(info.label) +
+        "\" has no finite value on some element, or the sum of its values is too large. Its "
+        "formula must have a value on every valid element: Element Quality shows 0 where it has "
+        "none.");
+    }
+  }
+}
 }

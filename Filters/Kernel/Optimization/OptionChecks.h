@@ -32,5 +32,9 @@ Index beyondLimits(const OptimizeOptions& options, const double* start,
 
 /// Throws Error if untangling has moved so many points farther than their limits.
 void requireWithinLimits(Index beyond);
+
+/// Throws Error if a user's metric has no finite value on an element, so that any step would do.
+/// @param values of the objectives at the start
+void requireValues(const std::vector<Objective>& objectives, const std::vector<double>& values);
 }
 #endif

@@ -182,6 +182,7 @@ private:
     const bool mirrored =
       context.mesh->mirrored() && context.mesh->dimension() == Dimension::Volume;
     batch.count = cells.batch.count;
+    batch.moving = context.user ? cells.here : nullptr;
     std::copy_n(cells.batch.cells, PacketWidth, batch.cells);
     for (int k = 0; k < context.topology->nodes; ++k)
     {
@@ -192,7 +193,7 @@ private:
       }
     }
     evaluator(context, batch);
-    batch.value = finiteOrZero(batch.value);
+    replaceNonFinite(context, batch);
     const ElementFunction& function = this->Sum.function;
     withTemplate(function.objectiveTemplate,
       [&](auto objectiveTemplate)
@@ -233,8 +234,8 @@ private:
       result.f += sumOf(value);
       for (int c = 0; c < 3; ++c)
       {
-        Packet g = {};
-        for (int k = 0; k < context.topology->nodes; ++k)
+        Packet g = batch.moving ? batch.gradient[0][c] : Packet{};
+        for (int k = 0; k < context.topology->nodes && !batch.moving; ++k)
         {
           g += select(cells.here[k] > 0.0, batch.gradient[k][c], Packet{});
         }

@@ -2,10 +2,13 @@
 #include "QualityGuard.h"
 
 #include "tautline/Core/Parallel.h"
+#include "tautline/Mesh/MeshElements.h"
+#include "tautline/Quality/JudgedValues.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace tautline
 {
@@ -13,11 +16,6 @@ namespace
 {
 /// Values of the same element differ by so much, relatively, with the order of its operations.
 constexpr double rounding = 1e-9;
-
-bool isElement(const Mesh& mesh, CellType type)
-{
-  return topology(type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
-}
 
 std::vector<signed char> validityOf(const Mesh& mesh, int threads)
 {
@@ -38,7 +36,7 @@ std::vector<Found> visitElements(const Mesh& mesh, const std::vector<signed char
 {
   const int threads = judged.evaluation.threads;
   values.resize(validity.size());
-  evaluateMetric(mesh, judged.metric, judged.evaluation, values.data());
+  evaluateJudged(mesh, judged.metric, judged.evaluation, values.data());
   std::vector<Found> all;
   for (const CellBlock& block : mesh.blocks())
   {
@@ -63,6 +61,7 @@ std::vector<Found> visitElements(const Mesh& mesh, const std::vector<signed char
 struct Extremes
 {
   bool valid = true;
+  Index undefined = std::numeric_limits<Index>::max(); ///< the first valid cell without a value
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
 };
 }
@@ -86,19 +85,40 @@ Metric worstMetric(const Mesh& mesh, const OptimizeOptions& options)
 }
 
 //------------------------------------------------------------------------------
+Objective judgedBy(Metric metric, const OptimizeOptions& options)
+{
+  Objective judged = options.objectives[0];
+  if (metric != judged.metric)
+  {
+    judged = Objective();
+    judged.metric = metric;
+  }
+  judged.evaluation.threads = options.threads;
+  return judged;
+}
+
+//------------------------------------------------------------------------------
+double sumOfSquares(const std::vector<double>& values, int threads)
+{
+  std::vector<double> ofChunk(numberOfChunks(static_cast<Index>(values.size())));
+  forEachChunk(static_cast<Index>(values.size()), threads,
+    [&](Index chunk, Index begin, Index end)
+    {
+      for (Index i = begin; i < end; ++i)
+      {
+        ofChunk[chunk] += values[i] * values[i];
+      }
+    });
+  return std::accumulate(ofChunk.begin(), ofChunk.end(), 0.0);
+}
+
+//------------------------------------------------------------------------------
 QualityGuard::QualityGuard(
   const Mesh& input, const std::vector<signed char>& validity, const OptimizeOptions& options)
   : Input(input)
-  , Judged(options.objectives[0])
+  , Judged(judgedBy(worstMetric(input, options), options))
 {
-  const Metric metric = worstMetric(input, options);
-  if (metric != this->Judged.metric)
-  {
-    this->Judged = Objective();
-    this->Judged.metric = metric;
-  }
-  this->Judged.evaluation.threads = options.threads;
-  const MetricInfo& info = metricInfo(metric);
+  const MetricInfo& info = metricInfo(this->Judged.metric);
   this->Larger = info.direction == Direction::LargerIsBetter;
   this->HoldWorst = options.holdWorst;
   if (options.allowInversion)
@@ -107,16 +127,23 @@ QualityGuard::QualityGuard(
   }
   Extremes all;
   for (const Extremes& of : visitElements<Extremes>(input, validity, this->Judged, this->Values,
-         [](Extremes&found, Index, signed char state, const double*value)
+         [](Extremes&found, Index cell, signed char state, const double*value)
          {
            found.valid = found.valid && state == Valid;
+           const bool undefined = value && state == Valid && !std::isfinite(*value);
+           found.undefined = undefined ? std::min(found.undefined, cell) : found.undefined;
            found.smallest = value ? std::min(found.smallest, *value) : found.smallest;
            found.largest = value ? std::max(found.largest, *value) : found.largest;
          }))
   {
     all.valid = all.valid && of.valid;
+    all.undefined = std::min(all.undefined, of.undefined);
     all.smallest = std::min(all.smallest, of.smallest);
     all.largest = std::max(all.largest, of.largest);
+  }
+  if (all.undefined < input.view().numberOfCells && (options.holdWorst || options.improveWorst > 0))
+  {
+    throw Error(noValueToJudge(info, "cell " + std::to_string(all.undefined)));
   }
   this->Worst = this->Larger ? all.smallest : all.largest;
   this->ValidInput = this->Active = all.valid;
@@ -177,9 +204,10 @@ QualityGuard::State QualityGuard::check(OptimizationProblem& problem) const
 }
 
 //------------------------------------------------------------------------------
-Index QualityGuard::restore(OptimizationProblem& problem) const
+Index QualityGuard::restore(OptimizationProblem& problem, const double* to) const
 {
   const MeshView& view = this->Input.view();
+  const double* places = to ? to : view.points;
   std::vector<char> restoredPoint(view.numberOfPoints, 0);
   Index restored = 0;
   problem.store();
@@ -204,7 +232,7 @@ Index QualityGuard::restore(OptimizationProblem& problem) const
           restoredPoint[p] = 1;
           more = true;
           ++restored;
-          std::copy_n(view.points + 3 * p, 3, points.data() + 3 * p);
+          std::copy_n(places + 3 * p, 3, points.data() + 3 * p);
         }
       }
     }

@@ -16,7 +16,13 @@ namespace tautline
  * not set and the worst element is to be improved, the scaled Jacobian for meshes with other cells
  * than simplices, if it is defined on all; else the metric of the first objective.
  */
-Metric worstMetric(const Mesh& mesh, const OptimizeOptions& options);
+TAUTLINE_KERNEL_EXPORT Metric worstMetric(const Mesh& mesh, const OptimizeOptions& options);
+
+/// The sum of the squares of the values, which does not depend on the number of threads.
+double sumOfSquares(const std::vector<double>& values, int threads);
+
+/// The objective whose metric judges the worst element: the first one, if it has this metric.
+Objective judgedBy(Metric metric, const OptimizeOptions& options);
 
 /**
  * @class tautline::QualityGuard
@@ -73,9 +79,10 @@ public:
   /**
    * @brief Puts points back to where they were in the input, about the elements that are invalid or
    * worse than all of the input, until there is none.
+   * @param to other places to put them back to, at which there is none: 3 numbers per point
    * @return the number of points put back
    */
-  Index restore(OptimizationProblem& problem) const;
+  Index restore(OptimizationProblem& problem, const double* to = nullptr) const;
 
 private:
   /// One flag per cell: invalid, or worse than all of the input. Empty if there is none.

@@ -37,12 +37,12 @@ struct RankSweeper::Base
 template <int Dim>
 struct RankSweeper::Implementation : RankSweeper::Base
 {
-  Implementation(OptimizationProblem& problem, int threads)
+  Implementation(OptimizationProblem& problem, const SweepTerms& sweeps, int threads)
     : Simplices(problem.simplices())
     , Threads(threads)
-    , Objectives(problem.objectives())
-    , Mover(problem.simplices(), problem.moving(), problem.points().data(), problem.localTerms(),
-        problem.localOptions())
+    , Objectives(sweeps.terms.size())
+    , Mover(problem.simplices(), problem.moving(), problem.points().data(), sweeps.terms,
+        sweeps.options)
   {
     this->Active.assign(this->Simplices.freeVertices(), 1);
     this->Next.assign(this->Simplices.freeVertices(), 0);
@@ -109,8 +109,8 @@ private:
 };
 
 //------------------------------------------------------------------------------
-RankSweeper::RankSweeper(
-  const DistributedMesh& mesh, OptimizationProblem* problem, std::vector<int> sets, int threads)
+RankSweeper::RankSweeper(const DistributedMesh& mesh, OptimizationProblem* problem,
+  std::vector<int> sets, int threads, const SweepTerms* other)
   : TheMesh(mesh)
   , Problem(problem)
   , Sets(std::move(sets))
@@ -135,13 +135,19 @@ RankSweeper::RankSweeper(
           this->Own[this->Sets[p]].push_back(v);
         }
       }
-      if (problem && problem->simplices().dimension() == 3)
+      if (!problem)
       {
-        this->Impl = std::make_unique<Implementation<3>>(*problem, threads);
+        return;
       }
-      else if (problem)
+      const SweepTerms sweeps =
+        other ? *other : SweepTerms{ problem->localTerms(), problem->localOptions() };
+      if (problem->simplices().dimension() == 3)
       {
-        this->Impl = std::make_unique<Implementation<2>>(*problem, threads);
+        this->Impl = std::make_unique<Implementation<3>>(*problem, sweeps, threads);
+      }
+      else
+      {
+        this->Impl = std::make_unique<Implementation<2>>(*problem, sweeps, threads);
       }
     });
   std::vector<unsigned char> flags(points);
@@ -164,6 +170,11 @@ void RankSweeper::wakeAll()
   {
     std::fill(this->Impl->Active.begin(), this->Impl->Active.end(), 1);
   }
+}
+
+void RankSweeper::wakeOnly(std::vector<unsigned char> active)
+{
+  this->Impl->Active = std::move(active);
 }
 
 //------------------------------------------------------------------------------
@@ -194,9 +205,13 @@ void RankSweeper::exchangeSet(int set)
       }
       const double* from = &this->Buffer[Sent * static_cast<std::size_t>(p)];
       double* at = x + VertexStride * static_cast<std::size_t>(v);
-      std::copy_n(from, 3, at);
-      this->Problem->simplices().storeVertex(
-        at, this->Problem->points().data() + 3 * static_cast<std::size_t>(p));
+      // Where a vertex stays, its owner has the point as it was, which is not stored and rounded.
+      if (!std::equal(from, from + 3, at))
+      {
+        std::copy_n(from, 3, at);
+        this->Problem->simplices().storeVertex(
+          at, this->Problem->points().data() + 3 * static_cast<std::size_t>(p));
+      }
       if (from[3] != 0)
       {
         this->Impl->wake(v);

@@ -14,6 +14,13 @@
 
 namespace tautline
 {
+/// What sweeps minimize instead of the objectives of the problem, and how.
+struct SweepTerms
+{
+  std::vector<LocalTerm> terms;
+  LocalOptions options;
+};
+
 /**
  * @class tautline::RankSweeper
  * @brief Independent sets of vertices (DistributedMesh::independentSets()) move one after the
@@ -26,15 +33,19 @@ public:
    * @param problem of the local part, with a SimplexFrame that all ranks have; null on a rank
    * without cells
    * @param sets per local point the number of its set, or -1 for a point that is fixed
+   * @param other null: the objectives of the problem
    */
-  RankSweeper(
-    const DistributedMesh& mesh, OptimizationProblem* problem, std::vector<int> sets, int threads);
+  RankSweeper(const DistributedMesh& mesh, OptimizationProblem* problem, std::vector<int> sets,
+    int threads, const SweepTerms* other = nullptr);
   ~RankSweeper();
 
   /// One sweep of the whole mesh. `values` are the objectives before it; see LocalSweeper.
   SweepResult sweep(const Scalarizer& scalarizer, const std::vector<double>& values);
   /// Lets all vertices move again, whatever was culled.
   void wakeAll();
+  /// The next sweep visits the vertices with a flag other than 0 only, one per free vertex. Not
+  /// collective, not on a rank without a problem.
+  void wakeOnly(std::vector<unsigned char> active);
 
 private:
   struct Base;

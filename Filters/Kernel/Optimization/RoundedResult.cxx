@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RoundedResult.h"
 
-#include "SweepControl.h"
-
 #include "QualityGuard.h"
-
+#include "RankGuard.h"
+#include "SweepControl.h"
 #include "tautline/Objectives/ObjectiveSum.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace tautline
 {
@@ -65,6 +65,30 @@ Values valuesOf(const Mesh& mesh, const Objective& given, int threads, std::vect
   values.objective = ofValues ? squares : ObjectiveSum(mesh, objective, threads).value();
   return values;
 }
+
+/// Scalarizes the objectives of the record, and compares them with those of the start.
+void compareObjectives(
+  const OptimizeOptions& options, const std::vector<double>& start, RoundedResult& found)
+{
+  // In the lexicographic method the first objective counts, which may rise by the tolerance.
+  const bool lexicographic = options.scalarization.method == Scalarization::Lexicographic;
+  std::vector<double> weights;
+  for (const Objective& objective : options.objectives)
+  {
+    weights.push_back(objective.weight);
+  }
+  double then = start[0];
+  found.record.objective = found.record.objectives[0];
+  if (start.size() > 1 && !lexicographic)
+  {
+    const Scalarizer scalarizer(options.scalarization, weights, start);
+    then = scalarizer.value(start);
+    found.record.objective = scalarizer.value(found.record.objectives);
+  }
+  const double rise =
+    roundingOfSums + (lexicographic && start.size() > 1 ? options.scalarization.tolerance : 0.0);
+  found.largerObjective = !(found.record.objective <= then + rise * std::abs(then));
+}
 }
 
 //------------------------------------------------------------------------------
@@ -93,7 +117,7 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
   // The first objective's metric judges as a rule.
   const Objective& first = options.objectives[0];
   const bool same = guard.judged().metric == first.metric;
-  std::vector<double> weights, start;
+  std::vector<double> start;
   for (const Objective& objective : options.objectives)
   {
     const bool known = same && &objective == &first;
@@ -104,26 +128,70 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
     found.record.objectives.push_back(values.objective);
     found.record.mean.push_back(values.mean);
     found.record.worst.push_back(values.worst);
-    weights.push_back(objective.weight);
     if (known)
     {
       found.elements.before = std::move(before);
       found.elements.after = std::move(after);
     }
   }
-  // In the lexicographic method the first objective counts, which may rise by the tolerance.
-  const bool lexicographic = options.scalarization.method == Scalarization::Lexicographic;
-  double then = start[0];
-  found.record.objective = found.record.objectives[0];
-  if (start.size() > 1 && !lexicographic)
+  compareObjectives(options, start, found);
+  return found;
+}
+
+//------------------------------------------------------------------------------
+RoundedResult measureRoundedOnRanks(const DistributedMesh& mesh, bool mirrored,
+  const OptimizeOptions& options, const OptimizeResult& result, const std::vector<double>& rounded)
+{
+  RankGroup& group = mesh.group();
+  RoundedResult found;
+  std::unique_ptr<Mesh> input, moved; // null on a rank without cells
+  std::vector<signed char> before, after;
+  std::vector<Objective> objectives;
+  group.together(
+    [&]
+    {
+      objectives = options.objectives;
+      for (Objective& objective : objectives)
+      {
+        objective.evaluation.threads = options.threads;
+        objective.objectiveTemplate = objective.objectiveTemplate == ObjectiveTemplate::Default
+          ? defaultTemplate(objective.metric)
+          : objective.objectiveTemplate;
+      }
+      if (mesh.view().numberOfCells == 0)
+      {
+        return;
+      }
+      const auto at = [&](const std::vector<double>& points)
+      { return movedMesh(mesh, mirrored, points, options.threads); };
+      input = std::make_unique<Mesh>(at(mesh.points()));
+      moved = std::make_unique<Mesh>(at(rounded));
+      before = validityOf(*input, options.threads);
+      after = validityOf(*moved, options.threads);
+      const std::vector<signed char> there = validityOf(at(result.points), options.threads);
+      for (std::size_t cell = 0; cell < after.size(); ++cell)
+      {
+        const bool owned = mesh.ownedCells()[cell] != 0;
+        found.lost += owned && there[cell] == Valid && after[cell] != Valid;
+        found.inverted += owned && isInvalid(after[cell]);
+      }
+    });
+  found.lost = group.sum(found.lost);
+  found.inverted = group.sum(found.inverted);
+  found.record.inverted = found.inverted;
+  const RankGuard guard(mesh, mirrored, options, result.invertedBefore == 0);
+  if (!guard.active() || found.lost > 0)
   {
-    const Scalarizer scalarizer(options.scalarization, weights, start);
-    then = scalarizer.value(start);
-    found.record.objective = scalarizer.value(found.record.objectives);
+    return found;
   }
-  const double rise =
-    roundingOfSums + (lexicographic && start.size() > 1 ? options.scalarization.tolerance : 0.0);
-  found.largerObjective = !(found.record.objective <= then + rise * std::abs(then));
+  found.worseWorst = guard.violatedAt(guard.measure(rounded));
+  IterationRecord start;
+  for (const Objective& objective : objectives)
+  {
+    addObjectiveOnRanks(mesh, objective, input.get(), before, start);
+    addObjectiveOnRanks(mesh, objective, moved.get(), after, found.record);
+  }
+  compareObjectives(options, start.objectives, found);
   return found;
 }
 }

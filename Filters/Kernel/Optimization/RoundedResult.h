@@ -10,6 +10,8 @@
 
 namespace tautline
 {
+class DistributedMesh;
+
 /// The mesh of a result with rounded points.
 struct RoundedResult
 {
@@ -39,5 +41,14 @@ struct RoundedResult
 TAUTLINE_KERNEL_EXPORT RoundedResult measureRounded(const Mesh& mesh,
   const std::vector<signed char>& validity, const OptimizeOptions& options, OptimizeResult& result,
   const Mesh& rounded);
+
+/**
+ * @brief The same of a mesh on several ranks, as it was given to optimizeOnRanks() with these
+ * options: the numbers are of the whole mesh, the same on all. Collective.
+ * @param rounded of the local points
+ */
+TAUTLINE_KERNEL_EXPORT RoundedResult measureRoundedOnRanks(const DistributedMesh& mesh,
+  bool mirrored, const OptimizeOptions& options, const OptimizeResult& result,
+  const std::vector<double>& rounded);
 }
 #endif

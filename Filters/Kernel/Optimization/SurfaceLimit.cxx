@@ -69,15 +69,15 @@ private:
 }
 
 //------------------------------------------------------------------------------
-SurfaceLimit::SurfaceLimit(const Mesh& mesh, const SimplexMesh& simplices,
-  const SurfaceProjection& surface, double distance, bool bothWays)
+SurfaceLimit::SurfaceLimit(const Mesh& mesh, const std::vector<SurfaceFacet>& facets,
+  const SimplexMesh& simplices, const SurfaceProjection& surface, double distance, bool bothWays)
   : Simplices(simplices)
   , Surface(surface)
   , Whole(distance)
   , Distance(this->Whole)
 {
-  this->findFacets(mesh);
-  if (bothWays)
+  this->findFacets(mesh, facets);
+  if (bothWays && !this->Facets.empty())
   {
     this->Places = surface.samples(divisions);
     this->Tree = std::make_unique<PointTree>(this->Places, leafSize);
@@ -86,7 +86,7 @@ SurfaceLimit::SurfaceLimit(const Mesh& mesh, const SimplexMesh& simplices,
 
 //------------------------------------------------------------------------------
 /// The facets that can move, and those of each free vertex.
-void SurfaceLimit::findFacets(const Mesh& mesh)
+void SurfaceLimit::findFacets(const Mesh& mesh, const std::vector<SurfaceFacet>& facets)
 {
   std::vector<std::int32_t> vertexOf(mesh.view().numberOfPoints, -1);
   for (std::int32_t v = 0; v < this->Simplices.vertices(); ++v)
@@ -97,7 +97,7 @@ void SurfaceLimit::findFacets(const Mesh& mesh)
   const auto isFree = [free](std::int32_t v) { return v >= 0 && v < free; };
   this->Refused.assign(free, 0);
   this->Starts.assign(static_cast<std::size_t>(free) + 1, 0);
-  for (const SurfaceFacet& found : surfaceFacets(mesh))
+  for (const SurfaceFacet& found : facets)
   {
     Facet facet;
     facet.vertices.fill(-1);
@@ -254,12 +254,6 @@ void SurfaceLimit::forget()
   {
     facet.left = -1;
   }
-}
-
-//------------------------------------------------------------------------------
-Index SurfaceLimit::held() const
-{
-  return std::count(this->Refused.begin(), this->Refused.end(), 1);
 }
 
 //------------------------------------------------------------------------------

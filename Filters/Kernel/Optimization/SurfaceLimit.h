@@ -35,13 +35,14 @@ public:
   static constexpr int divisions = 4;
 
   /**
+   * @param facets of the mesh
    * @param surface that the facets are kept near to; must outlive the limit
    * @param distance in the coordinates of `simplices`, above 0; places between those at which it is
    * measured may be somewhat farther
    * @param bothWays whether the surface is to stay near to the facets, too
    */
-  SurfaceLimit(const Mesh& mesh, const SimplexMesh& simplices, const SurfaceProjection& surface,
-    double distance, bool bothWays);
+  SurfaceLimit(const Mesh& mesh, const std::vector<SurfaceFacet>& facets,
+    const SimplexMesh& simplices, const SurfaceProjection& surface, double distance, bool bothWays);
 
   /**
    * @brief Whether free vertex v of the simplices may be where it is, if it was at `before`. At the
@@ -52,8 +53,8 @@ public:
   void setShare(double share);
   /// To be called where vertices have moved without allows().
   void forget();
-  /// Free vertices whose last step was refused.
-  Index held() const;
+  /// One flag per free vertex: its last step was refused.
+  const std::vector<unsigned char>& held() const { return this->Refused; }
 
 private:
   using Triangle = std::array<Vec3, 3>;
@@ -69,7 +70,7 @@ private:
     const double* p = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
     return { p[0], p[1], p[2] };
   }
-  void findFacets(const Mesh& mesh);
+  void findFacets(const Mesh& mesh, const std::vector<SurfaceFacet>& facets);
   bool coversSame(std::int32_t v, const Vec3& before, const std::vector<Triangle>& triangles) const;
   bool staysNear(std::int32_t v, const Vec3& before);
   bool isLeft(const Facet& facet) const;

@@ -66,6 +66,7 @@ public:
     }
     this->addCurves();
     this->addPatches();
+    this->addInterfaces();
     return std::move(this->Model);
   }
 
@@ -82,6 +83,7 @@ private:
   Vec3 controlOf(Index from, Index to) const;
   void addCurves();
   void addPatches();
+  void addInterfaces();
   void addTriangle(Index a, Index b, Index c, SurfacePart& part) const;
 
   const MeshView& View;
@@ -404,6 +406,29 @@ void ModelMaker::addPatches()
         this->addTriangle(
           facet.nodes[0], facet.nodes[k - 1], facet.nodes[k], this->Model.parts[patch]);
       }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+void ModelMaker::addInterfaces()
+{
+  for (const Features::Facet& facet : this->TheFeatures.facets)
+  {
+    if (facet.interface)
+    {
+      this->Model.interfaces.push_back({ facet.nodes, facet.size });
+    }
+  }
+  for (const Features::Edge& edge : this->TheFeatures.edges)
+  {
+    if (edge.interface)
+    {
+      SurfaceFacet facet = { {}, 2 };
+      facet.nodes.fill(-1);
+      facet.nodes[0] = edge.first;
+      facet.nodes[1] = edge.second;
+      this->Model.interfaces.push_back(facet);
     }
   }
 }

@@ -33,11 +33,20 @@ struct SurfacePart
   std::vector<CubicControls> controls;
 };
 
+/// A facet of the surface of a mesh: a cell of a surface, a face of a volume, an edge of a planar
+/// mesh; by its points.
+struct SurfaceFacet
+{
+  std::array<Index, MaxFaceNodes> nodes;
+  int size;
+};
+
 /// First the patches, then the curves, in the order of the features.
 struct SurfaceModel
 {
   std::vector<SurfacePart> parts;
   int patches = 0;
+  std::vector<SurfaceFacet> interfaces; ///< the facets of the mesh between two of its cells
 };
 
 /**

@@ -121,9 +121,16 @@ std::vector<SurfaceFacet> surfaceFacets(const Mesh& mesh)
 
 //------------------------------------------------------------------------------
 SurfaceProjection::SurfaceProjection(const Mesh& mesh, const SimplexMesh& simplices)
+  : SurfaceProjection(mesh, surfaceFacets(mesh), simplices)
+{
+}
+
+//------------------------------------------------------------------------------
+SurfaceProjection::SurfaceProjection(
+  const Mesh& mesh, const std::vector<SurfaceFacet>& facets, const SimplexMesh& simplices)
   : Curve(mesh.dimension() == Dimension::Planar)
 {
-  for (const SurfaceFacet& facet : surfaceFacets(mesh))
+  for (const SurfaceFacet& facet : facets)
   {
     Vec3 p[MaxFaceNodes];
     bool finite = true;

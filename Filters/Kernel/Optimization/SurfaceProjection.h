@@ -11,14 +11,6 @@
 
 namespace tautline
 {
-/// A facet of the surface of a mesh: a cell of a surface, a face of a volume, an edge of a planar
-/// mesh.
-struct SurfaceFacet
-{
-  std::array<Index, MaxFaceNodes> nodes;
-  int size;
-};
-
 /// The cells of a surface mesh, or the boundary facets of a volume or planar one.
 TAUTLINE_KERNEL_EXPORT std::vector<SurfaceFacet> surfaceFacets(const Mesh& mesh);
 
@@ -46,6 +38,10 @@ public:
   /// The facets of a mesh, see surfaceFacets(), in the coordinates of `simplices` (see
   /// SimplexMesh::transform()).
   SurfaceProjection(const Mesh& mesh, const SimplexMesh& simplices);
+
+  /// Some facets of a mesh, in the coordinates of `simplices`.
+  SurfaceProjection(
+    const Mesh& mesh, const std::vector<SurfaceFacet>& facets, const SimplexMesh& simplices);
 
   /// A patch or curve in the coordinates of `simplices`; null: in those of the model.
   SurfaceProjection(const SurfacePart& part, const SimplexMesh* simplices);

@@ -3,6 +3,8 @@
 
 #include "tautline/Core/Parallel.h"
 
+#include <algorithm>
+
 namespace tautline
 {
 namespace
@@ -12,6 +14,21 @@ Vec3 unit(const Vec3& v)
   const double length = norm(v);
   return length > 0 ? (1.0 / length) * v : Vec3{ 0, 0, 0 };
 }
+}
+
+//------------------------------------------------------------------------------
+bool keepsSurface(const OptimizationProblem& problem)
+{
+  const OptimizeOptions& options = problem.options();
+  // Without its features, steps would lead across sharp edges.
+  if (!problem.surface() || !options.model || options.limits || options.surfaceTolerance > 0 ||
+    options.slidePlanes || options.slideLines || problem.moving().nonFinitePoints() > 0)
+  {
+    return false;
+  }
+  const std::vector<const SurfaceProjection*> surfaces = problem.localOptions().surfaces;
+  return std::all_of(surfaces.begin(), surfaces.end(),
+    [](const SurfaceProjection* surface) { return surface && !surface->empty(); });
 }
 
 //------------------------------------------------------------------------------

@@ -13,6 +13,9 @@
 
 namespace tautline
 {
+/// Whether Newton's method keeps what holds the points of a surface in space.
+bool keepsSurface(const OptimizationProblem& problem);
+
 /**
  * @class tautline::SurfaceSlides
  * @brief Steps go along the tangent planes, on curves along the tangents, and from there to the

@@ -145,6 +145,18 @@ inline double scalarized(const Scalarizer& scalarizer, const IterationRecord& re
   return record.objectives.size() > 1 ? scalarizer.value(record.objectives) : record.objective;
 }
 
+/// The record with a finite objective for the history, where there is one. In the lexicographic
+/// method it is infinite where points put back have raised an objective reached before beyond its
+/// bound: the one of the stage then counts.
+inline IterationRecord presentable(const Scalarizer& scalarizer, IterationRecord record)
+{
+  if (scalarizer.stage() > 0 && !std::isfinite(record.objective))
+  {
+    record.objective = record.objectives[scalarizer.stage()];
+  }
+  return record;
+}
+
 /// Whether the objective is larger than at the start. In the lexicographic method it is another one
 /// in each stage: the first one counts then, which may rise by the tolerance.
 inline bool isLarger(const ScalarizationOptions& options, const Scalarizer& scalarizer,

@@ -2,6 +2,7 @@
 // Where a vertex may go: on its surface or curve, in its plane or line, within its limit.
 #include "VertexOptimizer.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace tautline
@@ -182,7 +183,8 @@ bool VertexOptimizer<Dim>::placeOnSurface(
   const std::vector<Vec3> normals =
     Dim == 2 && this->isOnCurve(v) ? this->normalsAt(v) : std::vector<Vec3>();
   const SurfaceProjection* surface = this->surfaceOf(v);
-  const int trials = this->Options.surfaceLimit ? maxTrials : 1;
+  const std::vector<SurfaceLimit*>& limits = this->Options.surfaceLimits;
+  const int trials = limits.empty() ? 1 : maxTrials;
   bool placed = false;
   for (int trial = 0; trial < trials && !placed; ++trial, step = 0.5 * step)
   {
@@ -195,7 +197,8 @@ bool VertexOptimizer<Dim>::placeOnSurface(
     const bool upright = this->Options.allowInversion ||
       (this->isUpright(v, w.patch, normals) && this->staysValidInside(w.patch, zero));
     placed = upright && this->changeAt(scalarizer, w, zero) < 0 &&
-      (!this->Options.surfaceLimit || this->Options.surfaceLimit->allows(v, before));
+      std::all_of(limits.begin(), limits.end(),
+        [&](SurfaceLimit* limit) { return limit->allows(v, before); });
   }
   if (!placed)
   {

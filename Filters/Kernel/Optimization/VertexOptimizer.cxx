@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "VertexOptimizer.h"
 
+#include "InvariantFunction.h"
 #include "tautline/Core/LineSearch.h"
 #include "tautline/Mesh/JacobianBounds.h"
 
@@ -32,7 +33,8 @@ VertexOptimizer<Dim>::VertexOptimizer(SimplexMesh& simplices, const Mesh& mesh, 
   {
     this->Functions.push_back(this->makeFunction(term));
     this->NeedsCells = this->NeedsCells || this->Functions.back()->needsCells();
-    this->Guarded = this->Guarded || this->NeedsCells || term.sizeSquared > 0;
+    this->Guarded =
+      this->Guarded || this->NeedsCells || term.sizeSquared > 0 || term.invariantScale > 0;
   }
   this->Inside = !options.allowInversion &&
     std::any_of(mesh.blocks().begin(), mesh.blocks().end(),
@@ -97,6 +99,10 @@ std::unique_ptr<PatchFunction<Dim>> VertexOptimizer<Dim>::makeFunction(const Loc
   {
     using Energy = SizeSquaredEnergy<Dim>;
     return std::make_unique<EnergyFunction<Dim, Energy>>(Energy{ term.sizeSquared });
+  }
+  if (term.invariantScale > 0)
+  {
+    return std::make_unique<InvariantFunction<Dim>>(term.metric->state(), term.invariantScale);
   }
   return std::make_unique<MetricFunction<Dim>>(term.metric->state());
 }

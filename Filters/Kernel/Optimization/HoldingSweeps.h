@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file HoldingSweeps.h
+ * @brief Sweeps that hold the worst element. Internal: not installed.
+ */
+#ifndef tautline_HoldingSweeps_h
+#define tautline_HoldingSweeps_h
+
+#include "QualityGuard.h"
+#include "SweepControl.h"
+
+#include <functional>
+
+namespace tautline
+{
+/**
+ * @brief Sweeps until that converges, from points at which the guard finds nothing. After each
+ * sweep, the points of elements that it has made invalid, or worse than all of the input, go back
+ * to where they were before it. Where that raises the objective or takes the surface too far, all
+ * go back, and these points stay in the sweeps after it.
+ * @param report adds a record to the history; false if that stops the run
+ * @param history with the record of these points at its end
+ */
+StopReason sweepHoldingWorst(OptimizationProblem& problem, const QualityGuard& guard,
+  const StoppingTest& watch, const std::function<bool(const IterationRecord&)>& report,
+  const std::vector<IterationRecord>& history);
+}
+#endif
