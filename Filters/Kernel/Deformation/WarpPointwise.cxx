@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include <algorithm>
+
 namespace tautline
 {
 namespace
@@ -28,6 +30,12 @@ PrescribedMotion::PrescribedMotion(const Mesh& mesh, const std::vector<unsigned 
   {
     (prescribed[static_cast<std::size_t>(id)] ? this->Prescribed : this->Free).push_back(id);
   }
+  std::sort(this->Prescribed.begin(), this->Prescribed.end(),
+    [this](Index a, Index b)
+    {
+      const Vec3 p = pointOf(this->Input.view(), a), q = pointOf(this->Input.view(), b);
+      return p != q ? p < q : this->given(a) < this->given(b);
+    });
   const std::size_t n = this->Prescribed.size();
   if (n == 0)
   {

@@ -20,7 +20,8 @@ namespace tautline
 {
 /**
  * @brief Displacements of all points, 3 each, by one of the methods; bitwise the same for any
- * number of threads.
+ * number of threads, those by inverse distances and radial basis functions for any order of the
+ * points as well.
  *
  * `prescribed` has a flag per point; `displacement` has 3 numbers per point of the mesh and is
  * read, and returned as it is, where the flag is set. Without any prescribed point nothing moves.
@@ -39,7 +40,8 @@ TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByInverseDistance(const Mesh& me
  * @brief As above by radial basis functions: Wendland's C2 function with the radius
  * options.supportRadius (0: twice the extent of the prescribed points) around as many prescribed
  * points, at most 3000, as it takes to meet the others within options.fitTolerance times the
- * largest displacement; the point with the largest residual comes next.
+ * largest displacement; the point with the largest residual comes next, together with up to 48
+ * whose residuals are equal to rounding; of more the first by its place.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
@@ -74,8 +76,10 @@ public:
   PrescribedMotion(const Mesh& mesh, const std::vector<unsigned char>& prescribed,
     const double* displacement, int threads);
 
-  const std::vector<Index>& prescribed() const { return this->Prescribed; } ///< ids, ascending
-  const std::vector<Index>& free() const { return this->Free; }             ///< ids, ascending
+  /// Ids in the order of the places (x before y before z), then of the displacements: sums and
+  /// choices do not depend on the order of the mesh.
+  const std::vector<Index>& prescribed() const { return this->Prescribed; }
+  const std::vector<Index>& free() const { return this->Free; } ///< ids, ascending
   /// A point in units of scale(), from the middle of the prescribed ones.
   Vec3 local(Index id) const;
   double scale() const { return this->Scale; }

@@ -5,6 +5,9 @@
 #include "tautline/Core/Memory.h"
 #include "tautline/Geometry/PointTree.h"
 
+#include <algorithm>
+#include <functional>
+
 namespace tautline
 {
 namespace
@@ -19,6 +22,10 @@ constexpr std::size_t MaxCenters = 3000;
 /// A candidate that is within this (squared) of what the chosen ones span adds nothing but
 /// rounding.
 constexpr double Independence = 1e-12;
+/// Residuals within this of each other, relatively, are equal up to rounding.
+constexpr double Tie = 1e-9;
+/// So many equal ones are chosen together: the images of a point by the symmetries of a cube.
+constexpr std::size_t MaxTied = 48;
 constexpr std::size_t LeafSize = 32;
 /// Number of products from which a choice uses several threads.
 constexpr Index ParallelWork = 200000;
@@ -34,7 +41,7 @@ double wendland(double ratio)
 }
 
 /**
- * @brief Chooses centres among candidates one by one, always where the residual is largest.
+ * @brief Chooses centres among candidates, always where the residual is largest.
  *
  * Row i of the basis holds, for candidate i, the values of Newton's basis of the functions chosen:
  * columns of a Cholesky factor that grows with the pivot. A choice costs one product with each row.
@@ -74,46 +81,22 @@ public:
   /// Chooses until all residuals are at most `enough`; false when the control stopped it.
   bool choose(double enough, WarpControl& control)
   {
-    while (this->Chosen.size() < MaxCenters)
+    for (std::vector<std::size_t> next = this->worst(enough);
+         !next.empty() && this->Chosen.size() < MaxCenters; next = this->worst(enough))
     {
-      std::size_t best = this->Points.size();
-      double most = enough;
-      for (std::size_t i = 0; i < this->Points.size(); ++i)
+      for (const std::size_t i : next)
       {
-        const double size = norm(this->Residuals[i]);
-        if (size > most && this->Powers[i] > Independence)
+        if (this->Powers[i] <= Independence || this->Chosen.size() == MaxCenters)
         {
-          most = size;
-          best = i;
+          continue;
         }
-      }
-      if (best == this->Points.size())
-      {
-        return true;
-      }
-      if (this->Chosen.size() % ClockInterval == 0 &&
-        !control.watch(0.5 * static_cast<double>(this->Chosen.size()) / MaxCenters))
-      {
-        return false;
-      }
-      const std::size_t k = this->Chosen.size();
-      const double pivot = std::sqrt(this->Powers[best]);
-      this->Chosen.push_back(best);
-      this->Pivots.push_back(pivot);
-      this->Weights.push_back((1 / pivot) * this->Residuals[best]);
-      const auto count = static_cast<Index>(this->Points.size());
-      const bool worthIt = count * static_cast<Index>(k) > ParallelWork;
-      const Index grain = 1 + ProductsPerChunk / (1 + static_cast<Index>(k));
-      // Its own row last: the others read it.
-      parallelFor(count, grain, worthIt ? this->Threads : 1,
-        [&](Index i)
+        if (this->Chosen.size() % ClockInterval == 0 &&
+          !control.watch(0.5 * static_cast<double>(this->Chosen.size()) / MaxCenters))
         {
-          if (static_cast<std::size_t>(i) != best)
-          {
-            this->append(static_cast<std::size_t>(i), k);
-          }
-        });
-      this->append(best, k);
+          return false;
+        }
+        this->take(i);
+      }
     }
     return true;
   }
@@ -135,6 +118,57 @@ public:
       }
     }
     return result;
+  }
+
+private:
+  /// The candidates with the largest residual above `enough`: those that are equal to rounding,
+  /// as the images of a symmetry are, or the first of many; none if there is none.
+  std::vector<std::size_t> worst(double enough) const
+  {
+    std::vector<double> sizes(this->Points.size(), 0.0);
+    double most = 0;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+    {
+      const double size = norm(this->Residuals[i]);
+      if (size > enough && this->Powers[i] > Independence)
+      {
+        sizes[i] = size;
+        most = std::max(most, size);
+      }
+    }
+    std::vector<std::size_t> result;
+    for (std::size_t i = 0; i < sizes.size() && most > 0; ++i)
+    {
+      if (sizes[i] >= (1 - Tie) * most)
+      {
+        result.push_back(i);
+      }
+    }
+    result.resize(result.size() > MaxTied ? 1 : result.size());
+    return result;
+  }
+
+  /// Takes a candidate as the next centre.
+  void take(std::size_t candidate)
+  {
+    const std::size_t k = this->Chosen.size();
+    const double pivot = std::sqrt(this->Powers[candidate]);
+    this->Chosen.push_back(candidate);
+    this->Pivots.push_back(pivot);
+    this->Weights.push_back((1 / pivot) * this->Residuals[candidate]);
+    const auto count = static_cast<Index>(this->Points.size());
+    const bool worthIt = count * static_cast<Index>(k) > ParallelWork;
+    const Index grain = 1 + ProductsPerChunk / (1 + static_cast<Index>(k));
+    // Its own row last: the others read it.
+    parallelFor(count, grain, worthIt ? this->Threads : 1,
+      [&](Index i)
+      {
+        if (static_cast<std::size_t>(i) != candidate)
+        {
+          this->append(static_cast<std::size_t>(i), k);
+        }
+      });
+    this->append(candidate, k);
   }
 
 private:
@@ -255,9 +289,27 @@ private:
   std::array<std::vector<double>, 3> Centers, Coefficients; ///< in the order of the tree
 };
 
+/// Keeps those with the largest errors, more than MoreCandidates where several are equally bad.
+void keepWorst(const std::vector<double>& errors, std::vector<std::size_t>& missed)
+{
+  std::vector<double> sizes;
+  for (const std::size_t i : missed)
+  {
+    sizes.push_back(errors[i]);
+  }
+  const auto last = sizes.begin() + (MoreCandidates - 1);
+  std::nth_element(sizes.begin(), last, sizes.end(), std::greater<>());
+  const double least = (1 - Tie) * *last;
+  missed.erase(
+    std::remove_if(missed.begin(), missed.end(), [&](std::size_t i) { return errors[i] < least; }),
+    missed.end());
+  missed.resize(std::min(missed.size(), 2 * MoreCandidates));
+}
+
 /**
  * @brief Chooses centres until every prescribed point is met. Candidates are first some points
- * spread evenly; then, in each round, those of the others that are met worst.
+ * spread evenly; then, in each round, those of the others that are met worst, in the order of
+ * prescribed().
  * @param enough largest residual
  * @return false when the control stopped it
  */
@@ -314,10 +366,10 @@ bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, W
     {
       return true;
     }
-    std::sort(missed.begin(), missed.end(),
-      [&](std::size_t a, std::size_t b)
-      { return errors[a] > errors[b] || (errors[a] == errors[b] && a < b); });
-    missed.resize(std::min(missed.size(), MoreCandidates));
+    if (missed.size() > MoreCandidates)
+    {
+      keepWorst(errors, missed);
+    }
     require(missed.size());
     const std::size_t from = candidates;
     for (const std::size_t i : missed)

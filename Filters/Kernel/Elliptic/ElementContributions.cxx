@@ -15,6 +15,22 @@ namespace
 {
 constexpr Index NotFree = -1;
 
+/// The largest dimension of the cells of all ranks that count.
+int countedDimension(const EllipticSystem& system)
+{
+  const Mesh& mesh = system.mesh();
+  const unsigned char* skip = system.part().skip;
+  double dimension = 0;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    for (Index i = 0; i < block.count && dimension < topology(block.type).dimension; ++i)
+    {
+      dimension = skip && skip[block.cell(i)] ? dimension : topology(block.type).dimension;
+    }
+  }
+  return static_cast<int>(system.numbering().maximum(dimension));
+}
+
 /// What the loop over the cells reads and writes.
 struct Work
 {
@@ -24,6 +40,7 @@ struct Work
   std::vector<Index> FreeIndex; // of each point
   ElementContributions& Result;
   std::vector<double> LowerBound; // of each chunk
+  int Dimension;                  // of the cells that count, on all ranks
 
   Work(
     const EllipticSystem& system, const double* vector, int threads, ElementContributions& result)
@@ -33,11 +50,24 @@ struct Work
     , FreeIndex(static_cast<std::size_t>(system.mesh().view().numberOfPoints), NotFree)
     , Result(result)
     , LowerBound(static_cast<std::size_t>(numberOfChunks(system.mesh().view().numberOfCells)), 0.0)
+    , Dimension(countedDimension(system))
   {
     for (std::size_t i = 0; i < system.freePoints().size(); ++i)
     {
       this->FreeIndex[system.freePoints()[i]] = static_cast<Index>(i);
     }
+  }
+
+  /// The cell does not count.
+  bool skipped(Index cell) const
+  {
+    return this->System.part().skip && this->System.part().skip[cell];
+  }
+  /// A cell that does not count is of the dimension of those that do: a copy of one elsewhere.
+  bool isCopy(Index cell) const
+  {
+    const CellType type = cornerType(this->System.mesh().view().cellTypes[cell]);
+    return type != CellType::Unsupported && topology(type).dimension == this->Dimension;
   }
 };
 
@@ -84,8 +114,8 @@ void visitCell(Work& work, const Element& element, Index cell, CellType type, do
   {
     work.Result.share[cell] = energy;
   }
-  // A part has no larger eigenvalue than the whole.
-  if (count > 0 && largest > lowerBound)
+  // A part has no larger eigenvalue than the whole. Ghosts are whole on another rank.
+  if (!work.skipped(cell) && count > 0 && largest > lowerBound)
   {
     lowerBound = std::max(lowerBound, count == rows ? largest : largestEigenvalue(copy, count));
   }
@@ -95,17 +125,16 @@ template <class Element>
 void visitCells(Work& work, const Element& element)
 {
   const MeshView& view = work.System.mesh().view();
-  const unsigned char* skip = work.System.part().skip;
   forEachChunk(view.numberOfCells, work.Threads,
     [&](Index chunk, Index begin, Index end)
     {
       for (Index cell = begin; cell < end; ++cell)
       {
-        if (skip && skip[cell])
+        const auto type = static_cast<CellType>(view.cellTypes[cell]);
+        if (work.skipped(cell) && !work.isCopy(cell))
         {
           continue;
         }
-        const auto type = static_cast<CellType>(view.cellTypes[cell]);
         withElement(type,
           [&](auto nodes, auto dimension)
           {
@@ -187,7 +216,8 @@ ElementContributions elementContributions(
   {
     const Index* node = view.connectivity + view.offsets[cell];
     const double largest = result.largestEigenvalue[cell];
-    const Index nodes = std::isnan(largest) ? 0 : view.offsets[cell + 1] - view.offsets[cell];
+    const bool counts = !std::isnan(largest) && !work.skipped(static_cast<Index>(cell));
+    const Index nodes = !counts ? 0 : view.offsets[cell + 1] - view.offsets[cell];
     for (Index k = 0; k < nodes; ++k)
     {
       const Index free = work.FreeIndex[node[k]];
@@ -196,7 +226,7 @@ ElementContributions elementContributions(
         sums[free] += largest;
       }
     }
-    total += found ? result.share[cell] : 0.0;
+    total += found && counts ? result.share[cell] : 0.0;
   }
   numbering.sum(sums.data(), 1);
   result.bound =

@@ -12,6 +12,43 @@
 
 namespace tautline
 {
+namespace
+{
+/// What is known of a problem that was checked.
+struct CheckedProblem
+{
+  std::vector<unsigned char> used, fixed; // per point: in cells, and fixed, on any rank
+  int components = 1;
+};
+
+CheckedProblem check(const Mesh& mesh, const EllipticProblem& problem, const MeshPart& part,
+  const PointNumbering& all, int threads)
+{
+  const Index points = mesh.view().numberOfPoints;
+  EllipticChecks checks(mesh, problem, part, all, threads);
+  checks.everywhere([&]() { checks.requireCoefficients(); });
+  checks.requireValidElements();
+  CheckedProblem found;
+  found.used = checks.usedPoints();
+  found.fixed = problem.fixed
+    ? std::vector<unsigned char>(problem.fixed, problem.fixed + points)
+    : globalBoundaryPoints(mesh, part.communicator, part.globalIds, part.skip);
+  all.either(found.fixed.data());
+  checks.everywhere([&]() { checks.requireData(found.used, found.fixed); });
+  checks.requireFixedParts(found.used, found.fixed);
+  found.components = problem.pde == Pde::Elasticity ? checks.elasticUnknowns() : 1;
+  return found;
+}
+}
+
+//------------------------------------------------------------------------------
+void requireSolvable(
+  const Mesh& mesh, const EllipticProblem& problem, const MeshPart& part, int threads)
+{
+  const PointNumbering all(part.communicator, mesh.view().numberOfPoints, part.globalIds);
+  check(mesh, problem, part, all, threads);
+}
+
 //------------------------------------------------------------------------------
 struct EllipticSystem::Implementation
 {
@@ -50,24 +87,15 @@ EllipticSystem::Implementation::Implementation(
 {
   const Index points = mesh.view().numberOfPoints;
   const PointNumbering all(part.communicator, points, part.globalIds);
-  EllipticChecks checks(mesh, this->Problem, part, all, threads);
-  checks.everywhere([&]() { checks.requireCoefficients(); });
-  checks.requireValidElements();
-  this->Used = checks.usedPoints();
-  std::vector<unsigned char> fixed = problem.fixed
-    ? std::vector<unsigned char>(problem.fixed, problem.fixed + points)
-    : globalBoundaryPoints(mesh, part.communicator, part.globalIds, part.skip);
-  all.either(fixed.data());
-  checks.everywhere([&]() { checks.requireData(this->Used, fixed); });
-  checks.requireFixedParts(this->Used, fixed);
-
-  this->Components = problem.pde == Pde::Elasticity ? checks.elasticUnknowns() : 1;
+  const CheckedProblem checked = check(mesh, this->Problem, part, all, threads);
+  this->Used = checked.used;
+  this->Components = checked.components;
   this->FreeIndex.assign(points, -1);
   // Points of cells get unknowns unless they are fixed.
   std::vector<Index> globalIds;
   for (Index point = 0; point < points; ++point)
   {
-    if (this->Used[point] && !fixed[point])
+    if (this->Used[point] && !checked.fixed[point])
     {
       this->FreeIndex[point] = static_cast<Index>(this->FreePoints.size());
       this->FreePoints.push_back(point);
@@ -85,7 +113,7 @@ EllipticSystem::Implementation::Implementation(
       "No point is free: all points of the mesh are on its boundary, or fixed. Refine the "
       "mesh, or fix fewer points.");
   }
-  checks.everywhere([&]() { this->assemble(); });
+  EllipticChecks(mesh, this->Problem, part, all, threads).everywhere([&]() { this->assemble(); });
 
   // The rigid body modes follow from the coordinates along the components.
   for (Index point : this->FreePoints)

@@ -80,5 +80,10 @@ private:
   struct Implementation;
   std::shared_ptr<Implementation> Impl; // a set-up that was given up may still read the matrix
 };
+
+/// Throws what the constructor of EllipticSystem throws, but for a mesh without a free point. For a
+/// mesh that was divided anew: messages have the numbers of its pieces. Collective.
+TAUTLINE_SOLVERS_EXPORT void requireSolvable(
+  const Mesh& mesh, const EllipticProblem& problem, const MeshPart& part = {}, int threads = 0);
 }
 #endif

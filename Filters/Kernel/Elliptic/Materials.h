@@ -6,6 +6,7 @@
 #ifndef tautline_Materials_h
 #define tautline_Materials_h
 
+#include "tautline/Core/PlaneState.h"
 #include "tautline/Core/Types.h"
 
 namespace tautline
@@ -23,13 +24,6 @@ struct DiffusionOperator
   SymmetricTensor tensor = IdentityTensor;
   const double* tensors = nullptr; ///< 6 per cell, instead of tensor; or null
   double reaction = 0.0;           ///< a; where it is negative the matrix may be indefinite
-};
-
-/// What a 2D elastic body is held by in the third direction.
-enum class PlaneState : int
-{
-  Strain = 0, ///< no strain: a slice of a long body
-  Stress = 1  ///< no stress: a thin sheet
 };
 
 /// Linear elasticity (2.4): -div(lambda (div u) I + 2 mu eps(u)).

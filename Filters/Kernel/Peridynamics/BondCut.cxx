@@ -90,7 +90,11 @@ BondCut::BondCut(const PlanarTriangles& triangles, double horizon, bool cut)
     }
     if (next == i + 1)
     {
-      const Vec2 p = triangles.points[edges[i][0]], q = triangles.points[edges[i][1]];
+      Vec2 p = triangles.points[edges[i][0]], q = triangles.points[edges[i][1]];
+      if (q < p)
+      {
+        std::swap(p, q); // the same arithmetic in every order of the points
+      }
       this->Edges.push_back({ p, q });
       this->Low.push_back({ std::min(p[0], q[0]), std::min(p[1], q[1]) });
       this->High.push_back({ std::max(p[0], q[0]), std::max(p[1], q[1]) });

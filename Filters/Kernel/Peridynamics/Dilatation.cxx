@@ -159,8 +159,8 @@ private:
       const DilatationMoments moments(m);
       if (constant)
       {
-        this->add(other, moments.third);
-        this->add(t, -1.0 * moments.third);
+        this->add(space.function(triangles, other, 0), moments.third);
+        this->add(space.function(triangles, t, 0), -1.0 * moments.third);
         continue;
       }
       for (int k = 0; k < 3; ++k)
@@ -428,7 +428,8 @@ PeridynamicStrain peridynamicStrain(
   {
     throw Error("strains are of the elastic models: choose one of them");
   }
-  const PlanarTriangles triangles(mesh);
+  PlanarTriangles triangles(mesh);
+  triangles.sortByPlace();
   const FunctionSpace space(mesh, triangles, options);
   if (static_cast<Index>(values.size()) != 2 * space.functions)
   {
@@ -447,9 +448,10 @@ PeridynamicStrain peridynamicStrain(
   parallelFor(triangles.size(), grain, options.threads, samplers,
     [&](StrainSampler& sampler, Index t)
     {
-      if (!options.constrained || !mesh.layer[t])
+      const Index cell = triangles.source(t);
+      if (!options.constrained || !mesh.layer[cell])
       {
-        sampler.sample(t, strain.dilatation[t], strain.energyDensity[t]);
+        sampler.sample(t, strain.dilatation[cell], strain.energyDensity[cell]);
       }
     });
   return strain;

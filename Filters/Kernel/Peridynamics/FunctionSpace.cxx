@@ -20,8 +20,8 @@ FunctionSpace::FunctionSpace(
       // A vertex of any interaction layer triangle is given: those on the boundary of the domain
       // are not unknown.
       const bool byPoint = this->basis == PeridynamicBasis::Linear && !mesh.givenPoints.empty();
-      const bool fixed =
-        options.constrained && (byPoint ? mesh.givenPoints[f] != 0 : mesh.layer[t] != 0);
+      const bool fixed = options.constrained &&
+        (byPoint ? mesh.givenPoints[f] != 0 : mesh.layer[triangles.source(t)] != 0);
       this->unknownOf[f] = fixed || this->unknownOf[f] == given ? given : unknown;
       this->low[f] = { std::min(this->low[f][0], triangles.low[t][0]),
         std::min(this->low[f][1], triangles.low[t][1]) };

@@ -26,9 +26,9 @@ struct FunctionSpace
   int perTriangle() const { return this->basis == PeridynamicBasis::Constant ? 1 : 3; }
   Index function(const PlanarTriangles& triangles, Index t, int k) const
   {
-    return this->basis == PeridynamicBasis::Constant ? t
+    return this->basis == PeridynamicBasis::Constant ? triangles.source(t)
       : this->basis == PeridynamicBasis::Linear      ? triangles.triangles[t][k]
-                                                : 3 * t + (triangles.flipped ? (3 - k) % 3 : k);
+                                                     : triangles.sources[t][k];
   }
 };
 }

@@ -7,6 +7,7 @@
 #define tautline_PeridynamicOptions_h
 
 #include "Horizon.h"
+#include "tautline/Core/PlaneState.h"
 #include "tautline/Solvers/SparseMatrix.h"
 #include "tautline/SolversExport.h"
 
@@ -57,13 +58,6 @@ constexpr bool isElastic(PeridynamicModel model)
   return model != PeridynamicModel::Scalar;
 }
 
-/// How the third dimension deforms; of the state-based model.
-enum class PlaneState
-{
-  Strain = 0, ///< not at all: a long body
-  Stress = 1  ///< freely: a thin plate
-};
-
 /// How the double integrals are discretized, see Peridynamics.h.
 enum class Discretization
 {
@@ -101,7 +95,16 @@ struct PeridynamicOptions
   /// Whether triangles do not interact where the mesh ends between them, as across a hole or a
   /// crack. Has no effect with an interaction layer that is wide enough.
   bool cutBonds = true;
-  /// Exact: target relative error of the integral over each pair of triangles, 1e-10 to 0.1.
+  /**
+   * Exact: where the refinement of the outer integral over a pair of triangles stops, 1e-10 to 0.1:
+   * a part of a triangle is quartered until two rules agree within a fraction of what the pair
+   * can contribute: the tolerance at common corners and edges, three times its power 3/4 where the
+   * horizon cuts the other triangle, else its square root (there the finer rule errs by the square
+   * of the difference). Errors of the matrix are larger than the tolerance and fall more slowly:
+   * measured, relative to the largest entry, at most 3e-3, 5e-4 and 1e-4 for 1e-3, 1e-5 and 1e-7
+   * with a horizon of 1.5 elements, 7e-3, 8e-4 and 3e-4 with one of 0.3; of the condition number
+   * less.
+   */
   double tolerance = 1e-5;
   /// Whether functions of the interaction layer are given. False: all are unknown, nothing is
   /// constrained, and constants (elasticity: rigid motions) are in the null space.

@@ -428,12 +428,19 @@ void checkAssembly(const HorizonMesh& mesh, const PeridynamicOptions& options,
 struct AssemblyParts
 {
   AssemblyParts(const HorizonMesh& mesh, const PeridynamicOptions& options)
-    : triangles(mesh)
+    : triangles(sorted(mesh))
     , space(mesh, triangles, options)
     , grid(triangles.low, triangles.high)
     , supports(space.low, space.high)
     , cut(triangles, options.horizon, options.cutBonds)
   {
+  }
+
+  static PlanarTriangles sorted(const HorizonMesh& mesh)
+  {
+    PlanarTriangles result(mesh);
+    result.sortByPlace();
+    return result;
   }
 
   PlanarTriangles triangles;
@@ -641,7 +648,7 @@ std::vector<double> sourceLoad(const HorizonMesh& mesh, const PeridynamicSystem&
     {
       const Index f = functions == 1        ? t
         : basis == PeridynamicBasis::Linear ? triangles.triangles[t][a]
-                                            : 3 * t + (triangles.flipped ? (3 - a) % 3 : a);
+                                            : triangles.sources[t][a];
       const Index row = system.unknownOf[f];
       for (Index i = 0; row >= 0 && i < c; ++i)
       {

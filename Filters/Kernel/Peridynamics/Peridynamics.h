@@ -21,7 +21,9 @@
  *   rule is used on each. Which rules reproduce its tables: RuleSet.
  * - Exact: the integral over y is exact in its geometry (circle and triangle) and its singularity
  *   (by transformation to polar coordinates); the one over x is graded towards common vertices and
- *   edges and refined until the tolerance is met. Converges; symmetric.
+ *   edges and refined as PeridynamicOptions::tolerance states. Converges; symmetric. It does not
+ *   depend on the order of points, triangles and corners: all sums are in the order of their
+ *   coordinates.
  *
  * Example: the condition number of Table 4.2, aspect ratio 1, h = 0.1, delta = 0.2.
  *

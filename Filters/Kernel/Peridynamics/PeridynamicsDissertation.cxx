@@ -248,9 +248,10 @@ private:
       for (std::size_t i = 0; i < points.x.size(); ++i)
       {
         total += points.values[i];
-        *sums.at(0, near[points.triangle[i]]) -= weight * points.values[i];
+        const Index f = space.function(mesh, near[points.triangle[i]], 0);
+        *sums.at(0, f) -= weight * points.values[i];
       }
-      *sums.at(0, t) += weight * total;
+      *sums.at(0, space.function(mesh, t, 0)) += weight * total;
       return;
     }
     // Sums by local corner (continuous) or by corner of each triangle, then once per function.

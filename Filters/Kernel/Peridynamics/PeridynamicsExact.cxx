@@ -103,15 +103,13 @@ private:
   void findShapes();
   void findPairs(const std::vector<char>& needed);
   void findTouching(const std::vector<char>& needed);
-  Vec2 corner(Index t, int k, Index fromX, Index fromY) const;
+  Vec2 corner(Index t, int k, const std::array<Index, 2>& from) const;
 
   const PeridynamicWork& Work;
   int Functions, Components, RowSize;
   bool Reuse = false;
   Index Integrated = 0;
-  double Unit;                               ///< coordinates are multiples of it
-  std::vector<std::array<Index, 2>> Lattice; ///< per point
-  std::vector<std::int32_t> Shapes;          ///< per triangle
+  std::vector<std::int32_t> Shapes; ///< per triangle
   Index NumberOfShapes = 0;
   struct Example
   {
@@ -143,9 +141,6 @@ PairIntegrals::PairIntegrals(const PeridynamicWork& work)
         return scratch;
       })
 {
-  // A power of two, so that the rounding of exact coordinates is exact, far below every length.
-  constexpr double fineness = 1e-10;
-  this->Unit = std::exp2(std::floor(std::log2(fineness * work.triangles.shortestEdge)));
   this->findShapes();
   // Pairs repeat only in meshes of few shapes, such as structured ones.
   const Index few = std::max<Index>(64, work.triangles.size() / 16);
@@ -160,27 +155,13 @@ PairIntegrals::PairIntegrals(const PeridynamicWork& work)
 void PairIntegrals::findShapes()
 {
   const PlanarTriangles& mesh = this->Work.triangles;
-  Vec2 low = mesh.points[mesh.triangles[0][0]];
-  for (Index t = 0; t < mesh.size(); ++t)
-  {
-    low = { std::min(low[0], mesh.low[t][0]), std::min(low[1], mesh.low[t][1]) };
-  }
-  this->Lattice.assign(mesh.points.size(), { 0, 0 }); // points of no triangle may be anywhere
-  for (const auto& triangle : mesh.triangles)
-  {
-    for (const std::int32_t id : triangle)
-    {
-      const Vec2 p = mesh.points[id] - low;
-      this->Lattice[id] = { std::llround(p[0] / this->Unit), std::llround(p[1] / this->Unit) };
-    }
-  }
   // Triangles with the same two edges are congruent by a translation.
   std::map<std::array<Index, 4>, std::int32_t> shapes; // by two edges
   for (Index t = 0; t < mesh.size(); ++t)
   {
-    const auto& a = this->Lattice[mesh.triangles[t][0]];
-    const auto& b = this->Lattice[mesh.triangles[t][1]];
-    const auto& c = this->Lattice[mesh.triangles[t][2]];
+    const auto& a = mesh.lattice[mesh.triangles[t][0]];
+    const auto& b = mesh.lattice[mesh.triangles[t][1]];
+    const auto& c = mesh.lattice[mesh.triangles[t][2]];
     const auto next = static_cast<std::int32_t>(shapes.size());
     const std::array<Index, 4> edges = { b[0] - a[0], b[1] - a[1], c[0] - a[0], c[1] - a[1] };
     this->Shapes.push_back(shapes.emplace(edges, next).first->second);
@@ -193,10 +174,10 @@ bool PairIntegrals::touch(Index t, Index other) const
 {
   const PlanarTriangles& mesh = this->Work.triangles;
   // Most pairs are ruled out by their boxes.
-  if (mesh.low[t][0] > mesh.high[other][0] + this->Unit ||
-    mesh.low[other][0] > mesh.high[t][0] + this->Unit ||
-    mesh.low[t][1] > mesh.high[other][1] + this->Unit ||
-    mesh.low[other][1] > mesh.high[t][1] + this->Unit)
+  if (mesh.low[t][0] > mesh.high[other][0] + mesh.unit ||
+    mesh.low[other][0] > mesh.high[t][0] + mesh.unit ||
+    mesh.low[t][1] > mesh.high[other][1] + mesh.unit ||
+    mesh.low[other][1] > mesh.high[t][1] + mesh.unit)
   {
     return false;
   }
@@ -204,7 +185,7 @@ bool PairIntegrals::touch(Index t, Index other) const
   {
     for (const std::int32_t q : mesh.triangles[other])
     {
-      if (this->Lattice[p] == this->Lattice[q])
+      if (mesh.lattice[p] == mesh.lattice[q])
       {
         return true;
       }
@@ -217,8 +198,8 @@ bool PairIntegrals::touch(Index t, Index other) const
 PairKey PairIntegrals::key(Index t, Index other, bool& exchanged) const
 {
   const PlanarTriangles& mesh = this->Work.triangles;
-  const auto& a = this->Lattice[mesh.triangles[t][0]];
-  const auto& b = this->Lattice[mesh.triangles[other][0]];
+  const auto& a = mesh.lattice[mesh.triangles[t][0]];
+  const auto& b = mesh.lattice[mesh.triangles[other][0]];
   PairKey key = { this->Shapes[t], this->Shapes[other], b[0] - a[0], b[1] - a[1], 0 };
   // Of the two orders of a pair, one is taken, whichever triangle it is seen from.
   exchanged = key.first != key.second ? key.first > key.second : key.x != 0 ? key.x < 0 : key.y < 0;
@@ -245,11 +226,12 @@ PairKey PairIntegrals::key(Index t, Index other, bool& exchanged) const
 }
 
 //------------------------------------------------------------------------------
-Vec2 PairIntegrals::corner(Index t, int k, Index fromX, Index fromY) const
+Vec2 PairIntegrals::corner(Index t, int k, const std::array<Index, 2>& from) const
 {
-  const auto& p = this->Lattice[this->Work.triangles.triangles[t][k]];
-  return { static_cast<double>(p[0] - fromX) * this->Unit,
-    static_cast<double>(p[1] - fromY) * this->Unit };
+  const PlanarTriangles& mesh = this->Work.triangles;
+  const auto& p = mesh.lattice[mesh.triangles[t][k]];
+  return { static_cast<double>(p[0] - from[0]) * mesh.unit,
+    static_cast<double>(p[1] - from[1]) * mesh.unit };
 }
 
 //------------------------------------------------------------------------------
@@ -260,13 +242,13 @@ TrianglePair PairIntegrals::pair(Index t, Index other, bool exchanged) const
     std::swap(t, other);
   }
   const PlanarTriangles& mesh = this->Work.triangles;
-  const auto& origin = this->Lattice[mesh.triangles[t][0]];
+  const auto& origin = mesh.lattice[mesh.triangles[t][0]];
   TrianglePair pair;
   pair.identical = t == other;
   for (int k = 0; k < 3; ++k)
   {
-    pair.first[k] = this->corner(t, k, origin[0], origin[1]);
-    pair.second[k] = this->corner(other, k, origin[0], origin[1]);
+    pair.first[k] = this->corner(t, k, origin);
+    pair.second[k] = this->corner(other, k, origin);
     for (int l = 0; l < 3; ++l)
     {
       const std::int32_t p = mesh.triangles[t][l], q = mesh.triangles[other][k];
@@ -274,7 +256,7 @@ TrianglePair PairIntegrals::pair(Index t, Index other, bool exchanged) const
       {
         pair.shared[k] = l;
       }
-      if (this->Lattice[p] == this->Lattice[q])
+      if (mesh.lattice[p] == mesh.lattice[q])
       {
         pair.touching[k] = l;
       }
@@ -349,7 +331,7 @@ void PairIntegrals::findTouching(const std::vector<char>& needed)
   std::vector<std::int32_t> near;
   for (Index t = 0; t < mesh.size(); ++t)
   {
-    this->Work.grid.near(mesh.low[t], mesh.high[t], this->Unit, near);
+    this->Work.grid.near(mesh.low[t], mesh.high[t], mesh.unit, near);
     std::sort(near.begin(), near.end());
     for (const std::int32_t other : near)
     {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace tautline
 {
@@ -51,6 +52,7 @@ PlanarTriangles::PlanarTriangles(const HorizonMesh& mesh)
     this->points[i] = { mesh.points[2 * i], mesh.points[2 * i + 1] };
   }
   this->triangles.resize(count);
+  this->sources.resize(count);
   this->areas.resize(count);
   this->low.resize(count);
   this->high.resize(count);
@@ -67,6 +69,7 @@ PlanarTriangles::PlanarTriangles(const HorizonMesh& mesh)
           std::to_string(points));
       }
       this->triangles[t][k] = static_cast<std::int32_t>(id);
+      this->sources[t][k] = static_cast<std::int32_t>(3 * t + k);
     }
     const Vec2 a = this->corner(t, 0), b = this->corner(t, 1), c = this->corner(t, 2);
     const double area = 0.5 * cross(b - a, c - a);
@@ -106,14 +109,65 @@ PlanarTriangles::PlanarTriangles(const HorizonMesh& mesh)
       "): untangle or orient the mesh first");
   }
   this->flipped = negative > 0;
-  for (auto& triangle : this->triangles)
+  for (Index t = 0; t < count && this->flipped; ++t)
   {
-    if (this->flipped)
-    {
-      std::swap(triangle[1], triangle[2]);
-    }
+    std::swap(this->triangles[t][1], this->triangles[t][2]);
+    std::swap(this->sources[t][1], this->sources[t][2]);
   }
   this->shortestEdge = std::sqrt(shortest);
+}
+
+//------------------------------------------------------------------------------
+void PlanarTriangles::sortByPlace()
+{
+  // A power of two, so that the rounding of exact coordinates is exact.
+  constexpr double fineness = 1e-10;
+  this->unit = std::exp2(std::floor(std::log2(fineness * this->shortestEdge)));
+  Vec2 least = this->low[0];
+  for (const Vec2& l : this->low)
+  {
+    least = { std::min(least[0], l[0]), std::min(least[1], l[1]) };
+  }
+  this->lattice.assign(this->points.size(), { 0, 0 }); // points of no triangle may be anywhere
+  for (std::size_t t = 0; t < this->triangles.size(); ++t)
+  {
+    auto &ids = this->triangles[t], &from = this->sources[t];
+    for (const std::int32_t id : ids)
+    {
+      const Vec2 p = this->points[id] - least;
+      this->lattice[id] = { std::llround(p[0] / this->unit), std::llround(p[1] / this->unit) };
+    }
+    const auto first = std::min_element(ids.begin(), ids.end(),
+      [this](std::int32_t a, std::int32_t b) { return this->lattice[a] < this->lattice[b]; });
+    const auto turn = first - ids.begin();
+    std::rotate(ids.begin(), ids.begin() + turn, ids.end());
+    std::rotate(from.begin(), from.begin() + turn, from.end());
+  }
+  std::vector<std::int32_t> order(this->triangles.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+    [this](std::int32_t one, std::int32_t other)
+    {
+      const auto &a = this->triangles[one], &b = this->triangles[other];
+      int k = 0;
+      while (k < 2 && this->lattice[a[k]] == this->lattice[b[k]])
+      {
+        ++k;
+      }
+      return this->lattice[a[k]] < this->lattice[b[k]];
+    });
+  const auto arrange = [&order](auto& values)
+  {
+    auto sorted = values;
+    std::transform(
+      order.begin(), order.end(), sorted.begin(), [&values](std::int32_t t) { return values[t]; });
+    values = std::move(sorted);
+  };
+  arrange(this->triangles);
+  arrange(this->sources);
+  arrange(this->areas);
+  arrange(this->low);
+  arrange(this->high);
 }
 
 //------------------------------------------------------------------------------

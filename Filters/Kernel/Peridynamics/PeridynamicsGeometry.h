@@ -18,14 +18,29 @@ struct PlanarTriangles
 {
   std::vector<Vec2> points;
   std::vector<std::array<std::int32_t, 3>> triangles;
+  /// Where the corners of each are in HorizonMesh::triangles.
+  std::vector<std::array<std::int32_t, 3>> sources;
   std::vector<double> areas;
   std::vector<Vec2> low, high; ///< corners of the bounding boxes
   double shortestEdge = 0.0;
   bool flipped = false; ///< corners 1 and 2 of every triangle are exchanged
+  /// Of sortByPlace(): coordinates from the least of the triangles, in multiples of `unit`.
+  std::vector<std::array<Index, 2>> lattice;
+  double unit = 0.0;
 
   /// Throws Error for a mesh that cannot be integrated over.
   TAUTLINE_SOLVERS_EXPORT explicit PlanarTriangles(const HorizonMesh& mesh);
+  /**
+   * @brief Lists the triangles, and the corners of each, in the order of their coordinates, x
+   * before y, so that sums over them do not depend on the order of the mesh.
+   *
+   * Coordinates are compared as multiples of a unit far below every length: rounding does not
+   * decide, and triangles that are congruent up to a translation begin with the same corner.
+   */
+  void sortByPlace();
   Index size() const { return static_cast<Index>(this->triangles.size()); }
+  /// The number of a triangle in the mesh.
+  Index source(Index t) const { return this->sources[t][0] / 3; }
   Vec2 corner(Index t, int k) const { return this->points[this->triangles[t][k]]; }
 };
 

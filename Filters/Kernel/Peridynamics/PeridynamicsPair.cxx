@@ -364,7 +364,7 @@ bool PairIntegrator::applyRules(const Triangle& part, bool cut)
     }
     const Vec2 w = part[apex].at, u = part[(apex + 1) % 3].at, v = part[(apex + 2) % 3].at;
     const double g = this->EdgeGrading;
-    agreement = 10.0 * this->Tolerance;
+    agreement = this->Tolerance;
     const auto tensor = [&](const double* nodes, const double* weights, int count, bool fine)
     {
       for (int i = 0; i < count; ++i)
