@@ -139,11 +139,12 @@ std::string describeBlockSeams(vtkDataObject* input, int threads)
 {
   std::vector<vtkDataSet*> data;
   std::vector<std::string> names;
+  std::map<unsigned int, BlockPlace> places = blockPlaces(input);
   forEachLeaf(input,
     [&](unsigned int index, vtkDataSet* leaf)
     {
       data.push_back(leaf);
-      names.push_back("block " + std::to_string(index));
+      names.push_back(places[index].name());
     });
   if (data.size() < 2)
   {

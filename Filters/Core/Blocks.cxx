@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Blocks.h"
 
+#include "LackingArrays.h"
+
 #include "vtkAlgorithm.h"
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataArray.h"
+#include "vtkDataObjectTree.h"
 #include "vtkDataSet.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkExtractSelection.h"
 #include "vtkInformation.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkNew.h"
+#include "vtkPartitionedDataSet.h"
+#include "vtkPartitionedDataSetCollection.h"
 #include "vtkPointData.h"
 #include "vtkSelection.h"
 
@@ -18,6 +24,79 @@
 
 namespace tautline
 {
+namespace
+{
+/// Counts through a tree of data sets, with and without the partitions of meshes.
+struct PlaceCounter
+{
+  std::map<unsigned int, BlockPlace>& places;
+  unsigned int flat = 0, block = 0;
+
+  /// What is in the place where both counts are.
+  void visit(vtkDataObject* data)
+  {
+    if (auto* blocks = vtkMultiBlockDataSet::SafeDownCast(data))
+    {
+      for (unsigned int i = 0; i < blocks->GetNumberOfBlocks(); ++i)
+      {
+        this->descend(blocks->GetBlock(i));
+      }
+    }
+    else if (auto* sets = vtkPartitionedDataSetCollection::SafeDownCast(data))
+    {
+      for (unsigned int i = 0; i < sets->GetNumberOfPartitionedDataSets(); ++i)
+      {
+        this->descend(sets->GetPartitionedDataSet(i));
+      }
+    }
+    else if (auto* parts = vtkPartitionedDataSet::SafeDownCast(data))
+    {
+      const unsigned int count = parts->GetNumberOfPartitions();
+      for (unsigned int i = 0; i < count; ++i)
+      {
+        this->places[++this->flat] = { this->block, count > 1 ? i + 1 : 0 };
+      }
+    }
+    else
+    {
+      this->places[this->flat] = { this->block, 0 };
+    }
+  }
+
+private:
+  void descend(vtkDataObject* child)
+  {
+    ++this->flat;
+    ++this->block;
+    this->visit(child);
+  }
+};
+}
+
+//------------------------------------------------------------------------------
+std::string BlockPlace::name() const
+{
+  const std::string whole = this->block > 0 ? "block " + std::to_string(this->block) : "";
+  return this->partition == 0
+    ? whole
+    : "partition " + std::to_string(this->partition) + (whole.empty() ? "" : " of ") + whole;
+}
+
+//------------------------------------------------------------------------------
+std::map<unsigned int, BlockPlace> blockPlaces(vtkDataObject* data)
+{
+  std::map<unsigned int, BlockPlace> places;
+  if (vtkDataObjectTree::SafeDownCast(data) || !vtkCompositeDataSet::SafeDownCast(data))
+  {
+    PlaceCounter{ places }.visit(data);
+  }
+  else
+  {
+    forEachLeaf(data, [&places](unsigned int index, vtkDataSet*) { places[index] = { index, 0 }; });
+  }
+  return places;
+}
+
 //------------------------------------------------------------------------------
 void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject* selected,
   vtkDataObject* output, const std::function<void(const InputBlock&)>& visit)
@@ -34,7 +113,7 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
   if (!composite)
   {
     visit({ vtkDataSet::SafeDownCast(input), vtkDataSet::SafeDownCast(reference),
-      vtkDataSet::SafeDownCast(selected), vtkDataSet::SafeDownCast(output), 0, "", 0 });
+      vtkDataSet::SafeDownCast(selected), vtkDataSet::SafeDownCast(output), 0, "", 0, {} });
     return;
   }
   auto* blocks = vtkCompositeDataSet::SafeDownCast(input);
@@ -42,6 +121,7 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
   auto* selections = vtkCompositeDataSet::SafeDownCast(selected);
   auto* results = vtkCompositeDataSet::SafeDownCast(output);
   results->CopyStructure(blocks);
+  std::map<unsigned int, BlockPlace> places = blockPlaces(blocks);
   auto walk = vtkSmartPointer<vtkCompositeDataIterator>::Take(blocks->NewIterator());
   int number = 0;
   for (walk->InitTraversal(); !walk->IsDoneWithTraversal(); walk->GoToNextItem())
@@ -52,17 +132,18 @@ void forEachBlock(vtkDataObject* input, vtkDataObject* reference, vtkDataObject*
       continue;
     }
     const unsigned int index = walk->GetCurrentFlatIndex();
-    const std::string name = "block " + std::to_string(index);
+    const BlockPlace place = places[index];
+    const std::string name = place.name();
     const auto at = [&walk](vtkCompositeDataSet* set)
     { return set ? vtkDataSet::SafeDownCast(set->GetDataSet(walk)) : nullptr; };
     auto result = vtkSmartPointer<vtkDataSet>::Take(block->NewInstance());
     try
     {
-      visit({ block, at(references), at(selections), result, number++, name, index });
+      visit({ block, at(references), at(selections), result, number++, name, index, place });
     }
     catch (const Error& error)
     {
-      throw Error("In " + name + ": " + error.what());
+      throw Error((name.empty() ? "" : "In " + name + ": ") + error.what());
     }
     // Not before: an adaptive grid takes no empty data sets.
     results->SetDataSet(walk, result);
@@ -147,7 +228,7 @@ vtkDataArray* chosenArray(
   if (!array)
   {
     throw Error(std::string("There is no ") + (ofCells ? "cell" : "point") + " array '" + name +
-      "' " + purpose + ": choose another one, or None.");
+      "' " + purpose + lackingPiece(input, name, ofCells) + ": choose another one, or None.");
   }
   return array;
 }

@@ -14,6 +14,7 @@
 #include "vtkSmartPointer.h"
 
 #include <functional>
+#include <map>
 #include <string>
 
 class vtkAlgorithm;
@@ -24,6 +25,21 @@ class vtkSelection;
 
 namespace tautline
 {
+/// Where a data set is in composite data, for messages.
+struct TAUTLINECORE_EXPORT BlockPlace
+{
+  /// The flat index, if each partitioned or multipiece data set were one data set: its number does
+  /// not depend on how many partitions a process has. 0: the data are one mesh.
+  unsigned int block = 0;
+  unsigned int partition = 0; ///< from 1, of several partitions of the mesh; else 0
+
+  /// "block 3", "partition 2 of block 3", "partition 2", or "".
+  std::string name() const;
+};
+
+/// The places of the data sets, by flat index; of a single data set that of 0.
+TAUTLINECORE_EXPORT std::map<unsigned int, BlockPlace> blockPlaces(vtkDataObject* data);
+
 /// A data set of the input, with its counterparts.
 struct InputBlock
 {
@@ -32,8 +48,9 @@ struct InputBlock
   vtkDataSet* selected;  ///< the input with the array of markSelected(), or null
   vtkDataSet* output;
   int number;             ///< counts through the data sets, from 0
-  std::string name;       ///< "block 3", or "" if the input is a single data set
+  std::string name;       ///< BlockPlace::name(); "" if the input is one mesh
   unsigned int flatIndex; ///< of composite data; 0 if the input is a single data set
+  BlockPlace place;
 };
 
 /**

@@ -2,6 +2,7 @@
 #include "GatheredExecution.h"
 
 #include "Blocks.h"
+#include "LackingArrays.h"
 #include "MeshGroups.h"
 #include "PieceResults.h"
 #include "Processes.h"
@@ -19,6 +20,7 @@
 #include "vtkDataObjectTypes.h"
 #include "vtkDataSet.h"
 #include "vtkDemandDrivenPipeline.h"
+#include "vtkDummyController.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
@@ -178,7 +180,7 @@ public:
     , Inputs(inputs)
     , Outputs(outputs)
     , Rules(rules)
-    , Controller(severalProcesses())
+    , Controller(severalProcesses() ? severalProcesses() : this->Alone.Get())
     , Rank(this->Controller->GetLocalProcessId())
     , Count(this->Controller->GetNumberOfProcesses())
   {
@@ -208,6 +210,7 @@ private:
   vtkInformationVector** Inputs;
   vtkInformationVector* Outputs;
   const GatheredRules& Rules;
+  vtkNew<vtkDummyController> Alone; ///< stands for the others if there are none
   vtkMultiProcessController* Controller;
   int Rank, Count;
 
@@ -466,6 +469,7 @@ void GatheredExecution::assembleAll()
       const bool alike =
         &mesh != &this->Meshes.front() && g < first.size() && matches(pieces, first[g].whole);
       group.whole = assemble(pieces, alike ? &first[g].whole : nullptr);
+      noteLackingArrays(pieces, group.processes, this->Count > 1, group.whole.mesh);
       for (const int port : this->SelectionPorts)
       {
         uniteMarks(pieces, group.whole, port);
@@ -641,23 +645,6 @@ int GatheredExecution::run(const std::function<int()>& execute)
   problem = firstProblem(this->attempt([this] { this->distribute(); }));
   return problem.empty() ? this->Result : this->fail(problem);
 }
-}
-
-//------------------------------------------------------------------------------
-bool isGathered(vtkAlgorithm* algorithm, GatheredResult result)
-{
-  if (result == GatheredResult::None || !severalProcesses() ||
-    algorithm->GetNumberOfInputPorts() == 0)
-  {
-    return false;
-  }
-  // VTK calls a filter that takes data sets only once per block, and each process as often as it
-  // has some.
-  vtkInformation* port = algorithm->GetInputPortInformation(0);
-  const char* first = port->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
-  const std::string type = first ? first : "";
-  const bool takesBlocks = type == "vtkCompositeDataSet" || type == "vtkMultiBlockDataSet";
-  return takesBlocks || !vtkCompositeDataSet::SafeDownCast(algorithm->GetInputDataObject(0, 0));
 }
 
 //------------------------------------------------------------------------------

@@ -85,20 +85,22 @@ struct GatheredRules
 
 /**
  * @brief Whether to execute a filter by executeGathered(): there are several processes, and each
- * calls the filter once. Not within it.
+ * calls the filter once; or a mesh of an input is in partitions. Not within it.
+ * @param joinsPartitions whether partitions are one mesh on one process, too
  */
-TAUTLINECORE_EXPORT bool isGathered(vtkAlgorithm* algorithm, GatheredResult result);
+TAUTLINECORE_EXPORT bool isGathered(
+  vtkAlgorithm* algorithm, GatheredResult result, bool joinsPartitions);
 
 /**
  * @brief Executes REQUEST_DATA of a filter for all processes. Collective.
  *
  * The pieces of each input are sent to the first process, which puts them together (assemble()) and
  * calls execute() with the wholes as inputs; there it is the only process, with progress, abort and
- * time limit as usual. The partitions of a partitioned or multipiece data set are one mesh, on all
- * processes together; the blocks of a multiblock data set are meshes of their own. A mesh on a
- * further input whose pieces match those on port 0 gets the same numbers. Selections are those of
- * all processes. Tables and other outputs than port 0 stay on the first process. Errors of any
- * process are reported by all.
+ * time limit as usual. On one process only partitions are put together. The partitions of a
+ * partitioned or multipiece data set are one mesh, on all processes together; the blocks of a
+ * multiblock data set are meshes of their own. A mesh on a further input whose pieces match those
+ * on port 0 gets the same numbers. Selections are those of all processes. Tables and other outputs
+ * than port 0 stay on the first process. Errors of any process are reported by all.
  *
  * The whole mesh is in the memory of the first process, about three times; Error before anything is
  * sent if that is not available.

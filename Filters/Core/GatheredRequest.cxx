@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Requests to filters that do not derive from vtkTautlineAlgorithm.
+// Which filters gather their meshes, and requests to those that do not derive from
+// vtkTautlineAlgorithm.
 #include "GatheredExecution.h"
 
+#include "MeshGroups.h"
 #include "Processes.h"
 #include "tautline/Core/Memory.h"
 
 #include "vtkAlgorithm.h"
+#include "vtkCompositeDataSet.h"
 #include "vtkDataObject.h"
 #include "vtkDemandDrivenPipeline.h"
 #include "vtkInformation.h"
@@ -13,6 +16,39 @@
 
 namespace tautline
 {
+namespace
+{
+/// Whether a mesh of any input is in partitions.
+bool takesPartitions(vtkAlgorithm* algorithm)
+{
+  bool any = false;
+  for (int port = 0; port < algorithm->GetNumberOfInputPorts(); ++port)
+  {
+    any = any ||
+      (algorithm->GetNumberOfInputConnections(port) > 0 &&
+        hasPartitions(algorithm->GetInputDataObject(port, 0)));
+  }
+  return any;
+}
+}
+
+//------------------------------------------------------------------------------
+bool isGathered(vtkAlgorithm* algorithm, GatheredResult result, bool joinsPartitions)
+{
+  if (result == GatheredResult::None || algorithm->GetNumberOfInputPorts() == 0 ||
+    !(severalProcesses() || (joinsPartitions && takesPartitions(algorithm))))
+  {
+    return false;
+  }
+  // VTK calls a filter that takes data sets only once per block, and each process as often as it
+  // has some.
+  vtkInformation* port = algorithm->GetInputPortInformation(0);
+  const char* first = port->Get(vtkAlgorithm::INPUT_REQUIRED_DATA_TYPE(), 0);
+  const std::string type = first ? first : "";
+  const bool takesBlocks = type == "vtkCompositeDataSet" || type == "vtkMultiBlockDataSet";
+  return takesBlocks || !vtkCompositeDataSet::SafeDownCast(algorithm->GetInputDataObject(0, 0));
+}
+
 //------------------------------------------------------------------------------
 int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits, GatheredResult result,
   const InputRules& rules, vtkInformation* request, vtkInformationVector** inputs,
@@ -20,7 +56,8 @@ int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits, Gath
   const std::function<bool()>& takesPieces)
 {
   const auto execute = [&] { return processInScope(algorithm, limits, request, outputs, work); };
-  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || !isGathered(algorithm, result))
+  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) ||
+    !isGathered(algorithm, result, false))
   {
     return execute();
   }

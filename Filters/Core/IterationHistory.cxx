@@ -26,6 +26,11 @@ std::string objectivesPhrase(const IterationRecord& first, const IterationRecord
   }
   return text.str();
 }
+
+bool isConverged(StopReason reason)
+{
+  return reason == StopReason::GradientNorm || reason == StopReason::RelativeChange;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -99,8 +104,11 @@ std::string summarize(
   {
     text << "\nThe points are those "
          << (result.untangled ? "that untangling left" : "of the input")
-         << ": no others with a smaller objective were found without a worse worst element or more "
-            "invalid elements.";
+         << (isConverged(result.reason)
+                ? ": the little that the objective can still be reduced by would make the worst "
+                  "element worse or more elements invalid."
+                : ": no others with a smaller objective were found without a worse worst element "
+                  "or more invalid elements.");
   }
   text << surfaceErrorSentence(result.surfaceError);
   if (result.leftSurface > 0)
@@ -110,12 +118,17 @@ std::string summarize(
          << " of the boundary near the worst elements left the surface, within Surface Tolerance. "
             "Leave Surface off keeps them on it.";
   }
-  if (result.heldOnSurface > 0)
+  if (result.heldOnSurface + result.heldOnInterfaces > 0)
   {
-    text << "\nSurface Tolerance holds " << result.heldOnSurface
-         << (result.heldOnSurface == 1 ? " point" : " points")
-         << " of the boundary: their last steps went too far from the surface. A larger one, or 0, "
-            "lets them slide on.";
+    const auto points = [](Index n, const char* of)
+    { return std::to_string(n) + (n == 1 ? " point" : " points") + of; };
+    const bool both = result.heldOnSurface > 0 && result.heldOnInterfaces > 0;
+    text << "\nSurface Tolerance holds "
+         << (result.heldOnSurface > 0 ? points(result.heldOnSurface, " of the boundary") : "")
+         << (both ? " and " : "")
+         << (result.heldOnInterfaces > 0 ? points(result.heldOnInterfaces, " of interfaces") : "")
+         << ": their last steps went too far from the surface. A larger one, or 0, lets them slide "
+            "on.";
   }
   return text.str();
 }

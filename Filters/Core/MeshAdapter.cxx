@@ -19,7 +19,6 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
-#include <map>
 #include <sstream>
 
 namespace tautline
@@ -134,16 +133,17 @@ JoinedCopies MeshAdapter::joinCopies(vtkDataArray* globalIds)
 //------------------------------------------------------------------------------
 void MeshAdapter::mergeCoincidentPoints(int threads)
 {
-  this->Coincident = findCoincidentPoints(*this->TheMesh, nullptr, threads);
+  this->Coincident = findCoincidentPoints(*this->TheMesh, nullptr, threads, this->Ghosts);
   if (this->Coincident.overlapping > 0)
   {
     // Cells that list their points in the opposite order seem to be on the wrong side of a facet.
     std::vector<signed char> validity(this->View.numberOfCells);
     this->TheMesh->classifyCells(validity.data(), threads);
-    const CellOrder order = consistentOrder(*this->TheMesh, validity.data());
-    if (order.reversed > 0)
+    const RankOrder found = this->findOrder(validity.data());
+    if (found.order.reversed > 0)
     {
-      this->Coincident = findCoincidentPoints(*this->TheMesh, order.reverse.data(), threads);
+      this->Coincident =
+        findCoincidentPoints(*this->TheMesh, found.reverse[0].data(), threads, this->Ghosts);
     }
   }
   if (!this->Coincident.any())
@@ -216,37 +216,49 @@ std::string MeshAdapter::orient(signed char* validity, bool required)
   std::vector<signed char> own(validity ? 0 : this->View.numberOfCells);
   validity = validity ? validity : own.data();
   this->TheMesh->classifyCells(validity, this->Threads);
-  Orientation orientation = this->TheMesh->orientation(validity);
-  std::string text = describe(orientation, *this->TheMesh);
-  if (orientation.state == Orientation::Mixed)
+  RankOrder found;
+  found.orientation = this->TheMesh->orientation(validity);
+  if (found.orientation.state == Orientation::Mixed)
   {
-    const CellOrder order = consistentOrder(*this->TheMesh, validity);
-    if (order.ambiguous > 0)
+    found.order = consistentOrder(*this->TheMesh, validity);
+    found.reverse.push_back(std::move(found.order.reverse));
+    if (required && found.order.ambiguous > 0)
     {
-      text += " The cells connected with cell " + std::to_string(order.firstAmbiguous) +
-        " have no consistent orientation, like those of a Moebius band.";
-      if (required)
-      {
-        throw Error(text + " Cut the mesh so that each part has one (Clip), or remove cells.");
-      }
+      found.order.reversed = 0; // nothing is done about it
+      throw Error(describe(found, this->TheMesh->dimension()) +
+        " Cut the mesh so that each part has one (Clip), or remove cells.");
     }
-    if (order.reversed > 0)
+  }
+  return this->orient(validity, found);
+}
+
+//------------------------------------------------------------------------------
+std::string MeshAdapter::orient(signed char* validity, const RankOrder& found, std::size_t piece)
+{
+  if (found.order.reversed > 0 && piece < found.reverse.size())
+  {
+    const std::vector<unsigned char>& reverse = found.reverse[piece];
+    if (std::any_of(reverse.begin(), reverse.end(), [](unsigned char flag) { return flag != 0; }))
     {
-      text += " " + std::to_string(order.reversed) + " of the " + std::to_string(order.cells) +
-        (order.reversed == 1 ? " cells is" : " cells are") +
-        " treated as if listed in the opposite order.";
-      this->reverseCells(order.reverse);
-      this->Reversed = order.reverse;
+      this->reverseCells(reverse);
+      this->Reversed = reverse;
       this->TheMesh->classifyCells(validity, this->Threads);
     }
   }
-  else if (orientation.state == Orientation::Reversed)
+  if (found.orientation.state == Orientation::Reversed)
   {
-    text += " It is treated as if its cells were flipped.";
     this->setMirrored(true);
     this->TheMesh->classifyCells(validity, this->Threads);
   }
-  return text;
+  return describe(found, this->TheMesh->dimension());
+}
+
+//------------------------------------------------------------------------------
+RankOrder MeshAdapter::findOrder(signed char* validity) const
+{
+  SingleRank alone;
+  return consistentOrderOnRanks(
+    alone, { { this->TheMesh.get(), this->Ghosts, nullptr } }, { validity });
 }
 
 //------------------------------------------------------------------------------
@@ -425,31 +437,51 @@ bool hasQuality(int vtkType)
 }
 
 //------------------------------------------------------------------------------
-std::string MeshAdapter::notice() const
+MeshRemarks MeshAdapter::remarks(bool ghosts) const
 {
-  std::string text;
+  MeshRemarks remarks;
   const Mesh& mesh = *this->TheMesh;
-  if (mesh.higherOrderCells() > 0)
+  const bool any = mesh.higherOrderCells() > 0 || mesh.unsupportedCells() > 0;
+  for (Index i = 0; any && i < this->View.numberOfCells; ++i)
   {
-    text += std::to_string(mesh.higherOrderCells()) +
-      " cells of quadratic or higher order are measured on their corners only. ";
-  }
-  std::map<int, Index> counts;
-  if (mesh.unsupportedCells() > 0)
-  {
-    for (Index i = 0; i < this->View.numberOfCells; ++i)
+    const unsigned char type = this->View.cellTypes[i];
+    if (!ghosts && this->Ghosts && this->Ghosts[i])
     {
-      if (hasQuality(this->View.cellTypes[i]) &&
-        cornerType(this->View.cellTypes[i]) == CellType::Unsupported)
-      {
-        ++counts[this->View.cellTypes[i]];
-      }
+      continue;
+    }
+    if (cornerType(type) != CellType::Unsupported)
+    {
+      remarks.higherOrderCells += isHigherOrder(type);
+    }
+    else if (hasQuality(type))
+    {
+      ++remarks.notMeasured[type];
     }
   }
-  if (!counts.empty())
+  remarks.nonFinitePoints = mesh.nonFinitePoints();
+  remarks.coarseness = this->coarseness();
+  return remarks;
+}
+
+//------------------------------------------------------------------------------
+std::string MeshAdapter::notice() const
+{
+  return describe(this->remarks());
+}
+
+//------------------------------------------------------------------------------
+std::string describe(const MeshRemarks& remarks)
+{
+  std::string text;
+  if (remarks.higherOrderCells > 0)
+  {
+    text += std::to_string(remarks.higherOrderCells) +
+      " cells of quadratic or higher order are measured on their corners only. ";
+  }
+  if (!remarks.notMeasured.empty())
   {
     text += "Not measured:";
-    for (const auto& entry : counts)
+    for (const auto& entry : remarks.notMeasured)
     {
       text += " " + std::to_string(entry.second) + " " + cellClassName(entry.first) + ",";
     }
@@ -458,13 +490,12 @@ std::string MeshAdapter::notice() const
     text += " Run Tetrahedralize first to measure them: it cuts all cells into triangles or "
             "tetrahedra. ";
   }
-  if (mesh.nonFinitePoints() > 0)
+  if (remarks.nonFinitePoints > 0)
   {
-    text += std::to_string(mesh.nonFinitePoints()) +
+    text += std::to_string(remarks.nonFinitePoints) +
       " points have a NaN or infinite coordinate; cells that use them have Validity -3. ";
   }
-  const std::string coarse = this->coarseness();
-  text += coarse.empty() ? "" : coarse + " ";
+  text += remarks.coarseness.empty() ? "" : remarks.coarseness + " ";
   if (!text.empty())
   {
     text.pop_back();
@@ -481,10 +512,10 @@ std::size_t MeshAdapter::copiedBytes() const
 }
 
 //------------------------------------------------------------------------------
-std::string describe(const Orientation& o, const Mesh& mesh)
+std::string describe(const Orientation& o, Dimension dimension)
 {
   const std::string seen =
-    mesh.dimension() == Dimension::Planar ? " (clockwise, seen against the plane's normal)" : "";
+    dimension == Dimension::Planar ? " (clockwise, seen against the plane's normal)" : "";
   if (o.state == Orientation::Reversed)
   {
     return "The mesh is reversed: its cells list their points in the opposite order" + seen + ", " +
@@ -497,7 +528,7 @@ std::string describe(const Orientation& o, const Mesh& mesh)
     if (o.disagreeing > 0)
     {
       text += std::to_string(o.disagreeing) +
-        (mesh.dimension() == Dimension::Volume ? " faces" : " edges") +
+        (dimension == Dimension::Volume ? " faces" : " edges") +
         " have neighbours that list their points in opposite senses";
     }
     else
@@ -508,6 +539,31 @@ std::string describe(const Orientation& o, const Mesh& mesh)
     return text + ".";
   }
   return "";
+}
+
+//------------------------------------------------------------------------------
+std::string describe(const RankOrder& found, Dimension dimension)
+{
+  std::string text = describe(found.orientation, dimension);
+  const CellOrder& order = found.order;
+  if (order.ambiguous > 0)
+  {
+    const std::string cells = order.firstAmbiguous >= 0
+      ? "The cells connected with cell " + std::to_string(order.firstAmbiguous)
+      : "The cells of " + std::to_string(order.ambiguous) + " connected parts";
+    text += " " + cells + " have no consistent orientation, like those of a Moebius band.";
+  }
+  if (order.reversed > 0)
+  {
+    text += " " + std::to_string(order.reversed) + " of the " + std::to_string(order.cells) +
+      (order.reversed == 1 ? " cells is" : " cells are") +
+      " treated as if listed in the opposite order.";
+  }
+  if (found.orientation.state == Orientation::Reversed)
+  {
+    text += " It is treated as if its cells were flipped.";
+  }
+  return text;
 }
 
 namespace
@@ -591,14 +647,9 @@ void flipCells(vtkDataSet* data, const std::vector<unsigned char>& flags)
 }
 
 //------------------------------------------------------------------------------
-std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter)
+std::vector<unsigned char> facesBesideVolumes(const Mesh& mesh)
 {
-  const Mesh& mesh = adapter.mesh();
   std::vector<unsigned char> skip;
-  if (adapter.ghostCells())
-  {
-    skip.assign(adapter.ghostCells(), adapter.ghostCells() + mesh.view().numberOfCells);
-  }
   for (const CellBlock& block : mesh.blocks())
   {
     if (mesh.dimension() == Dimension::Volume && topology(block.type).dimension == 2)
@@ -609,6 +660,19 @@ std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter)
         skip[block.cell(i)] = 1;
       }
     }
+  }
+  return skip;
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter)
+{
+  std::vector<unsigned char> skip = facesBesideVolumes(adapter.mesh());
+  if (const unsigned char* ghosts = adapter.ghostCells())
+  {
+    skip.resize(adapter.mesh().view().numberOfCells, 0);
+    std::transform(skip.begin(), skip.end(), ghosts, skip.begin(),
+      [](unsigned char face, unsigned char ghost) { return face ? face : ghost; });
   }
   return skip;
 }

@@ -15,6 +15,7 @@
 
 #include "TautlineCoreModule.h" // for export macro
 
+#include "tautline/Mesh/CellOrder.h"
 #include "tautline/Mesh/CoincidentPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/Mesh.h"
@@ -23,6 +24,7 @@
 #include "vtkSmartPointer.h"
 #include "vtkUnsignedCharArray.h"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -33,6 +35,14 @@ class vtkPoints;
 
 namespace tautline
 {
+/// What MeshAdapter::remarks() finds.
+struct MeshRemarks
+{
+  Index higherOrderCells = 0, nonFinitePoints = 0;
+  std::map<int, Index> notMeasured; ///< the numbers of cells that are left out, by VTK's type
+  std::string coarseness;           ///< see MeshAdapter::coarseness()
+};
+
 class TAUTLINECORE_EXPORT MeshAdapter
 {
 public:
@@ -67,6 +77,13 @@ public:
    * @return what was found, in sentences for the user, or ""
    */
   std::string orient(signed char* validity = nullptr, bool required = true);
+  /**
+   * @brief The same with what is known of the whole mesh, of which this is a piece.
+   * @param piece the number of this piece in `found`
+   */
+  std::string orient(signed char* validity, const RankOrder& found, std::size_t piece = 0);
+  /// What consistentOrderOnRanks() finds of this mesh alone.
+  RankOrder findOrder(signed char* validity) const;
   /// Lists the cells with nonzero flags (one per cell) in the opposite order in mesh().
   void reverseCells(const std::vector<unsigned char>& flags);
   /// The cells that orient() listed in the opposite order, one flag per cell; empty if there are
@@ -74,6 +91,10 @@ public:
   const std::vector<unsigned char>& reversedCells() const { return this->Reversed; }
   /// The mesh with the points that its cells have in the data set.
   const Mesh& given() const { return this->Given ? *this->Given : *this->TheMesh; }
+
+  /// Which cells and points are not as others.
+  /// @param ghosts whether ghost cells count
+  MeshRemarks remarks(bool ghosts = true) const;
 
   /**
    * @brief Remarks for the user on how the mesh is interpreted, as sentences, or "":
@@ -139,7 +160,15 @@ private:
 TAUTLINECORE_EXPORT std::vector<Index> idsOf(vtkDataArray* globalIds);
 
 /// Says how the cells are oriented, in a sentence for the user; empty when all is well.
-TAUTLINECORE_EXPORT std::string describe(const Orientation& orientation, const Mesh& mesh);
+TAUTLINECORE_EXPORT std::string describe(const Orientation& orientation, Dimension dimension);
+inline std::string describe(const Orientation& orientation, const Mesh& mesh)
+{
+  return describe(orientation, mesh.dimension());
+}
+/// The same with what MeshAdapter::orient() does about it.
+TAUTLINECORE_EXPORT std::string describe(const RankOrder& order, Dimension dimension);
+/// MeshAdapter::notice() of these remarks.
+TAUTLINECORE_EXPORT std::string describe(const MeshRemarks& remarks);
 
 /**
  * @brief Reverses the order of the points of cells in a copy that only this output uses. Throws
@@ -147,6 +176,9 @@ TAUTLINECORE_EXPORT std::string describe(const Orientation& orientation, const M
  * @param flags one per cell, nonzero for those to reverse; empty: all
  */
 TAUTLINECORE_EXPORT void flipCells(vtkDataSet* data, const std::vector<unsigned char>& flags = {});
+
+/// Flags the 2D cells beside 3D ones. Empty if there are none.
+TAUTLINECORE_EXPORT std::vector<unsigned char> facesBesideVolumes(const Mesh& mesh);
 
 /// Cells to leave out of statistics: ghosts, and 2D cells beside 3D ones. Empty if there are none.
 TAUTLINECORE_EXPORT std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter);

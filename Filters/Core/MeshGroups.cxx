@@ -3,6 +3,7 @@
 
 #include "tautline/Core/Types.h"
 
+#include "vtkDataObjectTree.h"
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
@@ -10,6 +11,7 @@
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
 
+#include <algorithm>
 #include <string>
 
 namespace tautline
@@ -119,6 +121,32 @@ std::vector<GroupedPiece> listPieces(vtkDataObject* data, int& groups)
   walker.walk(data);
   groups = walker.groups();
   return pieces;
+}
+
+//------------------------------------------------------------------------------
+bool hasPartitions(vtkDataObject* data)
+{
+  if (!vtkDataObjectTree::SafeDownCast(data))
+  {
+    return false;
+  }
+  int groups = 0;
+  std::vector<int> filled;
+  try
+  {
+    for (const GroupedPiece& piece : listPieces(data, groups))
+    {
+      if (piece.data->GetNumberOfCells() > 0)
+      {
+        filled.push_back(piece.group);
+      }
+    }
+  }
+  catch (const Error&) // other composite data among the blocks
+  {
+    return false;
+  }
+  return std::adjacent_find(filled.begin(), filled.end()) != filled.end();
 }
 
 //------------------------------------------------------------------------------

@@ -33,6 +33,9 @@ struct GroupedPiece
  */
 TAUTLINECORE_EXPORT std::vector<GroupedPiece> listPieces(vtkDataObject* data, int& groups);
 
+/// Whether a mesh is in several partitions that have cells.
+TAUTLINECORE_EXPORT bool hasPartitions(vtkDataObject* data);
+
 /**
  * @brief A data object of the same structure, with other data sets.
  * @param make the data set in the place of a piece (null: there is none), or null

@@ -37,7 +37,7 @@ void PieceCopies::require(const PieceItem& a, const PieceItem& b)
   vtkDataSet* piece = this->Pieces[static_cast<std::size_t>(a.piece)];
   piece->GetPoint(a.id, x);
   this->Pieces[static_cast<std::size_t>(b.piece)]->GetPoint(b.id, y);
-  const bool finite = std::isfinite(y[0] + y[1] + y[2]);
+  const bool finite = std::isfinite(x[0] + x[1] + x[2]) && std::isfinite(y[0] + y[1] + y[2]);
   if (finite && !areCopies(x, this->shortestAt(a), y, this->shortestAt(b)))
   {
     const double id = piece->GetPointData()->GetGlobalIds()->GetComponent(a.id, 0);

@@ -21,8 +21,8 @@ public:
   /// @param pieces must outlive it
   explicit PieceCopies(const std::vector<vtkDataSet*>& pieces);
 
-  /// Throws Error if points with the same global id are not copies, see areCopies(), unless the
-  /// second one is not finite.
+  /// Throws Error if points with the same global id are not copies, see areCopies(), unless one of
+  /// them is not finite.
   void require(const PieceItem& a, const PieceItem& b);
 
 private:

@@ -97,6 +97,55 @@ void unpackTable(vtkTable* table, vtkDataSetAttributes* data)
 }
 
 //------------------------------------------------------------------------------
+/// Sends the names of arrays in their order, which messages of data sets do not keep: active ones
+/// come first in them.
+void sendOrder(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
+{
+  stream << data->GetNumberOfArrays();
+  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
+  {
+    const char* name = data->GetArrayName(i);
+    stream << std::string(name ? name : "");
+  }
+}
+
+/// Puts the arrays in the order of sendOrder().
+void restoreOrder(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
+{
+  vtkNew<vtkCellData> received;
+  received->ShallowCopy(data);
+  int count = 0;
+  stream >> count;
+  const auto arrayOf = [&received](const std::string& name)
+  { return name.empty() ? nullptr : received->GetAbstractArray(name.c_str()); };
+  std::vector<vtkAbstractArray*> ordered;
+  for (int i = 0; i < count; ++i)
+  {
+    std::string name;
+    stream >> name;
+    ordered.push_back(arrayOf(name));
+  }
+  const bool known = count == received->GetNumberOfArrays() &&
+    std::find(ordered.begin(), ordered.end(), nullptr) == ordered.end();
+  if (!known)
+  {
+    return; // arrays without names, or with one name
+  }
+  data->Initialize();
+  for (vtkAbstractArray* array : ordered)
+  {
+    data->AddArray(array);
+  }
+  for (int type = 0; type < vtkDataSetAttributes::NUM_ATTRIBUTES; ++type)
+  {
+    if (vtkAbstractArray* active = received->GetAbstractAttribute(type))
+    {
+      data->SetActiveAttribute(active->GetName(), type);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 Vec3 centerOf(vtkDataSet* mesh, vtkIdType cell, vtkIdList* ids)
 {
   mesh->GetCellPoints(cell, ids);
@@ -309,6 +358,11 @@ PieceResults::Packages PieceResults::exchange(Packages& packages) const
       for (const Package& package : theirs)
       {
         stream << package.group << static_cast<int>(package.mesh != nullptr);
+        if (package.mesh)
+        {
+          sendOrder(stream, package.mesh->GetPointData());
+          sendOrder(stream, package.mesh->GetCellData());
+        }
       }
       this->Controller->Send(stream, process, ResultTag);
       for (const Package& package : theirs)
@@ -342,6 +396,8 @@ PieceResults::Packages PieceResults::exchange(Packages& packages) const
     if (isMesh)
     {
       package.mesh = vtkDataSet::SafeDownCast(receive());
+      restoreOrder(stream, package.mesh->GetPointData());
+      restoreOrder(stream, package.mesh->GetCellData());
     }
     else
     {

@@ -16,6 +16,12 @@ std::string counted(Index count, const std::string& noun)
   return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
+/// Without a seam, where only ghost cells have coincident points.
+std::string onSeams(const CoincidentPoints& points)
+{
+  return points.seams > 0 ? " on " + counted(points.seams, "seam") : " of ghost cells";
+}
+
 /// The duplicates without those of cells that do not count, as a ghost is one of its original.
 std::vector<DuplicateCell> countedDuplicates(
   const std::vector<DuplicateCell>& duplicates, const unsigned char* skip)
@@ -48,14 +54,23 @@ std::vector<DuplicateCell> countedDuplicates(
 /// Why facets stay apart.
 std::string describeApart(const CoincidentPoints& points, const Mesh& mesh)
 {
+  return points.apart() == 0
+    ? ""
+    : describeApart(points, mesh.dimension(), placeOf(mesh.view(), points.firstApart));
+}
+}
+
+//------------------------------------------------------------------------------
+std::string describeApart(
+  const CoincidentPoints& points, Dimension dimension, const std::string& first)
+{
   if (points.apart() == 0)
   {
     return "";
   }
-  const std::string facet = mesh.dimension() == Dimension::Volume ? "face" : "edge";
+  const std::string facet = dimension == Dimension::Volume ? "face" : "edge";
   std::string text = counted(points.apart(), facet) + " at the place of another one stay" +
-    (points.apart() == 1 ? "s" : "") + " apart, the first at " +
-    placeOf(mesh.view(), points.firstApart) + ":";
+    (points.apart() == 1 ? "s" : "") + " apart, the first at " + first + ":";
   const auto add = [&text](Index count, const char* reason)
   { text += count > 0 ? " " + std::to_string(count) + " " + reason + "," : std::string(); };
   add(points.crowded, "would have three or more cells");
@@ -64,6 +79,14 @@ std::string describeApart(const CoincidentPoints& points, const Mesh& mesh)
   text.back() = '.';
   return text + " Repair the mesh there, or choose the points to merge by Clean to Grid.";
 }
+
+//------------------------------------------------------------------------------
+std::string describeNear(Index near, const std::string& first)
+{
+  return near == 0 ? ""
+                   : counted(near, "point") +
+      " of the boundary nearly coincide with another one, the first is " + first +
+      ": the elements there are not connected; Clean to Grid with a tolerance merges such points.";
 }
 
 //------------------------------------------------------------------------------
@@ -81,7 +104,7 @@ std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh)
   std::string text;
   if (points.merged > 0)
   {
-    text = counted(points.merged, "coincident point") + " on " + counted(points.seams, "seam") +
+    text = counted(points.merged, "coincident point") + onSeams(points) +
       (points.merged == 1 ? " was" : " were") +
       " treated as one with the point at the same place, the first is " +
       placeOf(mesh.view(), points.first) +
@@ -118,7 +141,7 @@ std::string describeSeams(const CoincidentPoints& points, const Mesh& mesh)
   std::string text;
   if (points.merged > 0)
   {
-    text = counted(points.merged, "point") + " on " + counted(points.seams, "seam") +
+    text = counted(points.merged, "point") + onSeams(points) +
       (points.merged == 1 ? " is" : " are") + " at the place of another one, the first is " +
       placeOf(mesh.view(), points.first) +
       ": the elements there are not connected. Filters whose result depends on it treat these "
@@ -151,6 +174,12 @@ void requireEqualValues(
       }
     }
   }
+}
+
+//------------------------------------------------------------------------------
+Index countDuplicates(const std::vector<DuplicateCell>& found, const unsigned char* skip)
+{
+  return static_cast<Index>(countedDuplicates(found, skip).size());
 }
 
 //------------------------------------------------------------------------------

@@ -35,6 +35,18 @@ TAUTLINECORE_EXPORT std::string describeJoined(const JoinedCopies& copies);
 /// The same for a mesh whose points are not merged: how many, where, and what they do.
 TAUTLINECORE_EXPORT std::string describeSeams(const CoincidentPoints& points, const Mesh& mesh);
 
+/**
+ * @brief A sentence on the facets that stay apart though they are at the place of another one, or
+ * "".
+ * @param first the place of the first
+ */
+TAUTLINECORE_EXPORT std::string describeApart(
+  const CoincidentPoints& points, Dimension dimension, const std::string& first);
+
+/// A sentence on points that nearly coincide with another one, or "".
+/// @param first the place of the first
+TAUTLINECORE_EXPORT std::string describeNear(Index near, const std::string& first);
+
 /// "point 17 at (0.5, 0, 1)"
 TAUTLINECORE_EXPORT std::string placeOf(const MeshView& view, Index point);
 
@@ -82,6 +94,10 @@ TAUTLINECORE_EXPORT void requireEqualValues(
  */
 TAUTLINECORE_EXPORT void requireDistinctCells(
   const Mesh& mesh, const unsigned char* skip = nullptr);
+
+/// The number of duplicate cells. @param skip as for requireDistinctCells()
+TAUTLINECORE_EXPORT Index countDuplicates(
+  const std::vector<DuplicateCell>& found, const unsigned char* skip = nullptr);
 
 /// A sentence on duplicate cells, or "". @param skip as for requireDistinctCells()
 TAUTLINECORE_EXPORT std::string describeDuplicates(

@@ -2,14 +2,13 @@
 #include "RankMesh.h"
 
 #include "Blocks.h"
-#include "MovableMesh.h"
 #include "PointMerge.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/CoordinateOrder.h"
+#include "tautline/Mesh/RankPieces.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
-#include "tautline/Solvers/GraphPartition.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataSet.h"
@@ -18,14 +17,12 @@
 #include "vtkMultiProcessController.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkPoints.h"
 #include "vtkSelection.h"
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>
-#include <numeric>
 
 namespace tautline
 {
@@ -85,7 +82,7 @@ std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataO
   }
   catch (const OppositeOrders&)
   {
-    return gather("neighbouring cells list their points in opposite orders");
+    return gather(oppositeOrders);
   }
   catch (const Error& error) // the same on all processes; one process may refuse it, too
   {
@@ -242,27 +239,8 @@ void RankMesh::divide(const MeshPiece& given)
   std::vector<int> owners;
   if (this->Divided == Redistribution::PtScotch)
   {
-    const Processes processes;
-    if (processes.count() != this->Group.size())
-    {
-      throw Error("PT-Scotch needs processes that communicate by MPI: take a k-d tree.");
-    }
-    // The k-d tree first, so that the graph is spread evenly while PT-Scotch divides it.
-    const DistributedMesh first(this->Group, piece);
-    std::vector<int> ofLocal = first.owners();
-    try
-    {
-      ofLocal = partitionPoints(first, processes.communicator());
-    }
-    catch (const NotDivided& error) // on all processes: the owners of the k-d tree stay
-    {
-      this->Divided = Redistribution::KdTree;
-      this->WhyTree = std::string(" ") + error.what();
-    }
-    for (const Index local : first.localOfPiece())
-    {
-      owners.push_back(local < 0 ? 0 : ofLocal[local]);
-    }
+    owners = ownersByGraph(this->Group, piece, this->Divided, this->WhyTree);
+    std::replace(owners.begin(), owners.end(), -1, 0);
     piece.owners = owners.data();
   }
   this->TheMesh = std::make_unique<DistributedMesh>(this->Group, piece);
@@ -273,7 +251,11 @@ void RankMesh::divide(const MeshPiece& given)
 void RankMesh::checkOrder()
 {
   const MeshView& view = this->TheMesh->view();
-  Index positive = 0, negative = 0, disagreeing = 0;
+  std::unique_ptr<Mesh> mesh; // none where the process has no cells
+  std::vector<signed char> validity;
+  std::vector<unsigned char> copies;
+  std::vector<RankPiece> pieces;
+  std::vector<const signed char*> validities;
   this->Group.together(
     [&]
     {
@@ -281,41 +263,45 @@ void RankMesh::checkOrder()
       {
         return;
       }
-      const Mesh mesh(view, this->Threads);
-      std::vector<signed char> validity(view.numberOfCells);
-      mesh.classifyCells(validity.data(), this->Threads);
-      for (Index cell = 0; cell < view.numberOfCells; ++cell)
+      mesh = std::make_unique<Mesh>(view, this->Threads);
+      validity.resize(view.numberOfCells);
+      mesh->classifyCells(validity.data(), this->Threads);
+      for (const unsigned char owned : this->TheMesh->ownedCells())
       {
-        positive += this->TheMesh->ownedCells()[cell] && validity[cell] == Valid;
-        negative += this->TheMesh->ownedCells()[cell] && validity[cell] == Inverted;
+        copies.push_back(!owned);
       }
-      disagreeing = mesh.orientation(validity.data()).disagreeing;
+      pieces.push_back({ mesh.get(), copies.data(), this->TheMesh->numbers().data() });
+      validities.push_back(validity.data());
     });
-  positive = this->Group.sum(positive);
-  negative = this->Group.sum(negative);
-  this->Mirrored = negative > positive;
-  this->InvertedElements = std::min(positive, negative);
-  disagreeing = this->Group.sum(disagreeing);
-  if (disagreeing > 0)
+  const Orientation found = orientationOnRanks(this->Group, pieces, validities);
+  // As on one process: a mesh with more inverted elements than others is not reversed by that.
+  this->Mirrored = found.state == Orientation::Reversed;
+  this->InvertedElements = this->Mirrored ? found.positiveCells : found.negativeCells;
+  RankOrder order;
+  order.orientation = found;
+  this->Reversal = describe(order, this->volume() ? Dimension::Volume : Dimension::Planar);
+  if (found.disagreeing > 0 || (found.reversedParts > 0 && found.reversedParts < found.parts))
   {
     throw OppositeOrders(
-      "Neighbouring cells list their points in opposite orders: gather the mesh on one "
-      "process, in ParaView by Aggregate Dataset, with Reproducible Order off, or let "
-      "Element Quality reorder the cells (Reorient) first.");
+      (found.disagreeing > 0 ? "Neighbouring cells list their points in opposite orders"
+                             : std::to_string(found.reversedParts) + " of " +
+            std::to_string(found.parts) + " connected parts of the mesh are reversed") +
+      ": gather the mesh on one process, in ParaView by Aggregate Dataset, with Reproducible Order "
+      "off, or let Element Quality reorder the cells (Reorient) first.");
   }
 }
 
 //------------------------------------------------------------------------------
 std::string RankMesh::notice() const
 {
-  std::string ofPiece = this->Adapter->notice();
-  const std::string joined = describeJoined(this->Copies);
-  ofPiece += (ofPiece.empty() || joined.empty() ? "" : "\n") + joined;
-  const std::string division = this->Divided == Redistribution::None
-    ? ""
-    : "The mesh was divided anew among " + std::to_string(this->Group.size()) + " processes" +
-      (this->Divided == Redistribution::PtScotch ? " by PT-Scotch." : ".") + this->WhyTree;
-  return division.empty() ? ofPiece : ofPiece.empty() ? division : ofPiece + "\n" + division;
+  const std::string division = dividedSentence(this->Group, this->Divided, this->WhyTree);
+  std::string text;
+  for (const std::string& sentence :
+    { this->Reversal, this->Adapter->notice(), describeJoined(this->Copies), division })
+  {
+    text += (text.empty() || sentence.empty() ? "" : "\n") + sentence;
+  }
+  return text;
 }
 
 //------------------------------------------------------------------------------
@@ -591,40 +577,6 @@ std::vector<unsigned char> RankMesh::markedOfPiece(const std::vector<Index>& ids
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> RankMesh::ofPiece(const std::vector<double>& local) const
-{
-  const MeshView& view = this->piece();
-  std::vector<double> points(view.points, view.points + 3 * view.numberOfPoints);
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    const Index from = this->TheMesh->localOfPiece()[p];
-    if (from >= 0)
-    {
-      std::copy_n(&local[3 * from], 3, &points[3 * p]);
-    }
-  }
-  return points;
-}
-
-//------------------------------------------------------------------------------
-Mesh RankMesh::movedPiece(const std::vector<double>& points) const
-{
-  MeshView view = this->piece();
-  view.points = points.data();
-  Mesh mesh(view, this->Threads);
-  mesh.setMirrored(this->Mirrored);
-  return mesh;
-}
-
-//------------------------------------------------------------------------------
-std::vector<signed char> RankMesh::validityAt(const std::vector<double>& points) const
-{
-  std::vector<signed char> validity(this->piece().numberOfCells);
-  this->movedPiece(points).classifyCells(validity.data(), this->Threads);
-  return validity;
-}
-
-//------------------------------------------------------------------------------
 std::vector<Index> RankMesh::numbersOf(Index cell) const
 {
   const MeshView& view = this->piece();
@@ -636,41 +588,5 @@ std::vector<Index> RankMesh::numbersOf(Index cell) const
   }
   std::sort(numbers.begin(), numbers.end());
   return numbers;
-}
-
-//------------------------------------------------------------------------------
-std::string RankMesh::move(vtkPointSet* output, const std::vector<double>& local) const
-{
-  std::vector<double> points;
-  vtkPoints* like = this->Input ? this->Input->GetPoints() : nullptr;
-  Index lost = 0;
-  this->Group.together(
-    [&]
-    {
-      points = this->ofPiece(local);
-      if (like && like->GetDataType() == VTK_FLOAT)
-      {
-        std::vector<double> rounded(points.size());
-        std::transform(points.begin(), points.end(), rounded.begin(),
-          [](double x) { return static_cast<double>(static_cast<float>(x)); });
-        const auto before = this->validityAt(points), after = this->validityAt(rounded);
-        lost =
-          std::inner_product(before.begin(), before.end(), after.begin(), Index(0), std::plus<>(),
-            [](signed char a, signed char b) { return Index(a == Valid && b != Valid); });
-      }
-    });
-  lost = this->Group.sum(lost);
-  this->Group.together(
-    [&]
-    {
-      if (output)
-      {
-        output->SetPoints(makePoints(points, lost > 0 ? nullptr : like));
-        addDisplacement(output, this->piece().points, points);
-      }
-    });
-  return lost == 0 ? ""
-                   : "The points are given in double precision: in single precision " +
-      std::to_string(lost) + " valid elements would not be valid.";
 }
 }

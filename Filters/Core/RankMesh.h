@@ -9,7 +9,7 @@
 #include "TautlineCoreModule.h" // for export macro
 
 #include "MeshAdapter.h"
-#include "tautline/Mesh/DistributedMesh.h"
+#include "Redistribution.h"
 
 #include <memory>
 #include <string>
@@ -29,21 +29,18 @@ TAUTLINECORE_EXPORT vtkDataSet* requirePiece(vtkDataObject* input);
 
 class RankMesh;
 
-/// Whether and how a mesh is divided anew among the processes, see
-/// vtkMeshMotionAlgorithm::SetRedistribute().
-enum class Redistribution
-{
-  None,
-  KdTree,
-  PtScotch
-};
-
-/// Neighbouring cells list their points in opposite orders: the mesh can be gathered.
+/// Neighbouring cells list their points in opposite orders, or parts of the mesh are reversed and
+/// others are not: the mesh can be gathered.
 class OppositeOrders : public Error
 {
 public:
   using Error::Error;
 };
+
+/// That as the reason of gatheredSentence().
+constexpr const char* oppositeOrders =
+  "neighbouring cells list their points in opposite orders, or parts of it are reversed and others "
+  "are not";
 
 /**
  * @brief The input as a mesh that each process works on a piece of. Null, on all processes, where
@@ -157,6 +154,12 @@ public:
    * @return a sentence if single precision did not do, else ""
    */
   std::string move(vtkPointSet* output, const std::vector<double>& local) const;
+  /// The same in single precision, that of the input, or in double precision.
+  void move(vtkPointSet* output, const std::vector<double>& local, bool single) const;
+  /// Whether all pieces with points have them in single precision.
+  bool isSingle() const;
+  /// Local points as they are written in single precision.
+  std::vector<double> rounded(const std::vector<double>& local) const;
 
 private:
   void divide(const MeshPiece& piece);
@@ -170,6 +173,7 @@ private:
   Redistribution Divided;
   std::string WhyTree; ///< the error of PT-Scotch, behind a blank
   bool Mirrored = false;
+  std::string Reversal; ///< the sentence on a mesh that is reversed, or ""
   Index InvertedElements = 0;
   std::unique_ptr<MeshAdapter> Adapter;
   JoinedCopies Copies; ///< of the points of the pieces

@@ -528,6 +528,7 @@ std::string inputProblem(vtkDataObject* data, const InputRules& rules)
   }
   std::string problem;
   bool any = false;
+  std::map<unsigned int, BlockPlace> places = blockPlaces(data);
   forEachLeaf(data,
     [&](unsigned int index, vtkDataSet* leaf)
     {
@@ -535,9 +536,8 @@ std::string inputProblem(vtkDataObject* data, const InputRules& rules)
       if (problem.empty())
       {
         problem = dataSetProblem(leaf, rules);
-        problem = problem.empty() || !composite
-          ? problem
-          : "In block " + std::to_string(index) + ": " + problem;
+        const std::string name = places[index].name();
+        problem = problem.empty() || name.empty() ? problem : "In " + name + ": " + problem;
       }
     });
   if (!any && !skippedLeaves(data).empty())

@@ -18,6 +18,7 @@
 #include "vtkUnstructuredGrid.h"
 #include "vtkVersionMacros.h"
 
+#include <algorithm>
 #include <vector>
 
 #if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 6, 0)
@@ -73,6 +74,29 @@ inline vtkSmartPointer<vtkUnsignedCharArray> cellTypesOf(vtkUnstructuredGrid* gr
     types->DeepCopy(stored);
   }
   return types;
+}
+
+/// Removes lists of the faces of polyhedra from a mesh that has no polyhedra. The readers of .pvtu
+/// files of VTK before 9.4 leave such lists at random: they look for polyhedra before the types of
+/// the cells are known. The lists are shorter than the cells, and VTK's extraction of cells reads
+/// beyond their ends.
+inline void removeStrayFaces(vtkUnstructuredGrid* grid)
+{
+#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 4, 0)
+  if (!grid->GetFaces() && !grid->GetFaceLocations())
+  {
+    return;
+  }
+  const vtkSmartPointer<vtkUnsignedCharArray> types = cellTypesOf(grid);
+  const unsigned char* begin = types ? types->GetPointer(0) : nullptr;
+  const unsigned char* end = types ? begin + types->GetNumberOfValues() : nullptr;
+  if (std::find(begin, end, VTK_POLYHEDRON) == end)
+  {
+    grid->SetCells(types, grid->GetCells(), nullptr, nullptr);
+  }
+#else
+  static_cast<void>(grid);
+#endif
 }
 
 /// The offsets of cells that are stored in 64 bits; null where they are not a plain array.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WholeMesh.h"
 
+#include "ImageParts.h"
 #include "PieceCopies.h"
 #include "PointOrder.h"
 #include "tautline/Core/Interruption.h"
@@ -259,8 +260,10 @@ bool haveIds(const Pieces& pieces, bool ofPoints)
 }
 
 /// Numbers the points that are one point alike; fills where they are taken from.
-void numberPoints(const Pieces& pieces, WholeMesh& whole, Origins& origins)
+/// @return per point of the whole, a number that those at one place, or with one id, have alike
+std::vector<vtkIdType> numberPoints(const Pieces& pieces, WholeMesh& whole, Origins& origins)
 {
+  std::vector<vtkIdType> places;
   const bool byId = haveIds(pieces, true);
   std::vector<Keyed> all, odd; // odd ones have no place
   for (std::size_t i = 0; i < pieces.size(); ++i)
@@ -287,12 +290,18 @@ void numberPoints(const Pieces& pieces, WholeMesh& whole, Origins& origins)
   {
     std::vector<int> counts(pieces.size(), 0);
     int highest = 0;
+    std::size_t origin = begin;
     for (end = begin; end < all.size() && !all[begin].before(all[end]); ++end)
     {
       highest = std::max(highest, all[end].own && !byId ? ++counts[all[end].piece] : 0);
       if (byId && all[end].place != all[begin].place)
       {
         copies.require({ all[begin].piece, all[begin].id }, { all[end].piece, all[end].id });
+        // A point with a copy that is not finite is not finite: the others do not hide it.
+        const Vec3& first = all[origin].place;
+        const Vec3& other = all[end].place;
+        const bool finite = std::isfinite(first[0] + first[1] + first[2]);
+        origin = finite && !std::isfinite(other[0] + other[1] + other[2]) ? end : origin;
       }
     }
     for (std::size_t k = begin; k < end; ++k)
@@ -300,7 +309,9 @@ void numberPoints(const Pieces& pieces, WholeMesh& whole, Origins& origins)
       const bool separate = k == begin || (highest > 1 && all[k].own);
       if (separate)
       {
-        origins.push_back({ all[k].piece, all[k].id });
+        const Keyed& from = all[k == begin ? origin : k];
+        origins.push_back({ from.piece, from.id });
+        places.push_back(static_cast<vtkIdType>(begin));
       }
       const auto number = static_cast<vtkIdType>(origins.size()) - 1;
       whole.pieces[static_cast<std::size_t>(all[k].piece)].points[all[k].id] = number;
@@ -310,8 +321,10 @@ void numberPoints(const Pieces& pieces, WholeMesh& whole, Origins& origins)
   {
     whole.pieces[static_cast<std::size_t>(point.piece)].points[point.id] =
       static_cast<vtkIdType>(origins.size());
+    places.push_back(static_cast<vtkIdType>(all.size() + origins.size()));
     origins.push_back({ point.piece, point.id });
   }
+  return places;
 }
 
 //------------------------------------------------------------------------------
@@ -335,11 +348,12 @@ int listOf(int type, bool poly)
   }
 }
 
-/// The points of all cells in the whole mesh, sorted within each cell.
+/// The points of all cells in the whole mesh, sorted within each cell; or their places.
 class CellKeys
 {
 public:
-  CellKeys(const Pieces& pieces, const WholeMesh& whole)
+  /// @param places per point of the whole; null: the numbers of points count
+  CellKeys(const Pieces& pieces, const WholeMesh& whole, const std::vector<vtkIdType>* places)
   {
     vtkNew<vtkIdList> ids;
     for (std::size_t i = 0; i < pieces.size(); ++i)
@@ -351,7 +365,8 @@ public:
         this->Begin.push_back(this->Points.size());
         for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
         {
-          this->Points.push_back(whole.pieces[i].points[static_cast<std::size_t>(ids->GetId(k))]);
+          const vtkIdType p = whole.pieces[i].points[static_cast<std::size_t>(ids->GetId(k))];
+          this->Points.push_back(places ? (*places)[static_cast<std::size_t>(p)] : p);
         }
         std::sort(this->Points.begin() + static_cast<std::ptrdiff_t>(this->Begin.back()),
           this->Points.end());
@@ -381,7 +396,34 @@ private:
   std::vector<std::size_t> Begin, First;
 };
 
-void numberCells(const Pieces& pieces, WholeMesh& whole, Origins& origins)
+/// Gives ghosts the numbers of the cells with their points, where there are some.
+/// @return the others
+Origins numberGhosts(
+  const Origins& ghosts, const Origins& origins, const CellKeys& keys, WholeMesh& whole)
+{
+  Origins sorted = origins, left;
+  std::stable_sort(sorted.begin(), sorted.end(),
+    [&](const Origin& a, const Origin& b) { return keys.less(a, b); });
+  for (const Origin& ghost : ghosts)
+  {
+    const auto found = std::lower_bound(sorted.begin(), sorted.end(), ghost,
+      [&](const Origin& a, const Origin& b) { return keys.less(a, b); });
+    if (found != sorted.end() && !keys.less(ghost, *found))
+    {
+      whole.pieces[static_cast<std::size_t>(ghost.piece)].cells[ghost.id] =
+        whole.pieces[static_cast<std::size_t>(found->piece)].cells[found->id];
+    }
+    else
+    {
+      left.push_back(ghost);
+    }
+  }
+  return left;
+}
+
+/// @param places of the points, as numberPoints() gives them
+void numberCells(
+  const Pieces& pieces, const std::vector<vtkIdType>& places, WholeMesh& whole, Origins& origins)
 {
   const bool byId = haveIds(pieces, false);
   const bool poly = std::all_of(
@@ -399,7 +441,7 @@ void numberCells(const Pieces& pieces, WholeMesh& whole, Origins& origins)
       (isGhost(pieces[i], cell) ? ghosts : origins).push_back({ static_cast<int>(i), cell });
     }
   }
-  const CellKeys keys(pieces, whole);
+  const CellKeys keys(pieces, whole, nullptr);
   const auto idOf = [&](const Origin& cell)
   {
     return pieces[static_cast<std::size_t>(cell.piece)]
@@ -427,68 +469,20 @@ void numberCells(const Pieces& pieces, WholeMesh& whole, Origins& origins)
         " and are not marked as ghost cells: run Generate Global Ids again.");
     }
   }
-  if (ghosts.empty())
+  if (!ghosts.empty())
   {
-    return;
+    ghosts = numberGhosts(ghosts, origins, keys, whole);
   }
-  Origins sorted = origins;
-  std::sort(sorted.begin(), sorted.end(),
-    [&](const Origin& a, const Origin& b) { return keys.less(a, b); });
-  for (const Origin& ghost : ghosts)
+  // Where one process has several parts, points on the seam between them are not one, and the ghost
+  // of a cell has those of the other part.
+  if (!ghosts.empty())
   {
-    const auto found = std::lower_bound(sorted.begin(), sorted.end(), ghost,
-      [&](const Origin& a, const Origin& b) { return keys.less(a, b); });
-    if (found != sorted.end() && !keys.less(ghost, *found))
-    {
-      whole.pieces[static_cast<std::size_t>(ghost.piece)].cells[ghost.id] =
-        whole.pieces[static_cast<std::size_t>(found->piece)].cells[found->id];
-    }
+    numberGhosts(ghosts, origins, CellKeys(pieces, whole, &places), whole);
   }
 }
 
 //------------------------------------------------------------------------------
 // Images
-
-/// Whether all pieces are parts of one image.
-bool areOneImage(const Pieces& pieces)
-{
-  auto* first = vtkImageData::SafeDownCast(pieces.front());
-  return first &&
-    std::all_of(pieces.begin(), pieces.end(),
-      [first](vtkDataSet* piece)
-      {
-        auto* image = vtkImageData::SafeDownCast(piece);
-        return image &&
-          std::equal(image->GetOrigin(), image->GetOrigin() + 3, first->GetOrigin()) &&
-          std::equal(image->GetSpacing(), image->GetSpacing() + 3, first->GetSpacing());
-      });
-}
-
-/// The ids of a part of an image in the whole of it. @param unit 0 for points, 1 for cells
-std::vector<vtkIdType> idsOfPart(const int* part, const int* all, int unit)
-{
-  std::array<vtkIdType, 3> size, from, to;
-  for (std::size_t a = 0; a < 3; ++a)
-  {
-    // A flat image has one layer of cells.
-    const bool flat = all[2 * a] == all[2 * a + 1];
-    size[a] = all[2 * a + 1] - all[2 * a] + 1 - (flat ? 0 : unit);
-    from[a] = part[2 * a] - all[2 * a];
-    to[a] = part[2 * a + 1] - all[2 * a] + 1 - (flat ? 0 : unit);
-  }
-  std::vector<vtkIdType> ids;
-  for (vtkIdType k = from[2]; k < to[2]; ++k)
-  {
-    for (vtkIdType j = from[1]; j < to[1]; ++j)
-    {
-      for (vtkIdType i = from[0]; i < to[0]; ++i)
-      {
-        ids.push_back(i + size[0] * (j + size[1] * k));
-      }
-    }
-  }
-  return ids;
-}
 
 WholeMesh assembleImage(const Pieces& pieces)
 {
@@ -608,8 +602,8 @@ WholeMesh assemble(const std::vector<vtkDataSet*>& pieces, const WholeMesh* like
   else
   {
     whole.pieces.resize(parts.size());
-    numberPoints(parts, whole, whole.points);
-    numberCells(parts, whole, whole.cells);
+    const std::vector<vtkIdType> places = numberPoints(parts, whole, whole.points);
+    numberCells(parts, places, whole, whole.cells);
   }
   if (!whole.mesh)
   {

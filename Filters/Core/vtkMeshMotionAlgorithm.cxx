@@ -47,6 +47,13 @@ void vtkMeshMotionAlgorithm::ForEachBlock(vtkInformationVector** inputVector,
 }
 
 //------------------------------------------------------------------------------
+bool vtkMeshMotionAlgorithm::JoinsPartitions(vtkInformationVector** inputs)
+{
+  return this->MergeCoincidentPoints ||
+    vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject::GetData(inputs[MeshPort]));
+}
+
+//------------------------------------------------------------------------------
 bool vtkMeshMotionAlgorithm::ProceedInBlock(int block, double fraction)
 {
   return this->Proceed((block + fraction) / static_cast<double>(this->NumberOfBlocks));

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkTautlineAlgorithm.h"
 
+#include "Blocks.h"
 #include "ExecutionScope.h"
 #include "GatheredExecution.h"
 #include "Processes.h"
 #include "ProgressStep.h"
 #include "ValidateInput.h"
+#include "VtkCompatibility.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 
@@ -16,6 +18,7 @@
 #include "vtkExecutive.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
+#include "vtkPointData.h"
 #include "vtkSelection.h"
 #include "vtkSmartPointer.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
@@ -26,6 +29,7 @@
 #include <cmath>
 #include <limits>
 #include <new>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 #include <utility>
@@ -33,6 +37,32 @@
 namespace
 {
 constexpr int MeshPort = 0;
+
+/// What VTK's reader leaves at random is not passed on; the data of the inputs are not changed.
+void removeStrayFaces(vtkInformationVector** inputs, int ports, vtkInformationVector* outputs)
+{
+  std::set<vtkDataSet*> given;
+  for (int port = 0; port < ports; ++port)
+  {
+    for (int i = 0; i < inputs[port]->GetNumberOfInformationObjects(); ++i)
+    {
+      tautline::forEachLeaf(vtkDataObject::GetData(inputs[port], i),
+        [&given](unsigned int, vtkDataSet* leaf) { given.insert(leaf); });
+    }
+  }
+  for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
+  {
+    tautline::forEachLeaf(vtkDataObject::GetData(outputs, port),
+      [&given](unsigned int, vtkDataSet* leaf)
+      {
+        auto* grid = vtkUnstructuredGrid::SafeDownCast(leaf);
+        if (grid && given.count(grid) == 0)
+        {
+          tautline::removeStrayFaces(grid);
+        }
+      });
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -129,6 +159,7 @@ vtkTypeBool vtkTautlineAlgorithm::ProcessRequest(
       const int executed = this->GetNumberOfInputPorts() > 0
         ? this->ExecuteData(request, inputs, outputs)
         : this->Superclass::ProcessRequest(request, inputs, outputs);
+      removeStrayFaces(inputs, this->GetNumberOfInputPorts(), outputs);
       complete = true;
       return executed;
     });
@@ -160,10 +191,15 @@ int vtkTautlineAlgorithm::ExecuteData(
     return 1;
   }
   std::string problem;
-  const std::string failure = vtkTautlineAlgorithm::FailureOf(
-    "divide the mesh", [&] { problem = this->FindInputProblem(inputs); });
+  const std::string failure = vtkTautlineAlgorithm::FailureOf("divide the mesh",
+    [&]
+    {
+      problem = this->FindSettingProblem();
+      problem = problem.empty() ? this->FindInputProblem(inputs) : problem;
+    });
   problem = failure.empty() ? problem : failure;
-  const bool gathers = tautline::isGathered(this, this->GetGatheredResult());
+  const bool gathers =
+    tautline::isGathered(this, this->GetGatheredResult(), this->JoinsPartitions(inputs));
   const bool together = this->ExecutesOnAllProcesses() || gathers;
   if (together)
   {
@@ -188,7 +224,7 @@ int vtkTautlineAlgorithm::ExecuteData(
   {
     vtkWarningMacro(<< notice);
   }
-  const int executed = gathers && !this->TakesPieces(inputs)
+  const int executed = gathers && !(tautline::severalProcesses() && this->TakesPieces(inputs))
     ? this->ExecuteGathered(request, inputs, outputs)
     : this->Superclass::ProcessRequest(request, inputs, outputs);
   if (executed && !empty.empty())
@@ -209,8 +245,13 @@ int vtkTautlineAlgorithm::ExecuteGathered(
   rules.exchange = [this](tautline::ResultStream& stream) { this->ExchangeResult(stream); };
   rules.assist = [this] { this->Assist(); };
   // On the first process, which is the only one that VTK has meanwhile.
+  const bool several = tautline::severalProcesses() != nullptr;
   const auto execute = [&]
   {
+    if (!several) // the scope of the request holds
+    {
+      return static_cast<int>(this->Superclass::ProcessRequest(request, inputs, outputs));
+    }
     const tautline::ExecutionLimits limits = { this->GetExecutionSeconds(),
       [this] { return this->KeepsBest(); } };
     return tautline::processInScope(this, limits, request, outputs,
@@ -325,6 +366,22 @@ bool vtkTautlineAlgorithm::TakesPieces(vtkInformationVector**)
 }
 
 //------------------------------------------------------------------------------
+bool vtkTautlineAlgorithm::JoinsPartitions(vtkInformationVector**)
+{
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject* input)
+{
+  bool all = true;
+  tautline::forEachLeaf(input,
+    [&all](unsigned int, vtkDataSet* leaf)
+    { all = all && (leaf->GetNumberOfPoints() == 0 || leaf->GetPointData()->GetGlobalIds()); });
+  return all;
+}
+
+//------------------------------------------------------------------------------
 void vtkTautlineAlgorithm::ExchangeResult(tautline::ResultStream& stream)
 {
   stream(this->Summary);
@@ -359,6 +416,12 @@ std::string vtkTautlineAlgorithm::FindInputProblem(vtkInformationVector** inputs
       }
     }
   }
+  return "";
+}
+
+//------------------------------------------------------------------------------
+std::string vtkTautlineAlgorithm::FindSettingProblem() const
+{
   return "";
 }
 

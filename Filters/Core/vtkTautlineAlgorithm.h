@@ -113,6 +113,10 @@ protected:
   /// the filters that measure or move points mark the cells of such points.
   virtual bool NeedsFinitePoints(int port) const;
 
+  /// What is wrong with the settings on this process, whatever the input; or "", the default. As an
+  /// invalid input it ends the execution before RequestData(), on all processes.
+  virtual std::string FindSettingProblem() const;
+
   /**
    * Whether the processes of a parallel server execute the filter together, so that an invalid
    * input of one of them is an error on all; otherwise the others would wait for it in
@@ -135,6 +139,15 @@ protected:
    * Default: no.
    */
   virtual bool TakesPieces(vtkInformationVector** inputs);
+
+  /**
+   * Whether, with GetGatheredResult() other than None, the partitions of a partitioned or
+   * multipiece data set are one mesh on one process, as they are on several. Default: yes.
+   */
+  virtual bool JoinsPartitions(vtkInformationVector** inputs);
+
+  /// Whether all data sets with points have global ids of these.
+  static bool PartitionsHaveIds(vtkDataObject* input);
 
   /**
    * What the other processes do while the first one is in RequestData() with the whole mesh, in

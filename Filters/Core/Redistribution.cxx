@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "Redistribution.h"
+
+#include "Processes.h"
+#include "tautline/Solvers/GraphPartition.h"
+
+namespace tautline
+{
+//------------------------------------------------------------------------------
+std::vector<int> ownersByGraph(
+  RankGroup& group, const MeshPiece& piece, Redistribution& how, std::string& why)
+{
+  const Processes processes;
+  if (processes.count() != group.size())
+  {
+    throw Error("PT-Scotch needs processes that communicate by MPI: take a k-d tree.");
+  }
+  // The k-d tree first, so that the graph is spread evenly while PT-Scotch divides it.
+  MeshPiece spread = piece;
+  spread.divideAnew = true;
+  const DistributedMesh mesh(group, spread);
+  std::vector<int> ofLocal = mesh.owners();
+  try
+  {
+    ofLocal = partitionPoints(mesh, processes.communicator());
+  }
+  catch (const NotDivided& error) // on all processes: the owners of the k-d tree stay
+  {
+    how = Redistribution::KdTree;
+    why = std::string(" ") + error.what();
+  }
+  std::vector<int> owners;
+  for (const Index local : mesh.localOfPiece())
+  {
+    owners.push_back(local < 0 ? -1 : ofLocal[local]);
+  }
+  return owners;
+}
+
+//------------------------------------------------------------------------------
+std::string dividedSentence(const RankGroup& group, Redistribution how, const std::string& why)
+{
+  return how == Redistribution::None
+    ? ""
+    : "The mesh was divided anew among " + std::to_string(group.size()) + " processes" +
+      (how == Redistribution::PtScotch ? " by PT-Scotch." : ".") + why;
+}
+}
