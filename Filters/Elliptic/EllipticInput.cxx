@@ -3,6 +3,12 @@
 
 #include "Blocks.h"
 #include "PointMerge.h"
+#include "ProcessGroup.h"
+
+#include "tautline/Elliptic/TimeStepping.h"
+#include "tautline/Mesh/CellOrder.h"
+#include "tautline/Mesh/PointCopies.h"
+#include "tautline/Mesh/RankPieces.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -42,6 +48,17 @@ vtkDataArray* cellArray(vtkAlgorithm* algorithm, int index, vtkDataSet* data,
       (components.size() > 1 ? " or " + std::to_string(components.back()) : "") + " are expected.");
   }
   return array;
+}
+
+/// Throws Error where a part of the mesh has no consistent order, see MeshAdapter::orient().
+void requireOrder(RankOrder& order, Dimension dimension)
+{
+  if (order.order.ambiguous > 0)
+  {
+    order.order.reversed = 0; // nothing is done about it
+    throw Error(describe(order, dimension) +
+      " Cut the mesh so that each part has one (Clip), or remove cells.");
+  }
 }
 
 /// The values, or null if there are none; not null only because this process has no points.
@@ -88,7 +105,7 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
         this->readArrays(choice, algorithm);
       }
     });
-  this->settleOrientation(processes);
+  this->settleOrientation(processes, threads);
   this->settleDimension(choice, processes);
   this->Part.communicator = processes.communicator();
   this->Part.globalIds = processes.count() > 1 ? mesh.globalIds.data() : nullptr;
@@ -99,20 +116,168 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
   problem.diffusion.tensor = { choice.diffusion[0], choice.diffusion[1], choice.diffusion[2], 0, 0,
     0 };
   problem.diffusion.reaction = choice.reaction;
-  problem.diffusion.tensors = this->Tensors.empty() ? nullptr : this->Tensors.data();
+  problem.diffusion.tensors = this->Values.tensors.empty() ? nullptr : this->Values.tensors.data();
   problem.elastic.youngsModulus = choice.youngsModulus;
   problem.elastic.poissonRatio = choice.poissonRatio;
   problem.elastic.plane = choice.plane;
-  problem.elastic.stiffening = this->Stiffening.empty() ? nullptr : this->Stiffening.data();
+  problem.elastic.stiffening =
+    this->Values.stiffening.empty() ? nullptr : this->Values.stiffening.data();
   problem.source = choice.source.constant;
-  problem.sources = orNull(this->Sources, choice.source.kind != PointFunction::Constant);
-  problem.fixedValues = orNull(this->Given, !choice.given.isZero());
-  processes.together(
-    [&]()
+  problem.sources = orNull(this->Values.sources, choice.source.kind != PointFunction::Constant);
+  problem.fixedValues = orNull(this->Values.given, !choice.given.isZero());
+  if (choice.redistribution != Redistribution::None && processes.count() > 1)
+  {
+    this->divide(choice.redistribution, threads);
+  }
+  this->assemble(processes, threads);
+}
+
+//------------------------------------------------------------------------------
+void EllipticInput::assemble(const Processes& processes, int threads)
+{
+  if (!this->Division)
+  {
+    processes.together(
+      [&]()
+      {
+        this->System =
+          std::make_unique<EllipticSystem>(this->piece(), this->Problem, this->Part, threads);
+      });
+    return;
+  }
+  try
+  {
+    processes.together(
+      [&]()
+      {
+        this->System = std::make_unique<EllipticSystem>(
+          *this->DividedMesh, this->DividedProblem, this->DividedPart, threads);
+      });
+  }
+  catch (const Error&) // on all processes
+  {
+    // The message is to have the numbers of cells and points in the pieces.
+    processes.together(
+      [&]() { requireSolvable(this->piece(), this->Problem, this->Part, threads); });
+    throw;
+  }
+  this->Values = Arrays(); // what Problem has of the pieces is not read any more
+}
+
+//------------------------------------------------------------------------------
+/// Divides the mesh and what the problem has of it among the processes.
+void EllipticInput::divide(Redistribution how, int threads)
+{
+  RankGroup& group = *this->Group;
+  MeshView view = this->piece().view();
+  const Index* ids = this->Local.globalIds.data();
+
+  std::string why;
+  std::vector<int> owners;
+  if (how == Redistribution::PtScotch)
+  {
+    try
     {
-      this->System =
-        std::make_unique<EllipticSystem>(this->Adapter->mesh(), problem, this->Part, threads);
+      const JoinedCopies joined = joinCopies(group, view, ids);
+      view.points = joined.points.empty() ? view.points : joined.points.data();
+      owners = ownersByGraph(group, { view, ids, this->skipped() }, how, why);
+    }
+    catch (const Error& error) // on all processes: copies of cells or ids that a solver takes
+    {
+      how = Redistribution::KdTree;
+      why = std::string(" ") + error.what();
+      owners.clear();
+    }
+    view.points = this->piece().view().points;
+  }
+  if (group.any(static_cast<Index>(owners.size()) != view.numberOfPoints))
+  {
+    owners = ownersByTree(group, view, this->skipped());
+  }
+
+  group.together(
+    [&]
+    {
+      this->Skip.resize(static_cast<std::size_t>(view.numberOfCells), 0);
+      this->Part.skip = this->Skip.data();
     });
+  this->Division = std::make_unique<CellDivision>(group, view, ids, owners);
+
+  const CellDivision& division = *this->Division;
+  const int components = this->Problem.pde == Pde::Elasticity ? 3 : 1;
+  // A process without points has no values, but may get some.
+  this->DividedProblem = this->Problem;
+  EllipticProblem& problem = this->DividedProblem;
+  const Arrays& from = this->Values;
+  Arrays& to = this->DividedValues;
+  const auto given = [&](const void* values) { return group.any(values != nullptr); };
+  if (given(problem.fixed))
+  {
+    to.fixed = division.pointsToParts(from.fixed, 1);
+    to.fixed.reserve(1); // so that it is not null where there are no points
+    problem.fixed = to.fixed.data();
+  }
+  if (given(problem.sources))
+  {
+    to.sources = division.pointsToParts(from.sources, components);
+    problem.sources = orNull(to.sources, true);
+  }
+  if (given(problem.fixedValues))
+  {
+    to.given = division.pointsToParts(from.given, components);
+    problem.fixedValues = orNull(to.given, true);
+  }
+  if (given(problem.diffusion.tensors))
+  {
+    to.tensors = division.cellsToParts(from.tensors, TensorSize);
+    problem.diffusion.tensors = orNull(to.tensors, true);
+  }
+  if (given(problem.elastic.stiffening))
+  {
+    to.stiffening = division.cellsToParts(from.stiffening, 1);
+    problem.elastic.stiffening = orNull(to.stiffening, true);
+  }
+  this->DividedSkip = division.cellsToParts(this->Skip, 1);
+  this->DividedPart = this->Part;
+  this->DividedPart.globalIds = division.ids().data();
+  this->DividedPart.skip = this->DividedSkip.data();
+  group.together(
+    [&]
+    {
+      this->DividedMesh = std::make_unique<Mesh>(division.view(), threads);
+      this->DividedMesh->setSpace(this->piece().space());
+      this->DividedMesh->setMirrored(this->piece().mirrored());
+      this->Notice += (this->Notice.empty() ? "" : " ") + dividedSentence(group, how, why);
+    });
+}
+
+//------------------------------------------------------------------------------
+EllipticSolution EllipticInput::fields(const std::vector<double>& unknowns) const
+{
+  EllipticSolution solution;
+  if (!this->Division)
+  {
+    return this->System->fields(unknowns);
+  }
+  this->Group->together([&] { solution = this->System->fields(unknowns); });
+  const int derivatives = solution.components == 1 ? 3 : TensorSize;
+  solution.values = this->Division->pointsToPieces(solution.values, solution.components);
+  solution.gradients = this->Division->cellsToPieces(solution.gradients, derivatives);
+  return solution;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> EllipticInput::unknownsOf(const std::vector<double>& ofPiece) const
+{
+  const int components = this->Problem.pde == Pde::Elasticity ? 3 : 1;
+  return tautline::unknownsOf(
+    *this->System, this->Division ? this->Division->pointsToParts(ofPiece, components) : ofPiece);
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> EllipticInput::cellsOfPiece(const std::vector<double>& ofSystem) const
+{
+  return this->Division ? this->Division->cellsToPieces(ofSystem, 1) : ofSystem;
 }
 
 //------------------------------------------------------------------------------
@@ -122,11 +287,11 @@ void EllipticInput::readArrays(const EllipticChoice& choice, vtkAlgorithm* algor
   const int components = choice.pde == Pde::Elasticity ? 3 : 1;
   if (choice.source.kind != PointFunction::Constant)
   {
-    this->Sources = valuesAt(choice.source, algorithm, data, components);
+    this->Values.sources = valuesAt(choice.source, algorithm, data, components);
   }
   if (!choice.given.isZero())
   {
-    this->Given = valuesAt(choice.given, algorithm, data, components);
+    this->Values.given = valuesAt(choice.given, algorithm, data, components);
   }
   if (choice.pde == Pde::Elliptic)
   {
@@ -137,7 +302,7 @@ void EllipticInput::readArrays(const EllipticChoice& choice, vtkAlgorithm* algor
       for (int k = 0; k < TensorSize; ++k)
       {
         const bool full = tensors->GetNumberOfComponents() == FullTensorSize;
-        this->Tensors.push_back(tensors->GetComponent(cell, full ? OfFullTensor[k] : k));
+        this->Values.tensors.push_back(tensors->GetComponent(cell, full ? OfFullTensor[k] : k));
       }
     }
   }
@@ -147,42 +312,62 @@ void EllipticInput::readArrays(const EllipticChoice& choice, vtkAlgorithm* algor
       algorithm, choice.stiffnessArray, data, "to take the factors of the stiffness from", { 1 });
     for (vtkIdType cell = 0; factors && cell < data->GetNumberOfCells(); ++cell)
     {
-      this->Stiffening.push_back(factors->GetComponent(cell, 0));
+      this->Values.stiffening.push_back(factors->GetComponent(cell, 0));
     }
   }
 }
 
 //------------------------------------------------------------------------------
-void EllipticInput::settleOrientation(const Processes& processes)
+void EllipticInput::settleOrientation(const Processes& processes, int threads)
 {
-  // Each part is given a positive size, so that processes need not agree on more.
   std::string text;
+  std::vector<signed char> validity;
   processes.together(
     [&]()
     {
-      const Mesh& mesh = this->Adapter->mesh();
+      const Mesh& mesh = this->piece();
       if (mesh.higherOrderCells() > 0)
       {
         throw Error("The mesh has " + std::to_string(mesh.higherOrderCells()) +
           " cells of quadratic or higher order: run Tessellate first.");
       }
-      text = this->Adapter->orient();
+      text = processes.count() > 1 ? "" : this->Adapter->orient();
     });
+  if (processes.count() > 1)
+  {
+    // As a part of the whole mesh: its plane, and the order of its cells.
+    this->Group = makeProcessGroup();
+    RankPiece part = { &this->piece(), this->skipped(), this->Local.globalIds.data() };
+    const MeshSpace whole = spaceOnRanks(*this->Group, { part });
+    processes.together(
+      [&]()
+      {
+        this->Adapter->mesh().setSpace(whole);
+        validity.resize(static_cast<std::size_t>(this->piece().view().numberOfCells));
+        this->piece().classifyCells(validity.data(), threads);
+      });
+    part.ghosts = this->Adapter->ghostCells();
+    RankOrder order = consistentOrderOnRanks(*this->Group, { part }, { validity.data() });
+    requireOrder(order, whole.dimension);
+    processes.together([&]() { text = this->Adapter->orient(validity.data(), order); });
+  }
   this->Notice = text + (text.empty() || this->Notice.empty() ? "" : " ") + this->Notice;
 }
 
 //------------------------------------------------------------------------------
 void EllipticInput::settleDimension(const EllipticChoice& choice, const Processes& processes)
 {
-  const Mesh& mesh = this->Adapter->mesh();
-  const auto mine = static_cast<Index>(mesh.dimension());
-  const Index highest = processes.maximum(mine);
-  if (highest == static_cast<Index>(Dimension::Volume) && mine != highest)
+  const Mesh& mesh = this->piece();
+  const auto highest =
+    static_cast<Dimension>(processes.maximum(static_cast<Index>(mesh.dimension())));
+  const bool solid = std::any_of(mesh.blocks().begin(), mesh.blocks().end(),
+    [](const CellBlock& block) { return topology(block.type).dimension == 3; });
+  if (highest == Dimension::Volume && !solid)
   {
     // Here there are only faces of volumes on other processes.
     this->Skip.assign(static_cast<std::size_t>(mesh.view().numberOfCells), 1);
   }
-  if (highest == static_cast<Index>(Dimension::Surface) && choice.pde == Pde::Elasticity)
+  if (highest == Dimension::Surface && choice.pde == Pde::Elasticity)
   {
     throw Error(
       "The mesh is a surface in space; linear elasticity is for planar meshes and volumes.");
@@ -225,20 +410,20 @@ void EllipticInput::markFixed(
   {
     return; // the whole boundary, which the system finds by itself
   }
-  this->Fixed = std::move(chosen);
+  this->Values.fixed = std::move(chosen);
   if (choice.fixedPart != EllipticChoice::OnlyChosen)
   {
     const auto boundary = globalBoundaryPoints(
       this->Adapter->mesh(), this->Part.communicator, this->Part.globalIds, this->Part.skip);
     for (std::size_t i = 0; i < points; ++i)
     {
-      this->Fixed[i] |= boundary[i] && where[i];
+      this->Values.fixed[i] |= boundary[i] && where[i];
     }
   }
   // Selections and arrays of cells may mark a point on one process only.
   PointNumbering(this->Part.communicator, view.numberOfPoints, this->Part.globalIds)
-    .either(this->Fixed.data());
-  this->Fixed.reserve(1); // so that it is not null where there are no points
-  this->Problem.fixed = this->Fixed.data();
+    .either(this->Values.fixed.data());
+  this->Values.fixed.reserve(1); // so that it is not null where there are no points
+  this->Problem.fixed = this->Values.fixed.data();
 }
 }

@@ -9,8 +9,10 @@
 #include "MeshAdapter.h"
 #include "MeshParts.h"
 #include "PointFunction.h"
+#include "Redistribution.h"
 
 #include "tautline/Elliptic/EllipticSystem.h"
+#include "tautline/Mesh/CellDivision.h"
 
 #include <memory>
 
@@ -38,6 +40,8 @@ struct EllipticChoice
   int fixedPart = WholeBoundary;
   std::string fixedWhere; ///< an expression
   int fixedArray = 0;     ///< of points or cells, not 0 where points are fixed
+  /// Of the mesh among several processes; what is computed goes back to the pieces.
+  Redistribution redistribution = Redistribution::None;
 };
 
 /**
@@ -56,23 +60,52 @@ public:
   EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkAlgorithm* algorithm,
     const Processes& processes, int threads);
 
+  /// The system of the part that this process works on: of its piece, unless redistributed.
   const EllipticSystem& system() const { return *this->System; }
   /// Remarks for the user on how the mesh is interpreted, as sentences, or "".
   const std::string& notice() const { return this->Notice; }
 
+  /// The mesh of the piece, with the points and cells of the data set.
+  const Mesh& piece() const { return this->Adapter->mesh(); }
+  /// One flag per cell of the piece, nonzero for one that does not count; or null.
+  const unsigned char* skipped() const { return this->Skip.empty() ? nullptr : this->Skip.data(); }
+  /// The fields of a solution of the system, at the points and in the cells of the piece.
+  /// Collective, as the following.
+  EllipticSolution fields(const std::vector<double>& unknowns) const;
+  /// Values at the points of the piece (elasticity: 3 each) as those of the unknowns of the system.
+  std::vector<double> unknownsOf(const std::vector<double>& ofPiece) const;
+  /// Values of the cells of the system, as those of the piece.
+  std::vector<double> cellsOfPiece(const std::vector<double>& ofSystem) const;
+
 private:
   void readArrays(const EllipticChoice& choice, vtkAlgorithm* algorithm);
-  void settleOrientation(const Processes& processes);
+  void settleOrientation(const Processes& processes, int threads);
   void settleDimension(const EllipticChoice& choice, const Processes& processes);
   void markFixed(const EllipticChoice& choice, vtkAlgorithm* algorithm, const Processes& processes);
+  void divide(Redistribution how, int threads);
+  void assemble(const Processes& processes, int threads);
+
+  /// What a problem refers to.
+  struct Arrays
+  {
+    std::vector<unsigned char> fixed;
+    std::vector<double> sources, given, tensors, stiffening;
+  };
 
   LocalMesh& Local;
   std::unique_ptr<MeshAdapter> Adapter;
   EllipticProblem Problem;
   MeshPart Part;
-  std::vector<unsigned char> Skip, Fixed;
-  std::vector<double> Sources, Given, Tensors, Stiffening;
+  std::vector<unsigned char> Skip;
+  Arrays Values;
   std::string Notice;
+  std::unique_ptr<RankGroup> Group;       ///< null with one process
+  std::unique_ptr<CellDivision> Division; ///< null where the system is that of the piece
+  std::unique_ptr<Mesh> DividedMesh;
+  EllipticProblem DividedProblem;
+  MeshPart DividedPart;
+  std::vector<unsigned char> DividedSkip;
+  Arrays DividedValues;
   std::unique_ptr<EllipticSystem> System;
 };
 }

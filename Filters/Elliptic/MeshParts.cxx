@@ -4,7 +4,10 @@
 #include "BlockSeams.h"
 #include "MergedPieces.h"
 #include "MeshAdapter.h"
-#include "PointMerge.h"
+#include "ProcessGroup.h"
+#include "SeamlessPieces.h"
+
+#include "tautline/Mesh/BlocksOnRanks.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCellData.h"
@@ -22,17 +25,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 namespace tautline
 {
 namespace
 {
-constexpr char SeamRemedy[] =
-  ": on several processes run Merge Blocks first, or switch Merge Coincident Points off to solve "
-  "on each block by itself.";
-
 /// The partitions of a mesh on this process.
 struct Group
 {
@@ -89,7 +87,6 @@ public:
       auto* results = vtkPartitionedDataSet::SafeDownCast(output);
       for (unsigned int i = 0; i < parts->GetNumberOfPartitions(); ++i)
       {
-        ++this->FlatIndex;
         vtkDataObject* part = parts->GetPartitionAsDataObject(i);
         vtkDataObject* mark = marked ? marked->GetPartitionAsDataObject(i) : nullptr;
         if (vtkDataSet* result = this->add(part, mark))
@@ -152,7 +149,7 @@ private:
     }
   }
 
-  int FlatIndex = 0;
+  int FlatIndex = 0; ///< as if partitions were one data set, see BlockPlace
   std::vector<vtkSmartPointer<vtkDataSet>> Made;
 };
 
@@ -177,36 +174,46 @@ void dropInside(vtkDataSet* input, std::vector<char>& flags)
   }
 }
 
-/// The place of a piece and its number.
+/// The place of a piece and a number of it.
 struct Box
 {
-  int rank, piece;
+  int rank, number;
   vtkBoundingBox bounds;
 };
+
+/// The boxes of the pieces of all processes. @param numbers one per piece. Collective.
+std::vector<Box> boxesOf(const std::vector<Piece>& pieces, const std::vector<std::size_t>& numbers,
+  const Processes& processes)
+{
+  constexpr std::size_t size = 8;
+  std::vector<double> sent;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    double bounds[6];
+    pieces[i].input->GetBounds(bounds);
+    sent.insert(
+      sent.end(), { static_cast<double>(processes.rank()), static_cast<double>(numbers[i]) });
+    sent.insert(sent.end(), bounds, bounds + 6);
+  }
+  sent = processes.gather(sent);
+  std::vector<Box> boxes;
+  for (std::size_t k = 0; k + size <= sent.size(); k += size)
+  {
+    boxes.push_back(
+      { static_cast<int>(sent[k]), static_cast<int>(sent[k + 1]), vtkBoundingBox(&sent[k + 2]) });
+  }
+  return boxes;
+}
 
 /// Flags, for each piece, the points that other pieces may share. @param ghosts whether any
 /// piece has some. Collective.
 std::vector<std::vector<char>> sharedPoints(
   const std::vector<Piece>& pieces, bool ghosts, const Processes& processes)
 {
-  constexpr std::size_t numbersPerBox = 8;
   constexpr double few = 0.1; // of the points: then finding those inside costs more than it saves
-  std::vector<double> numbers;
-  for (std::size_t i = 0; i < pieces.size(); ++i)
-  {
-    double bounds[6];
-    pieces[i].input->GetBounds(bounds);
-    numbers.insert(
-      numbers.end(), { static_cast<double>(processes.rank()), static_cast<double>(i) });
-    numbers.insert(numbers.end(), bounds, bounds + 6);
-  }
-  numbers = processes.gather(numbers);
-  std::vector<Box> boxes;
-  for (std::size_t k = 0; k + numbersPerBox <= numbers.size(); k += numbersPerBox)
-  {
-    boxes.push_back({ static_cast<int>(numbers[k]), static_cast<int>(numbers[k + 1]),
-      vtkBoundingBox(&numbers[k + 2]) });
-  }
+  std::vector<std::size_t> numbers(pieces.size());
+  std::iota(numbers.begin(), numbers.end(), std::size_t(0));
+  const std::vector<Box> boxes = boxesOf(pieces, numbers, processes);
   std::vector<std::vector<char>> shared;
   processes.together(
     [&]()
@@ -224,7 +231,7 @@ std::vector<std::vector<char>> sharedPoints(
             std::any_of(boxes.begin(), boxes.end(),
               [&](const Box& box)
               {
-                const bool same = box.rank == processes.rank() && box.piece == static_cast<int>(i);
+                const bool same = box.rank == processes.rank() && box.number == static_cast<int>(i);
                 return !same && box.bounds.ContainsPoint(p);
               });
         }
@@ -303,9 +310,19 @@ std::vector<std::vector<Index>> generateIds(
 }
 
 //------------------------------------------------------------------------------
-/// Global point ids of each piece, from the input or by coordinates. Collective.
+/// How many ids are those of another point.
+Index repetitions(std::vector<Index> ids)
+{
+  std::sort(ids.begin(), ids.end());
+  return ids.end() - std::unique(ids.begin(), ids.end());
+}
+
+/**
+ * @brief Global point ids of each piece, from the input or by coordinates. Collective.
+ * @param mergePoints whether points of one piece may have the same id, by coordinates: they are one
+ */
 std::vector<std::vector<Index>> globalIdsOf(
-  const std::vector<Piece>& pieces, const Processes& processes)
+  const std::vector<Piece>& pieces, bool mergePoints, const Processes& processes)
 {
   std::vector<vtkDataArray*> given;
   for (const Piece& piece : pieces)
@@ -328,11 +345,12 @@ std::vector<std::vector<Index>> globalIdsOf(
         {
           ids[i].push_back(static_cast<Index>(given[i]->GetComponent(k, 0)));
         }
-        std::vector<Index> sorted = ids[i];
-        std::sort(sorted.begin(), sorted.end());
-        const auto distinct = std::unique(sorted.begin(), sorted.end()) - sorted.begin();
-        const auto repeated = static_cast<Index>(sorted.size()) - distinct;
-        if (repeated > 0 || (!sorted.empty() && sorted.front() < 0))
+        const Index repeated = repetitions(ids[i]);
+        const bool negative =
+          std::any_of(ids[i].begin(), ids[i].end(), [](Index id) { return id < 0; });
+        const bool apart =
+          repeated > 0 && (known || !mergePoints || anyCollapse(pieces[i].input, ids[i]));
+        if (apart || negative)
         {
           throw Error(std::to_string(repeated) +
             " points are at the place of another one, or have its global id, and cannot be "
@@ -343,90 +361,6 @@ std::vector<std::vector<Index>> globalIdsOf(
     });
   return ids;
 }
-
-//------------------------------------------------------------------------------
-/// A sentence on point arrays that differ between points that are one, or "".
-std::string differingArrays(vtkDataSet* input, const std::vector<Index>& representative)
-{
-  std::string names;
-  for (int i = 0; i < input->GetPointData()->GetNumberOfArrays(); ++i)
-  {
-    vtkDataArray* array = input->GetPointData()->GetArray(i);
-    const bool ids = array && array == input->GetPointData()->GetGlobalIds();
-    bool differs = false;
-    for (std::size_t p = 0; array && !ids && !differs && p < representative.size(); ++p)
-    {
-      for (int c = 0; c < array->GetNumberOfComponents(); ++c)
-      {
-        const double own = array->GetComponent(static_cast<vtkIdType>(p), c);
-        const double other = array->GetComponent(representative[p], c);
-        differs = differs || (own != other && !(std::isnan(own) && std::isnan(other)));
-      }
-    }
-    names += differs ? (names.empty() ? "'" : ", '") + std::string(array->GetName()) + "'" : "";
-  }
-  return names.empty() ? ""
-                       : "Their values differ in the point array" +
-      std::string(names.find(',') == std::string::npos ? " " : "s ") + names +
-      ": those of the point with the smallest id are taken.";
-}
-
-/// The pieces with their coincident points as one, and the way back.
-class Seamless
-{
-public:
-  std::vector<Piece> pieces;
-  std::string notice;
-
-  Seamless(const std::vector<Piece>& given, bool mergePoints)
-    : pieces(given)
-    , Given(given)
-    , Made(given.size())
-  {
-    for (std::size_t i = 0; mergePoints && i < given.size(); ++i)
-    {
-      vtkDataSet* input = given[i].input;
-      const MeshAdapter adapter(input);
-      const CoincidentPoints found = findCoincidentPoints(adapter.mesh());
-      this->add(describeMerged(found, adapter.mesh()));
-      if (found.apart() > 0)
-      {
-        throw Error(this->notice + " Or switch Merge Coincident Points off to keep all apart.");
-      }
-      if (found.any())
-      {
-        this->add(differingArrays(input, found.representative));
-        this->Made[i] = std::make_unique<Merged>(
-          std::vector<Piece>{ given[i] }, std::vector<std::vector<Index>>{ found.representative });
-        this->Outputs.push_back(vtkSmartPointer<vtkUnstructuredGrid>::New());
-        this->Outputs.back()->ShallowCopy(this->Made[i]->Input);
-        this->pieces[i] = { this->Made[i]->Input, this->Made[i]->Selected, this->Outputs.back() };
-      }
-    }
-  }
-
-  /// Hands what is new in the outputs of the pieces to those that were given.
-  void scatter() const
-  {
-    for (std::size_t i = 0; i < this->Made.size(); ++i)
-    {
-      if (this->Made[i])
-      {
-        this->Made[i]->scatter(this->pieces[i].output, { this->Given[i] });
-      }
-    }
-  }
-
-private:
-  void add(const std::string& sentence)
-  {
-    this->notice += (this->notice.empty() || sentence.empty() ? "" : " ") + sentence;
-  }
-
-  std::vector<Piece> Given;
-  std::vector<std::unique_ptr<Merged>> Made; ///< null where no points are one
-  std::vector<vtkSmartPointer<vtkUnstructuredGrid>> Outputs;
-};
 
 //------------------------------------------------------------------------------
 void visitGroup(const Group& group, LocalMesh& mesh, bool mergePoints, const Processes& processes,
@@ -440,13 +374,20 @@ void visitGroup(const Group& group, LocalMesh& mesh, bool mergePoints, const Pro
   std::vector<std::vector<Index>> ids;
   if (processes.maximum(static_cast<Index>(pieces.size())) > 1 || processes.count() > 1)
   {
-    ids = globalIdsOf(pieces, processes);
+    ids = globalIdsOf(pieces, mergePoints, processes);
   }
+  Index united = 0; // points of one piece, by their coordinates
+  for (const std::vector<Index>& ofPiece : ids)
+  {
+    united += repetitions(ofPiece);
+  }
+  const std::string unitedText = describeUnited(united);
+  mesh.notice += (mesh.notice.empty() || unitedText.empty() ? "" : " ") + unitedText;
   std::unique_ptr<Merged> merged;
   processes.together(
     [&]()
     {
-      if (pieces.size() == 1)
+      if (pieces.size() == 1 && united == 0)
       {
         mesh.input = pieces[0].input;
         mesh.selected = pieces[0].selected;
@@ -474,67 +415,14 @@ void visitGroup(const Group& group, LocalMesh& mesh, bool mergePoints, const Pro
 }
 
 //------------------------------------------------------------------------------
-/// Throws Error if points of a group coincide with those of another group, which may be on another
-/// process: then they cannot be joined. Collective.
-void requireNoSeams(const std::vector<Group>& groups, const Processes& processes)
-{
-  std::vector<Piece> pieces;
-  std::vector<double> groupOf;
-  for (std::size_t g = 0; g < groups.size(); ++g)
-  {
-    for (const Piece& piece : groups[g].pieces)
-    {
-      pieces.push_back(piece);
-      groupOf.push_back(static_cast<double>(g));
-    }
-  }
-  const bool ghosts = anyGhosts(pieces, processes);
-  const std::vector<std::vector<char>> shared = sharedPoints(pieces, ghosts, processes);
-  std::vector<double> numbers; // the place and the group of each
-  for (std::size_t i = 0; i < pieces.size(); ++i)
-  {
-    for (std::size_t k = 0; k < shared[i].size(); ++k)
-    {
-      if (shared[i][k])
-      {
-        const Vec3 p = placeOf(pieces[i], k);
-        numbers.insert(numbers.end(), { p[0], p[1], p[2], groupOf[i] });
-      }
-    }
-  }
-  numbers = processes.gather(numbers);
-  std::vector<std::pair<Vec3, std::size_t>> places;
-  for (std::size_t k = 0; k + 3 < numbers.size(); k += 4)
-  {
-    places.push_back(
-      { { numbers[k], numbers[k + 1], numbers[k + 2] }, static_cast<std::size_t>(numbers[k + 3]) });
-  }
-  std::sort(places.begin(), places.end());
-  Index points = 0;
-  Vec3 first = { 0, 0, 0 };
-  for (std::size_t k = 1; k < places.size(); ++k)
-  {
-    if (places[k].first == places[k - 1].first && places[k].second != places[k - 1].second)
-    {
-      first = points++ == 0 ? places[k].first : first;
-    }
-  }
-  constexpr Index ofEdge = 2; // one alone is no seam
-  if (points >= ofEdge)
-  {
-    std::ostringstream text;
-    text << points << " points of a block coincide with those of another one, the first is at ("
-         << first[0] << ", " << first[1] << ", " << first[2] << ")" << SeamRemedy;
-    throw Error(text.str());
-  }
-}
-
-/// Makes one of the groups with seams between them. Collective.
-void joinGroups(std::vector<Group>& groups, const Processes& processes)
+/// For each group the first of those that seams connect with it, or its own number, of the pieces
+/// on this process alone.
+std::vector<std::size_t> connectedHere(const std::vector<Group>& groups)
 {
   std::vector<vtkDataSet*> data;
   std::vector<std::string> names;
-  std::vector<std::size_t> groupOf;
+  std::vector<std::size_t> groupOf, to(groups.size());
+  std::iota(to.begin(), to.end(), std::size_t(0));
   for (std::size_t g = 0; g < groups.size(); ++g)
   {
     for (const Piece& piece : groups[g].pieces)
@@ -544,38 +432,74 @@ void joinGroups(std::vector<Group>& groups, const Processes& processes)
       groupOf.push_back(g);
     }
   }
-  BlockSeams seams;
+  const BlockSeams seams = findBlockSeams(data, names, 0);
+  for (std::size_t i = 0; seams.points > 0 && i < data.size(); ++i)
+  {
+    const std::size_t one = to[groupOf[i]], other = to[groupOf[seams.group[i]]];
+    std::replace(to.begin(), to.end(), std::max(one, other), std::min(one, other));
+  }
+  return to;
+}
+
+/// The same of the pieces on all processes. Collective.
+std::vector<std::size_t> connectedOnAll(
+  const std::vector<Group>& groups, const Processes& processes)
+{
+  const std::unique_ptr<RankGroup> group = makeProcessGroup();
+  std::vector<Piece> all;
+  std::vector<std::size_t> groupOf;
+  for (std::size_t g = 0; g < groups.size(); ++g)
+  {
+    all.insert(all.end(), groups[g].pieces.begin(), groups[g].pieces.end());
+    groupOf.resize(all.size(), g);
+  }
+  const std::vector<Box> boxes = boxesOf(all, groupOf, processes);
+  std::vector<std::unique_ptr<MeshAdapter>> adapters;
+  std::vector<BlockPiece> pieces;
+  std::vector<RankPiece> parts;
   processes.together(
     [&]()
     {
-      if (groups.size() < 2)
+      for (std::size_t i = 0; i < all.size(); ++i)
       {
-        return;
-      }
-      seams = findBlockSeams(data, names, 0);
-      bool between = false; // seams of the partitions of one group do not matter
-      for (std::size_t i = 0; i < data.size(); ++i)
-      {
-        between = between || groupOf[i] != groupOf[seams.group[i]];
-      }
-      if (between && processes.count() > 1)
-      {
-        throw Error(std::to_string(seams.points) +
-          " points of a block coincide with those of another one, the first is " + seams.first +
-          SeamRemedy);
+        const auto number = static_cast<int>(groupOf[i]);
+        const vtkBoundingBox own(all[i].input->GetBounds());
+        const auto meets = [&](const Box& box)
+        { return box.number != number && box.bounds.IsValid() && own.Intersects(box.bounds); };
+        if (own.IsValid() && std::any_of(boxes.begin(), boxes.end(), meets))
+        {
+          adapters.push_back(std::make_unique<MeshAdapter>(all[i].input));
+          parts.push_back({ &adapters.back()->mesh(), adapters.back()->ghostCells(), nullptr });
+          pieces.push_back({ parts.back(), number, false });
+        }
       }
     });
-  if (processes.count() > 1 && groups.size() > 1)
+  const MeshSpace whole = spaceOnRanks(*group, parts);
+  processes.together(
+    [&]()
+    {
+      for (std::size_t i = 0; i < pieces.size(); ++i)
+      {
+        Mesh& mesh = adapters[i]->mesh();
+        mesh.setSpace(whole);
+        std::vector<signed char> validity(static_cast<std::size_t>(mesh.view().numberOfCells));
+        mesh.classifyCells(validity.data());
+        pieces[i].reversed = mesh.orientation(validity.data()).state == Orientation::Reversed;
+      }
+    });
+  const std::vector<int> found = connectedBlocks(*group, pieces, static_cast<int>(groups.size()));
+  return { found.begin(), found.end() };
+}
+
+/// Makes one of the groups with seams between them. Collective.
+void joinGroups(std::vector<Group>& groups, const Processes& processes)
+{
+  if (groups.size() < 2)
   {
-    requireNoSeams(groups, processes);
+    return;
   }
-  std::vector<std::size_t> to(groups.size());
-  std::iota(to.begin(), to.end(), std::size_t(0));
-  for (std::size_t i = 0; seams.points > 0 && i < data.size(); ++i)
-  {
-    const std::size_t a = to[groupOf[i]], b = to[groupOf[seams.group[i]]];
-    std::replace(to.begin(), to.end(), std::max(a, b), std::min(a, b));
-  }
+  const std::vector<std::size_t> to =
+    processes.count() > 1 ? connectedOnAll(groups, processes) : connectedHere(groups);
   for (std::size_t g = 0; g < groups.size(); ++g)
   {
     Group& target = groups[to[g]];
@@ -584,7 +508,8 @@ void joinGroups(std::vector<Group>& groups, const Processes& processes)
       continue;
     }
     target.pieces.insert(target.pieces.end(), groups[g].pieces.begin(), groups[g].pieces.end());
-    target.name += ", " + groups[g].name;
+    // A process may have no blocks at all, and no names of them.
+    target.name += (groups[g].name.empty() ? "" : ", ") + groups[g].name;
     target.notice = "Blocks with a seam between them are one mesh; switch Merge Coincident Points "
                     "off to solve on each by itself.";
     groups[g].pieces.clear();

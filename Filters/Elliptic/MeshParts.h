@@ -40,11 +40,13 @@ struct LocalMesh
  * A data set is a mesh, and so is each block of a multiblock data set. The partitions of a
  * partitioned or multipiece data set are one mesh, on all processes together. Points on several
  * processes or partitions are identified by the global point ids of the input, or else by equal
- * coordinates. Throws Error if points of one partition cannot be distinguished.
+ * coordinates. Throws Error if points of one partition cannot be distinguished: with mergePoints,
+ * if they have one global id but two places.
  *
- * With mergePoints, coincident points of a data set are one as findCoincidentPoints() has it, and
- * blocks with a seam between them are one mesh; on several processes these throw Error. Points that
- * are one have the arrays of the first of them.
+ * With mergePoints, coincident points of a data set are one as findCoincidentPoints() has it, if
+ * they have one global id, and on several processes without ids if another piece is there; and
+ * blocks with a seam between them are one mesh, whichever process has them. Points that are one
+ * have the arrays of the first of them.
  *
  * @param selected what markSelected() returned
  * @param output of the class of the input; gets its structure

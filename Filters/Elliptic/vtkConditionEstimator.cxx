@@ -95,11 +95,23 @@ std::vector<Contribution> largest(const tautline::ElementContributions& elements
   return all;
 }
 
-/// log10 of each positive value over the geometric mean of all on all processes; NaN for others.
-std::vector<double> excess(const std::vector<double>& values, const tautline::Processes& processes)
+/// The values of cells that count; NaN for ghosts.
+std::vector<double> ofOwn(std::vector<double> values, const unsigned char* skip)
+{
+  for (std::size_t cell = 0; skip && cell < values.size(); ++cell)
+  {
+    values[cell] = skip[cell] ? std::numeric_limits<double>::quiet_NaN() : values[cell];
+  }
+  return values;
+}
+
+/// log10 of each positive value over the geometric mean of those that count on all processes; NaN
+/// for others.
+std::vector<double> excess(const std::vector<double>& values, const std::vector<double>& own,
+  const tautline::Processes& processes)
 {
   double sum = 0.0, count = 0.0;
-  for (double value : values)
+  for (double value : own)
   {
     const bool counts = value > 0;
     sum += counts ? std::log10(value) : 0.0;
@@ -238,10 +250,18 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
   tautline::ConditionOptions limits;
   limits.maximumSeconds = this->GetRemainingSeconds();
   limits.cancelled = this->Cancelled();
-  const tautline::ElementContributions elements =
+  tautline::ElementContributions elements =
     tautline::elementContributions(system, this->ComputeShares, this->Threads, limits);
   // A process without elements has none; all go the same way.
   const bool shares = processes.maximum(static_cast<tautline::Index>(elements.share.size())) > 0;
+  elements.largestEigenvalue = input.cellsOfPiece(elements.largestEigenvalue);
+  if (shares)
+  {
+    elements.share = input.cellsOfPiece(elements.share);
+  }
+  tautline::ElementContributions own = elements;
+  own.largestEigenvalue = ofOwn(elements.largestEigenvalue, input.skipped());
+  own.share = ofOwn(elements.share, input.skipped());
   mesh.output->GetPointData()->SetActiveScalars(nullptr);
   tautline::addArray(mesh.output, true, "LargestEigenvalue", elements.largestEigenvalue, 1);
   std::ostringstream text;
@@ -252,7 +272,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
   if (shares)
   {
     tautline::addArray(mesh.output, true, "Share", elements.share, 1);
-    const auto [all, few] = concentration(elements.share, processes);
+    const auto [all, few] = concentration(own.share, processes);
     text << "\n"
          << few << " of " << all << " elements have " << 100 * NamedFraction
          << " % of the largest eigenvalue.";
@@ -262,8 +282,9 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
     text << "\nThe shares of the elements are missing: the time limit was reached before.";
     this->Warn();
   }
-  tautline::addArray(mesh.output, true, "Excess", excess(elements.largestEigenvalue, processes), 1);
-  for (const Contribution& element : largest(elements, system.mesh(), processes))
+  tautline::addArray(mesh.output, true, "Excess",
+    excess(elements.largestEigenvalue, own.largestEigenvalue, processes), 1);
+  for (const Contribution& element : largest(own, input.piece(), processes))
   {
     text << "\nElement " << element.cell;
     if (processes.count() > 1)

@@ -108,6 +108,7 @@ tautline::EllipticChoice vtkEllipticAlgorithm::GetChoice() const
   choice.fixedPart = this->FixedPart;
   choice.fixedWhere = this->FixedWhere;
   choice.fixedArray = FixedArray;
+  choice.redistribution = static_cast<tautline::Redistribution>(this->Redistribute);
   return choice;
 }
 
@@ -219,5 +220,6 @@ void vtkEllipticAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FixedPart: " << this->FixedPart << "\n";
   os << indent << "GivenType: " << this->GivenType << "\n";
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
+  os << indent << "Redistribute: " << this->Redistribute << "\n";
   os << indent << "PETScOptions: " << this->PETScOptions << "\n";
 }

@@ -213,6 +213,26 @@ public:
   vtkGetMacro(Omega, double);
   ///@}
 
+  enum Redistributions
+  {
+    NO_REDISTRIBUTION = 0, ///< each process works on the cells that its pieces have
+    KD_TREE = 1,           ///< boxes of about as many points: fast
+    PT_SCOTCH = 2 ///< parts of about as many elements with short borders: needs PETSc's PT-Scotch
+  };
+
+  ///@{
+  /**
+   * On a server with several processes: whether and how each mesh is divided anew among them, also
+   * where all of it is on the first process, as readers of serial files leave it. Then all of them
+   * have as much to do, and little to send. The result goes back to the pieces of the input, with
+   * the same points and cells. RedistributeOn() takes the k-d tree. The default is
+   * NO_REDISTRIBUTION.
+   */
+  vtkTautlineSetRangeMacro(Redistribute, int, NO_REDISTRIBUTION, PT_SCOTCH);
+  vtkGetMacro(Redistribute, int);
+  vtkBooleanMacro(Redistribute, int);
+  ///@}
+
   ///@{
   /**
    * Options of PETSc, such as "-pc_hypre_boomeramg_strong_threshold 0.5". They override other
@@ -296,6 +316,7 @@ private:
   double GivenValue = 0.0;
   double GivenDisplacement[3] = { 0.0, 0.0, 0.0 };
   std::string GivenExpression;
+  int Redistribute = NO_REDISTRIBUTION;
   bool Failed = false;
   double Fraction = 0.0;
   vtkIdType Unknowns = 0;

@@ -269,18 +269,14 @@ std::vector<double> vtkEllipticSolver::StartValues(const tautline::PointFunction
   const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
   const tautline::Processes& processes)
 {
-  std::vector<double> start;
+  std::vector<double> values;
   processes.together(
     [&]()
     {
-      if (mesh.input->GetNumberOfPoints() > 0) // a process may have none
-      {
-        const int components = this->Equation == ELASTICITY ? 3 : 1;
-        start = tautline::unknownsOf(
-          input.system(), tautline::valuesAt(function, this, mesh.input, components));
-      }
+      const int components = this->Equation == ELASTICITY ? 3 : 1;
+      values = tautline::valuesAt(function, this, mesh.input, components);
     });
-  return start;
+  return input.unknownsOf(values);
 }
 
 //------------------------------------------------------------------------------
@@ -334,7 +330,7 @@ void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
     std::upper_bound(series->times.begin(), series->times.end(), this->RequestedTime + slack);
   const std::ptrdiff_t shown = std::max<std::ptrdiff_t>(after - series->times.begin() - 1, 0);
   const tautline::Index outside =
-    this->AddSolution(system.fields(series->values[shown]), mesh.output);
+    this->AddSolution(input.fields(series->values[shown]), mesh.output);
   for (std::size_t i = 0; i < series->solves.size(); ++i)
   {
     table.begin(mesh.name);
@@ -387,7 +383,7 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
   tautline::LinearSolver solver(linear, options);
   std::vector<double> x(system.freePoints().size() * system.blockSize(), 0.0);
   const tautline::LinearSolution solved = solver.solve(system.rightHandSide().data(), x.data());
-  const tautline::Index outside = this->AddSolution(system.fields(x), mesh.output);
+  const tautline::Index outside = this->AddSolution(input.fields(x), mesh.output);
   tautline::addResiduals(table, solved.residuals, mesh.name);
 
   const bool converged = tautline::converged(solved.reason);
