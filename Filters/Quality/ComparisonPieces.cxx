@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ComparisonPieces.h"
 
+#include "RankMesh.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Quality/Compare.h"
 
@@ -397,8 +398,7 @@ std::string ComparisonPieces::settleOrientation(int group)
   const Orientation::State before = orientation(false);
   if (before == Orientation::Mixed)
   {
-    return "neighbouring cells list their points in opposite orders, or parts of it are reversed "
-           "and others are not";
+    return oppositeOrders;
   }
   if (before == Orientation::Reversed && orientation(true) == Orientation::Reversed)
   {

@@ -79,8 +79,8 @@ std::vector<Metric> CriteriaGrader::withMetrics(std::vector<Metric> metrics) con
 }
 
 //------------------------------------------------------------------------------
-void CriteriaGrader::grade(
-  const Mesh& mesh, const signed char* validity, const unsigned char* skip, vtkDataSet* output)
+void CriteriaGrader::grade(const Mesh& mesh, const signed char* validity,
+  const unsigned char* uncounted, const unsigned char* skip, vtkDataSet* output)
 {
   if (!this->active())
   {
@@ -104,7 +104,7 @@ void CriteriaGrader::grade(
   vtkNew<vtkDoubleArray> indices;
   indices->SetName("QualityIndex");
   indices->SetNumberOfValues(cells);
-  gradeCells(this->Criteria, mesh, validity, skip, values, grades->GetPointer(0),
+  gradeCells(this->Criteria, mesh, validity, uncounted, skip, values, grades->GetPointer(0),
     indices->GetPointer(0), this->Totals);
   output->GetCellData()->AddArray(grades);
   output->GetCellData()->AddArray(indices);

@@ -33,9 +33,9 @@ public:
   std::vector<Metric> withMetrics(std::vector<Metric> metrics) const;
 
   /// Grades the cells of a block by its cell arrays of the metrics; adds the arrays `Grade` and
-  /// `QualityIndex`. `skip` as in CellValues.
-  void grade(
-    const Mesh& mesh, const signed char* validity, const unsigned char* skip, vtkDataSet* output);
+  /// `QualityIndex`. `uncounted` and `skip` as for gradeCells().
+  void grade(const Mesh& mesh, const signed char* validity, const unsigned char* uncounted,
+    const unsigned char* skip, vtkDataSet* output);
 
   /// Adds up the processes. Collective; without a controller, nothing.
   void gather(vtkMultiProcessController* controller);

@@ -4,17 +4,36 @@
 #include "tautline/Quality/UserMetric.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace tautline
 {
 std::vector<Metric> MetricSelection::metrics() const
 {
-  return this->Chosen.empty() ? std::vector<Metric>{ Metric::InverseMeanRatio } : this->Chosen;
+  std::vector<Metric> known;
+  std::copy_if(this->Chosen.begin(), this->Chosen.end(), std::back_inserter(known),
+    [](Metric metric) { return missingMetric(static_cast<int>(metric)).empty(); });
+  return known.empty() ? std::vector<Metric>{ Metric::InverseMeanRatio } : known;
+}
+
+std::string MetricSelection::problem() const
+{
+  for (const Metric metric : this->Chosen)
+  {
+    const std::string missing = missingMetric(static_cast<int>(metric));
+    if (!missing.empty())
+    {
+      return missing;
+    }
+  }
+  return "";
 }
 
 bool MetricSelection::add(int metric)
 {
-  const Metric known = metricInfo(static_cast<Metric>(metric)).metric;
+  const bool missing = !missingMetric(metric).empty();
+  const Metric known =
+    missing ? static_cast<Metric>(metric) : metricInfo(static_cast<Metric>(metric)).metric;
   if (std::find(this->Chosen.begin(), this->Chosen.end(), known) != this->Chosen.end())
   {
     return false;

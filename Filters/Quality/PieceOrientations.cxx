@@ -3,128 +3,135 @@
 
 #include "Blocks.h"
 #include "MeshAdapter.h"
+#include "MeshGroups.h"
+#include "PieceFindings.h"
+#include "vtkElementQuality.h"
 
-#include "tautline/Mesh/RankPieces.h"
-
+#include "vtkDataObjectTree.h"
 #include "vtkDataSet.h"
-#include "vtkMultiProcessController.h"
+#include "vtkPointData.h"
 
 #include <algorithm>
-#include <map>
-#include <memory>
 
 namespace tautline
 {
 //------------------------------------------------------------------------------
-void PieceOrientations::find(vtkDataObject* input, int threads, RankGroup* group)
+std::string describeOrder(const RankOrder& found, Dimension dimension, int mode)
 {
-  std::map<Index, vtkDataSet*> pieces; // by flat index
-  forEachLeaf(input,
-    [&](unsigned int index, vtkDataSet* data)
+  if (mode == vtkElementQuality::MEASURE_AS_GIVEN)
+  {
+    const std::string text = describe(found.orientation, dimension);
+    return text + (text.empty() ? "" : " Cells of negative size count as inverted.");
+  }
+  const bool flipped = found.order.reversed > 0 || found.orientation.state == Orientation::Reversed;
+  return describe(found, dimension) +
+    (flipped && mode == vtkElementQuality::FLIP_OUTPUT ? " These cells are flipped in the output."
+                                                       : "");
+}
+
+//------------------------------------------------------------------------------
+void PieceOrientations::find(vtkDataObject* input, int threads, RankGroup& group, int mode)
+{
+  std::map<int, std::vector<vtkDataSet*>> meshes;
+  const auto add = [&meshes](int number, vtkDataSet* data)
+  {
+    if (data->GetNumberOfCells() > 0)
     {
-      if (data->GetNumberOfCells() > 0)
-      {
-        pieces[index] = data;
-      }
-    });
-  const Index own = pieces.empty() ? 0 : pieces.rbegin()->first + 1;
-  const Index size = group ? group->maximum(own) : own;
-  this->Found.resize(static_cast<std::size_t>(size));
-  this->Spaces.resize(static_cast<std::size_t>(size));
+      meshes[number].push_back(data);
+    }
+  };
+  if (vtkDataObjectTree::SafeDownCast(input))
+  {
+    int groups = 0;
+    for (const GroupedPiece& piece : listPieces(input, groups))
+    {
+      add(piece.group, piece.data);
+    }
+  }
+  else
+  {
+    forEachLeaf(
+      input, [&add](unsigned int index, vtkDataSet* data) { add(static_cast<int>(index), data); });
+  }
+  const Index size = group.maximum(meshes.empty() ? Index(0) : Index(meshes.rbegin()->first) + 1);
   for (Index index = 0; index < size; ++index)
   {
-    const auto piece = pieces.find(index);
-    this->findPiece(piece != pieces.end() ? piece->second : nullptr, threads, group,
-      static_cast<unsigned int>(index));
+    this->findMesh(meshes[static_cast<int>(index)], threads, group, mode);
   }
 }
 
 //------------------------------------------------------------------------------
-/// @param data null if this process has no cells of it
-void PieceOrientations::findPiece(
-  vtkDataSet* data, int threads, RankGroup* group, unsigned int index)
+/// @param data the pieces of this process, with cells
+void PieceOrientations::findMesh(
+  const std::vector<vtkDataSet*>& data, int threads, RankGroup& group, int mode)
 {
-  const auto together = [group](const auto& work) { group ? group->together(work) : work(); };
-  std::unique_ptr<MeshAdapter> adapter;
-  std::vector<unsigned char> skip;
+  const std::size_t count = data.size();
+  std::vector<std::unique_ptr<MeshAdapter>> adapters(count);
+  std::vector<std::vector<unsigned char>> skips(count);
+  std::vector<std::vector<Index>> ids(count);
   std::vector<RankPiece> pieces;
-  together(
+  this->Found.push_back(std::make_unique<WholeOrientation>());
+  WholeOrientation& whole = *this->Found.back();
+  group.together(
     [&]
     {
-      if (data)
+      for (std::size_t i = 0; i < count; ++i)
       {
-        adapter = std::make_unique<MeshAdapter>(data, threads);
-        skip = cellsToSkip(*adapter);
-        pieces.push_back({ &adapter->mesh(), skip.empty() ? nullptr : skip.data(), nullptr });
+        adapters[i] = std::make_unique<MeshAdapter>(data[i], threads);
+        skips[i] = cellsToSkip(*adapters[i]);
+        ids[i] = idsOf(data[i]->GetPointData()->GetGlobalIds());
+        pieces.push_back({ &adapters[i]->mesh(), skips[i].empty() ? nullptr : skips[i].data(),
+          ids[i].empty() ? nullptr : ids[i].data() });
+        this->Pieces[data[i]] = { &whole, i };
       }
     });
-  if (group)
-  {
-    this->Spaces[index] = spaceOnRanks(*group, pieces);
-  }
-  together(
+  whole.space = spaceOnRanks(group, pieces);
+  const bool lacking =
+    group.any(std::any_of(ids.begin(), ids.end(), [](const auto& list) { return list.empty(); }));
+  std::vector<std::vector<signed char>> validity(count);
+  std::vector<const signed char*> validities;
+  group.together(
     [&]
     {
-      if (!adapter)
+      for (std::size_t i = 0; i < count; ++i)
       {
-        return;
+        Mesh& mesh = adapters[i]->mesh();
+        mesh.setSpace(whole.space);
+        validity[i].resize(mesh.view().numberOfCells);
+        mesh.classifyCells(validity[i].data(), threads);
+        validities.push_back(validity[i].data());
+        pieces[i].ghosts = adapters[i]->ghostCells();
+        pieces[i].globalIds = lacking ? nullptr : pieces[i].globalIds;
       }
-      Mesh& mesh = adapter->mesh();
-      mesh.setSpace(this->Spaces[index].value_or(mesh.space()));
-      std::vector<signed char> validity(static_cast<std::size_t>(mesh.view().numberOfCells));
-      mesh.classifyCells(validity.data(), threads);
-      const Orientation found = mesh.orientation(validity.data());
-      Pieces& piece = this->Found[index];
-      const bool reversed = found.state == Orientation::Reversed;
-      piece.any = found.positiveCells + found.negativeCells > 0;
-      piece.withReversed = reversed || found.reversedParts > 0;
-      piece.withOthers = piece.any && !reversed;
-      piece.disagreeing = found.disagreeing > 0;
     });
-}
-
-//------------------------------------------------------------------------------
-void PieceOrientations::gather(vtkMultiProcessController* controller)
-{
-  const int own = static_cast<int>(this->Found.size());
-  int size = own;
-  controller->AllReduce(&own, &size, 1, vtkCommunicator::MAX_OP);
-  if (size == 0)
+  whole.order = consistentOrderOnRanks(group, pieces, validities);
+  std::vector<PieceFindings> findings;
+  group.together(
+    [&]
+    {
+      const bool reversed = whole.order.order.reversed > 0;
+      for (std::size_t i = 0; i < count; ++i)
+      {
+        findings.push_back(
+          findingsOf(*adapters[i], reversed ? whole.order.reverse[i].data() : nullptr,
+            skips[i].empty() ? nullptr : skips[i].data()));
+      }
+    });
+  const std::string remarks = describeFindings(group, findings);
+  if (group.rank() == 0)
   {
-    return;
-  }
-  this->Found.resize(static_cast<std::size_t>(size));
-  std::vector<int> mine;
-  for (const Pieces& p : this->Found)
-  {
-    mine.insert(mine.end(), { p.any, p.withReversed, p.withOthers, p.disagreeing });
-  }
-  std::vector<int> sums(mine.size());
-  controller->AllReduce(
-    mine.data(), sums.data(), static_cast<vtkIdType>(mine.size()), vtkCommunicator::SUM_OP);
-  const int* sum = sums.data();
-  for (Pieces& p : this->Found)
-  {
-    p = { sum[0], sum[1], sum[2], sum[3] };
-    sum += mine.size() / this->Found.size();
+    for (const std::string& sentences :
+      { describeOrder(whole.order, whole.space.dimension, mode), remarks })
+    {
+      this->Notice += (this->Notice.empty() || sentences.empty() ? "" : " ") + sentences;
+    }
   }
 }
 
 //------------------------------------------------------------------------------
-bool PieceOrientations::ambiguous(unsigned int flatIndex) const
+const OrientedPiece* PieceOrientations::piece(vtkDataSet* data) const
 {
-  if (flatIndex >= this->Found.size())
-  {
-    return false;
-  }
-  const Pieces& pieces = this->Found[flatIndex];
-  return pieces.any > 1 && pieces.withReversed > 0 && pieces.withOthers > 0 &&
-    pieces.disagreeing == 0;
-}
-
-//------------------------------------------------------------------------------
-std::optional<MeshSpace> PieceOrientations::space(unsigned int flatIndex) const
-{
-  return flatIndex < this->Spaces.size() ? this->Spaces[flatIndex] : std::nullopt;
+  const auto found = this->Pieces.find(data);
+  return found != this->Pieces.end() ? &found->second : nullptr;
 }
 }

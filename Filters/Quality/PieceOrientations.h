@@ -1,56 +1,71 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PieceOrientations.h
- * @brief Whether the pieces of a mesh on several processes tell which of its cells are reversed.
+ * @brief What the pieces of meshes on several processes have to know of the whole to be measured.
  */
 #ifndef tautline_PieceOrientations_h
 #define tautline_PieceOrientations_h
 
 #include "tautline/Core/RankGroup.h"
-#include "tautline/Mesh/Mesh.h"
+#include "tautline/Mesh/CellOrder.h"
 
-#include <optional>
+#include <map>
+#include <memory>
+#include <string>
 #include <vector>
 
 class vtkDataObject;
 class vtkDataSet;
-class vtkMultiProcessController;
 
 namespace tautline
 {
 /**
+ * @brief What is found of the orders of the cells, in sentences for the user, or "".
+ * @param mode a value of vtkElementQuality::SetReversedMesh()
+ */
+std::string describeOrder(const RankOrder& found, Dimension dimension, int mode);
+
+/// What a process knows of the whole of a mesh.
+struct WholeOrientation
+{
+  MeshSpace space;
+  RankOrder order; ///< for the pieces of this process
+};
+
+/// A piece of a mesh of which something is known.
+struct OrientedPiece
+{
+  const WholeOrientation* whole;
+  std::size_t number; ///< of the piece in RankOrder::reverse
+};
+
+/**
  * @class tautline::PieceOrientations
- * @brief The orientations of the pieces of each data set, and the space that it fills. A part of a
- * piece that is reversed may be inverted in the whole mesh, with neighbours on another process that
- * are not; a flat piece may be a part of a surface in space, which has no inverted cells.
+ * @brief Of each mesh in pieces, on processes or in partitions, the space that it fills, the order
+ * of its cells, and remarks. A part of a piece that is reversed may be inverted in the whole mesh,
+ * with neighbours in another piece that are not; a flat piece may be a part of a surface in space,
+ * which has no inverted cells.
  */
 class PieceOrientations
 {
 public:
   /**
-   * @brief Finds those of the data sets of all processes. Throws Error, on all, for a mesh that is
+   * @brief Finds that of the meshes of all processes. Throws Error, on all, for a mesh that is
    * malformed. Collective.
-   * @param group the processes; null: each piece is taken to fill the space that it is in
+   * @param mode as for describeOrder()
    */
-  void find(vtkDataObject* input, int threads, RankGroup* group);
-  /// Joins what the processes have found. Collective.
-  void gather(vtkMultiProcessController* controller);
-  /// Whether the reversed parts of the pieces of a data set are to be measured as they are: some
-  /// pieces have such parts, others have not, and no neighbours disagree.
-  bool ambiguous(unsigned int flatIndex) const;
-  /// The space that all pieces of a data set fill; none if it is not known.
-  std::optional<MeshSpace> space(unsigned int flatIndex) const;
+  void find(vtkDataObject* input, int threads, RankGroup& group, int mode);
+  /// Of a data set of the input; null before find(), and of one without cells.
+  const OrientedPiece* piece(vtkDataSet* data) const;
+  /// On the first process the remarks on all meshes, in sentences; "" on the others.
+  const std::string& notice() const { return this->Notice; }
 
 private:
-  void findPiece(vtkDataSet* data, int threads, RankGroup* group, unsigned int index);
+  void findMesh(const std::vector<vtkDataSet*>& data, int threads, RankGroup& group, int mode);
 
-  /// How many processes have such a piece of a data set.
-  struct Pieces
-  {
-    int any = 0, withReversed = 0, withOthers = 0, disagreeing = 0;
-  };
-  std::vector<Pieces> Found;                    ///< by flat index
-  std::vector<std::optional<MeshSpace>> Spaces; ///< by flat index
+  std::vector<std::unique_ptr<WholeOrientation>> Found;
+  std::map<vtkDataSet*, OrientedPiece> Pieces;
+  std::string Notice;
 };
 }
 #endif

@@ -35,9 +35,10 @@ QualityTotals::QualityTotals(const std::vector<Metric>& metrics)
 }
 
 //------------------------------------------------------------------------------
-void QualityTotals::addBlock(
-  const Mesh& mesh, const signed char* validity, const unsigned char* skip, int threads)
+void QualityTotals::addBlock(const Mesh& mesh, const signed char* validity,
+  const unsigned char* skip, const BlockPlace& place, int threads)
 {
+  this->Place = place;
   this->CellsBefore += this->CellsOfLast;
   this->CellsOfLast = mesh.view().numberOfCells;
   const ValidityCounts counts = countValidity(validity, skip, mesh.view().numberOfCells);
@@ -75,7 +76,8 @@ void QualityTotals::addValues(
   for (const WorstElement& element : worstElements(info, data))
   {
     const CellType type = cornerType(data.cellTypes[element.cell]);
-    Worst entry = { element, mesh.center(element.cell, type) };
+    Worst entry = { element, mesh.center(element.cell, type), globalIds != nullptr, element.cell,
+      this->Place, 0 };
     entry.element.cell = globalIds ? static_cast<Index>(globalIds->GetComponent(element.cell, 0))
                                    : this->CellsBefore + element.cell;
     worst.push_back(entry);
@@ -128,7 +130,11 @@ void QualityTotals::gather(vtkMultiProcessController* controller)
     before += perRank[rank];
   }
 
-  constexpr int fields = 6; // id, validity, value, centre
+  // Where one process has all cells, numbers need no process.
+  this->Processes = static_cast<int>(
+    std::count_if(perRank.begin(), perRank.end(), [](vtkIdType n) { return n > 0; }));
+  const int process = controller->GetLocalProcessId();
+  constexpr int fields = 11; // id, validity, value, centre, and where it is
   for (std::size_t m = 0; m < this->Metrics.size(); ++m)
   {
     vtkNew<vtkDoubleArray> values, allValues, worst, allWorst;
@@ -138,7 +144,9 @@ void QualityTotals::gather(vtkMultiProcessController* controller)
     {
       for (double x :
         { static_cast<double>(w.element.cell + before), static_cast<double>(w.element.validity),
-          w.element.value, w.center[0], w.center[1], w.center[2] })
+          w.element.value, w.center[0], w.center[1], w.center[2], w.isGlobal ? 1.0 : 0.0,
+          static_cast<double>(w.cell), static_cast<double>(w.place.block),
+          static_cast<double>(w.place.partition), static_cast<double>(process) })
       {
         worst->InsertNextValue(x);
       }
@@ -158,7 +166,9 @@ void QualityTotals::gather(vtkMultiProcessController* controller)
     {
       const double* x = allWorst->GetPointer(i);
       merged.push_back({ { static_cast<Index>(x[0]), x[2], static_cast<signed char>(x[1]) },
-        { x[3], x[4], x[5] } });
+        { x[3], x[4], x[5] }, x[6] != 0, static_cast<Index>(x[7]),
+        { static_cast<unsigned int>(x[8]), static_cast<unsigned int>(x[9]) },
+        static_cast<int>(x[10]) });
     }
     this->mergeWorst(m, std::move(merged));
   }
@@ -328,8 +338,8 @@ void QualityTotals::fillWorstPoints(vtkPolyData* output) const
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> vertices;
-  vtkNew<vtkIntArray> metric, rank, validity;
-  vtkNew<vtkIdTypeArray> id;
+  vtkNew<vtkIntArray> metric, rank, validity, process, block, partition;
+  vtkNew<vtkIdTypeArray> id, cell;
   vtkNew<vtkDoubleArray> value;
   for (std::size_t m = 0; m < this->Metrics.size(); ++m)
   {
@@ -344,6 +354,10 @@ void QualityTotals::fillWorstPoints(vtkPolyData* output) const
       id->InsertNextValue(w.element.cell);
       value->InsertNextValue(w.element.value);
       validity->InsertNextValue(w.element.validity);
+      process->InsertNextValue(w.process);
+      block->InsertNextValue(static_cast<int>(w.place.block));
+      partition->InsertNextValue(static_cast<int>(w.place.partition));
+      cell->InsertNextValue(w.cell);
     }
   }
   output->SetPoints(points);
@@ -358,6 +372,10 @@ void QualityTotals::fillWorstPoints(vtkPolyData* output) const
   addArray(id, "CellId");
   addArray(value, "Value");
   addArray(validity, "Validity");
+  addArray(process, "Process");
+  addArray(block, "Block");
+  addArray(partition, "Partition");
+  addArray(cell, "Cell");
 }
 
 //------------------------------------------------------------------------------
@@ -380,6 +398,19 @@ void QualityTotals::fillAngles(vtkTable* angles) const
     count->SetValue(b, this->Angles[b]);
     percent->SetValue(b, total > 0 ? 100.0 * this->Angles[b] / total : 0.0);
   }
+}
+
+//------------------------------------------------------------------------------
+/// "element 17 of block 2 of process 1", "element with global id 5".
+std::string QualityTotals::nameOf(const Worst& worst) const
+{
+  if (worst.isGlobal)
+  {
+    return "element with global id " + std::to_string(worst.element.cell);
+  }
+  const std::string place = worst.place.name();
+  return "element " + std::to_string(worst.cell) + (place.empty() ? "" : " of ") + place +
+    (this->Processes > 1 ? " of process " + std::to_string(worst.process) : "");
 }
 
 //------------------------------------------------------------------------------
@@ -407,7 +438,7 @@ std::string QualityTotals::summary() const
     const std::size_t listed = std::min(worst.size(), ListedInSummary);
     for (std::size_t i = 0; i < listed; ++i)
     {
-      text << (i == 0 ? "\nWorst: " : ", ") << "element " << worst[i].element.cell << " ("
+      text << (i == 0 ? "\nWorst: " : ", ") << this->nameOf(worst[i]) << " ("
            << worst[i].element.value << ")" << (i + 1 == listed ? "." : "");
     }
   }

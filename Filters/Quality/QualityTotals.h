@@ -6,6 +6,7 @@
 #ifndef tautline_QualityTotals_h
 #define tautline_QualityTotals_h
 
+#include "Blocks.h"
 #include "tautline/Quality/Statistics.h"
 
 #include <string>
@@ -26,8 +27,8 @@ public:
   const std::vector<Metric>& metrics() const { return this->Metrics; }
 
   /// Before the metrics of a block: its dimension, validity and angles. `skip` as in CellValues.
-  void addBlock(
-    const Mesh& mesh, const signed char* validity, const unsigned char* skip, int threads);
+  void addBlock(const Mesh& mesh, const signed char* validity, const unsigned char* skip,
+    const BlockPlace& place, int threads);
 
   /**
    * @brief Adds the values of metric number m of the block added last.
@@ -51,8 +52,12 @@ public:
 private:
   struct Worst
   {
-    WorstElement element; ///< its cell is a global id
+    WorstElement element; ///< its cell is a global id, or counts through blocks and processes
     Vec3 center;
+    bool isGlobal = false; ///< the former
+    Index cell = 0;        ///< its number in its data set
+    BlockPlace place;      ///< of that
+    int process = 0;       ///< that has it
   };
   struct PerMetric
   {
@@ -67,6 +72,7 @@ private:
   void fillWorstColumns(vtkTable* statistics) const;
   void fillWorstPoints(vtkPolyData* output) const;
   void fillAngles(vtkTable* angles) const;
+  std::string nameOf(const Worst& worst) const;
 
   std::vector<Metric> Metrics;
   std::vector<PerMetric> Results;
@@ -76,6 +82,8 @@ private:
   Index CellsOfLast = 0;
   int Dimension = 2;
   bool HasGlobalIds = false;
+  BlockPlace Place;  ///< of the block added last
+  int Processes = 1; ///< that have cells
 };
 }
 #endif

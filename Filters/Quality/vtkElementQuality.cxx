@@ -6,9 +6,10 @@
 #include "ColorMaps.h"
 #include "CriteriaGrader.h"
 #include "MeshAdapter.h"
+#include "MeshGroups.h"
 #include "MetricSelection.h"
+#include "PieceFindings.h"
 #include "PieceOrientations.h"
-#include "PointMerge.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
 #include "ProgressStep.h"
@@ -209,20 +210,26 @@ int vtkElementQuality::RequestData(
     return this->Fail(outputVector, wrong);
   }
   tautline::PieceOrientations orientations;
-  if (this->Controller && this->Controller->GetNumberOfProcesses() > 1)
+  const bool several = this->Controller && this->Controller->GetNumberOfProcesses() > 1;
+  if (several || tautline::hasPartitions(vtkDataObject::GetData(inputVector[0])))
   {
     const std::string malformed = anywhere(FailureOf("divide the mesh",
       [&]
       {
-        const bool all = this->Controller == vtkMultiProcessController::GetGlobalController();
-        const auto group = all ? tautline::tryProcessGroup() : nullptr;
-        orientations.find(vtkDataObject::GetData(inputVector[0]), this->Threads, group.get());
+        const bool all =
+          !several || this->Controller == vtkMultiProcessController::GetGlobalController();
+        // Without MPI each process measures its piece as a mesh of its own.
+        if (const auto group = all ? tautline::tryProcessGroup() : nullptr)
+        {
+          orientations.find(
+            vtkDataObject::GetData(inputVector[0]), this->Threads, *group, this->ReversedMesh);
+        }
       }));
     if (!malformed.empty())
     {
       return this->Fail(outputVector, malformed);
     }
-    orientations.gather(this->Controller);
+    this->Notice = orientations.notice();
   }
   tautline::QualityTotals totals(grader.withMetrics(this->GetSelection().metrics()));
   tautline::BadElements bad;
@@ -299,7 +306,9 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   std::optional<ProgressStep> progress(std::in_place, this, stepAt(0), stepAt(1));
   MeshAdapter adapter(input, this->Threads);
   Mesh& mesh = adapter.mesh();
-  mesh.setSpace(pieces.space(block.flatIndex).value_or(mesh.space()));
+  const OrientedPiece* piece = pieces.piece(input);
+  const WholeOrientation* whole = piece ? piece->whole : nullptr;
+  mesh.setSpace(whole ? whole->space : mesh.space());
   const Index cells = mesh.view().numberOfCells;
   requireMemory(
     static_cast<double>(cells) * static_cast<double>(totals.metrics().size() * sizeof(double)),
@@ -308,12 +317,14 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   vtkNew<vtkSignedCharArray> validity;
   validity->SetName("Validity");
   validity->SetNumberOfValues(cells);
-  this->SettleOrientation(
-    adapter, pieces.ambiguous(block.flatIndex), validity->GetPointer(0), output);
+  this->SettleOrientation(adapter, piece, validity->GetPointer(0), output);
   const std::vector<unsigned char> skip = cellsToSkip(adapter);
   const unsigned char* skipped = skip.empty() ? nullptr : skip.data();
-  this->CheckConnections(mesh, skipped);
-  totals.addBlock(mesh, validity->GetPointer(0), skipped, this->Threads);
+  if (!whole && cells > 0)
+  {
+    this->AddToNotice(findingsOf(adapter, nullptr, skipped).text);
+  }
+  totals.addBlock(mesh, validity->GetPointer(0), skipped, block.place, this->Threads);
 
   const Targets targets = this->MakeTargets(input, block.reference, adapter);
   EvaluationOptions options;
@@ -336,7 +347,10 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
       input->GetCellData()->GetGlobalIds());
   }
   progress.emplace(this, stepAt(metrics.size() + 1), stepAt(metrics.size() + 2));
-  grader.grade(mesh, validity->GetPointer(0), skipped, output);
+  // Ghosts have the grades of the cells that they are copies of, but do not count.
+  const std::vector<unsigned char> beside = facesBesideVolumes(mesh);
+  grader.grade(
+    mesh, validity->GetPointer(0), skipped, beside.empty() ? nullptr : beside.data(), output);
   output->GetCellData()->AddArray(validity);
   // Without active point scalars, views colour by the metric.
   output->GetPointData()->SetActiveScalars(nullptr);
@@ -351,60 +365,42 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
 }
 
 //------------------------------------------------------------------------------
-void vtkElementQuality::SettleOrientation(
-  tautline::MeshAdapter& adapter, bool ambiguous, signed char* validity, vtkDataSet* output)
+void vtkElementQuality::SettleOrientation(tautline::MeshAdapter& adapter,
+  const tautline::OrientedPiece* piece, signed char* validity, vtkDataSet* output)
 {
-  std::string text;
-  if (this->ReversedMesh == MEASURE_AS_GIVEN || ambiguous)
+  const tautline::RankOrder* known = piece ? &piece->whole->order : nullptr;
+  adapter.mesh().classifyCells(validity, this->Threads);
+  tautline::RankOrder own;
+  if (!known)
   {
-    const tautline::Mesh& mesh = adapter.mesh();
-    mesh.classifyCells(validity, this->Threads);
-    text = describe(mesh.orientation(validity), mesh);
-    text += text.empty() ? "" : " Cells of negative size count as inverted.";
-    text += !ambiguous || text.empty()
-      ? ""
-      : " The parts of the mesh on other processes are not reversed: if cells are listed in the "
-        "opposite order, gather the mesh on one process, in ParaView by Aggregate Dataset.";
+    own = adapter.findOrder(validity);
+    this->AddToNotice(tautline::describeOrder(own, adapter.mesh().dimension(), this->ReversedMesh));
   }
-  else
+  if (this->ReversedMesh != MEASURE_AS_GIVEN)
   {
-    text = adapter.orient(validity, false); // measuring needs no orientation
+    adapter.orient(validity, known ? *known : own, piece ? piece->number : 0);
   }
   if (this->ReversedMesh == FLIP_OUTPUT &&
     (adapter.mesh().mirrored() || !adapter.reversedCells().empty()))
   {
     tautline::flipCells(output, adapter.reversedCells());
-    text += " These cells are flipped in the output.";
-  }
-  for (const std::string& sentence : { text, adapter.notice() })
-  {
-    this->Notice += (this->Notice.empty() || sentence.empty() ? "" : " ") + sentence;
   }
 }
 
 //------------------------------------------------------------------------------
-void vtkElementQuality::CheckConnections(const tautline::Mesh& mesh, const unsigned char* skip)
+void vtkElementQuality::AddToNotice(const std::string& sentences)
 {
-  const tautline::MeshSkin skin = tautline::findSkin(mesh);
-  tautline::Index first = 0;
-  const tautline::Index near = tautline::countNearPoints(mesh, skin.boundaryPoints, &first);
-  const std::string nearly = near == 0 ? std::string()
-                                       : std::to_string(near) + (near == 1 ? " point" : " points") +
-      " of the boundary nearly coincide with another one, the first is " +
-      tautline::placeOf(mesh.view(), first) +
-      ": the elements there are not connected; Clean to Grid with a tolerance merges such points.";
-  for (const std::string& sentence :
-    { tautline::describeSeams(tautline::findCoincidentPoints(mesh), mesh), nearly,
-      tautline::describeDuplicates(skin.duplicates, skip) })
-  {
-    this->Notice += (this->Notice.empty() || sentence.empty() ? "" : " ") + sentence;
-  }
+  this->Notice += (this->Notice.empty() || sentences.empty() ? "" : " ") + sentences;
 }
 
 //------------------------------------------------------------------------------
 tautline::Targets vtkElementQuality::MakeTargets(
   vtkDataSet* input, vtkDataSet* reference, const tautline::MeshAdapter& adapter)
 {
+  if (input->GetNumberOfCells() == 0)
+  {
+    return {}; // of an empty piece, without arrays
+  }
   tautline::TargetChoice choice;
   choice.type = static_cast<tautline::TargetType>(this->TargetType);
   choice.reference = reference;

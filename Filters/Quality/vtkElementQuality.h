@@ -41,7 +41,9 @@
  *
  * @par Output port 4 `Worst`:
  * A vtkPolyData with a vertex at the centre of each of the ten worst elements of each metric; point
- * arrays `Metric` (number), `Rank` (1 is the worst), `CellId`, `Value`, `Validity`. Zoom to it.
+ * arrays `Metric` (number), `Rank` (1 is the worst), `CellId`, `Value`, `Validity`, and where it
+ * is: `Process`, `Block` (as in the summary, 0 of a single mesh), `Partition` (from 1; 0 if the
+ * mesh has one on the process) and `Cell`, its number there. Zoom to it.
  *
  * @par Output port 5 `Histogram`:
  * A vtkTable with HistogramBins + 2 rows; for each metric the columns `<metric> from`, `<metric>
@@ -106,6 +108,7 @@ class BadElements;
 class CriteriaGrader;
 class Mesh;
 class MeshAdapter;
+struct OrientedPiece;
 class PieceOrientations;
 class QualityTotals;
 struct EvaluationOptions;
@@ -263,7 +266,8 @@ public:
   /// ParaView settings, as JSON text: the colour maps of the arrays of the metrics and of Validity.
   static std::string GetColorMapSettings();
 
-  /// Remarks on how the last mesh was interpreted (orientation, cells left out), or "".
+  /// Remarks on how the last mesh was interpreted (orientation, cells left out), or "". On several
+  /// processes, on the first those on the whole mesh, on the others "".
   const char* GetNotice() const { return this->Notice.c_str(); }
   /// Bytes allocated beyond input and output arrays at the peak of the last execution.
   double GetWorkingBytes() const { return this->WorkingBytes; }
@@ -284,11 +288,10 @@ private:
 
   void Measure(const tautline::InputBlock& block, const tautline::PieceOrientations& pieces,
     tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad);
-  /// @param ambiguous whether the pieces on other processes do not agree
-  void SettleOrientation(
-    tautline::MeshAdapter& adapter, bool ambiguous, signed char* validity, vtkDataSet* output);
-  /// Adds remarks on coincident points and duplicate cells.
-  void CheckConnections(const tautline::Mesh& mesh, const unsigned char* skip);
+  /// @param piece what was found of the whole mesh; null: that of this data set is
+  void SettleOrientation(tautline::MeshAdapter& adapter, const tautline::OrientedPiece* piece,
+    signed char* validity, vtkDataSet* output);
+  void AddToNotice(const std::string& sentences);
   tautline::Targets MakeTargets(
     vtkDataSet* input, vtkDataSet* reference, const tautline::MeshAdapter& adapter);
 

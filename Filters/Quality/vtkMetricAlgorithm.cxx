@@ -66,6 +66,12 @@ std::string vtkMetricAlgorithm::GetUserMetrics()
 }
 
 //------------------------------------------------------------------------------
+std::string vtkMetricAlgorithm::FindSettingProblem() const
+{
+  return this->Selection->problem();
+}
+
+//------------------------------------------------------------------------------
 void vtkMetricAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);

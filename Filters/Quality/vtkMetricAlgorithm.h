@@ -32,7 +32,8 @@ public:
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{
-  /// Adds a metric. An unknown one is an error and changes nothing.
+  /// Adds a metric. An unknown one is an error and changes nothing; the number of a user's metric
+  /// that is not registered in this process is an error when the filter executes.
   void AddMetric(int metric);
   void AddMetricByName(const char* name);
   ///@}
@@ -40,13 +41,15 @@ public:
   void ClearMetrics();
   /// The number of metrics added.
   int GetNumberOfMetrics() const;
-  /// The metrics that were registered (vtkUserMetric, libraries): a line "number<tab>label" each.
+  /// The metrics that were registered (vtkUserMetric, libraries): a line "number<tab>label<tab>..."
+  /// each.
   static std::string GetUserMetrics();
 
 protected:
   vtkMetricAlgorithm();
   ~vtkMetricAlgorithm() override;
 
+  std::string FindSettingProblem() const override;
   const tautline::MetricSelection& GetSelection() const { return *this->Selection; }
 
 private:

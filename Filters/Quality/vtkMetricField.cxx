@@ -99,6 +99,11 @@ int vtkMetricField::RequestData(
   return this->Attempt(outputVector, "choose smaller Dimensions or fewer metrics",
     [&]
     {
+      const std::string problem = this->FindSettingProblem();
+      if (!problem.empty())
+      {
+        throw tautline::Error(problem);
+      }
       for (int c = 0; c < (this->Cell == TRIANGLE ? 2 : 3); ++c)
       {
         const double length = this->Bounds[2 * c + 1] - this->Bounds[2 * c];
