@@ -50,12 +50,12 @@ vtkDataSet* targetOf(const InputBlock& block, vtkDataObject* target)
       only = leaf;
       ++leaves;
     });
-  if (leaves > 1 && block.name.empty())
+  if (leaves > 1 && block.flatIndex == 0)
   {
     throw Error("The target has several blocks and the mesh has none: run Merge Blocks or Extract "
                 "Block on the target first.");
   }
-  if (!block.name.empty())
+  if (block.flatIndex > 0)
   {
     only = counterpartOf(block, target);
   }
@@ -453,7 +453,7 @@ PointFlags WarpSession::movedPart(
   choice.numbers = set.partNumbers;
   choice.values = set.partValues;
   choice.selected = counterpartOf(block, selected);
-  choice.elsewhere = selected && !block.name.empty();
+  choice.elsewhere = selected && block.flatIndex > 0;
   if (set.part == MovedPart::Values)
   {
     choice.array = chosenArray(set.arrays, MovedArray, block.input, "of the part that moves");

@@ -420,6 +420,14 @@ tautline::GatheredResult vtkMeshWarp::GetGatheredResult() const
 }
 
 //------------------------------------------------------------------------------
+bool vtkMeshWarp::JoinsPartitions(vtkInformationVector** inputs)
+{
+  return this->Superclass::JoinsPartitions(inputs) &&
+    (!this->Session->sequence() ||
+      vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject::GetData(inputs[MeshPort])));
+}
+
+//------------------------------------------------------------------------------
 bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
 {
   this->Pieces.reset();

@@ -465,6 +465,8 @@ protected:
   tautline::GatheredResult GetGatheredResult() const override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   bool TakesPieces(vtkInformationVector** inputs) override;
+  /// Over time partitions are joined by global ids only: their places change.
+  bool JoinsPartitions(vtkInformationVector** inputs) override;
   void ClearResult() override;
 
   tautline::WarpSettings GetSettings();

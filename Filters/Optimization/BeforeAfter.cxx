@@ -90,10 +90,10 @@ void addRow(const MeasuredMetric& what, const std::string& block, const Measurem
 }
 
 //------------------------------------------------------------------------------
-std::vector<MeasuredMetric> measuredMetrics(const std::vector<Objective>& objectives)
+std::vector<MeasuredMetric> measuredMetrics(const OptimizeOptions& options, Metric worst)
 {
   std::vector<MeasuredMetric> result;
-  for (const Objective& objective : objectives)
+  for (const Objective& objective : options.objectives)
   {
     const auto same = [&objective](const MeasuredMetric& m)
     { return m.metric == objective.metric && m.options.targets == objective.evaluation.targets; };
@@ -106,6 +106,11 @@ std::vector<MeasuredMetric> measuredMetrics(const std::vector<Objective>& object
     std::string name = metricInfo(objective.metric).name;
     name += before > 0 ? " " + std::to_string(before + 1) : "";
     result.push_back({ name, objective.metric, objective.evaluation });
+  }
+  if (std::none_of(result.begin(), result.end(),
+        [worst](const MeasuredMetric& m) { return m.metric == worst; }))
+  {
+    result.push_back({ metricInfo(worst).name, worst, {} });
   }
   return result;
 }

@@ -17,14 +17,15 @@
 
 namespace tautline
 {
-/// What is measured, once each: the metrics of objectives, each with its own targets.
+/// What is measured, once each: the metrics of objectives, each with its own targets, and that by
+/// which the worst element is found.
 struct MeasuredMetric
 {
   std::string name; ///< that of the metric; "imr 2" for the second objective with another target
   Metric metric;
   EvaluationOptions options;
 };
-std::vector<MeasuredMetric> measuredMetrics(const std::vector<Objective>& objectives);
+std::vector<MeasuredMetric> measuredMetrics(const OptimizeOptions& options, Metric worst);
 
 /// The names of the objectives in tables, one for each, none twice.
 std::vector<std::string> objectiveNames(const std::vector<Objective>& objectives);

@@ -194,7 +194,9 @@ void OptimizerSetup::placePoints()
 void OptimizerSetup::setSurfaceTolerance(const OptimizerSettings& settings)
 {
   this->Options.onGeometry = this->HasGeometry;
-  if (settings.boundary != BoundaryMotion::OnSurface || !(settings.surfaceTolerance > 0) ||
+  const bool slides =
+    settings.boundary == BoundaryMotion::OnSurface || !this->Model.interfaces.empty();
+  if (!slides || !(settings.surfaceTolerance > 0) ||
     this->TheMesh.mesh().dimension() == Dimension::Surface)
   {
     return;

@@ -15,6 +15,7 @@
 #include "tautline/Optimization/OptimizeOnRanks.h"
 
 #include "vtkDataSet.h"
+#include "vtkExecutive.h"
 #include "vtkInformationVector.h"
 #include "vtkMath.h"
 #include "vtkPointSet.h"
@@ -92,12 +93,14 @@ tautline::NeedOfWholeMesh needOf(const tautline::OptimizerSettings& settings, bo
   return tautline::needOfWholeMesh(options);
 }
 
+constexpr const char* timeSteps = "iterations that are kept as time steps";
+
 /// Throws Error for settings that need the whole mesh in one place, in its own order.
 void requireLocalSettings(
   const tautline::OptimizerSettings& settings, bool features, bool animation)
 {
   tautline::NeedOfWholeMesh need = animation
-    ? tautline::NeedOfWholeMesh{ "iterations that are kept as time steps", "switch Animation off" }
+    ? tautline::NeedOfWholeMesh{ timeSteps, "switch Animation off" }
     : needOf(settings, features);
   if (!need.what.empty())
   {
@@ -127,9 +130,10 @@ tautline::Mesh inputOf(const tautline::RankMesh& mesh, const tautline::MeshView&
 
 /// What is measured on the cells of the piece, with their targets instead of those of local cells.
 std::vector<tautline::MeasuredMetric> metricsOfPiece(
-  const std::vector<tautline::Objective>& objectives, const ElementOptions& elements)
+  const tautline::OptimizeOptions& options, const ElementOptions& elements)
 {
-  std::vector<tautline::MeasuredMetric> metrics = tautline::measuredMetrics(objectives);
+  std::vector<tautline::MeasuredMetric> metrics =
+    tautline::measuredMetrics(options, options.worstMetric.value_or(options.objectives[0].metric));
   for (tautline::MeasuredMetric& metric : metrics)
   {
     const tautline::Targets*& targets = metric.options.targets;
@@ -344,16 +348,9 @@ tautline::GatheredResult vtkMeshOptimizer::GetGatheredResult() const
 //------------------------------------------------------------------------------
 bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
 {
-  this->Runs.clear();
   this->Pieces.reset();
   this->Group.reset();
-  this->PieceError.clear();
-  if (this->Animation)
-  {
-    this->PieceError = "Iterations are kept as time steps on one process only: switch Animation "
-                       "off, or use a server with one process.";
-    return true;
-  }
+  this->InputsChanged = onAny(this->InputsChanged);
   // What needs the whole mesh is not divided first.
   tautline::OptimizerSettings settings = this->GetSettings();
   settings.geometry = vtkDataObject::GetData(inputs[GeometryPort]);
@@ -361,7 +358,7 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
   auto* input = vtkDataSet::SafeDownCast(data);
   const bool features = onAny(isChosen(settings, tautline::KindArray, input) ||
     isChosen(settings, tautline::RegionArray, input));
-  const std::string what = needOf(settings, features).what;
+  const std::string what = this->Animation ? timeSteps : needOf(settings, features).what;
   std::string why = what.empty() ? "" : what + " need the whole mesh";
   if (what.empty())
   {
@@ -381,7 +378,13 @@ void vtkMeshOptimizer::ExchangeResult(tautline::ResultStream& stream)
 {
   this->Superclass::ExchangeResult(stream);
   stream(this->Reason, this->StopReason, this->Iterations, this->FreePoints, this->InvertedBefore,
-    this->InvertedAfter, this->SurfaceError);
+    this->InvertedAfter, this->SurfaceError, this->LastIteration);
+  if (this->Animation)
+  {
+    this->RunTime.Modified();
+    // All processes announce the same time steps.
+    this->RequestInformation(nullptr, nullptr, this->GetExecutive()->GetOutputInformation());
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -435,18 +438,19 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   tautline::OptimizerRun& run = *this->Runs.back();
   run.result = tautline::optimizeOnRanks(mesh.mesh(), mesh.mirrored(), options);
   run.iterations = run.result.iterations;
-  const std::string note = mesh.move(vtkPointSet::SafeDownCast(output), run.result.points);
+  tautline::roundOnRanks(mesh, options, run);
+  mesh.move(vtkPointSet::SafeDownCast(output), run.result.points, run.single);
   tautline::TableRows rows;
-  const std::string qualities = tautline::addBeforeAfterOnRanks(*group, mesh,
-    mesh.ofPiece(run.result.points), metricsOfPiece(options.objectives, elements), this->Threads,
-    vtkDataSet::SafeDownCast(output), rows);
+  const std::string qualities =
+    tautline::addBeforeAfterOnRanks(*group, mesh, mesh.ofPiece(run.result.points),
+      metricsOfPiece(options, elements), this->Threads, vtkDataSet::SafeDownCast(output), rows);
   run.summary =
     tautline::summarize(run.result, mesh.mesh().globalPoints(), mesh.mesh().globalCells(), "") +
     qualities;
   const std::string why = run.result.reason == tautline::StopReason::NoFreeVertices
     ? "Every point is fixed: choose another Boundary, fix fewer points, or refine the mesh."
     : std::string();
-  for (const std::string& sentence : { why, note, mesh.notice() })
+  for (const std::string& sentence : { why, run.note, mesh.notice() })
   {
     run.summary += (sentence.empty() ? "" : "\n") + sentence;
   }

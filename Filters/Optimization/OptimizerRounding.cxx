@@ -2,6 +2,7 @@
 // The points of a result as they are written.
 #include "OptimizerSetup.h"
 
+#include "RankMesh.h"
 #include "tautline/Optimization/RoundedResult.h"
 
 namespace tautline
@@ -14,6 +15,13 @@ std::string describeLoss(const RoundedResult& rounded)
   return rounded.lost > 0 ? std::to_string(rounded.lost) + " valid elements would not be valid"
     : rounded.worseWorst  ? "the worst element would be worse than that of the input"
                           : "the objective would be larger than that of the input";
+}
+
+/// Why the points are not written in single precision.
+std::string describeDouble(const RoundedResult& rounded)
+{
+  return "The points are given in double precision: in single precision " + describeLoss(rounded) +
+    ".";
 }
 
 std::vector<signed char> validityOf(const Mesh& mesh, int threads)
@@ -73,8 +81,7 @@ void OptimizerSetup::round(OptimizerRun& run) const
     {
       break;
     }
-    run.note = "The points are given in double precision: in single precision " +
-      describeLoss(rounded) + ".";
+    run.note = describeDouble(rounded);
   }
   run.note.clear();
   run.warning = "The points stay where they are: so far from the origin coordinates have too few "
@@ -86,5 +93,31 @@ void OptimizerSetup::round(OptimizerRun& run) const
   result.untangled = false;
   result.newlyInvalid = 0;
   run.single = mesh.isSingle();
+}
+
+//------------------------------------------------------------------------------
+void roundOnRanks(const RankMesh& mesh, const OptimizeOptions& options, OptimizerRun& run)
+{
+  OptimizeResult& result = run.result;
+  run.note.clear();
+  run.single = mesh.isSingle();
+  if (!run.single)
+  {
+    return;
+  }
+  std::vector<double> points = mesh.rounded(result.points);
+  if (!mesh.mesh().group().any(points != result.points))
+  {
+    return;
+  }
+  RoundedResult rounded =
+    measureRoundedOnRanks(mesh.mesh(), mesh.mirrored(), options, result, points);
+  if (rounded.keepsGuarantees())
+  {
+    take(result, std::move(points), rounded);
+    return;
+  }
+  run.single = false;
+  run.note = describeDouble(rounded);
 }
 }

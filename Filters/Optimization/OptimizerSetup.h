@@ -81,6 +81,7 @@ enum OptimizerArrays
   RegionArray = 6
 };
 
+class RankMesh;
 struct OptimizerRun;
 
 /**
@@ -143,6 +144,13 @@ private:
   std::vector<unsigned char> Leaving;
   OptimizeOptions Options;
 };
+
+/**
+ * @brief Rounds the points of a result on several processes to those that are written, as
+ * OptimizerSetup::round(). In double precision they are as they were verified. Collective.
+ * @param options those of the run
+ */
+void roundOnRanks(const RankMesh& mesh, const OptimizeOptions& options, OptimizerRun& run);
 
 /// The objectives of CUSTOM, without targets; one at least.
 std::vector<Objective> customObjectives(const OptimizerSettings& settings);

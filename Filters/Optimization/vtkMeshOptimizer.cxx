@@ -8,6 +8,7 @@
 #include "ProcessGroup.h"
 #include "ProgressStep.h"
 #include "RankMesh.h"
+#include "tautline/Optimization/QualityGuard.h"
 
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
@@ -99,7 +100,7 @@ void vtkMeshOptimizer::SetWorstMetric(int metric)
 {
   try
   {
-    if (metric != -1)
+    if (metric != -1 && tautline::missingMetric(metric).empty())
     {
       tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if there is none
     }
@@ -121,6 +122,17 @@ void vtkMeshOptimizer::SetWorstMetric(int metric)
 std::string vtkMeshOptimizer::GetUserMetrics()
 {
   return tautline::listUserMetrics();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkMeshOptimizer::FindSettingProblem() const
+{
+  std::string problem = tautline::missingMetric(this->WorstMetric);
+  for (int i = 0; this->Preset == CUSTOM && i < this->Objectives && problem.empty(); ++i)
+  {
+    problem = tautline::missingMetric(this->Rows[i].metric);
+  }
+  return problem;
 }
 
 //------------------------------------------------------------------------------
@@ -261,12 +273,7 @@ int vtkMeshOptimizer::EffectiveIterations()
 std::vector<double> vtkMeshOptimizer::TimeSteps()
 {
   // How many there are is known after the run only; until then the last ones repeat the result.
-  int last = 0;
-  for (const auto& run : this->Runs)
-  {
-    last = std::max(last, run->iterations);
-  }
-  last = this->Runs.empty() ? this->EffectiveIterations() : last;
+  const int last = this->LastIteration < 0 ? this->EffectiveIterations() : this->LastIteration;
   const int step = 1 + (last - 1) / MaximumTimeSteps;
   std::vector<double> steps;
   for (int i = 0; i < last; i += step)
@@ -284,6 +291,7 @@ int vtkMeshOptimizer::RequestInformation(
   if (this->RunTime.GetMTime() < this->GetMTime())
   {
     this->Runs.clear();
+    this->LastIteration = -1;
   }
   if (this->Animation)
   {
@@ -317,12 +325,28 @@ int vtkMeshOptimizer::RequestUpdateExtent(
 }
 
 //------------------------------------------------------------------------------
-bool vtkMeshOptimizer::HasRunFor(const std::vector<vtkDataObject*>& inputs)
+vtkTypeBool vtkMeshOptimizer::ProcessRequest(
+  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tautline::ContentStamp content = tautline::contentStamp(inputs);
-  const bool same = content == this->RunInputs;
-  this->RunInputs = std::move(content);
-  return same && !this->Runs.empty() && this->RunTime.GetMTime() > this->GetMTime();
+  if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))
+  {
+    // The data of this process, before any are put together.
+    std::vector<vtkDataObject*> data;
+    for (int port = 0; port < NumberOfInputPorts; ++port)
+    {
+      data.push_back(vtkDataObject::GetData(inputs[port]));
+    }
+    tautline::ContentStamp content = tautline::contentStamp(data);
+    this->InputsChanged = content != this->RunInputs;
+    this->RunInputs = std::move(content);
+  }
+  return this->Superclass::ProcessRequest(request, inputs, outputs);
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshOptimizer::HasRun()
+{
+  return !this->InputsChanged && !this->Runs.empty() && this->RunTime.GetMTime() > this->GetMTime();
 }
 
 //------------------------------------------------------------------------------
@@ -398,8 +422,7 @@ int vtkMeshOptimizer::RequestData(
     ? info->Get(Pipeline::UPDATE_TIME_STEP())
     : vtkMath::Nan();
   vtkDataObject* geometry = vtkDataObject::GetData(inputVector[GeometryPort]);
-  const bool done = this->HasRunFor({ vtkDataObject::GetData(inputVector[MeshPort]), reference,
-    vtkDataObject::GetData(inputVector[SelectionPort]), geometry });
+  const bool done = this->HasRun();
   if (!done)
   {
     this->Runs.clear();
@@ -410,10 +433,6 @@ int vtkMeshOptimizer::RequestData(
     this->Attempt(outputVector, "optimize the mesh in parts, or reduce Animation Memory",
       [&]
       {
-        if (!this->PieceError.empty())
-        {
-          throw tautline::Error(this->PieceError);
-        }
         if (this->Pieces || this->ReproducibleOrder)
         {
           this->OptimizeOnRanks(
@@ -441,6 +460,11 @@ int vtkMeshOptimizer::RequestData(
     return 0;
   }
   this->RunTime.Modified();
+  this->LastIteration = 0;
+  for (const auto& run : this->Runs)
+  {
+    this->LastIteration = std::max(this->LastIteration, run->iterations);
+  }
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
   this->Report();
@@ -516,7 +540,8 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   {
     note = mesh.move(vtkPointSet::SafeDownCast(block.output), points);
   }
-  const auto metrics = tautline::measuredMetrics(options.objectives);
+  const auto metrics =
+    tautline::measuredMetrics(options, tautline::worstMetric(mesh.mesh(), options));
   if (this->ShowFeatures)
   {
     setup.addFeatures(block.output);
@@ -555,6 +580,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
 void vtkMeshOptimizer::ClearResult()
 {
   this->Runs.clear();
+  this->LastIteration = -1;
   this->Report();
 }
 

@@ -31,10 +31,10 @@
  *
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (new minus old), and cell arrays: for
- * each objective's metric its value after, named by the metric ("imr"), and before ("imr_before");
- * `Validity` after (see vtkElementQuality). Points that were in single precision stay so unless,
- * rounded, a valid element would not be valid, or the objective or the worst element of a valid
- * input would be worse; the summary reports it. The values after are those of the rounded points.
+ * each objective's metric, and that of the worst element (see WorstMetric), its value after, named
+ * by the metric ("imr"), and before ("imr_before"); `Validity` after (see vtkElementQuality).
+ * Points in single precision stay so unless a valid element, the objective or the worst element of
+ * a valid input would be worse by rounding; the summary reports it. Values after are as rounded.
  *
  * @par Output port 1 `History`:
  * A vtkTable whose row i is iteration i (0 is the input): `Objective`; for each metric
@@ -413,6 +413,7 @@ public:
   /**
    * With the boundary ON_SURFACE: how far the new boundary may be from the old one, and the old one
    * from the new one, as a fraction of the diagonal of the bounding box, 0 to 1; 0: any distance.
+   * The same of interfaces (cell array at index 6, with KeepFeatures), whatever the boundary does.
    * Steps that would take it farther are shortened or left out; the summary says how many points
    * are held by that. The distance is measured at the quarters of the edges of the boundary's
    * triangles (quadrilaterals are two), at the crossings of the lines between these, and at the
@@ -593,8 +594,8 @@ public:
   vtkIdType GetFreePoints() const { return this->FreePoints; }
   vtkIdType GetInvertedBefore() const { return this->InvertedBefore; }
   vtkIdType GetInvertedAfter() const { return this->InvertedAfter; }
-  /// Largest distance between the output's surface, where points slide on it, and that of the
-  /// input, from either to the other; or from it to the geometry. Measured as SurfaceTolerance is.
+  /// Largest distance between the surface and interfaces of the output, where points slide on them,
+  /// and those of the input, both ways, or of the geometry. Measured as SurfaceTolerance is.
   double GetSurfaceError() const { return this->SurfaceError; }
   ///@}
 
@@ -602,6 +603,8 @@ protected:
   vtkMeshOptimizer();
   ~vtkMeshOptimizer() override;
 
+  vtkTypeBool ProcessRequest(
+    vtkInformation*, vtkInformationVector** inputs, vtkInformationVector* outputs) override;
   int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,
@@ -613,6 +616,7 @@ protected:
   void ClearResult() override;
   tautline::GatheredResult GetGatheredResult() const override;
   bool TakesPieces(vtkInformationVector** inputs) override;
+  std::string FindSettingProblem() const override;
   void ExchangeResult(tautline::ResultStream& stream) override;
 
 private:
@@ -624,7 +628,7 @@ private:
   void SetRowValue(Value& current, Value value);
   int EffectiveIterations();
   std::vector<double> TimeSteps();
-  bool HasRunFor(const std::vector<vtkDataObject*>& inputs);
+  bool HasRun(); ///< whether Runs are those of the inputs and settings
   tautline::OptimizerSettings GetSettings();
   void Optimize(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
     tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
@@ -679,17 +683,17 @@ private:
   std::vector<std::unique_ptr<tautline::OptimizerRun>> Runs; ///< per data set of the last execution
   vtkTimeStamp RunTime;                                      ///< of Runs that can be shown again
   std::vector<vtkMTimeType> RunInputs;                       ///< the content of the inputs of Runs
+  bool InputsChanged = true; ///< since the execution before; on several processes, of any
+  int LastIteration = -1;    ///< the last one of any of Runs, on all processes; -1: none
   // Of an execution on several processes:
   std::unique_ptr<tautline::RankGroup> Group; ///< outlives Pieces
   std::unique_ptr<tautline::RankMesh> Pieces; ///< null: gathered, or one process
-  std::string PieceError;                     ///< why there are no pieces, or ""
   std::string WhyGathered;                    ///< a sentence, or ""
   std::string Reason;
   int StopReason = -1;
   int Iterations = 0;
   vtkIdType FreePoints = 0;
-  vtkIdType InvertedBefore = 0;
-  vtkIdType InvertedAfter = 0;
+  vtkIdType InvertedBefore = 0, InvertedAfter = 0;
   double SurfaceError = 0.0;
 };
 

@@ -62,13 +62,14 @@ HorizonInput::HorizonInput(
   {
     throw Error("the triangles do not lie in a plane: nonlocal models are for planar meshes here");
   }
-  if (adapter.ghostCells())
+  const unsigned char* ghosts = adapter.ghostCells(); // copies, where the pieces are all here
+  if (ghosts && countForeignCells(mesh, ghosts) > 0)
   {
     throw Error(
       "the mesh has ghost cells, and a nonlocal matrix needs the whole mesh: gather it on "
       "one process first");
   }
-  requireDistinctCells(mesh);
+  requireDistinctCells(mesh, ghosts);
   requireOrdinaryScale(view, "A nonlocal model");
   const Vec3 first = pointOf(view, view.connectivity[view.offsets[triangles->cell(0)]]);
   static_cast<HorizonPlane&>(*this) = HorizonPlane(mesh.space(), first);
@@ -82,6 +83,10 @@ HorizonInput::HorizonInput(
   for (Index i = 0; i < triangles->count; ++i)
   {
     const Index cell = triangles->cell(i);
+    if (ghosts && ghosts[cell])
+    {
+      continue;
+    }
     this->Cells.push_back(static_cast<vtkIdType>(cell));
     for (int k = 0; k < 3; ++k)
     {

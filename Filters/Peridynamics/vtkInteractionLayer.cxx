@@ -14,6 +14,7 @@
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkDataSetAttributes.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkIntArray.h"
@@ -138,6 +139,11 @@ int vtkInteractionLayer::RequestData(
       [&](vtkIdType i) { return i < oldPoints ? i : -1; });
     tautline::passData(input->GetCellData(), output->GetCellData(), reference->GetNumberOfTuples(),
       [&](vtkIdType i) { return i < oldTriangles ? taken.cell(i) : -1; });
+    for (vtkDataSetAttributes* data :
+      std::initializer_list<vtkDataSetAttributes*>{ output->GetPointData(), output->GetCellData() })
+    {
+      data->RemoveArray(vtkDataSetAttributes::GhostArrayName()); // there are no ghosts any more
+    }
     output->GetCellData()->AddArray(reference);
     output->GetCellData()->SetActiveScalars(tautline::ReferenceArray);
   }

@@ -269,8 +269,10 @@ public:
 
   ///@{
   /**
-   * Relative error accepted of the integral over each pair of triangles in exact discretization,
-   * 1e-10 to 0.1. The default is 1e-5.
+   * How far the integral over each pair of triangles is refined in exact discretization, 1e-10 to
+   * 0.1. The matrix has larger errors, relative to its largest entry: at most 3e-3, 5e-4 and 1e-4
+   * for 1e-3, 1e-5 and 1e-7 where the horizon is 1.5 elements, 7e-3, 8e-4 and 3e-4 where it is 0.3,
+   * see tautline::PeridynamicOptions. The default is 1e-5.
    */
   vtkSetMacro(Tolerance, double);
   vtkGetMacro(Tolerance, double);

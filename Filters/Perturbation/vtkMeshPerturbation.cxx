@@ -8,6 +8,7 @@
 #include "PointMerge.h"
 #include "GatheredExecution.h"
 #include "RankMesh.h"
+#include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Perturbation/PerturbOnRanks.h"
 
 #include "vtkDataArray.h"
@@ -157,9 +158,13 @@ void vtkMeshPerturbation::Perturb(
   const int type = points->GetPoints()->GetDataType();
   const int blocks = tautline::countBlocks(this->GetInputDataObject(0, 0));
 
-  const std::vector<tautline::Index> ids = pointIds(points, one);
+  std::vector<tautline::Index> ids = pointIds(points, one);
+  if (ids.empty())
+  {
+    ids = tautline::coordinateOrder(mesh, adapter.inputView().points, one);
+  }
   tautline::PerturbOptions options = this->GetOptions(type == VTK_FLOAT);
-  options.ids = ids.empty() ? nullptr : ids.data();
+  options.ids = ids.data();
   options.progress = [this, &block, blocks](double fraction)
   { return this->Proceed((block.number + fraction) / blocks); };
   tautline::Perturbation result = tautline::perturb(mesh, fixed.data(), options);
@@ -178,8 +183,13 @@ void vtkMeshPerturbation::Perturb(
   total.invertedAfter += result.invertedAfter;
   total.largestDisplacement = std::max(total.largestDisplacement, result.largestDisplacement);
   total.stopped = total.stopped || result.stopped;
+  const tautline::Index odd = mesh.nonFinitePoints();
+  const std::string notFinite = odd == 0
+    ? std::string()
+    : std::to_string(odd) + (odd == 1 ? " point has" : " points have") +
+      " a NaN or infinite coordinate: the cells that use them are not measured.";
   for (const std::string& notice :
-    { tautline::describeMerged(adapter.coincident(), adapter.given()),
+    { notFinite, tautline::describeMerged(adapter.coincident(), adapter.given()),
       tautline::describeJoined(copies),
       tautline::describeDuplicates(tautline::findSkin(mesh).duplicates) })
   {
@@ -199,6 +209,13 @@ tautline::PerturbOptions vtkMeshPerturbation::GetOptions(bool singlePrecision) c
   options.singlePrecision = singlePrecision;
   options.threads = this->Threads;
   return options;
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshPerturbation::JoinsPartitions(vtkInformationVector** inputs)
+{
+  return this->MergeCoincidentPoints ||
+    vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject::GetData(inputs[0]));
 }
 
 //------------------------------------------------------------------------------
@@ -246,6 +263,7 @@ void vtkMeshPerturbation::PerturbPiece(tautline::RankMesh& mesh, vtkDataObject* 
 void vtkMeshPerturbation::ClearResult()
 {
   this->Report({});
+  this->Superclass::ClearResult();
 }
 
 //------------------------------------------------------------------------------

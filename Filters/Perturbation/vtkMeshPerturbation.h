@@ -31,10 +31,10 @@
  * @par Input:
  * Any vtkPointSet: vtkUnstructuredGrid, vtkPolyData, vtkStructuredGrid, ... with triangles,
  * quadrilaterals, tetrahedra, hexahedra, wedges, pyramids. Multiblock data are treated block by
- * block. A mesh whose elements are all reversed is treated as its mirror image. The points of other
- * cells (lines, polygons, polyhedra, 2D cells in a volume mesh), of ghost cells and of cells with
- * NaN coordinates stay. Elements that are inverted already may stay so, but get no worse
- * neighbours.
+ * block, the partitions of partitioned data as one mesh. A mesh whose elements are all reversed is
+ * treated as its mirror image. The points of other cells (lines, polygons, polyhedra, 2D cells in a
+ * volume mesh), of ghost cells and of cells with NaN coordinates stay. Elements that are inverted
+ * already may stay so, but get no worse neighbours.
  *
  * @par Input array 0 (optional, SetInputArrayToProcess):
  * A point array with one component. Points where it is not 0 stay.
@@ -51,7 +51,7 @@
  * Each works on its piece of the mesh, with the points of one process, bitwise. With a
  * TangledFraction above 0, composite data, surfaces in space and inclined planes the pieces are
  * gathered on the first process. Random numbers are drawn by the global ids of the points; without
- * ids, on one process by their indices, on several in the order of their coordinates.
+ * ids, by the order of their coordinates.
  *
  * @par Example:
  * @code
@@ -165,6 +165,8 @@ protected:
   tautline::GatheredResult GetGatheredResult() const override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   bool TakesPieces(vtkInformationVector** inputs) override;
+  /// Without MergeCoincidentPoints only global ids join partitions.
+  bool JoinsPartitions(vtkInformationVector** inputs) override;
   void ClearResult() override;
 
 private:

@@ -27,6 +27,13 @@ constexpr int VolumeDimension = 3;
 }
 
 //------------------------------------------------------------------------------
+bool vtkMeshImprover::JoinsPartitions(vtkInformationVector** inputs)
+{
+  return this->MergeCoincidentPoints ||
+    vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject::GetData(inputs[MeshPort]));
+}
+
+//------------------------------------------------------------------------------
 bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
 {
   this->Pieces.reset();
@@ -67,7 +74,7 @@ bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
   }
   catch (const tautline::OppositeOrders&)
   {
-    why = "neighbouring cells list their points in opposite orders";
+    why = tautline::oppositeOrders;
   }
   catch (const std::exception& error) // on all processes, which report it in RequestData()
   {

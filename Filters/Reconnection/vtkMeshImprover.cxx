@@ -49,7 +49,10 @@ void vtkMeshImprover::SetMetric(int metric)
 {
   try
   {
-    tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if there is none
+    if (tautline::missingMetric(metric).empty())
+    {
+      tautline::metricInfo(static_cast<tautline::Metric>(metric)); // throws if there is none
+    }
   }
   catch (const std::exception& error)
   {
@@ -80,6 +83,12 @@ void vtkMeshImprover::SetMetricByName(const char* name)
 std::string vtkMeshImprover::GetUserMetrics()
 {
   return tautline::listUserMetrics();
+}
+
+//------------------------------------------------------------------------------
+std::string vtkMeshImprover::FindSettingProblem() const
+{
+  return tautline::missingMetric(this->Metric);
 }
 
 //------------------------------------------------------------------------------

@@ -381,6 +381,9 @@ protected:
     vtkInformationVector* outputVector) override;
   tautline::GatheredResult GetGatheredResult() const override;
   bool TakesPieces(vtkInformationVector** inputs) override;
+  /// Without MergeCoincidentPoints only global ids join partitions.
+  bool JoinsPartitions(vtkInformationVector** inputs) override;
+  std::string FindSettingProblem() const override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
   bool KeepsBest() const override { return true; }
