@@ -33,16 +33,6 @@ enum Columns
 };
 const QStringList LimitNames = { "ideal", "good", "warn", "fail", "worst" };
 
-QStringList metricNames()
-{
-  QStringList names;
-  for (const MetricInfo& info : metricRegistry())
-  {
-    names << info.name;
-  }
-  return names;
-}
-
 QStringList typeNames()
 {
   QStringList names = { "all" };
@@ -69,8 +59,10 @@ QJsonValue valueOf(const QString& text)
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
-CriteriaDialog::CriteriaDialog(const QString& json, QWidget* parentObject)
+CriteriaDialog::CriteriaDialog(
+  const QString& json, const QStringList& metrics, QWidget* parentObject)
   : QDialog(parentObject)
+  , Metrics(metrics)
   , Name(new QLineEdit(this))
   , Table(new QTableWidget(this))
   , Problem(new QLabel(this))
@@ -119,7 +111,8 @@ CriteriaDialog::CriteriaDialog(const QString& json, QWidget* parentObject)
   {
     const QJsonObject criterion = item.toObject();
     const QJsonObject types = criterion["limits"].toObject();
-    const MetricInfo* info = findMetric(criterion["metric"].toString().toStdString());
+    const QString metric = criterion["metric"].toString();
+    const MetricInfo* info = findMetric(metric.toStdString());
     const QString weight = criterion.contains("weight") ? textOf(criterion["weight"]) : "1";
     for (auto type = types.begin(); type != types.end(); ++type)
     {
@@ -128,7 +121,7 @@ CriteriaDialog::CriteriaDialog(const QString& json, QWidget* parentObject)
       {
         limits << textOf(type.value().toObject()[name]);
       }
-      this->insertRow(info ? info->name : QString(), type.key(), weight, limits);
+      this->insertRow(info ? info->name : metric, type.key(), weight, limits);
     }
   }
 
@@ -151,12 +144,16 @@ void CriteriaDialog::insertRow(
     auto* box = new QComboBox(this->Table);
     box->setObjectName(QString("%1_%2").arg(column).arg(row));
     box->addItems(items);
+    if (!items.contains(current)) // the problem below names it
+    {
+      box->addItem(current);
+    }
     box->setCurrentText(current);
     QObject::connect(
       box, QOverload<int>::of(&QComboBox::currentIndexChanged), this, &CriteriaDialog::check);
     this->Table->setCellWidget(row, column, box);
   };
-  choice(MetricColumn, metricNames(), metric);
+  choice(MetricColumn, this->Metrics, metric);
   choice(TypeColumn, typeNames(), type);
   this->Table->setItem(row, WeightColumn, new QTableWidgetItem(weight));
   for (int i = 0; i < LimitNames.size(); ++i)
@@ -169,7 +166,7 @@ void CriteriaDialog::insertRow(
 void CriteriaDialog::addRow()
 {
   // The limits of a row are those of the preset for the first metric; they are to be edited.
-  this->insertRow(metricNames().first(), "all", "1", { "1", "1.5", "3", "10", "100" });
+  this->insertRow(this->Metrics.first(), "all", "1", { "1", "1.5", "3", "10", "100" });
   this->check();
 }
 

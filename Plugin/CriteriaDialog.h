@@ -11,6 +11,7 @@
 #define tautline_CriteriaDialog_h
 
 #include <QDialog>
+#include <QStringList>
 
 class QDialogButtonBox;
 class QLabel;
@@ -25,8 +26,11 @@ class CriteriaDialog : public QDialog
   Q_OBJECT
 
 public:
-  /// @param json the criteria to begin with; "" is an empty table
-  explicit CriteriaDialog(const QString& json, QWidget* parent = nullptr);
+  /**
+   * @param json the criteria to begin with; "" is an empty table
+   * @param metrics the names of the metrics to choose from
+   */
+  CriteriaDialog(const QString& json, const QStringList& metrics, QWidget* parent = nullptr);
 
   /// The criteria in the table as JSON, see tautline/Quality/Criteria.h.
   QString json() const;
@@ -40,6 +44,7 @@ private:
   void insertRow(
     const QString& metric, const QString& type, const QString& weight, const QStringList& limits);
 
+  QStringList Metrics;
   QString Source;
   QLineEdit* Name;
   QTableWidget* Table;

@@ -68,45 +68,27 @@ bool hasGlobalIds(vtkPVDataInformation* info)
     nullptr;
 }
 
-/// The data sets of composite data in the order of their numbers: flat index and number of cells.
-struct Leaf
+bool isPartitioned(int type)
 {
-  unsigned int flatIndex;
-  vtkTypeInt64 cells;
-};
-std::vector<Leaf> leavesOf(pqOutputPort* port, vtkTypeInt64 cells)
-{
-  constexpr unsigned int mostNodes = 100000;
-  std::vector<Leaf> leaves;
-  const unsigned int number = static_cast<unsigned int>(port->getPortNumber());
-  vtkTypeInt64 found = 0;
-  for (unsigned int flat = 1; found < cells && flat < mostNodes; ++flat)
-  {
-    vtkPVDataInformation* info = port->getSourceProxy()->GetSubsetDataInformation(number, flat);
-    if (info && !info->IsNull() && !info->IsCompositeDataSet())
-    {
-      leaves.push_back({ flat, info->GetNumberOfCells() });
-      found += leaves.back().cells;
-    }
-  }
-  return leaves;
+  return type == VTK_PARTITIONED_DATA_SET || type == VTK_MULTIPIECE_DATA_SET;
 }
 
 /// Appends the three numbers by which ParaView identifies a cell of composite data.
 bool appendComposite(
-  const std::vector<Leaf>& leaves, const ElementName& name, std::vector<vtkIdType>& ids)
+  const std::vector<ElementLeaf>& leaves, const ElementName& name, std::vector<vtkIdType>& ids)
 {
   vtkTypeInt64 cell = name.cell;
-  for (std::size_t i = 0; i < leaves.size(); ++i)
+  for (const ElementLeaf& leaf : leaves)
   {
-    const bool here = name.block < 0 || name.block == static_cast<int>(i);
-    if (here && cell < leaves[i].cells)
+    const bool here = name.block < 0 ||
+      (name.block == leaf.block && (name.partition == 0 || name.partition == leaf.partition));
+    if (here && cell < leaf.cells)
     {
-      ids.insert(ids.end(),
-        { static_cast<vtkIdType>(leaves[i].flatIndex), -1, static_cast<vtkIdType>(cell) });
+      ids.insert(
+        ids.end(), { static_cast<vtkIdType>(leaf.flatIndex), -1, static_cast<vtkIdType>(cell) });
       return true;
     }
-    cell -= name.block < 0 ? leaves[i].cells : 0;
+    cell -= name.block < 0 ? leaf.cells : 0;
   }
   return false;
 }
@@ -149,8 +131,8 @@ std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& n
     return "A cell of blocks on several processes has no unique number: apply Generate Global Ids "
            "first.";
   }
-  const std::vector<Leaf> leaves =
-    composite && !global ? leavesOf(port, info->GetNumberOfCells()) : std::vector<Leaf>();
+  const std::vector<ElementLeaf> leaves =
+    composite && !global ? elementLeaves(port) : std::vector<ElementLeaf>();
   std::vector<vtkIdType> ids;
   for (const ElementName& name : names)
   {
@@ -207,14 +189,36 @@ vtkTypeInt64 selectWhere(pqOutputPort* port, const std::vector<CellCondition>& c
 }
 
 //------------------------------------------------------------------------------
-std::vector<unsigned int> leafIndices(pqOutputPort* port)
+std::vector<ElementLeaf> elementLeaves(pqOutputPort* port)
 {
-  std::vector<unsigned int> indices;
-  for (const Leaf& leaf : leavesOf(port, port->getDataInformation()->GetNumberOfCells()))
+  constexpr unsigned int mostNodes = 100000;
+  std::vector<ElementLeaf> leaves;
+  const unsigned int number = static_cast<unsigned int>(port->getPortNumber());
+  vtkPVDataInformation* all = port->getDataInformation();
+  const vtkTypeInt64 cells = all->GetNumberOfCells();
+  vtkTypeInt64 found = 0;
+  // The end of the partitioned data set that the next data sets are in, in cells.
+  vtkTypeInt64 end = isPartitioned(all->GetCompositeDataSetType()) ? cells : 0;
+  ElementLeaf at;
+  for (at.flatIndex = 1; found < cells && at.flatIndex < mostNodes; ++at.flatIndex)
   {
-    indices.push_back(leaf.flatIndex);
+    vtkPVDataInformation* info =
+      port->getSourceProxy()->GetSubsetDataInformation(number, at.flatIndex);
+    const bool partition = found < end;
+    at.block += partition ? 0 : 1;
+    at.partition = partition ? at.partition + 1 : 0;
+    if (info && info->IsCompositeDataSet())
+    {
+      end = isPartitioned(info->GetCompositeDataSetType()) ? found + info->GetNumberOfCells() : 0;
+    }
+    else if (info && !info->IsNull())
+    {
+      at.cells = info->GetNumberOfCells();
+      found += at.cells;
+      leaves.push_back(at);
+    }
   }
-  return indices;
+  return leaves;
 }
 
 //------------------------------------------------------------------------------

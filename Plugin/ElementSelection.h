@@ -24,8 +24,18 @@ namespace tautline
 struct ElementName
 {
   vtkIdType cell = 0;
-  int block = -1;   ///< of composite data, from 0: `cell` counts within it; -1: through all blocks
-  int process = -1; ///< `cell` counts within its part; -1: through all parts
+  int block = -1;    ///< number of a block in summaries: `cell` counts within it; -1: through all
+  int process = -1;  ///< `cell` counts within its part; -1: through all parts
+  int partition = 0; ///< from 1: `cell` counts within this partition of the block; 0: it has one
+};
+
+/// A data set of composite data.
+struct ElementLeaf
+{
+  unsigned int flatIndex = 0;
+  vtkTypeInt64 cells = 0;
+  int block = 0;     ///< the number in summaries: the flat index if partitions were one data set
+  int partition = 0; ///< from 1, of a partitioned or multipiece data set; else 0
 };
 
 /// A closed interval of the values of a cell array.
@@ -56,8 +66,8 @@ std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& n
 vtkTypeInt64 selectWhere(
   pqOutputPort* port, const std::vector<CellCondition>& conditions, bool all);
 
-/// The flat indices of the data sets of composite data, in the order of their numbers.
-std::vector<unsigned int> leafIndices(pqOutputPort* port);
+/// The data sets with cells of composite data.
+std::vector<ElementLeaf> elementLeaves(pqOutputPort* port);
 
 /// The number of cells selected on an output.
 vtkTypeInt64 countSelected(pqOutputPort* port);

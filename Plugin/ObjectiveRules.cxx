@@ -7,12 +7,34 @@
 
 #include "vtkMeshOptimizer.h"
 
+#include <algorithm>
+
 namespace tautline
 {
+namespace
+{
+/// Whether the client has the facts of a metric: not those of a server of another version.
+bool isKnown(int metric)
+{
+  const std::vector<MetricInfo>& known = metricRegistry();
+  return std::any_of(known.begin(), known.end(),
+    [metric](const MetricInfo& info) { return static_cast<int>(info.metric) == metric; });
+}
+}
+
+//------------------------------------------------------------------------------
+std::string metricReason(int metric)
+{
+  return isKnown(metric) ? objectiveProblem(static_cast<Metric>(metric)) : "";
+}
 
 //------------------------------------------------------------------------------
 std::string targetReason(int metric, int target)
 {
+  if (!isKnown(metric))
+  {
+    return "";
+  }
   const MetricInfo& info = metricInfo(static_cast<Metric>(metric));
   const std::string label = info.label;
   if (target == vtkMeshOptimizer::IDEAL)
@@ -33,8 +55,9 @@ std::string targetReason(int metric, int target)
 //------------------------------------------------------------------------------
 std::string templateReason(int metric, int objectiveTemplate)
 {
-  return templateProblem(
-    static_cast<Metric>(metric), static_cast<ObjectiveTemplate>(objectiveTemplate));
+  return isKnown(metric) ? templateProblem(static_cast<Metric>(metric),
+                             static_cast<ObjectiveTemplate>(objectiveTemplate))
+                         : "";
 }
 
 //------------------------------------------------------------------------------

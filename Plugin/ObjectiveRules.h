@@ -12,6 +12,9 @@
 namespace tautline
 {
 
+/// Why a metric cannot be an objective; "" if it can.
+std::string metricReason(int metric);
+
 /**
  * @brief Why a target has no effect on a metric; "" if it has.
  * @param metric number in the registry of metrics

@@ -28,6 +28,14 @@ void tautlineCheckVersion()
 //------------------------------------------------------------------------------
 void tautlineInstallColorMaps()
 {
+  // A metric may be registered later; those of another session stay.
+  static int known = 0;
+  const int now = vtkElementQuality::GetNumberOfKnownMetrics();
+  if (now == known)
+  {
+    return;
+  }
+  known = now;
   constexpr double belowSiteAndUser = -1.0;
   vtkSMSettings::GetInstance()->AddCollectionFromString(
     vtkElementQuality::GetColorMapSettings(), belowSiteAndUser);

@@ -66,19 +66,26 @@ std::vector<WorstElementList> listsOf(vtkPolyData* points)
   {
     return lists;
   }
+  const std::vector<MetricInfo>& known = metricRegistry();
+  int last = -1;
   for (vtkIdType i = 0; i < points->GetNumberOfPoints(); ++i)
   {
-    const MetricInfo& info = metricInfo(static_cast<Metric>(metric->GetComponent(i, 0)));
-    if (lists.empty() || lists.back().array != info.name)
+    const int number = static_cast<int>(metric->GetComponent(i, 0));
+    if (lists.empty() || number != last)
     {
-      lists.push_back({ info.label, info.name, {} });
+      const auto info = std::find_if(known.begin(), known.end(),
+        [number](const MetricInfo& one) { return static_cast<int>(one.metric) == number; });
+      lists.push_back(info == known.end() // of a server of another version
+          ? WorstElementList{ "Metric " + std::to_string(number), "", {} }
+          : WorstElementList{ info->label, info->name, {} });
+      last = number;
     }
     const double v = value->GetComponent(i, 0), state = validity->GetComponent(i, 0);
     const char* invalid = state == Inverted ? ", inverted"
       : state == Degenerate                 ? ", degenerate"
                                             : "";
-    lists.back().elements.push_back({ { static_cast<vtkIdType>(id->GetComponent(i, 0)), -1, -1 }, v,
-      textOf(info.name, v) + invalid });
+    lists.back().elements.push_back({ { static_cast<vtkIdType>(id->GetComponent(i, 0)), -1, -1, 0 },
+      v, textOf(lists.back().array, v) + invalid });
   }
   return lists;
 }
@@ -125,7 +132,7 @@ public:
       }
       else if (auto* cells = vtkDataSet::SafeDownCast(data))
       {
-        this->add(cells, -1, named, entries);
+        this->add(cells, { 0, -1, named, 0 }, entries);
       }
     }
     return entries;
@@ -134,31 +141,32 @@ public:
 private:
   double time() const { return this->Port->getServer()->getTimeKeeper()->getTime(); }
 
-  void add(vtkDataSet* cells, int block, int process, std::vector<WorstElementEntry>& entries) const
+  void add(vtkDataSet* cells, ElementName name, std::vector<WorstElementEntry>& entries) const
   {
     vtkDataArray* ids = cells->GetCellData()->GetArray("vtkOriginalCellIds");
     vtkDataArray* values = cells->GetCellData()->GetArray(this->Array.c_str());
     for (vtkIdType i = 0; ids && values && i < cells->GetNumberOfCells(); ++i)
     {
       const double value = values->GetComponent(i, 0);
-      entries.push_back({ { static_cast<vtkIdType>(ids->GetComponent(i, 0)), block, process },
-        value, textOf(this->Array, value) });
+      name.cell = static_cast<vtkIdType>(ids->GetComponent(i, 0));
+      entries.push_back({ name, value, textOf(this->Array, value) });
     }
   }
 
   /// The blocks are numbered as those of the output, of which the extract may leave some empty.
   void addBlocks(vtkCompositeDataSet* extract, std::vector<WorstElementEntry>& entries) const
   {
-    const std::vector<unsigned int> leaves = leafIndices(this->Port);
+    const std::vector<ElementLeaf> leaves = elementLeaves(this->Port);
     vtkSmartPointer<vtkCompositeDataIterator> iterator;
     iterator.TakeReference(extract->NewIterator());
     for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
     {
       auto* cells = vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject());
-      const auto leaf = std::find(leaves.begin(), leaves.end(), iterator->GetCurrentFlatIndex());
+      const auto leaf = std::find_if(leaves.begin(), leaves.end(),
+        [&](const ElementLeaf& one) { return one.flatIndex == iterator->GetCurrentFlatIndex(); });
       if (cells && leaf != leaves.end())
       {
-        this->add(cells, static_cast<int>(leaf - leaves.begin()), -1, entries);
+        this->add(cells, { 0, leaf->block, -1, leaf->partition }, entries);
       }
     }
   }

@@ -5,11 +5,13 @@
 #include "Report.h"
 
 #include "tautline/Quality/Criteria.h"
+#include "tautline/Quality/Metrics.h"
 
 #include "pqCoreUtilities.h"
 #include "pqFileDialog.h"
 
 #include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 
 #include <QComboBox>
@@ -37,6 +39,28 @@ bool isPreset(const QString& text)
 {
   const auto& known = tautline::criteriaPresets();
   return std::find(known.begin(), known.end(), text.toStdString()) != known.end();
+}
+
+/// The built-in metrics, and those that are registered on the server now.
+QStringList metricNames(vtkSMProxy* proxy)
+{
+  QStringList names;
+  std::string registered;
+  if (vtkSMProperty* list = proxy->GetProperty("UserMetrics"))
+  {
+    proxy->UpdatePropertyInformation(list);
+    registered = vtkSMPropertyHelper(list).GetAsString();
+    tautline::mirrorUserMetrics(registered);
+  }
+  for (const tautline::MetricInfo& info : tautline::metricRegistry())
+  {
+    const std::string number = std::to_string(static_cast<int>(info.metric)) + "\t";
+    if (!info.user || ("\n" + registered).find("\n" + number) != std::string::npos)
+    {
+      names << info.name;
+    }
+  }
+  return names;
 }
 
 /// A file on the computer of the client; "" if the user chose none.
@@ -173,7 +197,7 @@ void pqTautlineCriteria::edit()
   const QString start = this->json().isEmpty()
     ? QString::fromStdString(tautline::presetCriteria(tautline::criteriaPresets().front()))
     : this->json();
-  tautline::CriteriaDialog dialog(start, pqCoreUtilities::mainWidget());
+  tautline::CriteriaDialog dialog(start, metricNames(this->proxy()), pqCoreUtilities::mainWidget());
   if (dialog.exec() == QDialog::Accepted)
   {
     this->setCriteria(dialog.json());

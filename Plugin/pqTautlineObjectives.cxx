@@ -24,6 +24,8 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include <algorithm>
+
 namespace
 {
 constexpr const char* NumberProperty = "NumberOfObjectives";
@@ -194,14 +196,17 @@ QString pqTautlineObjectives::restrict(QComboBox* box, const std::vector<QString
   auto* items = qobject_cast<QStandardItemModel*>(box->model());
   int applicable = 0;
   QString reason;
-  for (int i = 0; items && i < static_cast<int>(problems.size()); ++i)
+  const int count = std::min(box->count(), static_cast<int>(problems.size()));
+  for (int i = 0; items && i < count; ++i)
   {
     items->item(i)->setEnabled(problems[i].isEmpty());
     items->item(i)->setToolTip(problems[i]);
     applicable += problems[i].isEmpty();
     reason = problems[i].isEmpty() ? reason : problems[i];
   }
-  const QString current = problems[box->currentIndex()];
+  const int index = box->currentIndex();
+  const bool listed = index >= 0 && index < static_cast<int>(problems.size());
+  const QString current = listed ? problems[index] : QString();
   // A choice that does not apply can be changed, even if there is one that applies only.
   box->setEnabled(applicable > 1 || !current.isEmpty());
   box->setToolTip(box->isEnabled() ? box->currentText() : reason);
@@ -227,7 +232,6 @@ void pqTautlineObjectives::refresh()
     }
     const int number = i + 1;
     const int metric = this->valueOf(row.metric, "Metric", number);
-    row.metric->setToolTip(row.metric->currentText());
     const auto check = [&](QComboBox* box, const char* property, auto reason)
     {
       auto* values = this->propertyGroup()
@@ -244,6 +248,7 @@ void pqTautlineObjectives::refresh()
         problems << QString("Objective %1: %2").arg(number).arg(problem);
       }
     };
+    check(row.metric, "Metric", [](int, int value) { return tautline::metricReason(value); });
     check(row.objectiveTemplate, "Template", tautline::templateReason);
     check(row.target, "Target", tautline::targetReason);
     row.weight->setEnabled(noWeight.isEmpty());

@@ -98,26 +98,35 @@ pqTautlineResultPanel::~pqTautlineResultPanel() = default;
 //------------------------------------------------------------------------------
 QString pqTautlineResultPanel::linked(const QString& text)
 {
-  static const QRegularExpression element(
-    "\\b([Ee]lement|[Cc]ell) (\\d+)( of process (\\d+))?(?!\\d)");
-  static const QRegularExpression block("^In block (\\d+): ");
-  QString html;
-  int number = -1;
+  static const QRegularExpression element("\\b([Ee]lement|[Cc]ell)( with global id)? (\\d+)(?!\\d)"
+                                          "( of partition (\\d+))?( of block (\\d+))?"
+                                          "( of process (\\d+))?");
+  static const QRegularExpression block("^In (?:partition (\\d+) of )?block (\\d+): ");
+  QString html, part, number = "-1";
   const QStringList lines = text.split('\n');
   for (const QString& line : lines)
   {
     const QRegularExpressionMatch inBlock = block.match(line);
-    number = inBlock.hasMatch() ? inBlock.captured(1).toInt() : number;
+    part = inBlock.hasMatch() ? inBlock.captured(1) : part;
+    number = inBlock.hasMatch() ? inBlock.captured(2) : number;
     int end = 0;
     auto matches = element.globalMatch(line);
     while (matches.hasNext())
     {
       const QRegularExpressionMatch match = matches.next();
-      const QString process = match.captured(4).isEmpty() ? "-1" : match.captured(4);
+      const bool global = !match.captured(2).isEmpty();
+      QString partition = match.captured(5), of = match.captured(7), process = match.captured(9);
+      if (partition.isEmpty() && of.isEmpty() && !global)
+      {
+        partition = part;
+        of = number;
+      }
+      // A partitioned data set without blocks is number 0.
+      of = of.isEmpty() ? (partition.isEmpty() ? "-1" : "0") : of;
       html += line.mid(end, match.capturedStart() - end).toHtmlEscaped();
-      html += QString("<a href=\"%1:%2:%3:%4\">%5</a>")
-                .arg(LinkScheme, match.captured(2), QString::number(number), process,
-                  match.captured(0).toHtmlEscaped());
+      html += QString("<a href=\"%1:%2:%3:%4:%5\">%6</a>")
+                .arg(LinkScheme, match.captured(3), of, process.isEmpty() ? "-1" : process,
+                  partition.isEmpty() ? "0" : partition, match.captured(0).toHtmlEscaped());
       end = match.capturedEnd();
     }
     html += line.mid(end).toHtmlEscaped() + "<br>";
@@ -203,19 +212,22 @@ void pqTautlineResultPanel::follow(const QUrl& link)
 {
   pqPipelineSource* source = this->source();
   const QStringList numbers = link.toString().split(':');
-  if (!source || link.scheme() != LinkScheme || numbers.size() != 4)
+  if (!source || link.scheme() != LinkScheme || numbers.size() != 5)
   {
     return;
   }
   pqOutputPort* mesh = source->getOutputPort(0);
-  const std::string problem = tautline::selectElements(
-    mesh, { { numbers[1].toLongLong(), numbers[2].toInt(), numbers[3].toInt() } });
+  const std::string problem = tautline::selectElements(mesh,
+    { { numbers[1].toLongLong(), numbers[2].toInt(), numbers[3].toInt(), numbers[4].toInt() } });
   if (problem.empty())
   {
     tautline::zoomToSelected(mesh);
   }
   this->showNote(problem.empty()
-      ? QString("Element %1: %2 cell selected.").arg(numbers[1]).arg(tautline::countSelected(mesh))
+      ? QString("Element %1%2: %3 cell selected.")
+          .arg(numbers[1])
+          .arg(numbers[3].toInt() < 0 ? QString() : " of process " + numbers[3])
+          .arg(tautline::countSelected(mesh))
       : QString::fromStdString(problem));
 }
 

@@ -39,7 +39,7 @@ public:
   void setText(const QString& text);
   ///@}
 
-  /// The text as HTML: escaped, with a link element:CELL:BLOCK:PROCESS for each element.
+  /// The text as HTML: escaped, with a link element:CELL:BLOCK:PROCESS:PARTITION for each element.
   static QString linked(const QString& text);
 
 Q_SIGNALS:

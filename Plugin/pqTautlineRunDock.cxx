@@ -320,7 +320,8 @@ void pqTautlineRunDock::end()
     return;
   }
   const bool stopped = tautline::isStopRequested();
-  this->Filter->setText(this->Running + (stopped ? ": stopped" : ": finished"));
+  this->EndedText = this->Running + (stopped ? ": stopped" : ": finished");
+  this->Filter->setText(this->EndedText);
   this->Ended = this->Running;
   this->Running.clear();
   this->Bar->reset();
@@ -414,10 +415,12 @@ void pqTautlineRunDock::showHistory(pqPipelineSource* source)
       history[curve].first + ' ' + QString::number(history[curve].second.back(), 'g', digits));
   }
 
-  // ParaView reports updates without a run, too; of a run that was shown live, the text stands.
+  // ParaView reports updates without a run, too. Of a run that was shown live, the text stands,
+  // unless that of a filter before it, executed in the same update, has replaced it.
   const QString filter = source->getProxy()->GetXMLLabel();
   if (filter == this->Ended)
   {
+    this->Filter->setText(this->EndedText);
     this->Ended.clear();
   }
   else if (history == this->Last)

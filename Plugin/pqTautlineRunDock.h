@@ -86,6 +86,7 @@ private:
   std::map<QString, QString> Filters; ///< name in the menu by name of class
   QString Running;                    ///< name in the menu; "" if no filter runs
   QString Ended;                      ///< the filter that ran; "" once its history is drawn
+  QString EndedText;                  ///< how its run ended
   History Last;                       ///< the history drawn last
   bool Shown = false;                 ///< the dock has appeared by itself
   bool Sent = false;                  ///< the request to stop was sent to the server

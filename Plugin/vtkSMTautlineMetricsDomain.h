@@ -3,10 +3,11 @@
  * @class vtkSMTautlineMetricsDomain
  * @brief The metrics a property may have: those of the XML, and those registered on the server.
  *
- * An enumeration whose further entries come from an information property, a line "number<tab>label"
- * for each (vtkElementQuality::GetUserMetrics()). The list is read when the proxy is created, so
- * that a metric that was registered before is in the menu. In the XML it is an EnumerationDomain,
- * which MetricDomains.h replaces in the client:
+ * An enumeration whose further entries come from an information property, a line
+ * "number<tab>label<tab>..." for each (vtkElementQuality::GetUserMetrics()). The list is read when
+ * the proxy is created, so that a metric that was registered before is in the menu. The client
+ * knows the facts of the metrics then, too, see mirrorUserMetrics(). In the XML it is an
+ * EnumerationDomain, which MetricDomains.h replaces in the client:
  *
  *     <EnumerationDomain name="enum">
  *       <Entry value="0" text="Inverse mean ratio"/>
@@ -22,6 +23,8 @@
 #define vtkSMTautlineMetricsDomain_h
 
 #include "vtkSMEnumerationDomain.h"
+
+#include <string> // for AddMetrics
 
 class vtkClientServerInterpreter;
 
@@ -41,7 +44,11 @@ protected:
   vtkSMTautlineMetricsDomain() = default;
   ~vtkSMTautlineMetricsDomain() override = default;
 
+  /// Asks for the metrics, as the property may get a value before the proxy exists on the server.
+  int ReadXMLAttributes(vtkSMProperty* property, vtkPVXMLElement* element) override;
+
 private:
+  void AddMetrics(const std::string& list);
   vtkSMTautlineMetricsDomain(const vtkSMTautlineMetricsDomain&) = delete;
   void operator=(const vtkSMTautlineMetricsDomain&) = delete;
 };
