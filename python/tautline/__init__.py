@@ -16,8 +16,10 @@ import sys
 from importlib import import_module as _import_module
 from typing import TYPE_CHECKING
 
-from . import _build
+from . import _build, _start
 
+if _start.is_command():
+    _start.end_on_interrupt()
 _build.check()  # before the first compiled module
 
 from . import _vtk

@@ -10,14 +10,11 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from . import _build, _vtk
+from . import _build, _start, _vtk
 from ._commands import EXIT_CODES, Parser, check_outputs, standard_input
 from ._errors import Error
 from ._interrupts import reporting
 
-
-#: Exit code after Ctrl-C, as of shells: 128 and the number of SIGINT.
-_INTERRUPTED = 130
 _EPILOG = """COMMAND --help explains a command, with an example. Names of methods and presets are found in any case.
 The file name - is a .vtu mesh from the standard input or to the standard output:
   python3 -m tautline untangle part.vtu -o - | python3 -m tautline optimize - -o better.vtu
@@ -67,6 +64,7 @@ def main(arguments: list[str] | None = None) -> int:
     parsed = _parser().parse_args(arguments)
     _vtk.CLASSES["vtkUpdateGuard"].EndWithMessage()
     try:
+        _start.restore()
         check_outputs(parsed)
         with warnings.catch_warnings(), standard_input(parsed), reporting(not parsed.quiet):
             warnings.showwarning = _show_warning
@@ -76,7 +74,7 @@ def main(arguments: list[str] | None = None) -> int:
         return 1
     except KeyboardInterrupt:
         print("tautline: interrupted", file=sys.stderr)
-        return _INTERRUPTED
+        return _start.INTERRUPTED
     except BrokenPipeError:  # ... | head
         sys.stderr.close()
         return 1

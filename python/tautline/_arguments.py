@@ -61,7 +61,10 @@ def within(option: str, value: float, low: float, high: float) -> float:
             return value
     except TypeError:
         pass
-    raise Error(f"{option} is {value!r}; it must be a number from {low:g} to {high:g}")
+    positive = low == np.nextafter(0, 1)
+    least = "above 0" if positive else f"from {low:g}"
+    most = "" if high == np.inf else f" and at most {high:g}" if positive else f" to {high:g}"
+    raise Error(f"{option} is {value!r}; it must be a number {least}{most}")
 
 
 def number(option: str, value: Any) -> float:

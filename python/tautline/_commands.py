@@ -10,7 +10,7 @@ import sys
 from contextlib import contextmanager
 from tempfile import TemporaryDirectory
 from textwrap import fill
-from typing import Any, Callable, Iterable, Iterator, Mapping
+from typing import Any, Callable, Iterable, Iterator, Mapping, Tuple
 
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
@@ -145,12 +145,46 @@ def numbers(text: str) -> list[float]:
         raise argparse.ArgumentTypeError(f"{text!r} is not a list of numbers with commas between them") from None
 
 
+def number_or_name(text: str) -> float | str:
+    """A number, or the text where it is none."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
 def numbers_or_text(text: str, kind: type = float) -> Any:
     """A list of numbers if the text is numbers with commas between them, else the text."""
     try:
         return [kind(part) for part in text.split(",")]
     except ValueError:
         return text
+
+
+#: An option that a command passes on only if it is given: its name in Python; its type, the names to choose from, or
+#: bool for --name and --no-name; its help.
+Extra = Tuple[str, Any, str]
+
+
+def add_extras(parser: argparse.ArgumentParser, title: str, extras: Iterable[Extra]) -> None:
+    """Add a group of options that are passed on only if they are given; see given_extras()."""
+    group = parser.add_argument_group(title)
+    for name, kind, text in extras:
+        flags = ["--" + name.rstrip("_").replace("_", "-")]
+        flags += ["-" + name] if len(name) == 1 else []
+        if kind is bool:
+            group.add_argument(*flags, dest=name, action=argparse.BooleanOptionalAction, help=text)
+        elif isinstance(kind, tuple):
+            group.add_argument(*flags, dest=name, choices=kind, help=text)
+        else:
+            metavar = {int: "N", float: "X", str: "NAME"}.get(kind, "X,...")
+            group.add_argument(*flags, dest=name, type=kind, metavar=metavar, help=text)
+
+
+def given_extras(arguments: argparse.Namespace, extras: Iterable[Extra]) -> dict[str, Any]:
+    """The values of those of the options that were given, by name."""
+    values = given(arguments, [name for name, _, _ in extras])
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def given(arguments: argparse.Namespace, names: Iterable[str]) -> dict[str, Any]:

@@ -427,14 +427,32 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--steps", type=int, default=1, help="0: as many as are needed (default: 1)")
     parser.add_argument("--solver", choices=SOLVERS, default="automatic")
     parser.add_argument("--preconditioner", choices=PRECONDITIONERS, default="boomeramg")
+    _commands.add_extras(parser, "of some methods", _EXTRAS)
     _commands.add_merge_points(parser)
     _commands.add_time_limit(parser)
+
+
+_EXTRAS: tuple[_commands.Extra, ...] = (
+    ("maximum_steps", int, "at most, of small-step femwarp and with --steps 0 (default: 100)"),
+    ("tolerance", float, "relative, of the linear systems (default: 1e-10)"),
+    ("poisson_ratio", float, "of the elastic methods (default: 0.3)"),
+    ("stiffening_power", float, "of jacobian stiffening (default: 1)"),
+    ("stiffening_factor", float, "of iterative stiffening (default: 2)"),
+    ("maximum_stiffenings", int, "of iterative stiffening (default: 50)"),
+    ("distance_power", float, "of inverse distance (default: 3)"),
+    ("support_radius", float, "of radial basis, in the unit of the mesh (default: 0, automatic)"),
+    ("fit_tolerance", float, "of radial basis, relative to the largest displacement (default: 1e-3)"),
+    ("untangle_first", bool, "whether hybrid untangles before it optimizes (default: yes)"),
+    ("untangling_beta", float, "beta of hybrid without untangling first, relative to the mean element (default: 0)"),
+    ("maximum_iterations", int, "of the optimization of hybrid (default: 50)"),
+)
 
 
 def _run(arguments: argparse.Namespace) -> int:
     names = ("displacement", "target", "method", "amount", "correspondence", "target_ids", "values", "fixed", "steps",
              "solver", "preconditioner", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
     options = _commands.given(arguments, names)
+    options |= _commands.given_extras(arguments, _EXTRAS)
     options["coefficients"] = _commands.numbers_or_text(arguments.coefficients)
     if arguments.moved:
         options["moved"] = _commands.numbers_or_text(arguments.moved, int)

@@ -86,11 +86,12 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--aspect-ratio", type=float, default=1.0, help="square: ratio of the legs")
     parser.add_argument("--layer-width", type=float, default=0.2,
                         help="square: width of the interaction layer (collar)")  # fmt: skip
+    parser.add_argument("--deformed-boundary", action="store_true", help="the moved boundary instead of the mesh")
     _commands.add_time_limit(parser)
     _commands.add_output(parser)
 
 
 def _run_domain(arguments: argparse.Namespace) -> None:
-    names = ("cells", "amount", "element_size", "aspect_ratio", "layer_width", "time_limit")
+    names = ("cells", "amount", "element_size", "aspect_ratio", "layer_width", "deformed_boundary", "time_limit")
     mesh = domain(arguments.name, **_commands.given(arguments, names))
     _commands.finish(arguments, mesh, _commands.counts(mesh))

@@ -13,7 +13,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
 from ._arguments import (
-    PRECONDITIONERS, Preconditioner, check_options, number, pick, picked, set_threads, set_time_limit, within,
+    PRECONDITIONERS, Preconditioner, Redistribution, check_options, number, pick, picked, set_redistribution,
+    set_threads, set_time_limit, within,
 )  # fmt: skip
 from ._arrays import POINTS, Array, InputArrays, Values, cell_array, columns, has_array, point_array, table_rows
 from ._errors import Error, checked, interruptible, run, watch
@@ -215,6 +216,9 @@ def solve(
         merge_coincident_points: whether points at the same place on facets that match are treated as one (True), as on
             the seams of a mesh in pieces, and blocks with a seam between them as one mesh; the result keeps them all.
             False: they stay apart, as a crack or a contact needs it.
+        redistribute: on several processes (pvbatch --sym under MPI, where each calls this function with its piece):
+            divide the mesh anew among them, also where the first one has all of it; "off", "k-d tree" (or True),
+            "pt-scotch". The result is that of the piece.
 
     A method that does not converge is not an error: see converged, reason and summary of the result, which has the best
     solution found. Raises Error for wrong arguments and for meshes that the filter refuses.
@@ -438,6 +442,7 @@ def _set_problem(
     time_limit: float = 0.0,
     threads: int = 0,
     merge_coincident_points: bool = True,
+    redistribute: Redistribution | bool = "off",
 ) -> None:
     """Set the equation with its functions and boundary conditions; see solve()."""
     filter_.SetEquation(pick("pde", pde, PDES))
@@ -453,6 +458,7 @@ def _set_problem(
     set_time_limit(filter_, time_limit)
     set_threads(filter_, threads)
     filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
+    set_redistribution(filter_, redistribute)
     set_function = _set_vector_function if picked("pde", pde, PDES) == "elasticity" else _set_scalar_function
     if source is not None:
         set_function(filter_, inputs, "source", source, _SOURCE)
@@ -530,8 +536,14 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--preconditioner", choices=PRECONDITIONERS, default="boomeramg")
     made.add_argument("--relative-tolerance", "--tolerance", type=float, default=1e-5,
                       help="relative, of the preconditioned residual (default: 1e-5)")  # fmt: skip
-    made.add_argument("--maximum-iterations", "--iterations", type=int, default=10000, help="(default: 10000)")
+    _add_maximum_iterations(made)
     made.add_argument("--restart", type=int, default=30, help="m of GMRES(m) (default: 30)")
+    _add_absolute_tolerance(made)
+    _commands.add_flag(made, "rigid_body_modes", "whether multigrid gets the rigid body modes, of elasticity")
+    _commands.add_flag(made, "fast_multigrid", "whether boomeramg coarsens aggressively, or as PETSc has it")
+    made.add_argument("--solution-name", default="", metavar="NAME",
+                      help="of the array (default: Solution, of elasticity Displacement)")  # fmt: skip
+    _commands.add_flag(made, "gradient", "whether the cells get the gradient or stress")
     made.add_argument("--time-scheme", choices=TIME_SCHEMES, default="stationary",
                       help="of the heat equation, or newmark of the wave equation (default: stationary)")  # fmt: skip
     made.add_argument("--time-step", type=float, default=0.01, help="length of a time step (default: 0.01)")
@@ -549,6 +561,8 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--preconditioner", choices=PRECONDITIONERS, default="boomeramg")
     made.add_argument("--method", choices=METHODS, default="automatic")
     made.add_argument("--tolerance", type=float, default=1e-6, help="of the eigenvalues (default: 1e-6)")
+    _add_maximum_iterations(made)
+    _commands.add_flag(made, "shares", "whether the cells get their shares of the largest eigenvalue")
 
     made = _add_problem(commands, "solver-study", _run_study,
                         "run many combinations of solver and preconditioner, recommend one")  # fmt: skip
@@ -556,10 +570,24 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--combinations", type=_combinations, metavar="N,...",
                       help=f"numbers, 1 to {_TABLE_2_5} of Table 2.5 (the default) and above: "
                       + ", ".join(f"{k} {v}" for k, v in solver_combinations().items() if k > _TABLE_2_5))  # fmt: skip
+    made.add_argument("--relative-tolerance", type=float, default=1e-5,
+                      help="of the preconditioned residual (default: 1e-5)")  # fmt: skip
+    _add_absolute_tolerance(made)
+    _add_maximum_iterations(made)
     made.add_argument("--restart", type=int, default=30, help="m of GMRES(m) (default: 30)")
+    _commands.add_flag(made, "conditions", "whether to estimate the condition number of each combination")
     made.add_argument("--repetitions", type=int, default=1, help="the fastest run counts (default: 1)")
     made.add_argument("--combination-time-limit", type=float, default=60.0, metavar="SECONDS",
                       help="of each combination; 0 is no limit (default: 60)")  # fmt: skip
+
+
+def _add_absolute_tolerance(made: argparse.ArgumentParser) -> None:
+    made.add_argument("--absolute-tolerance", type=float, default=1e-50,
+                      help="of the preconditioned residual (default: 1e-50)")  # fmt: skip
+
+
+def _add_maximum_iterations(made: argparse.ArgumentParser) -> None:
+    made.add_argument("--maximum-iterations", "--iterations", type=int, default=10000, help="(default: 10000)")
 
 
 #: Example and further sentence of the help of the commands.
@@ -618,7 +646,8 @@ def _call(function: Callable[..., Any], arguments: argparse.Namespace, *names: s
 
 
 def _run_solve(arguments: argparse.Namespace) -> int:
-    names = ("solver", "preconditioner", "relative_tolerance", "maximum_iterations", "restart", "time_scheme",
+    names = ("solver", "preconditioner", "relative_tolerance", "absolute_tolerance", "maximum_iterations", "restart",
+             "rigid_body_modes", "fast_multigrid", "solution_name", "gradient", "time_scheme",
              "time_step", "time_steps", "mass", "density", "initial", "velocity")  # fmt: skip
     result = _call(solve, arguments, *names)
     _commands.finish(arguments, result, result.summary, table_rows(result.history))
@@ -626,12 +655,14 @@ def _run_solve(arguments: argparse.Namespace) -> int:
 
 
 def _run_condition(arguments: argparse.Namespace) -> None:
-    result = _call(condition, arguments, "preconditioner", "method", "tolerance")
+    result = _call(condition, arguments, "preconditioner", "method", "tolerance", "maximum_iterations", "shares")
     _commands.finish(arguments, result, result.summary, result.spectrum)
 
 
 def _run_study(arguments: argparse.Namespace) -> int:
-    result = _call(solver_study, arguments, "combinations", "restart", "repetitions", "combination_time_limit")
+    names = ("combinations", "relative_tolerance", "absolute_tolerance", "maximum_iterations", "restart", "conditions",
+             "repetitions", "combination_time_limit")  # fmt: skip
+    result = _call(solver_study, arguments, *names)
     shown = ("number", "name", "result", "iterations", "condition", "reason")
     table = align([[row[key] for key in shown] for row in result.rows], shown)
     _commands.finish(arguments, result, f"{table}\n\n{result.summary}", result.rows)

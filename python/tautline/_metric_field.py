@@ -124,6 +124,8 @@ def add_commands(commands: Any) -> None:
     _commands.add_metrics(parser)
     _commands.add_time_limit(parser)
     parser.add_argument("--cell", choices=CELLS, default="triangle")
+    parser.add_argument("--vertices", type=_commands.numbers, nargs="+", metavar="X,Y[,Z]",
+                        help="the fixed vertices, 2 of a triangle, 3 of a tetrahedron")  # fmt: skip
     parser.add_argument("--bounds", type=float, nargs=6, metavar="X",
                         help="range of the vertex: xmin xmax ymin ymax zmin zmax (default: -1 2 0 2 0 2)")  # fmt: skip
     parser.add_argument("--dimensions", type=int, nargs=3, metavar="N", help="grid points (default: 301 201 101)")
@@ -131,7 +133,7 @@ def add_commands(commands: Any) -> None:
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    options = {name: value for name in ("bounds", "dimensions") if (value := getattr(arguments, name))}
+    options = {name: value for name in ("vertices", "bounds", "dimensions") if (value := getattr(arguments, name))}
     options |= _commands.given(arguments, ("beta", "time_limit", "threads"))
     result = metric_field(arguments.metrics, arguments.cell, **options)
     lines = []

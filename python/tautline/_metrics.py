@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import argparse
 import os
+import sys
+import warnings
 from pathlib import Path
 from typing import Any, Callable, Iterable, Union
 
@@ -100,7 +102,8 @@ def register_metric(
     The metric is then known by its name to quality, compare, metric_field, criteria and, in pvpython and in ParaView's
     Python shell, to the menus of filters that are made afterwards. It has no derivatives and cannot be optimized: for
     that, register one in C++ (tautline/Quality/UserMetric.h). A metric that was registered in Python under the same
-    name is replaced.
+    name is replaced. With a server of ParaView, or several processes of pvbatch, it is registered in this process
+    only: put the registration into a file then, for load_metrics.
 
     name: lower case letters, digits and underscores; the name of the cell array.
     function: takes x y z of the corners, shape (cells, corners, 3), read-only, and the type of the cells, a name of
@@ -152,6 +155,14 @@ def register_metric(
             _REGISTERED[name] = replaced
         messages.raise_errors()
     _REGISTERED[name] = metric
+    server = None if _loading else _server()
+    if server and server.IsRemote():
+        warnings.warn(
+            f"the metric {name} is registered in this process only, but the filters of ParaView are executed by the "
+            f"server {server.GetURI()}, whose menus do not have it: put the registration into a file, and load it by "
+            "tautline.load_metrics(FILE), which registers it in all processes of the server, too",
+            stacklevel=3,
+        )
     return next(int(facts["number"]) for facts in metrics() if facts["name"] == name)
 
 
@@ -167,7 +178,10 @@ def _evaluator(function: MetricFunction) -> Callable[[Any, str], None]:
             cell, corners = names[metric.GetCellType()]
             points = vtk_to_numpy(metric.GetCorners()).reshape(-1, corners, 3)
             points.flags.writeable = False
-            found = np.asarray(function(points, cell), dtype=float)
+            found = np.asarray(function(points, cell))
+            if np.iscomplexobj(found):
+                raise TypeError("it gave complex values; real ones are expected")
+            found = found.astype(float)
             if found.shape != (len(points),):
                 raise ValueError(f"it gave values of shape {found.shape}; ({len(points)},) is expected")
             vtk_to_numpy(metric.GetValues())[:] = found
@@ -187,18 +201,107 @@ def unregister_metric(name: str) -> None:
 
 @checked
 def load_metrics(library: str | os.PathLike[str]) -> list[str]:
-    """Load a shared library that registers metrics (tautline/Quality/UserMetric.h); returns their names.
+    """Load a file that registers metrics; returns their names.
 
-    The shell loads the libraries named in the environment variable TAUTLINE_METRICS, separated by colons; so does
-    ParaView. Raises Error if the library cannot be loaded or a registration in it fails.
+    library: a shared library (tautline/Quality/UserMetric.h), or a Python file (.py) that calls register_metric. The
+        shell and ParaView load the shared libraries named in the environment variable TAUTLINE_METRICS, separated by
+        colons, when they start.
+
+    In pvpython, pvbatch and ParaView's Python shell all processes of the server load it, too: a Python file as it is
+    here, a library from the path on the computer of the server. Filters that are made afterwards have the metrics in
+    their menus. The server needs the package tautline.
+
+    Raises Error if the file cannot be loaded or a registration in it fails, on any process.
     """
     if not isinstance(library, (str, os.PathLike)):
         raise Error(f"the library is {library!r}; a file name is expected")
-    before = {facts["name"] for facts in metrics()}
-    problem = _vtk.vtkUserMetric.LoadLibrary(str(Path(library).absolute()))
+    path = Path(library).absolute()
+    script = None
+    if path.suffix == ".py":
+        try:
+            script = path.read_text(encoding="utf-8")
+        except (OSError, ValueError) as error:
+            raise Error(f"{path}: {error}") from None
+    server = _server()
+    before = _known()
+    problem = "" if server and server.IsRemote() and not path.exists() else load_here(str(path), script)
+    if not problem and server:
+        problem = _load_on_server(server, str(path), script)
     if problem:
         raise Error(problem)
-    return [facts["name"] for facts in metrics() if facts["name"] not in before]
+    return [name for name, metric in _known().items() if name not in before or before[name] is not metric]
+
+
+def _known() -> dict[str, Any]:
+    """The names of all metrics, and what Python has registered of them."""
+    return {facts["name"]: _REGISTERED.get(facts["name"]) for facts in metrics()}
+
+
+#: Whether load_here() is at work: what it registers is registered on all processes.
+_loading = False
+
+
+def load_here(path: str, script: str | None) -> str:
+    """Load a library, or run the text of a Python file, in this process. Returns what is wrong, or ""."""
+    global _loading
+    if script is None:
+        return str(_vtk.vtkUserMetric.LoadLibrary(path))
+    _loading = True
+    try:
+        exec(compile(script, path, "exec"), {"__name__": "tautline_user_metrics", "__file__": path})
+        return ""
+    except Exception as error:
+        return f"{path}: {error if isinstance(error, Error) else f'{type(error).__name__}: {error}'}"
+    finally:
+        _loading = False
+
+
+def _server() -> Any:
+    """The connection of ParaView, if its server has other processes than this one; else None."""
+    connection = getattr(sys.modules.get("paraview.servermanager"), "ActiveConnection", None)
+    if connection is None:
+        return None
+    from paraview.modules.vtkRemotingCore import vtkProcessModule
+
+    if vtkProcessModule.GetProcessModule().GetSymmetricMPIMode():  # each process runs the same script
+        return None
+    return connection if connection.IsRemote() or connection.GetNumberOfDataPartitions() > 1 else None
+
+
+#: Runs on each process of the server: a row with its number and what was wrong.
+_ON_SERVER = """
+from vtkmodules.vtkCommonCore import vtkIntArray, vtkStringArray
+from vtkmodules.vtkParallelCore import vtkMultiProcessController
+try:
+    from tautline import _metrics
+    problem = _metrics.load_here({path!r}, {script!r})
+except Exception as error:
+    problem = type(error).__name__ + ": " + str(error)
+controller = vtkMultiProcessController.GetGlobalController()
+for array, value in ((vtkIntArray(), controller.GetLocalProcessId() if controller else 0), (vtkStringArray(), problem)):
+    array.SetName("Problem" if array.IsA("vtkStringArray") else "Process")
+    array.InsertNextValue(value)
+    output.VTKObject.AddColumn(array)
+"""
+
+
+def _load_on_server(server: Any, path: str, script: str | None) -> str:
+    """Load a file in all processes of the server. Returns what is wrong, or ""."""
+    from paraview import servermanager
+
+    source = servermanager.sources.ProgrammableSource()
+    source.OutputDataSetType = "vtkTable"
+    source.Script = _ON_SERVER.format(path=path, script=script)
+    source.UpdatePipeline()
+    for process in range(int(server.GetNumberOfDataPartitions())):
+        table = servermanager.Fetch(source, process)
+        if not table or table.GetNumberOfRows() != 1 or table.GetValueByName(0, "Process").ToInt() != process:
+            problem = "it did not run the script, see what it prints"
+        else:
+            problem = table.GetValueByName(0, "Problem").ToString()
+        if problem:
+            return f"process {process} of the server cannot load the metrics: {problem}"
+    return ""
 
 
 def choose(algorithm: Any, chosen: Metrics) -> Messages:

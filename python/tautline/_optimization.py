@@ -200,7 +200,7 @@ def optimize(
     smooth_surface: whether they slide on a smooth surface through the points of the input, or on its facets.
     surface_tolerance: with the boundary "on surface", how far the new boundary may be from the old one, and the old one
         from the new one (with a geometry, only the new one from that), as a fraction of the diagonal of the bounding
-        box, 0 to 1; 0: any distance.
+        box, 0 to 1; 0: any distance. The same of interfaces of regions, with any boundary.
     leave_surface: with the preset "worst element" and the boundary "on surface", whether points of the boundary near
         the worst elements, corners too, may leave the surface within surface_tolerance, where sliding does not improve
         these elements any more. Needs keep_features and a surface_tolerance above 0; not with a geometry or limits.
@@ -208,7 +208,8 @@ def optimize(
         the point and cell array `PatchId`.
     feature_kinds: kinds of the points instead of those found: 0, 1, 2, or -1 as found; one per point, or the name of a
         point array.
-    regions: numbers of regions, whose interfaces are kept: one per cell, or the name of a cell array.
+    regions: numbers of regions, whose interfaces are kept, within surface_tolerance: one per cell, or the name of a
+        cell array.
     geometry: a surface of triangles or quadrilaterals that points slide on instead of the surface of the mesh, after
         they are placed on it; its features are matched to those of the mesh.
     limits: largest displacement of points, in the mesh's unit: a number (0: no limit), one per point (negative: no
@@ -407,7 +408,8 @@ def add_commands(commands: Any) -> None:
     parser = _commands.add_command(
         commands, "optimize", _run_optimize, "move points so that elements become better",
         example='part.vtu --preset "best shape" -o better.vtu',
-        details="Neither the number of inverted elements nor the worst element becomes worse.",
+        details="Neither the number of inverted elements nor the worst element becomes worse. Exits with 1 if some "
+        "elements remain inverted.",
     )
     _commands.add_moving_points(parser)
     _commands.add_reproducible_order(parser)
@@ -436,6 +438,36 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--feature-kinds", metavar="ARRAY", help="point array: 0 patch, 1 curve, 2 corner, -1 as found")
     parser.add_argument("--regions", metavar="ARRAY", help="cell array of regions, whose interfaces are kept")
     parser.add_argument("--geometry", metavar="FILE", help="a surface that points slide on instead of their own")
+    parser.add_argument("--limits", metavar="LENGTH|ARRAY", type=_commands.number_or_name,
+                        help="largest displacement: a length or a point array (default: 0, no limit)")  # fmt: skip
+    parser.add_argument("--element-weights", metavar="ARRAY", help="cell array of weights of the elements")
+    _commands.add_flag(parser, "project_to_surface", "whether points of a surface in space stay on it")
+    _commands.add_flag(parser, "untangle_first", "whether inverted elements are untangled first where the objectives "
+                       "cannot repair them")  # fmt: skip
+    parser.add_argument("--allow-inversion", action="store_true", help="steps may invert valid elements")
+    _commands.add_extras(parser, "of the optimizer, without a preset", _EXTRAS)
+
+
+_EXTRAS: tuple[_commands.Extra, ...] = (
+    ("gradient_norm", float, "end when the norm of the gradient has fallen by this factor (default: 1e-6)"),
+    ("relative_change", float, "end at this relative change of the objective in an iteration (default: 1e-5)"),
+    ("two_digits", bool, "whether to end when all mean qualities keep two decimals"),
+    ("reduction", float, "end at this part of the possible reduction, 0 to 1 (default: 1, off)"),
+    ("best_known", float, "the least objective that is known, of --reduction (default: estimated)"),
+    ("stop_when_valid", bool, "whether to end when all elements are valid"),
+    ("c", float, "parameter of exponential sum (default: 0, automatic)"),
+    ("exponent", float, "of exponential weighted (default: 1)"),
+    ("tolerance", float, "relative rise of an objective for later ones, of lexicographic (default: 0.01)"),
+    ("utopia", _commands.numbers, "best value of each objective, of scalarizations that have one (default: 0)"),
+    ("power", float, "exponent of the power mean (default: 8)"),
+    ("combination", COMBINATIONS, "of the values at the corners of a cell (default: mean)"),
+    ("beta", float, "least area or volume of an element, of the untangling metric (default: 0)"),
+    ("culling", float, "leave out points that move less than this part of an edge (default: 1e-3)"),
+    ("patch_iterations", int, "steps in each patch of the local optimizers (default: 1)"),
+    ("relaxation", float, "factor of a step of local newton, 1 to 1.99 (default: 1.4)"),
+    ("improve_worst", float, "then improve the worst element, the mean worse by at most this part (default: 0, off)"),
+    ("rescale_untangling", bool, "whether untangling objectives are scaled up at the start (default: yes)"),
+)
 
 
 def _objective(text: str) -> Objective:
@@ -452,10 +484,13 @@ def _objective(text: str) -> Objective:
     return name, facts
 
 
-def _run_optimize(arguments: argparse.Namespace) -> None:
+def _run_optimize(arguments: argparse.Namespace) -> int:
     names = ("preset", "scalarization", "optimizer", "maximum_iterations", "reference", "size", "tensor", "fixed",
              "boundary", "flat_angle", "worst_metric", "hold_worst", "feature_angle", "keep_features", "smooth_surface",
              "surface_tolerance", "leave_surface", "show_features", "feature_kinds", "regions", "geometry",
+             "limits", "element_weights", "project_to_surface", "untangle_first", "allow_inversion",
              "time_limit", "threads", "merge_coincident_points", "reproducible_order")  # fmt: skip
-    result = optimize(arguments.mesh, arguments.objectives, **_commands.given(arguments, names))
+    options = _commands.given(arguments, names) | _commands.given_extras(arguments, _EXTRAS)
+    result = optimize(arguments.mesh, arguments.objectives, **options)
     _commands.finish(arguments, result, result.summary, table_rows(result.history))
+    return 1 if result.inverted else 0

@@ -142,11 +142,13 @@ def peridynamics(
     poisson_ratio: of the state-based model, above -1 and below 0.5. The bond-based one has 1/4 (plane strain), 1/3
         (plane stress).
     plane: of the state-based model: "strain" (a long body) or "stress" (a thin plate).
-    discretization: "exact" (each pair of triangles is integrated to the tolerance) or "dissertation" (by
-        the quadrature `rules`).
+    discretization: "exact" (each pair of triangles is integrated as `tolerance` states) or "dissertation"
+        (by the quadrature `rules`).
     rules: "tables" reproduces the dissertation's tables, "literal" is what its text says, or the numbers of outer/inner
         points: "1/1", "3/3", "3/1".
-    tolerance: relative, of the integral over each pair of triangles ("exact"), 1e-10 to 0.1.
+    tolerance: of the refinement of the integral over each pair of triangles ("exact"), 1e-10 to 0.1. The matrix has
+        larger errors, relative to its largest entry: at most 3e-3, 5e-4 and 1e-4 for 1e-3, 1e-5 and 1e-7 where the
+        horizon is 1.5 elements, 7e-3, 8e-4 and 3e-4 where it is 0.3 elements.
     region: name or values of a cell array that is layer_value in the interaction layer; None: there is no layer.
     given_points: name or values of a point array, not 0 where the solution of the linear basis is given; None: at the
         points of the layer's cells.
@@ -386,8 +388,10 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--delta", type=float, default=0.2, help="the horizon (default: 0.2)")
     made.add_argument("-p", type=float, default=1.0, help="exponent of the kernel (default: 1)")
     made.add_argument("--basis", choices=BASES, default="linear")
-    made.add_argument("--kernel", choices=KERNELS[:-1], default="power")
+    made.add_argument("--kernel", choices=KERNELS, default="power")
     made.add_argument("--width", type=float, default=0.5, help="of the Gaussian, in horizons (default: 0.5)")
+    made.add_argument("--values", type=_commands.numbers, default=(), metavar="V,...",
+                      help="of the kernel table, at equal distances from 0 to delta")  # fmt: skip
     made.add_argument("--model", choices=MODELS, default="scalar")
     made.add_argument("--poisson-ratio", type=float, default=0.25, help="of the state-based model (default: 0.25)")
     made.add_argument("--plane", choices=PLANE_STATES, default="strain", help="of the state-based model")
@@ -396,13 +400,21 @@ def add_commands(commands: Any) -> None:
     made.add_argument("--rules", choices=RULES, default="tables", help="of the dissertation's discretization")
     made.add_argument("--tolerance", type=float, default=1e-5, help="of the exact integrals (default: 1e-5)")
     made.add_argument("--region", default=_DEFAULT_REGION, metavar="ARRAY",
-                      help="cell array, 2 in the interaction layer (default: %(default)s)")  # fmt: skip
+                      help="cell array, --layer-value in the interaction layer (default: %(default)s)")  # fmt: skip
+    made.add_argument("--layer-value", type=float, default=2.0, help="(default: 2)")
+    made.add_argument("--given-points", metavar="ARRAY",
+                      help="point array, not 0 where the solution is given (default: in the layer)")  # fmt: skip
+    _commands.add_flag(made, "constrained", "whether the solution in the layer is given")
     made.add_argument("--add-layer", action="store_true",
                       help="first add an interaction layer of width delta (state-based: 2 delta)")  # fmt: skip
     made.add_argument("--allow-thin-layer", action="store_true", help="the layer may be narrower than delta")
     made.add_argument("--no-cut-bonds", dest="cut_bonds", action="store_false",
                       help="triangles interact across holes and cracks")  # fmt: skip
-    made.add_argument("--solve", action="store_true", help="solve for a source of 1, and 0 in the layer")
+    _commands.add_flag(made, "spectrum", "whether to compute the extreme eigenvalues")
+    made.add_argument("--spectrum-tolerance", type=float, default=1e-8, help="of these, relative (default: 1e-8)")
+    made.add_argument("--solve", action="store_true", help="solve for --source and the solution given in the layer")
+    made.add_argument("--source", type=_commands.number_or_name, default=1.0, metavar="F|ARRAY", help="(default: 1)")
+    made.add_argument("--given", metavar="ARRAY", help="the solution in the layer (default: 0)")
     made.add_argument("--preconditioner", choices=PRECONDITIONERS, default="jacobi", help="of the solution")
     made.add_argument("--memory-limit", type=float, default=0.0, metavar="MIB",
                       help="0, the default, is the free memory")  # fmt: skip
@@ -449,9 +461,10 @@ def _run_peridynamics(arguments: argparse.Namespace) -> None:
         options = _commands.given(arguments, ("time_limit", "threads", "merge_coincident_points"))
         width = (2 if arguments.model == "state-based" else 1) * arguments.delta
         mesh = interaction_layer(mesh, width, **options)
-    names = ("delta", "p", "basis", "kernel", "width", "model", "poisson_ratio", "plane", "discretization", "rules",
-             "tolerance", "region", "allow_thin_layer", "cut_bonds", "solve", "preconditioner", "memory_limit",
-             "time_limit", "threads", "merge_coincident_points")  # fmt: skip
+    names = ("delta", "p", "basis", "kernel", "width", "values", "model", "poisson_ratio", "plane", "discretization",
+             "rules", "tolerance", "region", "layer_value", "given_points", "constrained", "allow_thin_layer",
+             "cut_bonds", "spectrum", "spectrum_tolerance", "solve", "source", "given", "preconditioner",
+             "memory_limit", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
     result = peridynamics(mesh, **_commands.given(arguments, names))
     _commands.finish(arguments, result, result.summary)
 

@@ -281,7 +281,7 @@ def add_commands(commands: Any) -> None:
                         help="of normals from the input surface, at most (default: 20)")  # fmt: skip
     parser.add_argument("--surface-distance", type=float, metavar="FACTOR", default=5e-3,
                         help="from the input surface, relative to the diagonal (default: 5e-3)")  # fmt: skip
-    parser.add_argument("--edge-length", type=_length_or_name, metavar="LENGTH|ARRAY|input",
+    parser.add_argument("--edge-length", type=_commands.number_or_name, metavar="LENGTH|ARRAY|input",
                         help="target length of edges: number, point array, or that of the input")  # fmt: skip
     parser.add_argument("--edge-factor", type=float, default=2.0, metavar="FACTOR",
                         help="how much longer or shorter new edges may be (default: 2)")  # fmt: skip
@@ -294,13 +294,6 @@ def add_commands(commands: Any) -> None:
                         help="least number of elements, relative to the input (default: 0.9)")  # fmt: skip
     parser.add_argument("--largest-count", type=float, default=1.1, metavar="FACTOR",
                         help="largest number of elements, relative to the input (default: 1.1)")  # fmt: skip
-
-
-def _length_or_name(text: str) -> float | str:
-    try:
-        return float(text)
-    except ValueError:
-        return text
 
 
 def _run_improve(arguments: argparse.Namespace) -> None:

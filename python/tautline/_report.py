@@ -84,11 +84,14 @@ def add_commands(commands: Any) -> None:
     _commands.add_metrics(parser)
     parser.add_argument("--criteria", metavar="NAME|FILE", help="grade the elements by a preset or JSON file")
     parser.add_argument("--title", metavar="TEXT", help="default: the name of the file")
+    parser.add_argument("--histogram-bins", type=int, default=32, metavar="N", help="number of bins (default: 32)")
     _commands.add_time_limit(parser)
 
 
 def _run(arguments: argparse.Namespace) -> None:
-    options = _commands.given(arguments, ("before", "metrics", "criteria", "title", "time_limit", "threads"))
+    options = _commands.given(arguments, (
+        "before", "metrics", "criteria", "title", "histogram_bins", "time_limit", "threads",
+    ))  # fmt: skip
     html = report(arguments.mesh, **options)
     facts: dict[str, Any] = {"title": options["title"] or str(arguments.mesh)}
     _commands.finish(arguments, None, "", texts={arguments.report: html}, facts=facts)

@@ -486,12 +486,10 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("source", help="an image")
     parser.add_argument("target", help="an image")
     _add_spacing(parser)
-    parser.add_argument("--locations", choices=LOCATIONS, default="grid")
-    parser.add_argument("--grid", type=int, nargs=2, default=(30, 30), metavar=("COLUMNS", "ROWS"))
-    parser.add_argument("-a", type=float, default=12.0, help="weight of the deformation (default: 12)")
-    parser.add_argument("-b", type=float, default=3.0, help="weight of the distortion (default: 3)")
-    parser.add_argument("--centre-tolerance", type=float, default=1 / 3,
-                        help="theta / d_max; 0: no rule (default: 1/3)")  # fmt: skip
+    _add_matching(parser)
+    parser.add_argument("--grey-gradient", action="store_true",
+                        help="use the gradient of the grey values instead of that of the silhouette")  # fmt: skip
+    _commands.add_extras(parser, "of the energy and the search", _EXTRAS)
     _commands.add_output(parser, "write the detected mesh", False)
     _commands.add_time_limit(parser)
 
@@ -501,7 +499,13 @@ def add_commands(commands: Any) -> None:
         details="Each is matched with each other one (dissertation, section 5.3).",
     )
     parser.add_argument("shapes", help="a folder of images, or a list (.csv) with the columns file and class")
-    parser.add_argument("--setting", choices=SETTINGS, default="highest")
+    parser.add_argument("--labels", metavar="CLASS,...", type=lambda text: text.split(","),
+                        help="the class of each shape, if the set does not have them")  # fmt: skip
+    parser.add_argument("--setting", choices=SETTINGS, default="highest", help="custom: by the options of the match")
+    _add_spacing(parser)
+    _add_matching(parser)
+    parser.add_argument("--symmetric", action="store_true", help="the distance is the sum of both directions")
+    _commands.add_extras(parser, "of the energy and the search, with --setting custom", _EXTRAS)
     parser.add_argument("--shortlist", type=int, default=0,
                         help="match each shape with so many others only; 0: all (default: 0)")  # fmt: skip
     parser.add_argument("--neighbors", type=int, default=0,
@@ -509,11 +513,40 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--best", type=int, default=10, help="number of matches per query that count (default: 10)")
     parser.add_argument("--csv", metavar="FILE", help="write the best matches of each shape")
     parser.add_argument("--sheet", metavar="FILE.png", help="write a picture of the shapes with their best matches")
+    parser.add_argument("--sheet-size", type=int, default=1200, metavar="PIXELS",
+                        help="its width and height (default: 1200)")  # fmt: skip
     _commands.add_time_limit(parser)
 
 
 def _add_spacing(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--spacing", type=float, default=25.0, help="of the vertices, pixels (default: 25)")
+
+
+def _add_matching(parser: argparse.ArgumentParser) -> None:
+    """Add the candidate positions and what may be reflected."""
+    parser.add_argument("--locations", choices=LOCATIONS, default="grid")
+    parser.add_argument("--grid", type=int, nargs=2, default=(30, 30), metavar=("COLUMNS", "ROWS"))
+    parser.add_argument("--reflection", choices=REFLECTIONS, default="forbidden")
+    parser.add_argument("--foreground", choices=FOREGROUNDS, default="automatic")
+
+
+_EXTRAS: tuple[_commands.Extra, ...] = (
+    ("a", float, "weight of the deformation (default: 12)"),
+    ("b", float, "weight of the distortion (default: 3)"),
+    ("lambda_", float, "constant of the edge cost (default: 0.1)"),
+    ("signed_distortion", bool, "whether the distortion tells growing from shrinking"),
+    ("smoothing", float, "standard deviation of the Gaussian filter, pixels (default: 1.5)"),
+    ("directed_edges", bool, "whether edges must have the shape on their inner side"),
+    ("rotation", float, "weight of 1 - cos(angle a triangle turns by) (default: 0)"),
+    ("descriptor", float, "weight of the difference between surroundings of vertices (default: 0)"),
+    ("ordering", float, "weight of unequal lengths along the outline, of contour (default: 0)"),
+    ("contour_points", int, "points of --locations contour (default: 60)"),
+    ("centre_tolerance", float, "theta / d_max; 0: no rule (default: 1/3)"),
+    ("max_solutions", int, "to try for this rule (default: 1000)"),
+    ("coarse_to_fine", bool, "whether to search coarsely first: fast, not exact"),
+    ("rotations", int, "orientations to try, 1 to 360 (default: 1)"),
+    ("scales", int, "sizes to try, odd, 1 to 31 (default: 1)"),
+)
 
 
 def _run_silhouette(arguments: argparse.Namespace) -> None:
@@ -523,16 +556,19 @@ def _run_silhouette(arguments: argparse.Namespace) -> None:
 
 
 def _run_match(arguments: argparse.Namespace) -> None:
-    names = ("spacing", "locations", "grid", "a", "b", "centre_tolerance", "time_limit", "threads")
-    result = match(arguments.source, arguments.target, **_commands.given(arguments, names))
+    names = ("spacing", "locations", "grid", "reflection", "foreground", "grey_gradient", "time_limit", "threads")
+    options = _commands.given(arguments, names) | _commands.given_extras(arguments, _EXTRAS)
+    result = match(arguments.source, arguments.target, **options)
     _commands.finish(arguments, result, result.summary)
 
 
 def _run_retrieval(arguments: argparse.Namespace) -> None:
     if arguments.sheet:
         _check_sheet(arguments.sheet)
-    names = ("setting", "shortlist", "neighbors", "best", "time_limit", "threads")
-    result = retrieval(arguments.shapes, **_commands.given(arguments, names))
+    names = ("labels", "setting", "spacing", "locations", "grid", "reflection", "foreground", "symmetric", "shortlist",
+             "neighbors", "best", "sheet_size", "time_limit", "threads")  # fmt: skip
+    options = _commands.given(arguments, names) | _commands.given_extras(arguments, _EXTRAS)
+    result = retrieval(arguments.shapes, **options)
     ranks = "right at rank " + ", ".join(f"{k}: {n}" for k, n in enumerate(result.correct_at, 1))
     rows = table_rows(columns(result.tables["Ranking"]))
     _commands.finish(arguments, result, f"{result.summary}\n{ranks}", rows)

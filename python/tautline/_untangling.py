@@ -134,11 +134,12 @@ def add_commands(commands: Any) -> None:
     _commands.add_moving_points(parser)
     parser.add_argument("--effort", choices=EFFORTS, default="normal")
     _commands.add_reproducible_order(parser)
+    _commands.add_flag(parser, "fix_boundary", "whether the points of the boundary stay in place")
     parser.add_argument("--method", choices=METHODS, default="automatic", help="simultaneous: Escobar et al. 2003")
 
 
 def _run_untangle(arguments: argparse.Namespace) -> int:
-    names = ("effort", "method", "fixed", "time_limit", "threads", "merge_coincident_points",
+    names = ("effort", "method", "fixed", "fix_boundary", "time_limit", "threads", "merge_coincident_points",
              "reproducible_order")  # fmt: skip
     result = untangle(arguments.mesh, **_commands.given(arguments, names))
     _commands.finish(arguments, result, result.summary, table_rows(result.history))
