@@ -97,24 +97,14 @@ inline MeshData blockMesh(CellType type, Index nx, Index ny, Index nz)
 inline MeshData shuffled(const MeshData& mesh, unsigned seed)
 {
   Random random(seed);
-  auto permutation = [&](Index n)
-  {
-    std::vector<Index> order(n);
-    for (Index i = 0; i < n; ++i)
-    {
-      order[i] = i;
-      std::swap(order[i], order[random.integer(i + 1)]);
-    }
-    return order;
-  };
-  const std::vector<Index> newId = permutation(mesh.numberOfPoints());
+  const std::vector<Index> newId = random.permutation(mesh.numberOfPoints());
   MeshData result;
   result.points.resize(mesh.points.size());
   for (Index i = 0; i < mesh.numberOfPoints(); ++i)
   {
     result.setPoint(newId[i], mesh.point(i));
   }
-  for (Index cell : permutation(mesh.numberOfCells()))
+  for (const Index cell : random.permutation(mesh.numberOfCells()))
   {
     std::vector<Index> nodes;
     for (Index n = mesh.offsets[cell]; n < mesh.offsets[cell + 1]; ++n)

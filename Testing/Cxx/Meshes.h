@@ -181,6 +181,18 @@ public:
     return { this->uniform(low, high), this->uniform(low, high), this->uniform(low, high) };
   }
 
+  /** The numbers below count in a random order. */
+  std::vector<Index> permutation(Index count)
+  {
+    std::vector<Index> order(count);
+    for (Index i = 0; i < count; ++i)
+    {
+      order[i] = i;
+      std::swap(order[i], order[this->integer(i + 1)]);
+    }
+    return order;
+  }
+
 private:
   std::mt19937_64 Engine;
 };

@@ -48,7 +48,7 @@ struct ThreadExchange
   {
   }
 
-  /** Waits for all ranks. */
+  /** Waits for all ranks; throws if one has left, for which the others would wait forever. */
   void wait()
   {
     std::unique_lock<std::mutex> lock(this->mutex);
@@ -60,7 +60,19 @@ struct ThreadExchange
       this->all.notify_all();
       return;
     }
-    this->all.wait(lock, [&] { return this->round != round; });
+    this->all.wait(lock, [&] { return this->round != round || this->left; });
+    if (this->round == round)
+    {
+      throw std::runtime_error("A rank has left that the others wait for.");
+    }
+  }
+
+  /** A rank leaves with an error. */
+  void leave()
+  {
+    const std::lock_guard<std::mutex> lock(this->mutex);
+    this->left = true;
+    this->all.notify_all();
   }
 
   int size;
@@ -68,6 +80,7 @@ struct ThreadExchange
   std::condition_variable all;
   int waiting = 0;
   long round = 0;
+  bool left = false;
   std::vector<std::map<int, Bytes>> boxes; ///< per receiver, by sender
 };
 
@@ -138,7 +151,7 @@ private:
 };
 
 /** Calls work(group) on as many ranks; throws what the first of them does. */
-template <class Work>
+template <class Rank = ThreadRank, class Work>
 void onRanks(int size, const Work& work)
 {
   ThreadExchange exchange(size);
@@ -149,7 +162,7 @@ void onRanks(int size, const Work& work)
     threads.emplace_back(
       [&, rank]
       {
-        ThreadRank group(exchange, rank);
+        Rank group(exchange, rank);
         try
         {
           work(group);
@@ -157,6 +170,7 @@ void onRanks(int size, const Work& work)
         catch (...)
         {
           errors[rank] = std::current_exception();
+          exchange.leave();
         }
       });
   }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes and composite data on several processes: the numbers of Element Quality are those of the
 // whole mesh on one process, also where pieces are inverted; a block that is wrong on one process
-// is an error on all, as is a seam between blocks on different processes, and none waits for
-// another.
+// is an error on all, and none waits for another; blocks with a seam between them are one mesh of
+// the solvers, whichever process has them.
 #include "Check.h"
+#include "ThreadRanks.h"
 #include "VtkMeshes.h"
+
+#include "tautline/Mesh/CellOrder.h"
 
 #include "vtkConditionEstimator.h"
 #include "vtkElementQuality.h"
@@ -21,6 +24,8 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
+#include <map>
+#include <utility>
 
 using namespace tautline;
 
@@ -308,36 +313,151 @@ void testWrongBlocks(int rank, int ranks)
 }
 
 //------------------------------------------------------------------------------
-/// Two blocks with a seam, each on a rank of its own: in one process they are one mesh.
-void testSeam(int rank)
+/// The blocks of a test, and which cells of a block a rank has.
+using BlockOwner = std::function<bool(int block, Index cell)>;
+
+/// Some cells of the blocks, with the points of these.
+vtkSmartPointer<vtkMultiBlockDataSet> blocksOf(
+  const std::vector<MeshData>& meshes, const BlockOwner& owns, bool ids)
 {
-  const Context context("seam");
-  constexpr double side = 3;
-  const auto update = [&](vtkEllipticSolver* filter, const Vec3& shift)
+  auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
+  std::map<Vec3, vtkIdType> known; // of all blocks
+  for (std::size_t i = 0; i < meshes.size(); ++i)
   {
-    vtkNew<vtkMultiBlockDataSet> blocks;
-    for (int i = 0; i < 2; ++i)
+    const RankPart part =
+      partOf(meshes[i], 0, [&](Index cell) { return owns(static_cast<int>(i), cell) ? 0 : 1; });
+    for (Index p = 0; p < meshes[i].numberOfPoints(); ++p)
     {
-      MeshData data = blockMesh(CellType::Hexahedron, side, side, side);
-      data.transform([&](const Vec3& p) { return p + static_cast<double>(i) * shift; });
-      blocks->SetBlock(i, i == rank ? toGrid(data).Get() : nullptr);
+      known.emplace(meshes[i].point(p), static_cast<vtkIdType>(known.size()));
     }
-    filter->SetInputDataObject(0, blocks);
+    blocks->SetBlock(static_cast<unsigned int>(i), nullptr);
+    if (part.cellOf.empty())
+    {
+      continue;
+    }
+    auto grid = toGrid(part.data);
+    vtkNew<vtkIdTypeArray> numbers;
+    numbers->SetName("numbers");
+    for (const Index p : part.pointOf)
+    {
+      numbers->InsertNextValue(ids ? known[meshes[i].point(p)] : p);
+    }
+    if (ids)
+    {
+      grid->GetPointData()->SetGlobalIds(numbers);
+    }
+    blocks->SetBlock(static_cast<unsigned int>(i), grid);
+  }
+  return blocks;
+}
+
+/// The solution by block and place.
+std::map<std::pair<int, Vec3>, double> solutionOf(vtkEllipticSolver* filter)
+{
+  std::map<std::pair<int, Vec3>, double> values;
+  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  for (unsigned int i = 0; i < output->GetNumberOfBlocks(); ++i)
+  {
+    auto* block = vtkDataSet::SafeDownCast(output->GetBlock(i));
+    for (vtkIdType p = 0; block && p < block->GetNumberOfPoints(); ++p)
+    {
+      Vec3 x;
+      block->GetPoint(p, x.data());
+      values[{ static_cast<int>(i), x }] = component(block->GetPointData(), "Solution", p);
+    }
+  }
+  return values;
+}
+
+/// Blocks are solved as on one process, whichever rank has which cells of them.
+void compareBlocks(const char* name, const std::vector<MeshData>& meshes, bool joined, bool merge,
+  bool ids, vtkMultiProcessController* controller)
+{
+  const Context context(name);
+  const int rank = controller->GetLocalProcessId(), ranks = controller->GetNumberOfProcesses();
+  const auto update = [&](vtkEllipticSolver* filter, const BlockOwner& owns)
+  {
+    filter->SetSourceType(vtkEllipticSolver::EXPRESSION);
+    filter->SetSourceExpression("x + y*z");
+    filter->SetRelativeTolerance(1e-12);
+    filter->SetMergeCoincidentPoints(merge);
+    filter->SetInputDataObject(0, blocksOf(meshes, owns, ids));
     filter->Update();
-    auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
-    return output->GetNumberOfCells() > 0;
   };
-  vtkNew<vtkEllipticSolver> filter;
-  Messages messages(filter);
-  TAUTLINE_CHECK(!update(filter, { side, 0, 0 }));
-  TAUTLINE_CHECK(messages.has("16 points of a block coincide with those of another one, the first "
-                              "is at (3, 0, 0)"));
-  messages.clear();
-  filter->SetMergeCoincidentPoints(false);
-  TAUTLINE_CHECK_EQUAL(update(filter, { side, 0, 0 }), rank < 2);
-  filter->SetMergeCoincidentPoints(true);
-  TAUTLINE_CHECK_EQUAL(update(filter, { side, side, side }), rank < 2); // a corner is no seam
-  TAUTLINE_CHECK(messages.empty());
+  vtkNew<vtkEllipticSolver> serial;
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  update(serial, [](int, Index) { return true; });
+  vtkMultiProcessController::SetGlobalController(controller);
+  const auto expected = solutionOf(serial);
+  const bool one = std::string(serial->GetSummary()).find("are one mesh") != std::string::npos;
+  TAUTLINE_CHECK_EQUAL(one, joined);
+  double largest = 0;
+  for (const auto& [place, value] : expected)
+  {
+    largest = std::max(largest, std::abs(value));
+  }
+  const BlockOwner whole = [&](int block, Index) { return block % ranks == rank; };
+  const BlockOwner cut = [&](int block, Index cell)
+  { return (7 * cell / 3 + block) % ranks == rank; };
+  const BlockOwner first = [&](int, Index) { return rank == 0; };
+  for (const BlockOwner& owns : { whole, cut, first })
+  {
+    for (const int how : { vtkEllipticSolver::NO_REDISTRIBUTION, vtkEllipticSolver::KD_TREE,
+           vtkEllipticSolver::PT_SCOTCH })
+    {
+      const Context inner("divided " + std::to_string(how));
+      vtkNew<vtkEllipticSolver> filter;
+      Messages messages(filter);
+      filter->SetRedistribute(how);
+      update(filter, owns);
+      TAUTLINE_CHECK(messages.empty());
+      TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(), serial->GetUnknowns());
+      for (const auto& [place, value] : solutionOf(filter))
+      {
+        TAUTLINE_CHECK_NEAR(value, expected.at(place), 1e-8 * largest);
+      }
+      const std::string summary = filter->GetSummary();
+      TAUTLINE_CHECK_EQUAL(summary.find("are one mesh") != std::string::npos, joined);
+    }
+  }
+}
+
+void testSeams(vtkMultiProcessController* controller)
+{
+  constexpr Index n = 3;
+  constexpr double side = n;
+  const auto block = [](CellType type, const Vec3& shift)
+  {
+    MeshData data = blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
+    data.transform([&](const Vec3& p) { return p + shift; });
+    return data;
+  };
+  const auto reversed = [](MeshData data)
+  {
+    for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+    {
+      reverseCell(cornerType(data.types[cell]), data.connectivity.data() + data.offsets[cell]);
+    }
+    return data;
+  };
+  for (const CellType type : { CellType::Hexahedron, CellType::Quadrilateral })
+  {
+    const Context context(topology(type).plural);
+    const MeshData at = block(type, { 0, 0, 0 }), right = block(type, { side, 0, 0 });
+    const MeshData corner = block(type, { side, side, 0 });
+    const MeshData far = block(type, { 10 * side, 0, 0 });
+    compareBlocks("seam", { at, right }, true, true, false, controller);
+    compareBlocks("with ids", { at, right }, true, true, true, controller);
+    compareBlocks("merging off", { at, right }, false, false, false, controller);
+    compareBlocks("chain", { far, at, corner, right }, true, true, false, controller);
+    compareBlocks("edge or corner", { at, corner }, false, true, false, controller);
+    compareBlocks("reversed", { at, reversed(right) }, true, true, false, controller);
+    compareBlocks("on top of each other", { at, at }, false, true, false, controller);
+  }
+  MeshData bent = block(CellType::Quadrilateral, { 0, 0, 0 });
+  bent.transform([](const Vec3& p) { return Vec3{ side, p[1], p[0] }; });
+  compareBlocks("surface", { block(CellType::Quadrilateral, { 0, 0, 0 }), bent }, true, true, false,
+    controller);
 }
 }
 
@@ -350,7 +470,7 @@ int TestBlockRanks(int argc, char* argv[])
   const int rank = controller->GetLocalProcessId(), ranks = controller->GetNumberOfProcesses();
   testQuality(rank, ranks);
   testWrongBlocks(rank, ranks);
-  testSeam(rank);
+  testSeams(controller);
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
   return exitCode();

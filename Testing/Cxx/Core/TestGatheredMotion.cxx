@@ -2,6 +2,7 @@
 // What Optimize Mesh gathers on the first process: the points are those of one process, the summary
 // states the reason on all processes, and what one process refuses all refuse.
 #include "MotionRanks.h"
+#include "RankMesh.h"
 #include "Surfaces.h"
 
 #include "vtkMeshOptimizer.h"
@@ -87,8 +88,7 @@ void testSettings(vtkMPIController* controller)
 void testPieces(vtkMPIController* controller)
 {
   const auto none = [](vtkMeshOptimizer*, const RankPart&) {};
-  testGathered<vtkMeshOptimizer>("opposite orders", controller, halfTurned(),
-    "neighbouring cells list their points in opposite orders", none);
+  testGathered<vtkMeshOptimizer>("opposite orders", controller, halfTurned(), oppositeOrders, none);
   MeshData huge = block();
   huge.transform([](const Vec3& p) { return 1e200 * p; });
   testGathered<vtkMeshOptimizer>(

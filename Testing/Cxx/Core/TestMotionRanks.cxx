@@ -3,11 +3,18 @@
 // process, however the mesh is cut.
 #include "MotionRanks.h"
 
+#include "tautline/Optimization/Optimize.h"
+
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshUntangler.h"
 
+#include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
+
+#include <cmath>
+#include <numeric>
 
 using namespace tautline;
 
@@ -126,20 +133,18 @@ void testOptimizer(vtkMPIController* controller)
     checkOptimizer);
 }
 
-/// Equal sizes at the cost of the shape of single elements: points about these go back, as many as
-/// on one process.
+/// Equal sizes at the cost of the shape of single elements: these are improved, and no points are
+/// put back.
 void testGuard(vtkMPIController* controller)
 {
-  const auto sentence = [](vtkMeshOptimizer* filter)
+  const MeshData whole = jittered(CellType::Tetrahedron, 5, 0.25);
+  const auto worstOf = [](const MeshData& data)
   {
-    const std::string summary = filter->GetSummary();
-    const std::size_t at = summary.find(" points were put back to where they were:");
-    TAUTLINE_CHECK(at != std::string::npos);
-    const std::size_t from = summary.rfind('\n', at);
-    return summary.substr(from, summary.find('\n', at) - from); // with their number
+    const std::vector<double> q = valuesOf(data, Metric::ScaledJacobian);
+    return *std::min_element(q.begin(), q.end());
   };
   testFilter<vtkMeshOptimizer>(
-    "guard", controller, jittered(CellType::Tetrahedron, 5, 0.25),
+    "guard", controller, whole,
     [](vtkMeshOptimizer* filter)
     {
       filter->AddObjective(static_cast<int>(Metric::SizeNonBarrier));
@@ -147,9 +152,135 @@ void testGuard(vtkMPIController* controller)
     },
     [&](vtkMeshOptimizer* serial, vtkMeshOptimizer* ranks, int rank)
     {
-      TAUTLINE_CHECK_EQUAL(sentence(ranks), sentence(serial));
+      for (vtkMeshOptimizer* filter : { serial, ranks })
+      {
+        const std::string summary = filter->GetSummary();
+        TAUTLINE_CHECK(summary.find("put back") == std::string::npos);
+      }
+      const MeshData after =
+        toMesh(vtkUnstructuredGrid::SafeDownCast(serial->GetOutputDataObject(0)));
+      TAUTLINE_CHECK(worstOf(after) >= worstOf(whole) - 1e-9);
       checkOptimizer(serial, ranks, rank);
     });
+}
+
+/// The value of the worst element, and the sum of the squares, of the inverse mean ratio.
+std::pair<double, double> shapeOf(const MeshData& data)
+{
+  const std::vector<double> q = valuesOf(data, Metric::InverseMeanRatio);
+  return { *std::max_element(q.begin(), q.end()),
+    std::inner_product(q.begin(), q.end(), q.begin(), 0.0) };
+}
+
+/// Moves the coordinates of inner points to their neighbours in single precision as long as the sum
+/// gets smaller: better than what is best, rounded.
+void improveInSingle(MeshData& data)
+{
+  const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
+  double best = shapeOf(data).second;
+  for (bool again = true; again;)
+  {
+    again = false;
+    for (std::size_t i = 0; i < data.points.size(); ++i)
+    {
+      for (const float towards : { -HUGE_VALF, HUGE_VALF })
+      {
+        if (boundary[i / 3])
+        {
+          continue;
+        }
+        const double before = data.points[i];
+        data.points[i] = static_cast<double>(std::nextafter(static_cast<float>(before), towards));
+        const double sum = shapeOf(data).second;
+        const bool better = sum < best * (1 - 1e-11);
+        best = better ? sum : best;
+        data.points[i] = better ? data.points[i] : before;
+        again = again || better;
+      }
+    }
+  }
+}
+
+/// Far from the origin single precision has few digits, and a mesh that is as good as it gets with
+/// these is better than what is best, rounded to them: what is written is never worse, in single
+/// precision where that does.
+void testSingle(vtkMPIController* controller)
+{
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  constexpr double far = 1000, rounding = 1e-9;
+  int single = 0, doubled = 0;
+  for (const double amplitude : { 0.1, 0.2, 0.3 })
+  {
+    const bool best = amplitude > 0.1;
+    MeshData whole = jittered(CellType::Tetrahedron, 4, amplitude);
+    whole.points = best ? optimize(Mesh(whole.view()), OptimizeOptions()).points : whole.points;
+    whole.transform([](const Vec3& p) { return p + Vec3{ far, far, far }; });
+    for (double& x : whole.points)
+    {
+      x = static_cast<double>(static_cast<float>(x));
+    }
+    if (best && rank == 0) // it takes long
+    {
+      improveInSingle(whole);
+    }
+    controller->Broadcast(whole.points.data(), static_cast<vtkIdType>(whole.points.size()), 0);
+    for (const int type : { VTK_FLOAT, VTK_DOUBLE })
+    {
+      const Context context(
+        "type " + std::to_string(type) + ", amplitude " + std::to_string(amplitude));
+      const auto run = [&](const RankPart& part, vtkMeshOptimizer* filter)
+      {
+        auto grid = gridOf(part);
+        grid->SetPoints(toPoints(part.data, type));
+        filter->ReproducibleOrderOn();
+        return moved(
+          whole, part, grid.Get(), [](vtkMeshOptimizer*) {}, filter);
+      };
+      const auto typeOf = [](vtkMeshOptimizer* filter)
+      {
+        return vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0))
+          ->GetPoints()
+          ->GetDataType();
+      };
+      const auto note = [](vtkMeshOptimizer* filter)
+      {
+        const std::string summary = filter->GetSummary();
+        const std::size_t at = summary.find("The points are given in double precision");
+        return at == std::string::npos ? std::string()
+                                       : summary.substr(at, summary.find('\n', at) - at);
+      };
+      vtkNew<vtkMeshOptimizer> serial;
+      vtkMultiProcessController::SetGlobalController(nullptr);
+      const std::vector<double> expected =
+        run(partOf(whole, 0, [](Index) { return 0; }), serial.Get());
+      vtkMultiProcessController::SetGlobalController(controller);
+      MeshData after = whole;
+      after.points = expected;
+      const auto [worst, sum] = shapeOf(whole);
+      const auto [worstNow, sumNow] = shapeOf(after);
+      TAUTLINE_CHECK(worstNow <= worst * (1 + rounding));
+      TAUTLINE_CHECK(sumNow <= sum * (1 + 1e-12));
+      TAUTLINE_CHECK_EQUAL(note(serial).empty(), typeOf(serial) == type);
+      single += typeOf(serial) == VTK_FLOAT;
+      doubled += type == VTK_FLOAT && typeOf(serial) == VTK_DOUBLE;
+      for (const Cut cut : { Cut::Slabs, Cut::Random })
+      {
+        const Context inner("cut " + std::to_string(static_cast<int>(cut)));
+        const RankPart part = partOf(whole, rank, cutBy(whole, cut, size), cut == Cut::Slabs);
+        vtkNew<vtkMeshOptimizer> filter;
+        checkSame(run(part, filter.Get()), expected);
+        TAUTLINE_CHECK_EQUAL(typeOf(filter), typeOf(serial));
+        TAUTLINE_CHECK_EQUAL(note(filter), note(serial));
+        checkOptimizer(serial, filter, rank);
+      }
+    }
+  }
+  if (rank == 0)
+  {
+    std::cout << single << " meshes in single precision, " << doubled << " in double instead\n";
+  }
+  TAUTLINE_CHECK(single > 0);
+  TAUTLINE_CHECK(doubled > 0);
 }
 
 /// Weights and targets are of cells: each process has those of its own.
@@ -263,6 +394,37 @@ void testUntangler(vtkMPIController* controller)
     });
 }
 
+/// A mesh with more inverted elements than others is not reversed by that, on processes either.
+void testMostlyInverted(vtkMPIController* controller)
+{
+  MeshData inverted = jittered(CellType::Hexahedron, 4, 1.1);
+  MeshData reversed = jittered(CellType::Hexahedron, 4, 0.2);
+  reversed.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+  for (const MeshData* whole : { &inverted, &reversed })
+  {
+    const Context context(whole == &reversed ? "reversed" : "mostly inverted");
+    vtkNew<vtkMeshUntangler> serial, ranks;
+    vtkMultiProcessController::SetGlobalController(nullptr);
+    serial->SetInputData(gridOf(partOf(*whole, 0, [](Index) { return 0; })));
+    serial->Update();
+    vtkMultiProcessController::SetGlobalController(controller);
+    ranks->SetInputData(gridOf(partOf(*whole, controller->GetLocalProcessId(),
+      cutBy(*whole, Cut::Random, controller->GetNumberOfProcesses()))));
+    ranks->Update();
+    const Index before = ranks->GetInvertedBefore();
+    TAUTLINE_CHECK_EQUAL(before, serial->GetInvertedBefore());
+    TAUTLINE_CHECK(whole == &reversed ? before == 0 : 2 * before > whole->numberOfCells());
+    constexpr char remark[] = "The mesh is reversed: its cells list their points in the opposite "
+                              "order, 64 of 64 being negative. It is treated as if its cells were "
+                              "flipped.";
+    for (vtkMeshUntangler* filter : { serial.Get(), ranks.Get() })
+    {
+      const bool remarked = std::string(filter->GetSummary()).find(remark) != std::string::npos;
+      TAUTLINE_CHECK_EQUAL(remarked, whole == &reversed);
+    }
+  }
+}
+
 /// Blocks are gathered: one with a part on each process, and one on the last process only.
 void testBlocks(vtkMPIController* controller)
 {
@@ -309,6 +471,51 @@ void testBlocks(vtkMPIController* controller)
   }
 }
 
+/// The iterations are time steps, the same on all processes, with the points of one process.
+void testAnimation(vtkMPIController* controller)
+{
+  using Pipeline = vtkStreamingDemandDrivenPipeline;
+  const Context context("animation");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const MeshData whole = jittered(CellType::Tetrahedron, 4, 0.3);
+  const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
+  const RankPart all = partOf(whole, 0, [](Index) { return 0; });
+  vtkNew<vtkMeshOptimizer> serial, optimizer;
+  serial->SetInputData(numberedGridOf(all));
+  optimizer->SetInputData(numberedGridOf(part));
+  Messages messages(optimizer);
+  serial->AnimationOn();
+  optimizer->AnimationOn();
+  std::vector<Vec3> before(whole.numberOfPoints());
+  for (const double time : { 2.0, 0.0, 1.0 })
+  {
+    vtkMultiProcessController::SetGlobalController(nullptr);
+    serial->UpdateTimeStep(time);
+    vtkMultiProcessController::SetGlobalController(controller);
+    optimizer->UpdateTimeStep(time);
+    const auto steps = [](vtkAlgorithm* filter)
+    { return filter->GetOutputInformation(0)->Length(Pipeline::TIME_STEPS()); };
+    TAUTLINE_CHECK_EQUAL(steps(optimizer), steps(serial));
+    TAUTLINE_CHECK(steps(serial) > 3 && steps(serial) < 50);
+    std::vector<Vec3> expected(whole.numberOfPoints());
+    for (std::size_t p = 0; p < all.pointOf.size(); ++p)
+    {
+      vtkPointSet::SafeDownCast(serial->GetOutputDataObject(0))
+        ->GetPoint(static_cast<vtkIdType>(p), expected[all.pointOf[p]].data());
+    }
+    for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+    {
+      Vec3 found;
+      vtkPointSet::SafeDownCast(optimizer->GetOutputDataObject(0))
+        ->GetPoint(static_cast<vtkIdType>(p), found.data());
+      TAUTLINE_CHECK(norm(found - expected[part.pointOf[p]]) <= 1e-10);
+    }
+    TAUTLINE_CHECK(expected != before);
+    before = expected;
+  }
+  TAUTLINE_CHECK(messages.empty());
+}
+
 /// What is wrong on one process is an error on all, and what cannot be done is refused by name.
 void testRefusals(vtkMPIController* controller)
 {
@@ -331,7 +538,13 @@ void testRefusals(vtkMPIController* controller)
   };
   const auto none = [](auto&&) {};
   refused(
-    "switch Animation off", [](vtkMeshOptimizer* filter) { filter->AnimationOn(); }, none);
+    "switch Animation off",
+    [](vtkMeshOptimizer* filter)
+    {
+      filter->AnimationOn();
+      filter->ReproducibleOrderOn();
+    },
+    none);
   refused(
     "'none'",
     [](vtkMeshOptimizer* filter)
@@ -394,9 +607,12 @@ int TestMotionRanks(int argc, char* argv[])
   vtkMultiProcessController::SetGlobalController(controller);
   testOptimizer(controller);
   testGuard(controller);
+  testSingle(controller);
   testElementArrays(controller);
   testWholeMeshes(controller);
   testUntangler(controller);
+  testMostlyInverted(controller);
+  testAnimation(controller);
   testRefusals(controller);
   testUntanglerFailures(controller);
   testBlocks(controller);

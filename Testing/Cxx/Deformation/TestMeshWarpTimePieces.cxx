@@ -218,7 +218,7 @@ void testPutTogether(vtkMPIController* controller)
     TAUTLINE_CHECK(farthest(run.at(3.0, whole, part), whole.points) > 0.1);
     const char* sentence =
       "The mesh was put together on the first process: neighbouring cells list "
-      "their points in opposite orders.";
+      "their points in opposite orders";
     TAUTLINE_CHECK(contains(run.filter->GetSummary(), sentence));
     // Its summary stays when nothing but the time changes.
     run.at(2.0, whole, part);

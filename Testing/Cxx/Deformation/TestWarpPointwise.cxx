@@ -6,6 +6,8 @@
 
 #include "tautline/Deformation/WarpPointwise.h"
 
+#include <map>
+
 using namespace tautline;
 
 namespace
@@ -120,6 +122,17 @@ Vec3 wave(const Vec3& p, double size)
   return size * Vec3{ 0.15 * std::sin(3 * q[1]) * q[0], 0.1 * q[0] * q[0], 0.1 * q[1] * q[2] };
 }
 
+/// The moves by the places of the points.
+std::map<Vec3, Vec3> byPlace(const MeshData& data, const std::vector<double>& moves)
+{
+  std::map<Vec3, Vec3> result;
+  for (Index i = 0; i < data.numberOfPoints(); ++i)
+  {
+    result[data.point(i)] = at(moves, i);
+  }
+  return result;
+}
+
 /// Affine motions, prescribed points, planes, units, threads, the order of the points.
 void testInvariances(CellType type)
 {
@@ -173,6 +186,18 @@ void testInvariances(CellType type)
       options.threads = threads;
       TAUTLINE_CHECK(problem.run(method.warp, options) == moves);
     }
+    Problem relabelled = boundaryProblem(shuffled(problem.data, 12));
+    relabelled.prescribe(inPlane);
+    const auto here = byPlace(problem.data, moves),
+               there = byPlace(relabelled.data, relabelled.run(method.warp));
+    double apart = 0;
+    for (const auto& [place, move] : here)
+    {
+      apart = std::max(apart, norm(there.at(place) - move));
+    }
+    // A system of equations is solved to a tolerance.
+    const bool solves = method.warp == static_cast<Method>(warpByWeightedLaplacian);
+    TAUTLINE_CHECK(apart <= (solves ? 1e-9 * size : 0.0));
     for (const double unit : { 1e-8, 1e8 })
     {
       Problem other = problem;
@@ -187,6 +212,36 @@ void testInvariances(CellType type)
       TAUTLINE_CHECK(difference < 1e-8 * size);
     }
   }
+}
+
+/// Centres that are equally bad, by a symmetry: rounding does not choose among them.
+void testTies()
+{
+  constexpr Index n = 16;
+  Problem problem = boundaryProblem(blockMesh(CellType::Tetrahedron, n, n, n));
+  const auto symmetric = [&](const Vec3& p)
+  {
+    Vec3 d = { 0, 0, 0 };
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      d[k] = 0.05 * n * std::sin(2 * M_PI * p[k] / n) * std::cos(M_PI * p[(k + 1) % 3] / n);
+    }
+    return d;
+  };
+  problem.prescribe(symmetric);
+  const std::vector<double> moves = problem.run(warpByRadialBasis);
+  Random random(21);
+  for (double& d : problem.displacement)
+  {
+    d *= 1 + random.uniform(-1e-15, 1e-15);
+  }
+  const std::vector<double> rounded = problem.run(warpByRadialBasis);
+  double difference = 0;
+  for (std::size_t i = 0; i < moves.size(); ++i)
+  {
+    difference = std::max(difference, std::abs(rounded[i] - moves[i]));
+  }
+  TAUTLINE_CHECK(difference < 1e-9 * n);
 }
 
 /// The groups of the tree against the sum over all points, for powers with a formula of their own
@@ -532,6 +587,7 @@ int TestWarpPointwise(int, char*[])
   testInvariances(CellType::Triangle);
   testInvariances(CellType::Tetrahedron);
   testInvariances(CellType::Hexahedron);
+  testTies();
   testInverseDistance();
   testRadialBasis();
   testManyCenters();

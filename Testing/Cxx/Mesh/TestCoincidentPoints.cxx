@@ -436,6 +436,39 @@ void testThreads()
     }
   }
 }
+
+/// Two pieces with the cells of each other as ghosts: these have no facets, and their points are
+/// those of the cells that they are copies of.
+void testGhosts()
+{
+  for (CellType type : allTypes)
+  {
+    const Context context(topology(type).name);
+    const MeshData whole = block(type, 4);
+    MeshData both = whole;
+    append(both, whole);
+    const Index cells = whole.numberOfCells(), points = whole.numberOfPoints();
+    std::vector<unsigned char> ghosts(2 * cells, 0);
+    for (Index cell = 0; cell < cells; ++cell)
+    {
+      const bool second = centerOf(whole, cell)[0] > 2;
+      ghosts[cell + (second ? 0 : cells)] = 1;
+    }
+    const Mesh mesh(both.view());
+    TAUTLINE_CHECK(findCoincidentPoints(mesh).apart() > 0);
+    const CoincidentPoints merged = findCoincidentPoints(mesh, nullptr, 1, ghosts.data());
+    TAUTLINE_CHECK_EQUAL(merged.apart(), 0);
+    TAUTLINE_CHECK_EQUAL(merged.seams, 1);
+    TAUTLINE_CHECK_EQUAL(merged.merged, points);
+    for (Index p = 0; p < points && merged.any(); ++p)
+    {
+      TAUTLINE_CHECK_EQUAL(merged.representative[p + points], p);
+    }
+    TAUTLINE_CHECK_EQUAL(countForeignCells(mesh, ghosts.data()), 0);
+    const Index second = std::count(ghosts.begin(), ghosts.begin() + cells, 1);
+    TAUTLINE_CHECK_EQUAL(countForeignCells(Mesh(whole.view()), ghosts.data()), second);
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -447,5 +480,6 @@ int TestCoincidentPoints(int, char*[])
   testSurfaces();
   testDuplicates();
   testThreads();
+  testGhosts();
   return exitCode();
 }

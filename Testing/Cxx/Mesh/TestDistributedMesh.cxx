@@ -2,12 +2,15 @@
 // A mesh on ranks: numbers, owners, halos and sets are those of the mesh, however it is cut.
 #include "Blocks.h"
 #include "Check.h"
+#include "Sanitized.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DistributedMesh.h"
 #include "tautline/Mesh/PointDivision.h"
 
 #include <numeric>
 #include <set>
+
+#include <limits>
 
 using namespace tautline;
 
@@ -357,6 +360,65 @@ void testTranspose()
   }
 }
 
+/// A rank that tells others of more bytes than there is memory for.
+class AbsurdRank : public ThreadRank
+{
+public:
+  using ThreadRank::ThreadRank;
+  void start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override
+  {
+    std::vector<RankMessage> messages = sent;
+    for (RankMessage& message : messages)
+    {
+      // The lengths are the first that is sent.
+      if (this->messages == 0 && this->rank() == 1)
+      {
+        constexpr Index length = std::numeric_limits<Index>::max();
+        message.bytes = bytesOf(std::vector<Index>(message.bytes.size() / sizeof(Index), length));
+      }
+    }
+    ThreadRank::start(messages, received);
+  }
+};
+
+/// A rank without memory for what it is sent ends in an error on all ranks.
+void testMemoryOfMessages()
+{
+#if !TAUTLINE_ADDRESS_SANITIZER // which ends the program
+  for (const int ranks : { 2, 3, 4 })
+  {
+    const Context context(std::to_string(ranks) + " ranks");
+    int errors = 0, items = 0;
+    std::mutex mutex;
+    const auto count = [&](int& number, const auto& work)
+    {
+      try
+      {
+        work();
+      }
+      catch (const Error& error)
+      {
+        const std::lock_guard<std::mutex> lock(mutex);
+        number += std::string(error.what()).find("Not enough memory") != std::string::npos;
+      }
+    };
+    onRanks<AbsurdRank>(ranks,
+      [&](RankGroup& group)
+      { count(errors, [&] { group.exchange(std::vector<Bytes>(ranks, Bytes(1))); }); });
+    onRanks<AbsurdRank>(ranks,
+      [&](RankGroup& group)
+      {
+        count(
+          items, [&] { group.exchangeItems(std::vector<std::vector<double>>(ranks, { 1.0 })); });
+        // They still work together.
+        TAUTLINE_CHECK_EQUAL(group.sum(Index(1)), Index(ranks));
+      });
+    TAUTLINE_CHECK_EQUAL(errors, ranks);
+    TAUTLINE_CHECK_EQUAL(items, ranks);
+  }
+#endif
+}
+
 /// The exact sum, in any order and on any ranks.
 void testSum()
 {
@@ -425,6 +487,7 @@ void testIntervals()
 //------------------------------------------------------------------------------
 int TestDistributedMesh(int, char*[])
 {
+  testMemoryOfMessages();
   testSum();
   testTranspose();
   testIntervals();

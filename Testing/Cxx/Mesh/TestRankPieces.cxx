@@ -72,6 +72,30 @@ void forEachCut(const MeshData& whole, const Check& check)
   }
 }
 
+void checkOrientation(const Orientation& found, const Orientation& one)
+{
+  TAUTLINE_CHECK_EQUAL(found.state, one.state);
+  TAUTLINE_CHECK_EQUAL(found.positiveCells, one.positiveCells);
+  TAUTLINE_CHECK_EQUAL(found.negativeCells, one.negativeCells);
+  TAUTLINE_CHECK_EQUAL(found.disagreeing, one.disagreeing);
+  TAUTLINE_CHECK_EQUAL(found.parts, one.parts);
+  TAUTLINE_CHECK_EQUAL(found.reversedParts, one.reversedParts);
+}
+
+/// The order of the cells of the pieces, also of copies, is that in the whole mesh.
+void checkOrder(const RankOrder& found, const CellOrder& one, const RankPart& part)
+{
+  TAUTLINE_CHECK_EQUAL(found.order.reversed, one.reversed);
+  TAUTLINE_CHECK_EQUAL(found.order.cells, one.cells);
+  TAUTLINE_CHECK_EQUAL(found.order.ambiguous, one.ambiguous);
+  TAUTLINE_CHECK_EQUAL(found.reverse.size(), std::size_t(1));
+  for (std::size_t cell = 0; cell < part.cellOf.size() && !found.reverse.empty(); ++cell)
+  {
+    const bool reversed = one.reversed > 0 && one.reverse[part.cellOf[cell]] != 0;
+    TAUTLINE_CHECK_EQUAL(found.reverse[0][cell] != 0, reversed);
+  }
+}
+
 void testOrientation(const char* name, const MeshData& whole, Orientation::State state)
 {
   const Context context(name);
@@ -79,6 +103,7 @@ void testOrientation(const char* name, const MeshData& whole, Orientation::State
   const std::vector<signed char> validity = validityOf(mesh);
   const Orientation one = mesh.orientation(validity.data());
   TAUTLINE_CHECK_EQUAL(one.state, state);
+  const CellOrder order = consistentOrder(mesh, validity.data());
   forEachCut(whole,
     [&](RankGroup& group, const RankPart& part, class Mesh& own, const RankPiece& piece)
     {
@@ -92,14 +117,56 @@ void testOrientation(const char* name, const MeshData& whole, Orientation::State
       {
         TAUTLINE_CHECK_EQUAL(here[cell], validity[part.cellOf[cell]]);
       }
-      const Orientation found = orientationOnRanks(group, { piece }, { here.data() });
-      TAUTLINE_CHECK_EQUAL(found.state, one.state);
-      TAUTLINE_CHECK_EQUAL(found.positiveCells, one.positiveCells);
-      TAUTLINE_CHECK_EQUAL(found.negativeCells, one.negativeCells);
-      TAUTLINE_CHECK_EQUAL(found.disagreeing, one.disagreeing);
-      TAUTLINE_CHECK_EQUAL(found.parts, one.parts);
-      TAUTLINE_CHECK_EQUAL(found.reversedParts, one.reversedParts);
+      checkOrientation(orientationOnRanks(group, { piece }, { here.data() }), one);
+      const RankOrder ordered = consistentOrderOnRanks(group, { piece }, { here.data() });
+      checkOrientation(ordered.orientation, one);
+      if (one.state == Orientation::Mixed)
+      {
+        checkOrder(ordered, order, part);
+      }
     });
+}
+
+/// Every third cell of a block is in the opposite order, so that many pieces have no neighbours
+/// that agree.
+MeshData everyThirdFlipped(MeshData mesh)
+{
+  for (Index cell = 0; cell < mesh.numberOfCells(); cell += 3)
+  {
+    flip(mesh, cell);
+  }
+  return mesh;
+}
+
+/// A valid copy of a mesh on top of it, with an inverted cell in one of them: cells on one side of
+/// a facet overlap, and none is in the opposite order.
+void testOverlap(CellType type)
+{
+  const Context context(topology(type).name);
+  const MeshData block = jittered(type, 2, 1.2);
+  MeshData both = block;
+  const Index shift = block.numberOfPoints();
+  for (Index p = 0; p < shift; ++p)
+  {
+    both.addPoint(block.point(p));
+  }
+  for (Index cell = 0; cell < block.numberOfCells(); ++cell)
+  {
+    std::vector<Index> nodes;
+    for (Index n = block.offsets[cell]; n < block.offsets[cell + 1]; ++n)
+    {
+      nodes.push_back(shift + block.connectivity[n]);
+    }
+    both.addCell(static_cast<int>(block.types[cell]), nodes);
+  }
+  const class Mesh mesh(both.view());
+  const std::vector<signed char> validity = validityOf(mesh);
+  TAUTLINE_CHECK(std::count(validity.begin(), validity.end(), Inverted) > 0);
+  SingleRank alone;
+  const RankOrder found =
+    consistentOrderOnRanks(alone, { { &mesh, nullptr, nullptr } }, { validity.data() });
+  TAUTLINE_CHECK_EQUAL(found.orientation.state, Orientation::Consistent);
+  TAUTLINE_CHECK_EQUAL(found.orientation.disagreeing, 0);
 }
 
 void testOrientations(CellType type)
@@ -117,6 +184,9 @@ void testOrientations(CellType type)
   MeshData mixed = plain;
   flip(mixed, mixed.numberOfCells() / 2);
   testOrientation("one cell flipped", mixed, Orientation::Mixed);
+  testOrientation("every third cell flipped", everyThirdFlipped(plain), Orientation::Mixed);
+  testOrientation("tangled, every third cell flipped", everyThirdFlipped(jittered(type, 4, 0.7)),
+    Orientation::Mixed);
   MeshData blocks = twoBlocks(type);
   for (Index cell = blocks.numberOfCells() / 2; cell < blocks.numberOfCells(); ++cell)
   {
@@ -274,6 +344,7 @@ int TestRankPieces(int, char*[])
   for (const CellTopology& t : topologies())
   {
     testOrientations(t.type);
+    testOverlap(t.type);
   }
   testSpaces();
   testMatch(CellType::Triangle);

@@ -13,6 +13,17 @@
 
 namespace tautline
 {
+/// The mean of points, 3 numbers each.
+inline Vec3 centerOf(const std::vector<double>& points)
+{
+  Vec3 sum = { 0, 0, 0 };
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    sum[i % 3] += points[i];
+  }
+  return (3.0 / static_cast<double>(points.size())) * sum;
+}
+
 /// Inner points moved at random; the boundary is a regular block's. All cells are valid.
 inline MeshData perturbedBlock(CellType type, Index n, double amplitude, unsigned seed = 7)
 {

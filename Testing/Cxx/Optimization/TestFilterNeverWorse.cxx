@@ -251,8 +251,7 @@ vtkSmartPointer<vtkUnstructuredGrid> runOne(
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedBefore(), before);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), left);
   TAUTLINE_CHECK(left <= before);
-  if (getenv("NW"))
-    checkReported(filter, output, after, of);
+  checkReported(filter, output, after, of);
   const bool doubled = grid->GetPoints()->GetDataType() == VTK_FLOAT &&
     output->GetPoints()->GetDataType() == VTK_DOUBLE;
   totals.doubled += doubled;

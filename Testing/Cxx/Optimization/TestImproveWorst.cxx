@@ -226,6 +226,53 @@ void testPull()
   }
 }
 
+/// The first sweep of a round visits the free points of elements with a share of at least 1e-5 in
+/// the p-mean, next to that of the worst one; and no others.
+void testVerticesNear()
+{
+  for (const CellType type : { CellType::Tetrahedron, CellType::Hexahedron })
+  {
+    for (const Metric metric : { Metric::ScaledJacobian, Metric::EdgeRatio })
+    {
+      const Context context(std::string(topology(type).name) + ", " + metricInfo(metric).name);
+      const MeshData data = wavy(type);
+      const Mesh mesh(data.view());
+      OptimizeOptions options;
+      std::vector<double> points = data.points;
+      OptimizationProblem problem(mesh, options, points, Stopwatch());
+      Objective judged;
+      judged.metric = metric;
+      const std::vector<double> q = valuesOf(data, metric);
+      const bool larger = metricInfo(metric).direction == Direction::LargerIsBetter;
+      const double worst =
+        larger ? *std::min_element(q.begin(), q.end()) : *std::max_element(q.begin(), q.end());
+      for (const double power : { 32.0, 128.0 })
+      {
+        std::vector<char> near(data.numberOfPoints(), 0);
+        for (Index c = 0; c < data.numberOfCells(); ++c)
+        {
+          const double share = std::pow(larger ? worst / q[c] : q[c] / worst, power);
+          for (Index n = data.offsets[c]; share >= 1e-5 && n < data.offsets[c + 1]; ++n)
+          {
+            near[data.connectivity[n]] = 1;
+          }
+        }
+        const std::vector<unsigned char> flags =
+          problem.verticesNear(judged, problem.measure(judged), worst, power);
+        const SimplexMesh& simplices = problem.simplices();
+        TAUTLINE_CHECK_EQUAL(flags.size(), static_cast<std::size_t>(simplices.freeVertices()));
+        Index visited = 0;
+        for (std::int32_t v = 0; v < simplices.freeVertices(); ++v)
+        {
+          TAUTLINE_CHECK_EQUAL(flags[v] != 0, near[simplices.point(v)] != 0);
+          visited += flags[v] != 0;
+        }
+        TAUTLINE_CHECK(visited > 0 && visited < simplices.freeVertices());
+      }
+    }
+  }
+}
+
 /// Metrics without a barrier, on many meshes: no round that counts makes the worst element worse,
 /// or inverts one where that is allowed to single steps.
 void testManyMeshes()
@@ -294,6 +341,7 @@ int TestImproveWorst(int, char*[])
   testRounds();
   testBackToInput();
   testPull();
+  testVerticesNear();
   testManyMeshes();
   testInversion();
   testNeutral();

@@ -121,6 +121,37 @@ void testAgainstKernel()
   }
 }
 
+/// The metric that judges the worst element is stated, chosen or not, once.
+void testWorstMetric()
+{
+  for (const CellType type :
+    { CellType::Hexahedron, CellType::Quadrilateral, CellType::Tetrahedron })
+  {
+    const bool simplices = type == CellType::Tetrahedron;
+    for (const bool chosen : { false, true })
+    {
+      const Context context(std::string(topology(type).plural) + (chosen ? ", chosen" : ""));
+      vtkNew<vtkMeshOptimizer> filter;
+      filter->SetInputData(toGrid(perturbed(type, 4)));
+      filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT);
+      if (chosen)
+      {
+        filter->SetWorstMetric(static_cast<int>(Metric::ScaledJacobian));
+      }
+      filter->Update();
+      const bool stated = chosen || !simplices;
+      const std::string summary = filter->GetSummary();
+      const std::string label = metricInfo(Metric::ScaledJacobian).label;
+      const std::string name = metricInfo(Metric::ScaledJacobian).name;
+      vtkCellData* arrays = vtkDataSet::SafeDownCast(filter->GetOutput())->GetCellData();
+      TAUTLINE_CHECK_EQUAL(summary.find("\n" + label + ": mean ") != std::string::npos, stated);
+      TAUTLINE_CHECK_EQUAL(arrays->HasArray(name.c_str()) == 1, stated);
+      TAUTLINE_CHECK_EQUAL(arrays->HasArray((name + "_before").c_str()) == 1, stated);
+      TAUTLINE_CHECK_EQUAL(filter->GetStatistics()->GetNumberOfRows(), stated ? 2 : 1);
+    }
+  }
+}
+
 void testCustom()
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 4);
@@ -631,6 +662,7 @@ void testThreads()
 int TestMeshOptimizer(int, char*[])
 {
   testAgainstKernel();
+  testWorstMetric();
   testCustom();
   testOptions();
   testArrays();

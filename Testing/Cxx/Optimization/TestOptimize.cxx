@@ -2,6 +2,7 @@
 // The optimizer: minima, invariances, objectives, stopping, faulty input.
 #include "Optimizing.h"
 
+#include "tautline/Optimization/SweepControl.h"
 #include "tautline/Quality/Targets.h"
 
 #include <chrono>
@@ -219,6 +220,24 @@ void testLexicographic()
     TAUTLINE_CHECK(last.objectives[0] < 0.99 * first.objectives[0]);
     TAUTLINE_CHECK(last.objectives[1] < 0.99 * first.objectives[1]);
   }
+}
+
+/// Points that are put back raise the first objective beyond the bound that the lexicographic
+/// method keeps: the history has the second one instead of an infinite number.
+void testLexicographicBeyondBound()
+{
+  ScalarizationOptions options;
+  options.method = Scalarization::Lexicographic;
+  Scalarizer scalarizer(options, { 1.0, 1.0 }, { 8.0, 5.0 });
+  IterationRecord record;
+  record.objectives = { 6.0, 4.0 };
+  TAUTLINE_CHECK(scalarizer.next(record.objectives));
+  record.objectives = { 7.0, 3.0 };
+  record.objective = scalarizer.value(record.objectives);
+  TAUTLINE_CHECK(std::isinf(record.objective));
+  TAUTLINE_CHECK_EQUAL(presentable(scalarizer, record).objective, 3.0);
+  record.objective = 2.5;
+  TAUTLINE_CHECK_EQUAL(presentable(scalarizer, record).objective, 2.5);
 }
 
 /// Blocks of one colour, each of which reduces a product by itself, together leave its domain: the
@@ -599,6 +618,7 @@ int TestOptimize(int, char*[])
   testThreads();
   testScalarizations();
   testLexicographic();
+  testLexicographicBeyondBound();
   testSweepTakenBack();
   testMetrics();
   testTargetsAndWeights();

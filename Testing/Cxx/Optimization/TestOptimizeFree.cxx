@@ -9,16 +9,6 @@ using namespace tautline;
 
 namespace
 {
-Vec3 centerOf(const std::vector<double>& points)
-{
-  Vec3 sum = { 0, 0, 0 };
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    sum[i % 3] += points[i];
-  }
-  return (3.0 / static_cast<double>(points.size())) * sum;
-}
-
 /// @return by how many elements the center of the mesh has moved
 double drift(const MeshData& data, Optimizer optimizer)
 {

@@ -2,6 +2,7 @@
 // A boundary whose points slide stays within a distance of where it was, and the other way round;
 // so does one whose points may leave it to improve the worst elements.
 #include "Optimizing.h"
+#include "SurfaceDistance.h"
 #include "Surfaces.h"
 #include "VtkMeshes.h"
 
@@ -24,86 +25,6 @@ using namespace tautline;
 
 namespace
 {
-using Triangle = std::array<Vec3, 3>;
-
-/// Of a point from a triangle, by the three edges and the plane; no code of the library.
-double distanceTo(const Triangle& t, const Vec3& x)
-{
-  double least = 1e300;
-  for (int k = 0; k < 3; ++k)
-  {
-    const Vec3 a = t[k], ab = t[(k + 1) % 3] - a;
-    const double s = std::clamp(dot(x - a, ab) / dot(ab, ab), 0.0, 1.0);
-    least = std::min(least, norm(a + s * ab - x));
-  }
-  const Vec3 n = cross(t[1] - t[0], t[2] - t[0]);
-  const Vec3 foot = x - (dot(x - t[0], n) / dot(n, n)) * n;
-  bool inside = true;
-  for (int k = 0; k < 3; ++k)
-  {
-    inside = inside && dot(cross(t[(k + 1) % 3] - t[k], foot - t[k]), n) >= 0;
-  }
-  return inside ? norm(foot - x) : least;
-}
-
-/// The boundary quadrilaterals of hexahedra, halved.
-std::vector<Triangle> boundaryOf(const MeshData& data, const std::vector<double>& points)
-{
-  const CellTopology& t = topology(CellType::Hexahedron);
-  std::map<std::set<Index>, std::vector<Index>> faces;
-  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
-  {
-    for (int f = 0; f < t.faces; ++f)
-    {
-      std::vector<Index> nodes;
-      for (int k = 0; k < t.faceSizes[f]; ++k)
-      {
-        nodes.push_back(data.connectivity[data.offsets[cell] + t.faceNodes[f][k]]);
-      }
-      const std::set<Index> key(nodes.begin(), nodes.end());
-      faces.count(key) ? faces[key].clear() : void(faces[key] = nodes);
-    }
-  }
-  std::vector<Triangle> triangles;
-  for (const auto& [key, nodes] : faces)
-  {
-    const auto at = [&](std::size_t k)
-    {
-      const double* p = &points[3 * nodes[k]];
-      return Vec3{ p[0], p[1], p[2] };
-    };
-    for (std::size_t k = 2; k < nodes.size(); ++k)
-    {
-      triangles.push_back({ at(0), at(k - 1), at(k) });
-    }
-  }
-  return triangles;
-}
-
-double distance(const std::vector<Triangle>& from, const std::vector<Triangle>& to)
-{
-  constexpr int parts = 5;
-  double largest = 0;
-  for (const Triangle& t : from)
-  {
-    for (int i = 0; i <= parts; ++i)
-    {
-      for (int j = 0; i + j <= parts; ++j)
-      {
-        const Vec3 x =
-          (1.0 / parts) * ((parts - i - j) * t[0] + double(i) * t[1] + double(j) * t[2]);
-        double least = 1e300;
-        for (const Triangle& other : to)
-        {
-          least = std::min(least, distanceTo(other, x));
-        }
-        largest = std::max(largest, least);
-      }
-    }
-  }
-  return largest;
-}
-
 /// A block with a ridge on top, below the angle of features, and points crowded beside it.
 MeshData ridge()
 {
@@ -497,7 +418,7 @@ public:
     , Fixed(Data.points.size() / 3, 0)
     , Simplices(TheMesh, Fixed.data(), nullptr, 1)
     , Surface(TheMesh, Simplices)
-    , Limit(TheMesh, Simplices, Surface, limit / Simplices.scale(), true)
+    , Limit(TheMesh, surfaceFacets(TheMesh), Simplices, Surface, limit / Simplices.scale(), true)
   {
   }
 

@@ -79,6 +79,45 @@ void testLiteral()
   }
 }
 
+/// The errors of the matrix that PeridynamicOptions::tolerance states, in parts of its largest
+/// entry.
+void testTolerance()
+{
+  constexpr int n = 6;
+  constexpr double tolerances[] = { 1e-3, 1e-5, 1e-7 }, reference = 1e-8;
+  struct Case
+  {
+    double horizon; ///< in elements
+    double errors[3];
+  };
+  for (const Case& each : { Case{ 1.5, { 3e-3, 5e-4, 1e-4 } }, Case{ 0.3, { 7e-3, 8e-4, 3e-4 } } })
+  {
+    PeridynamicOptions options;
+    options.horizon = each.horizon / n;
+    options.tolerance = reference;
+    const HorizonMesh mesh = shakenSquare(n, static_cast<int>(std::ceil(each.horizon)), 0.2);
+    const SparseMatrix exact = assemblePeridynamics(mesh, options).matrix;
+    const double largest = *std::max_element(exact.values.begin(), exact.values.end());
+    for (int k = 0; k < 3; ++k)
+    {
+      const Context context("horizon " + std::to_string(each.horizon) + " elements, tolerance " +
+        std::to_string(tolerances[k]));
+      options.tolerance = tolerances[k];
+      const SparseMatrix matrix = assemblePeridynamics(mesh, options).matrix;
+      double worst = 0.0;
+      for (Index row = 0; row < exact.size; ++row)
+      {
+        for (Index at = exact.offsets[row]; at < exact.offsets[row + 1]; ++at)
+        {
+          const double difference = matrix.at(row, exact.columns[at]) - exact.values[at];
+          worst = std::max(worst, std::abs(difference));
+        }
+      }
+      TAUTLINE_CHECK(worst <= each.errors[k] * largest);
+    }
+  }
+}
+
 /// The tolerance converges; so do irregular meshes, to what the regular ones tend to.
 void testConvergence()
 {
@@ -126,6 +165,7 @@ int TestPeridynamicTables(int, char*[])
   testDissertation();
   testExact();
   testLiteral();
+  testTolerance();
   testConvergence();
   return exitCode();
 }

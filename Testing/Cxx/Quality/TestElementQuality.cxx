@@ -4,6 +4,8 @@
 #include "Check.h"
 #include "VtkMeshes.h"
 
+#include "Meshes.h"
+
 #include "vtkElementQuality.h"
 
 #include "vtkDoubleArray.h"
@@ -14,6 +16,7 @@
 #include "vtkStructuredGrid.h"
 #include "vtkTable.h"
 #include "vtkUnstructuredGrid.h"
+#include "vtkVersionMacros.h"
 
 #include <cstring>
 #include <limits>
@@ -534,6 +537,43 @@ void testBad()
   TAUTLINE_CHECK_EQUAL(filter->GetBad()->GetNumberOfCells(), 0);
 }
 
+#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 4, 0)
+/// Lists of faces as VTK's reader of .pvtu files leaves them are not passed on, and the input keeps
+/// them; those of a polyhedron are.
+void testStrayFaces()
+{
+  const auto grid = toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2));
+  vtkNew<vtkIdTypeArray> faces, places;
+  grid->SetCells(grid->GetCellTypesArray(), grid->GetCells(), places, faces);
+  vtkNew<vtkMultiBlockDataSet> blocks;
+  blocks->SetBlock(0, grid);
+  for (vtkDataObject* input :
+    { static_cast<vtkDataObject*>(grid), vtkDataObject::SafeDownCast(blocks) })
+  {
+    vtkNew<vtkElementQuality> filter;
+    filter->SetInputDataObject(input);
+    filter->Update();
+    vtkDataObject* output = filter->GetOutputDataObject(0);
+    auto* several = vtkMultiBlockDataSet::SafeDownCast(output);
+    auto* measured = vtkUnstructuredGrid::SafeDownCast(several ? several->GetBlock(0) : output);
+    TAUTLINE_CHECK_EQUAL(measured->GetNumberOfCells(), grid->GetNumberOfCells());
+    TAUTLINE_CHECK_EQUAL(measured->GetCellType(5), VTK_TETRA);
+    TAUTLINE_CHECK(measured->GetFaces() == nullptr && measured->GetFaceLocations() == nullptr);
+    TAUTLINE_CHECK(component(measured->GetCellData(), "Validity", 5) == 1);
+    TAUTLINE_CHECK(grid->GetFaces() == faces && grid->GetFaceLocations() == places);
+  }
+  vtkNew<vtkUnstructuredGrid> solid;
+  solid->SetPoints(grid->GetPoints());
+  const vtkIdType stream[] = { 3, 0, 1, 3, 3, 0, 1, 9, 3, 1, 3, 9, 3, 0, 3, 9 };
+  solid->InsertNextCell(VTK_POLYHEDRON, 4, stream);
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(solid);
+  filter->Update();
+  auto* kept = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK(kept->GetFaces() && kept->GetFaces()->GetNumberOfValues() == 17);
+}
+#endif
+
 /// An abort between metrics leaves the mesh with the metrics measured so far.
 void testAbort()
 {
@@ -572,6 +612,9 @@ int TestElementQuality(int, char*[])
   testErrors();
   testThreads();
   testBad();
+#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 4, 0)
+  testStrayFaces();
+#endif
   testAbort();
   return exitCode();
 }

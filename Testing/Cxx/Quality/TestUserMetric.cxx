@@ -144,6 +144,17 @@ struct NotFinite
   }
 };
 
+/// Decreases as the inverse mean ratio rises to a limit, above which it has no value.
+struct Limited
+{
+  static constexpr double limit = 4;
+  template <class Number, int N>
+  Number value(const CornerJacobian<Number, N>& T) const
+  {
+    return sqrt(limit - Ratio().value(T));
+  }
+};
+
 /// The facts of a built-in metric, under another name.
 MetricDescription copyOf(Metric metric, const std::string& suffix = "")
 {
@@ -418,6 +429,61 @@ void testOptimize(const std::vector<Twin>& pairs)
   }
 }
 
+/// Where a formula has no value the objective is infinite, whatever the template and combination;
+/// no optimizer goes there, and an input that is there is refused.
+void testWithoutValue()
+{
+  MetricDescription d = copyOf(Metric::InverseMeanRatio);
+  d.name = "limited";
+  d.label = "Limited";
+  d.barrier = false;
+  d.full.low = 0;
+  const Metric limited = registerJacobianMetric(d, Limited());
+  for (const CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Hexahedron })
+  {
+    const Context context(topology(type).name);
+    MeshData data = movedBlock(type, 3, 0.1);
+    OptimizeOptions options;
+    options.objectives[0].metric = limited;
+    // The objective has its minimum where single elements are at the limit.
+    options.holdWorst = false;
+    options.stopping.maximumIterations = 20;
+    for (const Optimizer optimizer : { Optimizer::LocalNewton, Optimizer::LocalConjugateGradient,
+           Optimizer::NewtonConjugateGradient, Optimizer::LimitedMemoryBFGS })
+    {
+      options.optimizer = optimizer;
+      const OptimizeResult result = optimize(Mesh(data.view()), options);
+      const bool stuck = optimizer == Optimizer::LimitedMemoryBFGS; // where its steps end
+      TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective || stuck);
+      MeshData moved = data;
+      moved.points = result.points;
+      const std::vector<double> ratios = valuesOf(moved, Metric::InverseMeanRatio);
+      TAUTLINE_CHECK(*std::max_element(ratios.begin(), ratios.end()) <= Limited::limit);
+    }
+    data.transform([](const Vec3& p) { return Vec3{ 40 * p[0], p[1], p[2] }; });
+    TAUTLINE_CHECK_EQUAL(valuesOf(data, limited)[0], 0.0);
+    const Mesh stretched(data.view());
+    TAUTLINE_CHECK_THROWS(optimize(stretched, options), "\"Limited\" has no finite value");
+    using T = ObjectiveTemplate;
+    for (const T form : { T::SumOfSquares, T::Sum, T::PowerMean, T::Maximum })
+    {
+      for (const Combination combination :
+        { Combination::Mean, Combination::Worst, Combination::PowerMean })
+      {
+        Objective objective;
+        objective.metric = limited;
+        objective.objectiveTemplate = form;
+        objective.evaluation.combination = combination;
+        std::vector<double> gradient(data.points.size(), 0.0);
+        const double F = ObjectiveSum(stretched, objective).addGradient(1, gradient.data());
+        TAUTLINE_CHECK_EQUAL(F, HUGE_VAL);
+        TAUTLINE_CHECK(std::isfinite(largest(gradient)));
+      }
+    }
+  }
+  unregisterMetric("limited");
+}
+
 /// The names are found, listed and described; the numbers are those of the names.
 void testRegistry(const std::vector<Twin>& pairs)
 {
@@ -550,6 +616,7 @@ int TestUserMetric(int, char*[])
   testDegenerate(pairs);
   testObjectives(pairs);
   testOptimize(pairs);
+  testWithoutValue();
   testRegistry(pairs);
   testRefused();
   testElements();

@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The metrics of a server in its client: their facts are those that the server has sent, they are
+// found by name, but not evaluated; one that is registered here takes the place of a server's.
+// The filters refuse a user's metric that this process does not have.
+#include "Blocks.h"
+#include "Check.h"
+#include "VtkMeshes.h"
+
+#include "tautline/Quality/Criteria.h"
+#include "tautline/Quality/UserMetric.h"
+
+#include "vtkElementQuality.h"
+#include "vtkMeshOptimizer.h"
+#include "vtkNew.h"
+#include "vtkUnstructuredGrid.h"
+
+#include <algorithm>
+
+using namespace tautline;
+
+namespace
+{
+struct Distortion
+{
+  template <class Number, int N>
+  Number value(const CornerJacobian<Number, N>& T) const
+  {
+    return T.norm2() / pow(T.det(), 2.0 / N) - N;
+  }
+};
+
+MetricDescription description(const std::string& name)
+{
+  MetricDescription d;
+  d.name = name;
+  d.label = "A label of " + name;
+  d.symbol = "S_" + name;
+  d.aliases = name + "_1," + name + "_2";
+  d.formula = "|T|^2 / det T^(2/n) - n";
+  d.unit = "unit";
+  d.cellTypes = 1u << topologyIndex(CellType::Tetrahedron);
+  d.full = { 0, MetricDescription::infinity };
+  d.acceptable = { 0.1, 2.0 / 3 };
+  d.ideal = 1e-17 / 3;
+  d.barrier = true;
+  d.scaleInvariant = true;
+  return d;
+}
+
+/// What a server sends that has a metric of the name.
+std::string sentBy(MetricDescription d, const std::string& name)
+{
+  // Here its texts are others, as those of the metric may be taken.
+  const std::string elsewhere = "Server";
+  const auto rename = [](std::string& text, const std::string& from, const std::string& to)
+  {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from))
+    {
+      text.replace(at, from.size(), to);
+    }
+  };
+  d.name = "server_metric";
+  for (std::string* text : { &d.label, &d.symbol, &d.aliases })
+  {
+    rename(*text, name, elsewhere);
+  }
+  registerJacobianMetric(d, Distortion());
+  std::string list = listUserMetrics();
+  unregisterMetric(d.name);
+  list = list.substr(list.find(d.label) - 1);
+  list = list.substr(0, list.find('\n') + 1);
+  rename(list, d.name, name);
+  rename(list, elsewhere, name);
+  return "1234567" + list;
+}
+
+void testFacts()
+{
+  const MetricDescription d = description("mirrored");
+  const std::string list = sentBy(d, "mirrored");
+  mirrorUserMetrics(list);
+  const MetricInfo* info = findMetric(d.label);
+  TAUTLINE_CHECK(info && std::string(info->name) == "mirrored" && info == findMetric("mirrored_2"));
+  TAUTLINE_CHECK_EQUAL(std::string(info->symbol), d.symbol);
+  TAUTLINE_CHECK_EQUAL(std::string(info->formula), d.formula);
+  TAUTLINE_CHECK_EQUAL(std::string(info->unit), d.unit);
+  TAUTLINE_CHECK(!info->in2D && info->in3D && info->definedOn(CellType::Tetrahedron));
+  TAUTLINE_CHECK(info->full3D.low == 0 && std::isinf(info->full3D.high));
+  TAUTLINE_CHECK(info->acceptable3D.low == 0.1 && info->acceptable3D.high == 2.0 / 3);
+  TAUTLINE_CHECK(info->ideal3D == d.ideal);
+  TAUTLINE_CHECK(info->barrier && info->scaleInvariant && info->rotationInvariant);
+  TAUTLINE_CHECK(info->family == MetricFamily::Target);
+  TAUTLINE_CHECK(objectiveProblem(info->metric).empty());
+  // The client has criteria with it, but does not offer it to filters of its own.
+  const std::string criteria = R"({"name": "c", "criteria": [{"metric": "mirrored", "limits":
+    {"all": {"ideal": 0, "good": 1, "warn": 2, "fail": 3, "worst": 4}}}]})";
+  TAUTLINE_CHECK(parseCriteria(criteria).criteria[0].metric == info->metric);
+  TAUTLINE_CHECK(listUserMetrics().find("mirrored") == std::string::npos);
+  TAUTLINE_CHECK_THROWS(unregisterMetric("mirrored"), "No metric 'mirrored'");
+  const std::string missing = missingMetric(static_cast<int>(info->metric));
+  TAUTLINE_CHECK(missing.find("'" + d.label + "' of a user is not registered in this process") !=
+    std::string::npos);
+  const MeshData data = movedBlock(CellType::Tetrahedron, 2, 0.1);
+  std::vector<double> values(data.numberOfCells());
+  TAUTLINE_CHECK_THROWS(
+    evaluateMetric(Mesh(data.view()), info->metric, {}, values.data()), "on a server");
+
+  // The same again changes nothing; other facts do.
+  const std::vector<MetricInfo>& before = metricRegistry();
+  mirrorUserMetrics(list);
+  TAUTLINE_CHECK(&metricRegistry() == &before);
+  MetricDescription other = d;
+  other.acceptable.high = 5;
+  mirrorUserMetrics(sentBy(other, "mirrored"));
+  TAUTLINE_CHECK(findMetric("mirrored")->acceptable3D.high == 5);
+  TAUTLINE_CHECK_EQUAL(metricRegistry().size(), before.size());
+
+  // One of this process takes its place, and stays.
+  registerJacobianMetric(d, Distortion());
+  mirrorUserMetrics(sentBy(other, "mirrored"));
+  TAUTLINE_CHECK_EQUAL(metricRegistry().size(), before.size());
+  info = findMetric("mirrored");
+  TAUTLINE_CHECK(info->acceptable3D.high == 2.0 / 3);
+  TAUTLINE_CHECK(missingMetric(static_cast<int>(info->metric)).empty());
+  evaluateMetric(Mesh(data.view()), info->metric, {}, values.data());
+  TAUTLINE_CHECK(*std::max_element(values.begin(), values.end()) > 0);
+  unregisterMetric("mirrored");
+
+  // What is not a list of this version is left out.
+  for (const char* wrong : { "", "\n\n", "5\tLabel\n", "x\ty\tz", "1000001\t\t\t\t\t\t\t" })
+  {
+    mirrorUserMetrics(wrong);
+  }
+  std::string letters = list;
+  letters.replace(letters.find("0.1"), 1, "x");
+  mirrorUserMetrics(letters.replace(letters.find("mirrored"), 8, "spoiled_"));
+  TAUTLINE_CHECK(!findMetric("spoiled_"));
+}
+
+void testFilters()
+{
+  constexpr int elsewhere = 1234567890;
+  const auto grid = toGrid(movedBlock(CellType::Tetrahedron, 2, 0.1));
+  vtkNew<vtkElementQuality> quality;
+  Messages messages(quality);
+  quality->SetInputData(grid);
+  quality->AddMetricByName("imr");
+  quality->AddMetric(elsewhere);
+  quality->Update();
+  TAUTLINE_CHECK(messages.has("The metric 1234567890 of a user is not registered in this process"));
+  TAUTLINE_CHECK(messages.has("TAUTLINE_METRICS"));
+  TAUTLINE_CHECK_EQUAL(
+    vtkDataSet::SafeDownCast(quality->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  vtkNew<vtkMeshOptimizer> optimizer;
+  Messages others(optimizer);
+  optimizer->SetInputData(grid);
+  const auto refuses = [&]
+  {
+    others.clear();
+    optimizer->Update();
+    TAUTLINE_CHECK(others.has("The metric 1234567890 of a user is not registered"));
+    TAUTLINE_CHECK_EQUAL(
+      vtkDataSet::SafeDownCast(optimizer->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  };
+  optimizer->SetWorstMetric(elsewhere);
+  refuses();
+  optimizer->SetWorstMetric(-1);
+  optimizer->SetPreset(vtkMeshOptimizer::CUSTOM);
+  optimizer->SetNumberOfObjectives(1);
+  optimizer->SetMetric1(elsewhere);
+  refuses();
+  optimizer->SetMetric1(0);
+  others.clear();
+  optimizer->Update();
+  TAUTLINE_CHECK(!others.has("of a user"));
+  TAUTLINE_CHECK_EQUAL(
+    vtkDataSet::SafeDownCast(optimizer->GetOutputDataObject(0))->GetNumberOfCells(),
+    grid->GetNumberOfCells());
+}
+}
+
+int TestMirroredMetrics(int, char*[])
+{
+  testFacts();
+  testFilters();
+  return exitCode();
+}
