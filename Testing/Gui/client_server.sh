@@ -18,7 +18,7 @@ if [ -n "${TAUTLINE_SERVER_RANKS:-}" ]; then
   launcher=(mpirun --oversubscribe --bind-to none -np "$TAUTLINE_SERVER_RANKS")
 fi
 port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])')
-"${launcher[@]}" "$pvserver" "${plugins[@]}" --server-port="$port" --force-offscreen-rendering &
+TAUTLINE_METRICS="${TAUTLINE_SERVER_METRICS:-}" "${launcher[@]}" "$pvserver" "${plugins[@]}" --server-port="$port" --force-offscreen-rendering &
 server=$!
 trap 'kill "$server" 2>/dev/null; wait "$server" 2>/dev/null' EXIT
 # tries again until the server listens

@@ -564,6 +564,16 @@ def short_run():
 
 
 @check
+def chained_run():
+    """Untangle Mesh and, in the same update, Optimize Mesh, long enough for texts of the progress."""
+    data = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "Data")
+    tangled = simple.XMLUnstructuredGridReader(FileName=[os.path.join(data, "bracket-tangled.vtu")])
+    optimizer = simple.OptimizeMesh(Input=simple.UntangleMesh(Input=tangled))
+    optimizer.Preset, optimizer.Boundary = "Worst element", "Slide on smooth parts"
+    simple.Show(optimizer)
+
+
+@check
 def moved_in_plane():
     """The hole was translated in the plane, up and to the right as the mouse, and no more."""
     warp = find("MeshWarp")

@@ -51,10 +51,12 @@ if [[ $(ldd "$work/solvers_consumer/solvers_consumer") != *petsc* ]]; then
   echo "the check of linked libraries finds nothing: Tautline::Solvers does link PETSc" >&2; exit 1
 fi
 
-echo "--- every public header of the kernel compiles alone, and no header of Tautline lies outside its directories"
+echo "--- every public header of the kernel compiles, alone and with all others, and none lies outside its directories"
 while IFS= read -r -d '' header; do
   "$compiler" -std=c++17 -Wall -Wextra -Werror -fsyntax-only -x c++ -I "$tree/include" "$header"
 done < <(find "$tree/include/tautline" -name '*.h' -print0)
+(cd "$tree/include" && find tautline -name '*.h' -printf '#include "%p"\n') >"$work/all_headers.cxx"
+"$compiler" -std=c++17 -Wall -Wextra -Werror -fsyntax-only -I "$tree/include" "$work/all_headers.cxx"
 strays="$(find "$tree/include" -name '*.h' -not -path '*/include/tautline/*' \
   -not -name 'vtk*.h' -not -name 'Tautline*.h' -printf '%f ')"
 if [[ -n $strays ]]; then echo "installed headers without prefix or directory: $strays" >&2; exit 1; fi

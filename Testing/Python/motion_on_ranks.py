@@ -43,6 +43,13 @@ np.minimum.at(lowest, cells, divided(places[cells].mean(axis=1), "{cut}", RANKS)
 points = points + 1e-12 * np.maximum(0, RANK - lowest)[:, None]
 """
 BREAK = "points[np.flatnonzero(inner.all(axis=1))[3]] = np.nan"
+# Of the copies of a point, that of one rank only: of the last one that has the point, or the first.
+BREAK_COPY = """
+point = np.flatnonzero(inner.all(axis=1))[3]
+holders = divided(places[cells].mean(axis=1), "{cut}", RANKS)[(cells == point).any(axis=1)]
+if RANK == holders.{which}():
+    points[point] = np.nan
+"""
 SLIDING = 1  # of the enumeration Boundary
 CUSTOM = 0  # of the enumeration Preset
 GLOBAL = {"L-BFGS": 5, "Newton-CG": 6}  # of the enumeration Optimizer
@@ -109,6 +116,9 @@ for scattered in (0, 1):  # (scripts of sources import into this module: not "ra
 for cut in CUTS:
     note(f"turned {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, TURN, ids=True)))
     note(f"broken {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, BREAK, ids=True)))
+    for name, which in {"last": "max", "first": "min"}.items():
+        broken = cut_cube(4, 0.3, cut, BREAK_COPY.replace("{which}", which), ids=True)
+        note(f"broken {name} {cut}", OptimizeMesh(Input=broken))
     note(f"copies {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, SHIFT, ids=True), ReproducibleOrder=1))
     tangled = cut_cube(5, 0.45, cut, SHIFT, ids=True)
     note(f"untangled copies {cut}", UntangleMesh(Input=tangled, ReproducibleOrder=1))

@@ -83,6 +83,12 @@ held = SolvePDE(
     GivenExpression="x", Solver="MINRES", Preconditioner="ILU(0)", RelativeTolerance=TIGHT,
 )  # fmt: skip
 results["held"] = field(update(held), "Solution")
+divided = SolvePDE(
+    cube(ghosts=1), SourceType="Expression", SourceExpression="x*y + z", GivenType="Expression",
+    GivenExpression="x + 2*y", RelativeTolerance=TIGHT, Redistribute="PT-Scotch",
+)  # fmt: skip
+results["divided"] = field(update(divided), "Solution")
+results["division"] = divided.Summary.splitlines()[-1]
 image = simple.Wavelet(WholeExtent=[0, 9, 0, 6, 0, 7])
 hexahedra = SolvePDE(image, SourceType="Array", SourceArray=["POINTS", "RTData"], RelativeTolerance=TIGHT)
 update(hexahedra)

@@ -2,7 +2,9 @@
 """solve_on_ranks.py FILE: for pvbatch --sym on any number of MPI ranks, see test_solve_on_ranks.py.
 
 Solves on a cube whose pieces are on the ranks: fewer pieces than ranks, as many, and more; cut in slabs, by a k-d tree
-and at random; with and without ghost cells. The first rank writes numbers and fields to FILE as JSON.
+and at random; with and without ghost cells. More pieces than ranks are also one data set on each rank, as ParaView's
+readers make it, with and without global ids. The same with the mesh divided anew by each partitioner. The first rank
+writes numbers and fields to FILE as JSON.
 """
 
 import json
@@ -11,7 +13,7 @@ import zlib
 
 import numpy as np
 import tautline
-from rank_meshes import CONTROLLER, CUTS, RANK, RANKS, divided, piece, simplices
+from rank_meshes import CONTROLLER, CUTS, RANK, RANKS, add_global_ids, appended, divided, piece, simplices
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPartitionedDataSet, vtkUnstructuredGrid
 
@@ -21,6 +23,7 @@ TIGHT = 1e-11
 CG_JACOBI, GMRES_AMG, DIRECT = 1, 14, 17  # combinations of Solver Study
 JACOBI = 0  # preconditioner of Condition Estimator
 EXPRESSION = 2  # SourceType, GivenType
+DIVISIONS = {1: "k-d tree", 2: "pt-scotch"}  # Redistribute
 
 
 def cube() -> tuple:
@@ -34,16 +37,24 @@ def cube() -> tuple:
 POINTS, CELLS = cube()
 
 
-def mesh(cut: str, pieces: int, ghosts: bool):
-    """What this rank has: a data set, or with more pieces than ranks several in a partitioned data set."""
+def mesh(cut: str, pieces: int, ghosts: bool, together: bool = False, ids: bool = False):
+    """What this rank has: a data set, or with more pieces than ranks several in a partitioned data set.
+
+    together: they are one data set, whose points stay apart.
+    """
     of_cell = divided(POINTS[CELLS].mean(axis=1), cut, pieces)
     grids = [piece(POINTS, CELLS, of_cell == number, ghosts) for number in range(RANK, pieces, RANKS)]
+    if together:
+        grid = appended(grids)
+        if ids:
+            add_global_ids(grid)
+        return grid
     if pieces <= RANKS:
         return grids[0] if grids else vtkUnstructuredGrid()
-    together = vtkPartitionedDataSet()
+    partitions = vtkPartitionedDataSet()
     for number, grid in enumerate(grids):
-        together.SetPartition(number, grid)
-    return together
+        partitions.SetPartition(number, grid)
+    return partitions
 
 
 def grids_of(data) -> list:
@@ -69,43 +80,42 @@ def gathered(pairs: list) -> dict:
     return found
 
 
-def field(filter_, name: str, of_cells: bool = False, ghosts: bool = True) -> list:
-    """The values of the whole mesh, in its order, on the first rank. ghosts: copies have them, too."""
+def field(output, name: str, of_cells: bool = False) -> list:
+    """The values of the whole mesh, in its order, on the first rank. Ghosts have those of their originals."""
     pairs = []
-    for grid in grids_of(filter_.GetOutputDataObject(0)):
+    for grid in grids_of(output):
         if grid.GetNumberOfPoints():
             data = grid.GetCellData() if of_cells else grid.GetPointData()
             places = vtk_to_numpy(data.GetArray("cell" if of_cells else "place"))
             values = vtk_to_numpy(data.GetArray(name))
-            copies = data.GetArray("vtkGhostType")
-            taken = slice(None) if ghosts or not copies else vtk_to_numpy(copies) == 0
-            pairs += zip(places[taken].tolist(), values[taken].tolist())
+            pairs += zip(places.tolist(), values.tolist())
     found = gathered(pairs)
     assert RANK > 0 or len(found) == len(CELLS if of_cells else POINTS), (name, len(found))
     return [value for _, value in sorted(found.items())]
 
 
-def run(kind: str, data):
+def run(kind: str, data, redistribution: int):
     filter_ = getattr(tautline, f"vtk{kind}")()
     filter_.SetInputDataObject(0, data)
+    filter_.SetRedistribute(redistribution)
     if kind != "ConditionEstimator":
         filter_.SetRelativeTolerance(TIGHT)
     return filter_
 
 
-def numbers(data) -> dict:
+def numbers(data, redistribution: int = 0) -> dict:
     """What the three filters find."""
-    solve = run("EllipticSolver", data)
+    solve = run("EllipticSolver", data, redistribution)
     solve.SetSourceType(EXPRESSION)
     solve.SetSourceExpression("x*y + z")
     solve.SetGivenType(EXPRESSION)
     solve.SetGivenExpression("x + 2*y")
     solve.Update()
-    estimate = run("ConditionEstimator", data)
+    estimate = run("ConditionEstimator", data, redistribution)
     estimate.SetPreconditioner(JACOBI)
     estimate.SetComputeShares(True)
     estimate.Update()
-    study = run("SolverStudy", data)
+    study = run("SolverStudy", data, redistribution)
     for combination in (CG_JACOBI, GMRES_AMG, DIRECT):
         study.AddCombination(combination)
     study.Update()
@@ -114,11 +124,14 @@ def numbers(data) -> dict:
               for name in ("N converged", "N iterations", "N condition") if RANK == 0}
     return {
         "unknowns": [filter_.GetUnknowns() for filter_ in (solve, estimate, study)],
-        "solution": field(solve, "Solution"),
-        "gradient": field(solve, "Gradient", of_cells=True),
+        "solution": field(solve.GetOutputDataObject(0), "Solution"),
+        "gradient": field(solve.GetOutputDataObject(0), "Gradient", of_cells=True),
         "condition": [estimate.GetCondition(), estimate.GetPreconditionedCondition()],
-        "shares": field(estimate, "Share", of_cells=True, ghosts=False),
+        "shares": field(estimate.GetOutputDataObject(0), "Share", of_cells=True),
+        "eigenvalues": field(estimate.GetOutputDataObject(0), "LargestEigenvalue", of_cells=True),
+        "excess": field(estimate.GetOutputDataObject(0), "Excess", of_cells=True),
         "study": column,
+        "divided": [filter_.GetSummary().count("divided anew among") for filter_ in (solve, estimate, study)],
     }
 
 
@@ -127,6 +140,17 @@ for cut in CUTS:
     for pieces in sorted({1, max(1, RANKS - 1), RANKS, 2 * RANKS + 1}):
         for ghosts in (False, True):
             results[f"{cut}, {pieces} pieces, ghosts {int(ghosts)}"] = numbers(mesh(cut, pieces, ghosts))
+    for ghosts in (False, True):
+        for ids in (False, True):
+            case = f"{cut}, {2 * RANKS + 1} pieces together, ghosts {int(ghosts)}, ids {int(ids)}"
+            results[case] = numbers(mesh(cut, 2 * RANKS + 1, ghosts, True, ids))
+    for redistribution in DIVISIONS:
+        for pieces in sorted({1, RANKS, 2 * RANKS + 1}):
+            case = f"{cut}, {pieces} pieces, redistribution {redistribution}"
+            results[case] = numbers(mesh(cut, pieces, redistribution == 1), redistribution)
+        result = tautline.solve(mesh(cut, RANKS, False), source="x*y + z", given="x + 2*y", relative_tolerance=TIGHT,
+                                redistribute=DIVISIONS[redistribution])  # fmt: skip
+        results[f"function, {cut}, {redistribution}"] = field(result.mesh, "Solution")
 if RANK == 0:
     results["points"] = zlib.crc32(POINTS.tobytes())
     with open(sys.argv[1], "w", encoding="utf-8") as out:

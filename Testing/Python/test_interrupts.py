@@ -33,6 +33,8 @@ TIME_LIMIT = 1.0
 #: Seconds of CPU time of the whole process after the time limit: at most 1 on an idle machine, where processes do not
 #: share the units of a core.
 OVERRUN = 1.5
+#: Where a result of 750,000 tetrahedra is made after the limit; up to 2.1 were measured where others shared the cores.
+OVERRUN_OF = {"improve": 3.0}
 #: What goes on in the background after its end, and is in the way of what follows. Its CPU time counts, too.
 IN_BACKGROUND = ("warp factorization", "solve factorization", "condition accurate", "solver study")
 OVERRUN_IN_BACKGROUND = 4.0
@@ -195,7 +197,7 @@ def check_limit(name: str) -> None:
     overrun = cpu.overrun()
     show(name, time.monotonic() - began, f"the start, with a limit of {TIME_LIMIT} s")
     print(f"  {name}: {overrun:.2f} s of CPU time after the limit", flush=True)
-    allowed = OVERRUN_IN_BACKGROUND if name in IN_BACKGROUND else OVERRUN
+    allowed = OVERRUN_IN_BACKGROUND if name in IN_BACKGROUND else OVERRUN_OF.get(name, OVERRUN)
     assert overrun < allowed, f"{name} computed {overrun:.2f} s after its time limit"
 
 
@@ -222,10 +224,30 @@ def check_shell() -> None:
     Path(mesh).unlink()
 
 
+def check_start() -> None:
+    """Ctrl-C while the command imports the package: no traceback, and the exit code of shells."""
+    script = Path(tl.__file__).resolve().parents[0]
+    for folder in Path(tl.__file__).parents:
+        script = folder / "bin" / "tautline"
+        if script.exists():
+            break
+    for command in ([sys.executable, "-m", "tautline"], [sys.executable, str(script)]):
+        for library in ("vtkCommonCore", "vtkFiltersCore"):
+            child = subprocess.Popen([*command, "domain", "disk", "--cells", "3000000", "-o", "/dev/null"], text=True,
+                                     stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)  # fmt: skip
+            maps = Path(f"/proc/{child.pid}/maps")
+            while library not in maps.read_text():  # the import of the package has begun, or has gone on
+                time.sleep(0.001)
+            child.send_signal(signal.SIGINT)
+            errors = child.communicate(timeout=10 * ENDS_WITHIN)[1]
+            assert (child.returncode, errors) == (130, "tautline: interrupted\n"), (command, library, errors)
+
+
 if __name__ == "__main__":
     part, chosen = sys.argv[1], sys.argv[2:]
     checks = {"signal": check_signal, "cancel": check_cancel, "limit": check_limit}
     if part == "shell":
+        check_start()
         check_callbacks()
         check_writer()
         check_shell()

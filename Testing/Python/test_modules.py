@@ -17,7 +17,7 @@ LIBRARIES = PACKAGE.parents[2]  # lib/ of lib/python3/dist-packages/tautline: th
 LIST = "import tautline; print(*(n for n in ('warp', 'match', 'vtkShapeMatcher', 'quality') if hasattr(tautline, n)))"
 #: The floors of the package below the capabilities, which do not import each other; _metrics serves three of them.
 FLOORS = (
-    ("_build",),
+    ("_build", "_start"),
     ("_vtk",),
     ("_classes", "_interrupts", "_names"),
     ("_errors",),

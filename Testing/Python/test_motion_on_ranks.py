@@ -9,7 +9,7 @@ GLOBAL = ("L-BFGS", "Newton-CG")
 DIVISIONS = {"k-d Tree": ".", "PT-Scotch": " by PT-Scotch."}  # and what the summary ends with
 # What is gathered, and the reason that the summary states.
 GATHERED = {
-    "turned": "neighbouring cells list their points in opposite orders.",
+    "turned": "cells list their points in opposite orders, or parts of it are reversed and others are not.",
     "broken": " has a coordinate that is not finite: remove its cells first, by Threshold or Clean to Grid.",
 }
 BROKEN = 3  # coordinates of the points that are not finite

@@ -4,6 +4,8 @@
 test_names.py SERVER_MANAGER_XML...
 """
 
+import argparse
+import inspect
 import sys
 import xml.etree.ElementTree as ElementTree
 
@@ -21,6 +23,8 @@ from tautline import (
     _shapes,
     _untangling,
 )
+from tautline.__main__ import _parser
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 TANGLED, PLATE = DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
 #: The names in Python of the labels of a property, by proxy and property.
@@ -108,6 +112,62 @@ def test_shell():
     assert "invalid choice: 'best shpae' (did you mean 'best shape'?) (choose from 'fast clean-up'" in text, text
     assert "(did you mean 'untangle'?)" in shell("untangel", PLATE, code=2)
     shell("solve", PLATE, "--preconditioner", "AMG", "--solver", "Bi-CGSTAB")
+
+
+#: What a shell needs no option for: it shows progress on a terminal, is one process, prints text, and has mesh, file
+#: and motion under other names.
+NOT_IN_SHELL = {"progress", "redistribute", "gather_below", "rounds", "file", "outline", "surface", "transform",
+                "series", "sparsity", "target"}  # fmt: skip
+#: The keywords of a command that its function takes as **options.
+TABLES = {
+    "optimize": _optimization._OPTIONS,
+    "warp": _deformation._OPTIONS,
+    "match": _shapes._OPTIONS,
+    "retrieval": _shapes._OPTIONS,
+    "improve": _reconnection._OPERATIONS,
+}
+
+
+def test_shell_has_all():
+    """Each argument of a function is an option of its command, with the same name."""
+    commands = next(a for a in _parser()._actions if isinstance(a, argparse._SubParsersAction)).choices
+    checked = 0
+    for name, function in ((name, getattr(tl, name.replace("-", "_"), None)) for name in commands):
+        if function is None or name == "formats":
+            continue
+        parameters = inspect.signature(function).parameters.values()
+        names = {p.name for p in parameters if p.kind not in (p.VAR_KEYWORD, p.VAR_POSITIONAL)}
+        missing = (names | set(TABLES.get(name, ()))) - {action.dest for action in commands[name]._actions}
+        # By region is a table of numbers for each value of an array, which a shell has no option for.
+        missing -= NOT_IN_SHELL | ({"regions"} if name == "warp" else set())
+        assert not missing, (name, missing)
+        checked += len(names)
+    assert checked > 200, checked
+
+
+def test_shell_options():
+    """What was given on the shell arrives: the result is that of the function."""
+    out = OUT / "names.vtu"
+    shell("optimize", PLATE, "--objective", "imr,template=power mean", "--power", 4, "--relative-change", 1e-3,
+          "--no-untangle-first", "--limits", 0.02, "--two-digits", "-o", out)  # fmt: skip
+    expected = tl.optimize(PLATE, [("imr", {"template": "power mean"})], power=4, relative_change=1e-3,
+                           untangle_first=False, limits=0.02, two_digits=True)  # fmt: skip
+    assert 0 < abs(expected.displacement).max() <= 0.02
+    assert tl.compare(out, expected).displacement.max() == 0
+    assert tl.compare(out, tl.optimize(PLATE, limits=0.02)).displacement.max() > 0
+    assert "decides on power" in shell("optimize", PLATE, "--preset", "best shape", "--power", 4, "-o", out, code=1)
+    shell("warp", PLATE, "--rotate", 10, "--method", "inverse distance", "--distance-power", 2, "-o", out)
+    turned = tl.warp(PLATE, transform={"rotate": 10}, method="inverse distance", distance_power=2)
+    assert tl.compare(out, turned).displacement.max() == 0
+    shell("solve", PLATE, "--no-gradient", "--solution-name", "u", "-o", out)
+    arrays = tl.read(out).GetCellData()
+    assert arrays.GetArray("Gradient") is None and tl.read(out).GetPointData().GetArray("u")
+    field = OUT / "names.vti"
+    triangle = [(0, 0), (2, 0)]
+    shell("metric-field", "--metrics", "size", "--vertices", "0,0", "2,0", "--dimensions", 3, 3, 1, "-o", field)
+    found = tl.metric_field("size", vertices=triangle, dimensions=(3, 3)).values["size"]
+    read = vtk_to_numpy(tl.read(field).GetPointData().GetArray("size"))
+    assert (read == found.ravel()).all() and found.max() == 2, found
 
 
 TANGLED_VALID = tl.untangle(TANGLED)

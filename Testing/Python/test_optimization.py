@@ -212,7 +212,26 @@ def test_worst_metric():
     assert by_imr["worst_after"] <= by_imr["worst_before"]
     solid = tl.optimize(BRACKET, preset="worst element").statistics["imr"]
     assert solid["worst_after"] <= tl.optimize(BRACKET).statistics["imr"]["worst_after"] <= solid["worst_before"]
+    by_angle = tl.optimize(BRACKET, preset="worst element", worst_metric="min_angle")
+    angle = by_angle.statistics["min_angle"]  # the metric chosen is reported, too
+    least = tl.quality(by_angle.mesh, "min_angle").statistics["min_angle"]["minimum"]
+    assert angle["worst_before"] <= angle["worst_after"] == least, angle
+    assert f"worst {angle['worst_before']:g} to {least:g}." in by_angle.summary.splitlines()[-1], by_angle.summary
     refused("no metric 'beauty'", tl.optimize, PLATE, worst_metric="beauty")
+
+
+def test_ranges():
+    """Numbers out of range are refused with the range in words."""
+    for option, value, allowed in (("power", 0, "above 0"), ("relaxation", 2.5, "from 1 to 1.99")):
+        refused(f"{option} is {value}; it must be a number {allowed}", tl.optimize, PLATE, ["imr"], **{option: value})
+    refused("time_limit is -1; it must be a number from 0", tl.optimize, PLATE, time_limit=-1)
+
+
+def test_remaining_inverted():
+    """The shell ends with 1 if elements remain inverted, as by a time limit."""
+    run("optimize", TANGLED, "--time-limit", "1e-9", "-o", OUT / "tangled-still.vtu", code=1)
+    assert tl.quality(OUT / "tangled-still.vtu").inverted > 0
+    run("optimize", TANGLED, "-o", OUT / "tangled-no-more.vtu")
 
 
 def test_integer_points():

@@ -81,6 +81,7 @@ for ranks in (2, 3, 4):
     found = run(ranks)
     assert found.pop("ranks") == ranks
     assert all(found[key] == 0 for key in found if key.startswith("refused"))
+    assert found["image"] == "", (ranks, found["image"])
     assert found.pop("upstream") == [0, ""], found
     check_untangled(found, several, ranks)
     assert found.keys() == {key for key in one if key.split()[0] not in ("ranks", "upstream", *ORDERED)}

@@ -48,6 +48,9 @@ for ranks in (1, 2, 4):
         assert close(found[f"flattest {key}"], one["flattest 0 0"], 1e-6), (ranks, key)
     for key in ("elastic", "held", "image"):
         assert close(found[key], one[key]), (ranks, key)
+    assert close(found["divided"], one["poisson 0 0"]), ranks
+    sentence = f"The mesh was divided anew among {ranks} processes by PT-Scotch."
+    assert (found["division"] == sentence) == (ranks > 1), (ranks, found["division"])
     assert close(found["condition"], one["condition"], 1e-4), found["condition"]
     assert abs(found["shares"] - 1) < 1e-6, found["shares"]
     assert found["study"] == [1, 1, 1] and found["history"] and found["late"]

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import tautline as tl
-from checks import DATA, refused, run_tests
+from checks import DATA, OUT, refused, run_tests
 
 LIBRARY = sys.argv[1]
 PLATE, BRACKET = DATA / "plate.vtu", DATA / "bracket.vtu"
@@ -147,6 +147,27 @@ def test_library():
         before = tl.quality(moved, "my_distortion").values["my_distortion"]
         after = tl.quality(better, "my_distortion").values["my_distortion"]
         assert (after**2).sum() < 0.5 * (before**2).sum(), ((before**2).sum(), (after**2).sum())
+
+
+def test_python_file():
+    file = OUT / "some_metrics.py"
+    text = (
+        "import numpy, tautline\n"
+        "tautline.register_metric('of_file', lambda corners, cell: numpy.full(len(corners), {}))"
+    )
+    file.write_text(text.format(1.0), encoding="utf-8")
+    assert tl.load_metrics(file) == ["of_file"]
+    assert (tl.quality(PLATE, "of_file").values["of_file"] == 1).all()
+    file.write_text(text.format(2.0), encoding="utf-8")
+    assert tl.load_metrics(str(file)) == ["of_file"], "it is replaced"
+    assert (tl.quality(PLATE, "of_file").values["of_file"] == 2).all()
+    for wrong, message in (("1 / 0", "ZeroDivisionError"), ("x = (", "SyntaxError"), (text.replace("of_file", "imr"),
+                           "there is a metric 'imr'")):  # fmt: skip
+        file.write_text(wrong.format(0.0), encoding="utf-8")
+        refused(message, tl.load_metrics, file)
+        refused(str(file), tl.load_metrics, file)
+    refused("nowhere.py", tl.load_metrics, OUT / "nowhere.py")
+    tl.unregister_metric("of_file")
 
 
 if __name__ == "__main__":
