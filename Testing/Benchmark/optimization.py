@@ -148,6 +148,10 @@ class Optimization:
                 (f"{mesh}: worst IMR after Worst element", after["worst"], f"< {before['worst']:.4f}"),
                 ("  of elements that can move", after["worst movable"], f"< {before['worst movable']:.4f}"),
                 ("  mean after / mean before", after["mean"] / before["mean"], "<= 1.01"),
+                ("  passes / those of Best shape", m["worst element passes"] / m["best shape passes"],
+                 "<= 1.5" if mesh == WORST[0] else ""),
+                ("  by the smallest angle", m["min_angle passes"] / m["best shape passes"], ""),
+                ("  by the scaled Jacobian", m["scaled_jacobian passes"] / m["best shape passes"], ""),
             ]
         return rows
 

@@ -82,6 +82,12 @@ FILTERS = {
     "untangle": (100, lambda mesh: UntangleMesh(mesh, ReproducibleOrder=1)),
     "warp": (0, lambda mesh: WarpMesh(mesh, Motion="Displacement array", Displacement=["POINTS", "push"],
                                       Method="FEMWARP")),
+    "solve": (0, lambda mesh: SolvePDE(mesh)),
+    "solve-first": (0, lambda mesh: SolvePDE(mesh)),
+    "solve-first-redistributed": (0, lambda mesh: SolvePDE(mesh, Redistribute=1)),
+    "condition": (0, lambda mesh: ConditionEstimator(mesh, Preconditioner="None")),
+    "condition-first": (0, lambda mesh: ConditionEstimator(mesh, Preconditioner="None")),
+    "condition-first-redistributed": (0, lambda mesh: ConditionEstimator(mesh, Preconditioner="None", Redistribute=1)),
     "perturb": (0, lambda mesh: PerturbMesh(mesh)),
     "improve": (0, lambda mesh: ImproveMesh(mesh)),
 }  # fmt: skip

@@ -17,8 +17,9 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).parent
-FILTERS = ("quality", "optimize", "optimize-first", "optimize-first-redistributed", "untangle", "warp", "perturb",
-           "improve")  # fmt: skip
+FILTERS = ("quality", "optimize", "optimize-first", "optimize-first-redistributed", "untangle", "warp", "solve",
+           "solve-first", "solve-first-redistributed", "condition", "condition-first", "condition-first-redistributed",
+           "perturb", "improve")  # fmt: skip
 MOST_MEMORY = 0.6  # of one process, for each of two ranks
 SECONDS = 3600
 
