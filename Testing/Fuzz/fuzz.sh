@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# fuzz.sh BUILD SECONDS [SEED]: runs every fuzz target for so many seconds, two at a time, and fails on any finding.
+# fuzz.sh BUILD SECONDS [SEED [RUNS]]: runs every fuzz target for so many seconds, two at a time, and fails on any finding.
 # SEED: that of the random numbers, so that a run can be repeated; 0, the default: another one each time.
+# RUNS: the largest number of inputs of a target, the corpus among them; -1, the default: any number.
 # New inputs that reach new code are kept in BUILD/corpus; an input that fails is saved in BUILD/findings. To keep
 # one as a regression test, mend the cause and copy it to Testing/Fuzz/Corpus/TARGET.
 set -euo pipefail
-build="$1" seconds="$2" seed="${3:-0}"
+build="$1" seconds="$2" seed="${3:-0}" runs="${4:--1}"
 top="$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)"
 fuzzer="$build/bin/TautlineFuzzer"
 targets=("$top"/Corpus/*/)
@@ -31,7 +32,7 @@ fuzz() {
   # PETSc has no frame pointers: leaks.supp names one of its functions, which only whole stacks show.
   [[ $target != petscoptions ]] || export ASAN_OPTIONS="${ASAN_OPTIONS:-}:fast_unwind_on_malloc=0"
   if ((libfuzzer)); then
-    "$fuzzer" -seed="$seed" -max_total_time="$seconds" \
+    "$fuzzer" -seed="$seed" -max_total_time="$seconds" -runs="$runs" \
       -timeout="$longest" -rss_limit_mb="$memory" -max_len=16384 -print_final_stats=1 \
       -artifact_prefix="$build/findings/$target-" "$build/corpus/$target" "$top/Corpus/$target"
   else
