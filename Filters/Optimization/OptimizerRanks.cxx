@@ -72,7 +72,7 @@ tautline::NeedOfWholeMesh needOf(const tautline::OptimizerSettings& settings, bo
   if (settings.boundary == BoundaryMotion::OnSurface || settings.geometry)
   {
     return { "points that slide on curved surfaces and geometries",
-      "choose the Boundary Fixed, Sliding or Free, without a Geometry" };
+      "choose the Boundary Fixed, Slide on flat parts (sliding) or Free, without a Geometry" };
   }
   if (features)
   {

@@ -496,7 +496,7 @@ NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& options)
   if (options.model || options.slideSurface)
   {
     return { "points that slide on curved surfaces, features and geometries",
-      "choose the Boundary Fixed, Sliding or Free" };
+      "choose the Boundary Fixed, Slide on flat parts (sliding) or Free" };
   }
   if (options.improveWorst > 0)
   {
