@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace tautline
 {
@@ -161,7 +162,7 @@ int VertexOptimizer<Dim>::allowed(std::int32_t v, double basis[Dim][Dim]) const
 
 //------------------------------------------------------------------------------
 /// Goes along the tangents and back to the surface, and stays there if that is better than before;
-/// less far where that would take the surface too far.
+/// less far where that would take the surface too far, or the vertex beyond its limit.
 template <int Dim>
 bool VertexOptimizer<Dim>::placeOnSurface(
   std::int32_t v, const double* d, const Scalarizer& scalarizer, PatchWorker<Dim>& w)
@@ -184,11 +185,24 @@ bool VertexOptimizer<Dim>::placeOnSurface(
     Dim == 2 && this->isOnCurve(v) ? this->normalsAt(v) : std::vector<Vec3>();
   const SurfaceProjection* surface = this->surfaceOf(v);
   const std::vector<SurfaceLimit*>& limits = this->Options.surfaceLimits;
-  const int trials = limits.empty() ? 1 : maxTrials;
+  const auto onSurface = [surface](const Vec3& x) { return surface ? surface->closest(x) : x; };
+  const bool bounded = this->hasLimit(v);
+  const double reach = bounded ? this->Options.limits[v] : std::numeric_limits<double>::infinity();
+  Vec3 start = before;
+  for (int c = 0; bounded && c < 3; ++c)
+  {
+    start[c] = this->Options.start[VertexStride * static_cast<std::size_t>(v) + c];
+  }
+  const int trials = limits.empty() && !bounded ? 1 : maxTrials;
   bool placed = false;
   for (int trial = 0; trial < trials && !placed; ++trial, step = 0.5 * step)
   {
-    this->place(v, surface ? surface->closest(before + step) : before + step);
+    Vec3 to = onSurface(before + step);
+    if (const double way = norm(to - start); way > reach)
+    {
+      to = onSurface(start + (insideLimit * reach / way) * (to - start));
+    }
+    this->place(v, to);
     this->gather(v, w.patch);
     for (std::size_t i = 0; i < n; ++i)
     {
@@ -196,7 +210,7 @@ bool VertexOptimizer<Dim>::placeOnSurface(
     }
     const bool upright = this->Options.allowInversion ||
       (this->isUpright(v, w.patch, normals) && this->staysValidInside(w.patch, zero));
-    placed = upright && this->changeAt(scalarizer, w, zero) < 0 &&
+    placed = norm(to - start) <= reach && upright && this->changeAt(scalarizer, w, zero) < 0 &&
       std::all_of(limits.begin(), limits.end(),
         [&](SurfaceLimit* limit) { return limit->allows(v, before); });
   }
@@ -238,12 +252,13 @@ bool VertexOptimizer<Dim>::isUpright(
 }
 
 //------------------------------------------------------------------------------
-/// The largest step up to t that keeps x + d + t s within the vertex's limit.
+/// The largest step up to t that keeps x + d + t s within the vertex's limit. On a surface in space,
+/// whose steps are along its tangents, placeOnSurface() does.
 template <int Dim>
 double VertexOptimizer<Dim>::limited(
   std::int32_t v, const double* d, const double* s, double t) const
 {
-  if (!this->hasLimit(v))
+  if (!this->hasLimit(v) || (Dim == 2 && this->Simplices.surface()))
   {
     return t;
   }

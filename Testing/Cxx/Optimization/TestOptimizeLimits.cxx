@@ -220,6 +220,31 @@ void testSliding()
   TAUTLINE_CHECK(along > 0.5 * limit);
 }
 
+/// Points of a curved surface, which go back to it after each step, keep their limits, too.
+void testSurface(CellType type, bool project)
+{
+  const Context context(
+    std::string(topology(type).name) + (project ? " on the surface" : " beside the surface"));
+  constexpr double limit = 0.02;
+  MeshData data = stretchedRows(type, 12);
+  data.transform(
+    [](const Vec3& p) {
+      return Vec3{ p[0], p[1], 0.3 * std::sin(3 * p[0]) * std::cos(4 * p[1]) };
+    });
+  const std::vector<double> limits(data.numberOfPoints(), limit);
+  for (const Optimizer method : { Optimizer::Automatic, Optimizer::LocalConjugateGradient })
+  {
+    OptimizeOptions options;
+    options.optimizer = method;
+    options.limits = limits.data();
+    options.surface.project = project;
+    const OptimizeResult result = run(data, options);
+    TAUTLINE_CHECK(longestWay(data, result.points) <= limit);
+    TAUTLINE_CHECK(atLimit(data, result.points, limit) > 20);
+    TAUTLINE_CHECK(result.history.back().objective < 0.9 * result.history.front().objective);
+  }
+}
+
 /// Limits count from the input, not from what untangling leaves: where that goes too far, it is an
 /// error, on ranks, too.
 void testUntangling()
@@ -326,6 +351,11 @@ int TestOptimizeLimits(int, char*[])
   testSmall(CellType::Tetrahedron, 8);
   testSmall(CellType::Hexahedron, 10);
   testSliding();
+  for (const bool project : { true, false })
+  {
+    testSurface(CellType::Triangle, project);
+    testSurface(CellType::Quadrilateral, project);
+  }
   testUntangling();
   testRanks(CellType::Hexahedron, 8, 0.1);
   testRanks(CellType::Tetrahedron, 8, 0.1);
