@@ -313,7 +313,9 @@ std::vector<double> MovableMesh::settle(const std::vector<double>& points, std::
 //------------------------------------------------------------------------------
 std::vector<signed char> MovableMesh::validityAt(const std::vector<double>& points) const
 {
-  return validityOf(this->mesh().at(points.data()), this->Threads);
+  Mesh moved = this->mesh().at(points.data());
+  moved.setSpace(this->mesh().space());
+  return validityOf(moved, this->Threads);
 }
 
 //------------------------------------------------------------------------------

@@ -135,7 +135,8 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
   const std::string& block, vtkDataSet* output, TableRows& rows)
 {
   const MeshView& view = mesh.mesh().view();
-  const Mesh moved = mesh.mesh().at(points.data());
+  Mesh moved = mesh.mesh().at(points.data());
+  moved.setSpace(mesh.mesh().space());
   vtkNew<vtkSignedCharArray> validity;
   validity->SetName("Validity");
   validity->SetNumberOfValues(view.numberOfCells);

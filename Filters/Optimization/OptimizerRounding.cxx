@@ -68,7 +68,9 @@ void OptimizerSetup::round(OptimizerRun& run) const
     {
       return;
     }
-    rounded = measureRounded(start, validity, this->Options, result, start.at(points.data()));
+    Mesh there = start.at(points.data());
+    there.setSpace(start.space());
+    rounded = measureRounded(start, validity, this->Options, result, there);
     // Where the input has invalid elements, double precision may cost some that were repaired.
     const bool kept = rounded.keepsGuarantees() ||
       (!run.single && result.invertedBefore > 0 && rounded.inverted <= result.invertedBefore);

@@ -126,17 +126,22 @@ bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
     return false;
   }
   // From close to the minimum, no iteration may be recorded.
-  IterationRecord& last = this->History.back();
-  const IterationRecord found = this->Steps.record(last.iteration);
+  const IterationRecord found = this->Steps.record(this->History.back().iteration);
   // Inverted elements do not count in the objective.
   const bool valid = found.inverted <= this->History.front().inverted;
-  last = valid && found.objective < last.objective ? found : last;
+  if (valid && found.objective < this->History.back().objective)
+  {
+    const bool atStart = this->History.size() == 1; // whose row stays
+    this->History.resize(this->History.size() + (atStart ? 1 : 0));
+    this->History.back() = found;
+    this->History.back().iteration += atStart ? 1 : 0;
+  }
   if (valid && found.objective < reached)
   {
     return true;
   }
   this->Steps.restart(swept);
-  last = this->Steps.record(last.iteration);
+  this->History.back() = this->Steps.record(this->History.back().iteration);
   return false;
 }
 

@@ -42,6 +42,8 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
 {
   const MeshView& view = mesh.view();
   this->Moving = std::make_unique<Mesh>(mesh.at(points.data()));
+  // Planar or not as the input is, though the points may have moved: it decides which methods do.
+  this->Moving->setSpace(mesh.space());
   this->Resolved = options.objectives;
 
   // One set of targets can be built into the simplices; objectives with others take the general

@@ -128,16 +128,13 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
   {
     throw Error("A model needs the part of it that each point slides on.");
   }
-  if (global && (options.slideSurface || options.model))
+  const bool surface = mesh.dimension() == Dimension::Surface;
+  if (global && (surface || options.slideSurface || options.model || options.limits))
   {
-    throw Error(
-      "Sliding on the boundary needs a local optimizer: choose Automatic or Local Newton.");
-  }
-  if (global && (options.limits || mesh.dimension() == Dimension::Surface))
-  {
-    throw Error(options.limits
-        ? "Limits on the way of points need a local optimizer: choose Automatic or Local Newton."
-        : "A surface in space needs a local optimizer: choose Automatic or Local Newton.");
+    throw Error(std::string(surface  ? "A surface in space needs"
+                    : options.limits ? "Limits on the way of points need"
+                                     : "Points that slide on a boundary or on interfaces need") +
+      " a local optimizer: choose Automatic or Local Newton.");
   }
   checkSizes(mesh, options);
   if (options.worstMetric)

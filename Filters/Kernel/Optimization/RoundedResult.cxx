@@ -97,9 +97,13 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
 {
   const int threads = options.threads;
   RoundedResult found;
-  const std::vector<signed char> there = result.elements.validity.empty()
-    ? validityOf(mesh.at(result.points.data()), threads)
-    : std::move(result.elements.validity);
+  std::vector<signed char> there = std::move(result.elements.validity);
+  if (there.empty())
+  {
+    Mesh moved = mesh.at(result.points.data());
+    moved.setSpace(mesh.space());
+    there = validityOf(moved, threads);
+  }
   found.elements.validity = validityOf(rounded, threads);
   const std::vector<signed char>& now = found.elements.validity;
   for (std::size_t cell = 0; cell < now.size(); ++cell)

@@ -248,6 +248,7 @@ inline bool mayUseNewton(const OptimizeOptions& options)
     options.objectives.size() > 1 && options.scalarization.method == Scalarization::Lexicographic;
   const StoppingCriteria& stop = options.stopping;
   return options.optimizer == Optimizer::Automatic && !lexicographic &&
+    stop.maximumIterations > 0 &&
     std::none_of(options.objectives.begin(), options.objectives.end(), rough) &&
     !options.allowInversion && !(stop.reduction < 1) && !stop.twoDigits && !stop.allValid;
 }

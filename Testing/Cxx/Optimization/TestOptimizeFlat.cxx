@@ -3,6 +3,8 @@
 // from its minimum for converged.
 #include "StretchedMeshes.h"
 
+#include "tautline/Untangling/Untangle.h"
+
 #include <cmath>
 
 using namespace tautline;
@@ -165,6 +167,63 @@ void testReduction()
     TAUTLINE_CHECK(!quick || (result.reason == StopReason::Reduction && result.iterations <= 3));
   }
 }
+
+/// Row 0 of the history is the input, whatever Automatic starts from; no iterations: no motion.
+void testFirstRow()
+{
+  const MeshData data = stretchedRows(CellType::Quadrilateral, 16, 2);
+  const double start = sumOfSquares(data, data.points, Metric::InverseMeanRatio);
+  for (const int iterations : { 0, 1, 300 })
+  {
+    const Context context(std::to_string(iterations) + " iterations");
+    OptimizeOptions options;
+    options.stopping.maximumIterations = iterations;
+    const OptimizeResult result = run(data, options);
+    TAUTLINE_CHECK_RELATIVE(result.history.front().objective, start, 1e-9);
+    TAUTLINE_CHECK_EQUAL(result.iterations == 0, iterations == 0);
+    TAUTLINE_CHECK_EQUAL(result.points == data.points, iterations == 0);
+    TAUTLINE_CHECK_EQUAL(result.reason == StopReason::IterationLimit, iterations < 300);
+  }
+}
+
+/// A tangled mesh that is barely planar: untangling moves points into a plane, from which that of
+/// the boundary that is highest is then farther. It stays planar, so that a global method may go on.
+void testBarelyPlanar()
+{
+  int less = 0;
+  for (unsigned seed = 0; seed < 4; ++seed)
+  {
+    const MeshData flat = perturbedBlock(CellType::Triangle, 6, 1.0, seed);
+    const std::vector<char> boundary = Mesh(flat.view()).boundary().isBoundaryPoint;
+    const auto liftedBy = [&](double height)
+    {
+      MeshData data = flat;
+      for (Index p = 0; p < data.numberOfPoints(); ++p)
+      {
+        const double part = p == 3 ? 1.0 : boundary[p] ? 0.0 : 0.5;
+        data.setPoint(p, data.point(p) + Vec3{ 0, 0, part * height });
+      }
+      return data;
+    };
+    double low = 0, high = 1;
+    for (int i = 0; i < 60; ++i)
+    {
+      const double middle = 0.5 * (low + high);
+      const MeshData data = liftedBy(middle);
+      (Mesh(data.view()).dimension() == Dimension::Planar ? low : high) = middle;
+    }
+    const MeshData data = liftedBy(low);
+    const Mesh mesh(data.view());
+    const std::vector<double> untangled = untangle(mesh, UntangleOptions()).points;
+    less += mesh.at(untangled.data()).dimension() == Dimension::Surface;
+    OptimizeOptions options;
+    options.optimizer = Optimizer::ConjugateGradientPolakRibiere;
+    const OptimizeResult result = optimize(mesh, options);
+    TAUTLINE_CHECK(result.invertedBefore > 0);
+    TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
+  }
+  TAUTLINE_CHECK(less > 0);
+}
 }
 
 //------------------------------------------------------------------------------
@@ -174,5 +233,7 @@ int TestOptimizeFlat(int, char*[])
   testObjectives();
   testConvergence();
   testReduction();
+  testFirstRow();
+  testBarelyPlanar();
   return exitCode();
 }
