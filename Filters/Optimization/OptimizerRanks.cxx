@@ -315,17 +315,12 @@ PointOptions pointOptions(const tautline::OptimizerSettings& settings, tautline:
   }
   if (settings.boundary == tautline::BoundaryMotion::Sliding)
   {
-    group.together(
-      [&]
-      {
-        // Of the points that this process owns all facets are here.
-        result.shape = tautline::boundaryShape(
-          tautline::Mesh(mesh.mesh().view(), settings.options.threads), settings.flatAngle);
-        for (std::size_t p = 0; p < result.fixed.size(); ++p)
-        {
-          result.fixed[p] |= result.shape.fixed[p];
-        }
-      });
+    result.shape =
+      tautline::boundaryShapeOnRanks(mesh.mesh(), settings.flatAngle, settings.options.threads);
+    for (std::size_t p = 0; p < result.fixed.size(); ++p)
+    {
+      result.fixed[p] |= result.shape.fixed[p];
+    }
     mesh.mesh().exchange(result.fixed.data());
     for (std::size_t i = 0; i < 3 * result.fixed.size(); ++i)
     {

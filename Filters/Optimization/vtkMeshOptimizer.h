@@ -368,8 +368,8 @@ public:
   ///@{
   /**
    * Boundary facets whose normals differ by at most so many degrees are one plane (edges: one line)
-   * to slide in. On curved surfaces keep it small: points slide in the mean plane. The default
-   * is 1.
+   * to slide in. A part that bends by more in all, as a fine circle, is curved: where it bends,
+   * its points stay. The default is 1.
    */
   vtkTautlineSetRangeMacro(FlatAngle, double, 0.0, 90.0);
   vtkGetMacro(FlatAngle, double);

@@ -193,7 +193,7 @@ def optimize(
     fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
     boundary: "fixed"; "sliding" (points on flat or straight parts of the boundary move along them, see flat_angle);
         "on surface" (also points on curved but smooth parts, see feature_angle); or "free".
-    flat_angle: largest angle, in degrees, between facets of a flat part, 0 to 90.
+    flat_angle: largest angle, in degrees, between any facets of a flat part, 0 to 90.
     feature_angle: least angle, in degrees, between facets at a feature, 0 to 180.
     keep_features: whether corners, sharp edges, borders and patches of a surface in space are kept, and with the
         boundary "on surface" those of the boundary: corners stay, other points slide on their curve or patch.

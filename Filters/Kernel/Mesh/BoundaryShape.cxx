@@ -2,7 +2,12 @@
 #include "BoundaryShape.h"
 
 #include "FacetTable.h"
+#include "RankSets.h"
+#include "tautline/Core/UnionFind.h"
 
+#include <algorithm>
+#include <array>
+#include <memory>
 #include <string>
 
 namespace tautline
@@ -18,6 +23,7 @@ struct Directions
   Vec3 firstSum = { 0, 0, 0 }, secondSum = { 0, 0, 0 };
   Vec3 sum = { 0, 0, 0 };
   double minCosine = 1; ///< between a facet and the sum
+  double bend = 0;      ///< largest sine of the angle between a facet and the sum of its kind
   bool faulty = false;  ///< a facet without size, or of three cells
   int kinds = 0;        ///< 3: three or more, or something that forbids to slide
   int facets = 0;
@@ -95,6 +101,12 @@ void set(std::vector<double>& all, Index point, const Vec3& v)
   }
 }
 
+/// Whether a point is smooth: no facet differs much from the mean.
+bool isSmooth(const Directions& d, bool volume, double smoothCosine)
+{
+  return !d.faulty && (volume || d.facets == 2) && d.minCosine >= smoothCosine;
+}
+
 /// Sets whether a boundary point slides in a plane, along a line, on the surface, or is fixed.
 void classify(Index i, const Directions& d, bool volume, double cosine, double smoothCosine,
   BoundaryShape& shape)
@@ -110,7 +122,7 @@ void classify(Index i, const Directions& d, bool volume, double cosine, double s
     set(shape.lines, i, d.firstSum);
     ++shape.onLines;
   }
-  else if (!d.faulty && (volume || d.facets == 2) && d.minCosine >= smoothCosine)
+  else if (isSmooth(d, volume, smoothCosine))
   {
     shape.surface[i] = 1;
     ++shape.onSurface;
@@ -124,6 +136,222 @@ void classify(Index i, const Directions& d, bool volume, double cosine, double s
   else
   {
     shape.fixed[i] = 1;
+  }
+}
+
+//------------------------------------------------------------------------------
+/// How much the directions (normals or lines, of either sign) of points differ: their outer
+/// products have a box.
+struct DirectionBox
+{
+  std::array<double, 6> low = { infinity, infinity, infinity, infinity, infinity, infinity };
+  std::array<double, 6> high = { -infinity, -infinity, -infinity, -infinity, -infinity, -infinity };
+
+  void add(const Vec3& d)
+  {
+    const std::array<double, 6> products = { d[0] * d[0], d[1] * d[1], d[2] * d[2], d[0] * d[1],
+      d[1] * d[2], d[2] * d[0] };
+    this->add(products, products);
+  }
+  void add(const std::array<double, 6>& from, const std::array<double, 6>& to)
+  {
+    for (std::size_t k = 0; k < from.size(); ++k)
+    {
+      this->low[k] = std::min(this->low[k], from[k]);
+      this->high[k] = std::max(this->high[k], to[k]);
+    }
+  }
+  /// The sine of the angle between two directions, squared; of several, about the largest one.
+  double sine2() const
+  {
+    double sum = 0;
+    for (std::size_t k = 0; k < this->low.size(); ++k)
+    {
+      const double width = this->high[k] - this->low[k];
+      sum += (k < 3 ? 0.5 : 1.0) * width * width;
+    }
+    return sum;
+  }
+};
+
+Vec3 vectorAt(const std::vector<double>& all, Index i)
+{
+  return { all[3 * i], all[3 * i + 1], all[3 * i + 2] };
+}
+
+/**
+ * The boundary of a mesh: what each point may do by the facets around it, and then by the parts of
+ * the boundary that it slides in. A fine circle bends by a degree at no point, and still is none to
+ * slide off along its tangents.
+ */
+class ShapeFinder
+{
+public:
+  ShapeFinder(const Mesh& mesh, double flatAngle, double featureAngle);
+
+  BoundaryShape& shape() { return this->Shape; }
+  /// One number per point: whether it is bent.
+  std::vector<unsigned char> bent() const;
+  /// Joins points of a facet that slide in nearly the same directions.
+  /// @param counts whether a facet with these nodes counts
+  template <class Counts>
+  UnionFind joined(const Counts& counts);
+  /// Holds the bent points of parts (one per point, or -1) whose directions differ too much.
+  void holdBent(const std::vector<unsigned char>& bent, const std::vector<Index>& part,
+    const std::vector<DirectionBox>& boxes);
+  /// The direction a point slides in, or that it slides at a right angle to; 0: neither.
+  Vec3 directionOf(Index i) const
+  {
+    return vectorAt(this->Shape.planes, i) + vectorAt(this->Shape.lines, i);
+  }
+
+private:
+  /// A facet that is not between two cells.
+  struct Facet
+  {
+    Index nodes[MaxFaceNodes];
+    int size;
+    Vec3 along; ///< see direction()
+    Index cells;
+  };
+  void findFacets(const Mesh& mesh);
+  double smoothCosine() const { return this->Smooth ? this->SmoothCosine : infinity; }
+
+  const MeshView& View;
+  std::vector<Facet> Facets;
+  const bool Volume, Smooth;
+  // Rounding makes even the faces of a cube differ a little.
+  const double Cosine, SmoothCosine, Sine2;
+  std::vector<Directions> Around;
+  BoundaryShape Shape;
+};
+
+double cosineOf(double flatAngle)
+{
+  return std::min(std::cos(flatAngle * Pi / 180), 1 - 1e-12);
+}
+
+ShapeFinder::ShapeFinder(const Mesh& mesh, double flatAngle, double featureAngle)
+  : View(mesh.view())
+  , Volume(mesh.dimension() == Dimension::Volume)
+  , Smooth(featureAngle > 0 && mesh.dimension() != Dimension::Surface)
+  , Cosine(cosineOf(flatAngle))
+  , SmoothCosine(std::cos(0.5 * featureAngle * Pi / 180))
+  , Sine2(1 - Cosine * Cosine)
+  , Around(View.numberOfPoints)
+{
+  this->findFacets(mesh);
+  for (const Facet& facet : this->Facets)
+  {
+    for (int k = 0; k < facet.size; ++k)
+    {
+      Directions& here = this->Around[facet.nodes[k]];
+      here.faulty = here.faulty || facet.cells > 2;
+      here.kinds = facet.cells > 2 ? 3 : here.kinds;
+      add(here, facet.along, this->Cosine);
+    }
+  }
+  for (const Facet& facet : this->Facets)
+  {
+    const double length = norm(facet.along);
+    for (int k = 0; k < facet.size; ++k)
+    {
+      Directions& here = this->Around[facet.nodes[k]];
+      const auto sineTo = [&](const Vec3& sum)
+      {
+        const double lengths = length * norm(sum);
+        return lengths > 0 ? norm(cross(facet.along, sum)) / lengths : 1.0;
+      };
+      here.bend = std::max(here.bend, std::min(sineTo(here.firstSum), sineTo(here.secondSum)));
+      const double lengths = length * norm(here.sum);
+      here.minCosine =
+        std::min(here.minCosine, lengths > 0 ? dot(facet.along, here.sum) / lengths : -1.0);
+    }
+  }
+  const Index points = this->View.numberOfPoints;
+  this->Shape.fixed.assign(points, 0);
+  this->Shape.planes.assign(3 * points, 0.0);
+  this->Shape.lines.assign(3 * points, 0.0);
+  this->Shape.surface.assign(points, 0);
+  for (Index i = 0; i < points; ++i)
+  {
+    if (this->Around[i].facets > 0)
+    {
+      classify(i, this->Around[i], this->Volume, this->Cosine, this->smoothCosine(), this->Shape);
+    }
+  }
+}
+
+void ShapeFinder::findFacets(const Mesh& mesh)
+{
+  FacetTable table(mesh);
+  table.forEachFacet(
+    [this](Index smallest, const FacetUse* uses, Index count)
+    {
+      if (count != 2)
+      {
+        Facet facet;
+        facet.size = walk(smallest, *uses, facet.nodes);
+        facet.along = direction(this->View, *uses, facet.nodes, facet.size);
+        facet.cells = count;
+        this->Facets.push_back(facet);
+      }
+    });
+}
+
+std::vector<unsigned char> ShapeFinder::bent() const
+{
+  // Sine; more than rounding of coordinates in double precision, and less than a circle of a
+  // hundred thousand edges bends.
+  constexpr double straight = 1e-5;
+  std::vector<unsigned char> result;
+  for (const Directions& here : this->Around)
+  {
+    result.push_back(here.bend > straight);
+  }
+  return result;
+}
+
+template <class Counts>
+UnionFind ShapeFinder::joined(const Counts& counts)
+{
+  UnionFind sets(this->View.numberOfPoints);
+  for (const Facet& facet : this->Facets)
+  {
+    for (int k = 0; k < facet.size && counts(facet.nodes, facet.size); ++k)
+    {
+      for (int l = 0; l < k; ++l)
+      {
+        const Index a = facet.nodes[k], b = facet.nodes[l];
+        const double planes = dot(vectorAt(this->Shape.planes, a), vectorAt(this->Shape.planes, b));
+        const double lines = dot(vectorAt(this->Shape.lines, a), vectorAt(this->Shape.lines, b));
+        if (planes >= this->Cosine || std::abs(lines) >= this->Cosine)
+        {
+          sets.join(a, b);
+        }
+      }
+    }
+  }
+  return sets;
+}
+
+void ShapeFinder::holdBent(const std::vector<unsigned char>& bent, const std::vector<Index>& part,
+  const std::vector<DirectionBox>& boxes)
+{
+  for (std::size_t i = 0; i < part.size(); ++i)
+  {
+    if (part[i] < 0 || !bent[i] || boxes[part[i]].sine2() <= this->Sine2)
+    {
+      continue;
+    }
+    const bool inPlane = norm(vectorAt(this->Shape.planes, i)) > 0;
+    --(inPlane ? this->Shape.inPlanes : this->Shape.onLines);
+    std::fill_n(this->Shape.planes.begin() + 3 * i, 3, 0.0);
+    std::fill_n(this->Shape.lines.begin() + 3 * i, 3, 0.0);
+    const bool smooth = isSmooth(this->Around[i], this->Volume, this->smoothCosine());
+    this->Shape.surface[i] = smooth;
+    this->Shape.onSurface += smooth;
+    this->Shape.fixed[i] = !smooth;
   }
 }
 }
@@ -141,65 +369,72 @@ BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle, double featureAn
     throw Error("The angle from which on an edge of the boundary is sharp is " +
       std::to_string(featureAngle) + " degrees; it must be between 0 and 180.");
   }
-  const MeshView& view = mesh.view();
-  // Rounding makes even the faces of a cube differ a little.
-  const double cosine = std::min(std::cos(flatAngle * Pi / 180), 1 - 1e-12);
-  std::vector<Directions> around(view.numberOfPoints);
-  FacetTable facets(mesh);
-  const auto forEachBoundaryFacet = [&](const auto& visit)
+  ShapeFinder finder(mesh, flatAngle, featureAngle);
+  UnionFind sets = finder.joined([](const Index*, int) { return true; });
+  const Index points = mesh.view().numberOfPoints;
+  std::vector<Index> part(points, -1);
+  std::vector<DirectionBox> boxes;
+  for (Index i = 0; i < points; ++i)
   {
-    facets.forEachFacet(
-      [&](Index smallest, const FacetUse* uses, Index count)
-      {
-        if (count == 2)
-        {
-          return;
-        }
-        Index nodes[MaxFaceNodes];
-        const int size = walk(smallest, *uses, nodes);
-        const Vec3 along = direction(view, *uses, nodes, size);
-        for (int k = 0; k < size; ++k)
-        {
-          visit(around[nodes[k]], along, count);
-        }
-      });
-  };
-  forEachBoundaryFacet(
-    [cosine](Directions& here, const Vec3& along, Index count)
+    if (const Vec3 d = finder.directionOf(i); norm(d) > 0)
     {
-      if (count > 2)
-      {
-        here.faulty = true;
-        here.kinds = 3;
-      }
-      add(here, along, cosine);
-    });
-  const bool smooth = featureAngle > 0 && mesh.dimension() != Dimension::Surface;
-  const double smoothCosine = std::cos(0.5 * featureAngle * Pi / 180);
-  if (smooth)
-  {
-    forEachBoundaryFacet(
-      [](Directions& here, const Vec3& along, Index)
-      {
-        const double lengths = norm(along) * norm(here.sum);
-        here.minCosine =
-          std::min(here.minCosine, lengths > 0 ? dot(along, here.sum) / lengths : -1.0);
-      });
-  }
-
-  BoundaryShape shape;
-  shape.fixed.assign(view.numberOfPoints, 0);
-  shape.planes.assign(3 * view.numberOfPoints, 0.0);
-  shape.lines.assign(3 * view.numberOfPoints, 0.0);
-  shape.surface.assign(view.numberOfPoints, 0);
-  const bool volume = mesh.dimension() == Dimension::Volume;
-  for (Index i = 0; i < view.numberOfPoints; ++i)
-  {
-    if (around[i].facets > 0)
-    {
-      classify(i, around[i], volume, cosine, smooth ? smoothCosine : infinity, shape);
+      // The smallest member of a set comes first.
+      const Index first = sets.find(i);
+      part[i] = first == i ? static_cast<Index>(boxes.size()) : part[first];
+      boxes.resize(std::max(boxes.size(), static_cast<std::size_t>(part[i]) + 1));
+      boxes[part[i]].add(d);
     }
   }
+  finder.holdBent(finder.bent(), part, boxes);
+  return finder.shape();
+}
+
+//------------------------------------------------------------------------------
+BoundaryShape boundaryShapeOnRanks(const DistributedMesh& mesh, double flatAngle, int threads)
+{
+  RankGroup& group = mesh.group();
+  const Index points = mesh.localPoints();
+  std::unique_ptr<Mesh> local;
+  std::unique_ptr<ShapeFinder> finder;
+  std::vector<unsigned char> bent;
+  group.together(
+    [&]
+    {
+      local = std::make_unique<Mesh>(mesh.view(), threads);
+      finder = std::make_unique<ShapeFinder>(*local, flatAngle, 0.0);
+      bent = finder->bent();
+    });
+  // Of the points that this rank owns all facets are here; the others are as their owners say.
+  BoundaryShape& shape = finder->shape();
+  mesh.exchange(shape.fixed.data());
+  mesh.exchange(shape.planes.data(), 3);
+  mesh.exchange(shape.lines.data(), 3);
+  UnionFind sets = finder->joined([&](const Index* nodes, int size)
+    { return std::any_of(nodes, nodes + size, [&](Index node) { return mesh.owned(node); }); });
+  std::vector<unsigned char> slides(points, 0);
+  for (Index i = 0; i < points; ++i)
+  {
+    slides[i] = norm(finder->directionOf(i)) > 0;
+  }
+  Index count = 0;
+  const std::vector<Index> part = numberSetsOnRanks(mesh, sets, slides, count);
+  std::vector<DirectionBox> boxes(count);
+  for (Index i = 0; i < points; ++i)
+  {
+    if (part[i] >= 0 && mesh.owned(i))
+    {
+      boxes[part[i]].add(finder->directionOf(i));
+    }
+  }
+  for (const std::vector<DirectionBox>& list : group.gatherItems(boxes))
+  {
+    for (std::size_t k = 0; k < list.size(); ++k)
+    {
+      boxes[k].add(list[k].low, list[k].high);
+    }
+  }
+  finder->holdBent(bent, part, boxes);
+  mesh.exchange(shape.fixed.data());
   return shape;
 }
 }

@@ -10,6 +10,8 @@
 
 namespace tautline
 {
+class DistributedMesh;
+
 /// What each point of the boundary may do; made by boundaryShape().
 struct BoundaryShape
 {
@@ -36,8 +38,18 @@ struct BoundaryShape
  * @param featureAngle the boundary (of volume and planar meshes) is smooth at a point if no facet
  * there differs from their mean by more than half of so many degrees; 0, the default: it is not
  * determined; up to 180
+ *
+ * Connected points that slide in planes (lines) which differ by more than flatAngle in all are on a
+ * curved part, such as a fine circle: those of them where it bends do not slide so.
  */
 TAUTLINE_KERNEL_EXPORT BoundaryShape boundaryShape(
   const Mesh& mesh, double flatAngle, double featureAngle = 0);
+
+/**
+ * @brief The same of a mesh on several ranks, without a feature angle. Collective. Of local points
+ * that others own, `fixed` is the owner's, planes and lines may lack.
+ */
+TAUTLINE_KERNEL_EXPORT BoundaryShape boundaryShapeOnRanks(
+  const DistributedMesh& mesh, double flatAngle, int threads = 0);
 }
 #endif

@@ -4,6 +4,9 @@
 #include "Check.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/BoundaryParts.h"
+#include "tautline/Mesh/BoundaryShape.h"
+
+#include <cmath>
 
 using namespace tautline;
 
@@ -85,6 +88,64 @@ void testCuts(const char* name, const MeshData& whole, int parts)
     }
   }
 }
+
+/// A block whose top is bent to an arc, by half a degree from row to row: where points slide is the
+/// same on ranks.
+void testShape(CellType type)
+{
+  const Context context(std::string("shape, ") + topology(type).name);
+  const bool flat = topology(type).dimension == 2;
+  constexpr Index length = 30, side = 3;
+  MeshData whole = blockMesh(type, length, side, flat ? 0 : side);
+  constexpr double radius = 120;
+  whole.transform(
+    [](const Vec3& p)
+    {
+      const double angle = p[0] / radius;
+      const double y = p[1] / side * radius * (1 - std::cos(angle));
+      return Vec3{ radius * std::sin(angle), p[1] + y, p[2] };
+    });
+  const BoundaryShape one = boundaryShape(Mesh(whole.view()), 1);
+  const auto slides = [](const BoundaryShape& shape, Index p)
+  {
+    double square = 0;
+    for (Index i = 3 * p; i < 3 * p + 3; ++i)
+    {
+      square += shape.planes[i] * shape.planes[i] + shape.lines[i] * shape.lines[i];
+    }
+    return square > 0;
+  };
+  Index held = 0, free = 0;
+  for (Index p = 0; p < whole.numberOfPoints(); ++p)
+  {
+    const Vec3 x = whole.point(p);
+    const bool inside = flat || (x[2] > 0 && x[2] < side);
+    held += inside && one.fixed[p];
+    free += slides(one, p);
+  }
+  TAUTLINE_CHECK(held >= (flat ? 1 : 2) * (length - 1));
+  TAUTLINE_CHECK(free >= length - 1);
+  for (const Cut cut : { Cut::Slabs, Cut::Random, Cut::FirstOnly })
+  {
+    for (const int ranks : { 1, 2, 4 })
+    {
+      const auto rankOf = cutBy(whole, cut, ranks);
+      onRanks(ranks,
+        [&](RankGroup& group)
+        {
+          const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
+          const DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
+          const BoundaryShape found = boundaryShapeOnRanks(mesh, 1);
+          for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+          {
+            const Index here = mesh.localOfPiece()[p], there = part.pointOf[p];
+            TAUTLINE_CHECK_EQUAL(int(found.fixed[here]), int(one.fixed[there]));
+            TAUTLINE_CHECK(!mesh.owned(here) || slides(found, here) == slides(one, there));
+          }
+        });
+    }
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -94,5 +155,7 @@ int TestBoundaryPartsOnRanks(int, char*[])
   testCuts("quadrilaterals", holed(CellType::Quadrilateral, 2), 3);
   testCuts("hexahedra", holed(CellType::Hexahedron, 3), 6);
   testCuts("tetrahedra", holed(CellType::Tetrahedron, 2), 3);
+  testShape(CellType::Triangle);
+  testShape(CellType::Hexahedron);
   return exitCode();
 }

@@ -120,6 +120,89 @@ void testSmooth()
   TAUTLINE_CHECK_THROWS(boundaryShape(Mesh(cube.view()), 1, -5), "between 0 and 180");
 }
 
+/// A ring (of volume cells, a thick one) of so many edges around, whose inner points are at the
+/// radius 1 and whose outer ones are at 2.
+MeshData ring(CellType type, Index around)
+{
+  const bool flat = topology(type).dimension == 2;
+  const MeshData block = blockMesh(type, around, 2, flat ? 0 : 2);
+  MeshData data;
+  const auto number = [around](Index p)
+  { return p / (around + 1) * around + p % (around + 1) % around; };
+  for (Index p = 0; p < block.numberOfPoints(); ++p)
+  {
+    const Vec3 x = block.point(p);
+    if (p % (around + 1) < around)
+    {
+      const double angle = -2 * Pi * x[0] / static_cast<double>(around), r = 1 + 0.5 * x[1];
+      data.addPoint({ r * std::cos(angle), r * std::sin(angle), x[2] });
+    }
+  }
+  for (Index c = 0; c < block.numberOfCells(); ++c)
+  {
+    std::vector<Index> nodes;
+    for (Index n = block.offsets[c]; n < block.offsets[c + 1]; ++n)
+    {
+      nodes.push_back(number(block.connectivity[n]));
+    }
+    data.addCell(static_cast<int>(block.types[c]), nodes);
+  }
+  return data;
+}
+
+/// Fine circles bend by half a degree at each point, but are not straight: nothing slides along
+/// their tangents. On the flat ends of a thick ring points slide.
+void testFineCircle()
+{
+  constexpr Index around = 720;
+  for (CellType type : { CellType::Triangle, CellType::Hexahedron })
+  {
+    const Context context(topology(type).name);
+    const bool flat = topology(type).dimension == 2;
+    const MeshData data = ring(type, around);
+    const Mesh mesh(data.view());
+    const BoundaryShape shape = boundaryShape(mesh, 1);
+    TAUTLINE_CHECK_EQUAL(shape.onLines, 0);
+    TAUTLINE_CHECK_EQUAL(shape.inPlanes, flat ? 0 : 2 * around);
+    TAUTLINE_CHECK_EQUAL(
+      std::count(shape.fixed.begin(), shape.fixed.end(), 1), (flat ? 2 : 6) * around);
+    for (double value : shape.lines)
+    {
+      TAUTLINE_CHECK_EQUAL(value, 0);
+    }
+    const BoundaryShape smooth = boundaryShape(mesh, 1, 60);
+    TAUTLINE_CHECK_EQUAL(smooth.onSurface, 2 * around);
+  }
+}
+
+/// A side that is straight at first and then a fine arc, and one that is rough by less than the
+/// tolerance: the straight and the rough points slide, those of the arc do not.
+void testBentSide()
+{
+  constexpr Index n = 400, straight = 200;
+  MeshData data = blockMesh(CellType::Quadrilateral, n, 1, 0);
+  constexpr double radius = 200, rough = 2e-4;
+  data.transform(
+    [](const Vec3& p)
+    {
+      if (p[1] == 0)
+      {
+        return Vec3{ p[0], p[1] + rough * (static_cast<Index>(p[0]) % 2), 0 };
+      }
+      const double angle = std::max(0.0, p[0] - straight) / radius;
+      return angle > 0
+        ? Vec3{ straight + radius * std::sin(angle), 1 + radius * (1 - std::cos(angle)), 0 }
+        : p;
+    });
+  const BoundaryShape shape = boundaryShape(Mesh(data.view()), 1);
+  for (Index i = 1; i < n; ++i)
+  {
+    TAUTLINE_CHECK_EQUAL(int(norm(at(shape.lines, i)) > 0), 1);
+    TAUTLINE_CHECK_EQUAL(int(norm(at(shape.lines, n + 1 + i)) > 0), int(i < straight));
+  }
+  TAUTLINE_CHECK_EQUAL(shape.onLines, n - 1 + straight - 1);
+}
+
 /// Three cells at one edge, a sheet without thickness, an edge without length: nothing slides
 /// there.
 void testFaulty()
@@ -155,6 +238,8 @@ int TestBoundaryShape(int, char*[])
   testAngle();
   testFlat();
   testSmooth();
+  testFineCircle();
+  testBentSide();
   testFaulty();
   return exitCode();
 }
