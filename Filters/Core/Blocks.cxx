@@ -208,7 +208,7 @@ vtkSmartPointer<vtkDataObject> markSelected(vtkDataObject* input, vtkSelection* 
 
 //------------------------------------------------------------------------------
 vtkDataArray* chosenArray(
-  vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* purpose)
+  vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* purpose, ArrayOf of)
 {
   vtkInformation* choice = algorithm->GetInputArrayInformation(index);
   const char* name = choice->Get(vtkDataObject::FIELD_NAME());
@@ -216,14 +216,23 @@ vtkDataArray* chosenArray(
   {
     return nullptr;
   }
-  const bool ofCells = chosenOfCells(algorithm, index);
+  const bool ofCells =
+    of == ArrayOf::Either ? chosenOfCells(algorithm, index) : of == ArrayOf::Cells;
   vtkDataSetAttributes* data =
-    ofCells ? static_cast<vtkDataSetAttributes*>(input->GetCellData()) : input->GetPointData();
+    input->GetAttributes(ofCells ? vtkDataObject::CELL : vtkDataObject::POINT);
+  vtkDataSetAttributes* others =
+    input->GetAttributes(ofCells ? vtkDataObject::POINT : vtkDataObject::CELL);
   vtkDataArray* array = data->GetArray(name);
   if (!array && data->GetAbstractArray(name))
   {
     throw Error(std::string("The ") + (ofCells ? "cell" : "point") + " array '" + name + "' " +
       purpose + " holds text, not numbers: choose another one, or None.");
+  }
+  if (!array && of != ArrayOf::Either && others->GetArray(name))
+  {
+    throw Error(std::string("The array '") + name + "' " + purpose +
+      (ofCells ? " is on points; one on cells is needed: run Point Data to Cell Data."
+               : " is on cells; one on points is needed: run Cell Data to Point Data."));
   }
   if (!array)
   {

@@ -81,16 +81,26 @@ constexpr const char* SelectedArray = "vtkInsidedness"; // the name vtkExtractSe
 TAUTLINECORE_EXPORT vtkSmartPointer<vtkDataObject> markSelected(
   vtkDataObject* input, vtkSelection* selection);
 
+/// What an array that a filter reads has to have a value for.
+enum class ArrayOf
+{
+  Either, ///< points or cells, as the user chose
+  Points,
+  Cells
+};
+
 /**
  * @brief The point or cell array that the user chose by SetInputArrayToProcess(); null if none is
  * chosen ("None" or "").
  * @param index that of SetInputArrayToProcess()
  * @param purpose for the message, "of fixed points"
+ * @param of what the filter needs. With Points or Cells the name alone counts, since a script that
+ * sets a property of ParaView to a name leaves the association as it is.
  *
- * Throws Error if the input has no array of that name.
+ * Throws Error if the input has no such array of that name.
  */
-TAUTLINECORE_EXPORT vtkDataArray* chosenArray(
-  vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* purpose);
+TAUTLINECORE_EXPORT vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index, vtkDataSet* input,
+  const char* purpose, ArrayOf of = ArrayOf::Either);
 
 /// Whether the array chosen is one of cells.
 TAUTLINECORE_EXPORT bool chosenOfCells(vtkAlgorithm* algorithm, int index);

@@ -186,8 +186,9 @@ PointFlags PieceWarp::staying()
       const Mesh piece(this->Whole.piece());
       const auto copy = markSelected(this->Piece.input, this->Piece.fixed);
       markPoints(piece,
-        chosenArray(this->Settings.arrays, FixedArray, this->Piece.input, "of fixed points"), false,
-        marked);
+        chosenArray(
+          this->Settings.arrays, FixedArray, this->Piece.input, "of fixed points", ArrayOf::Points),
+        false, marked);
       markPoints(piece, vtkDataSet::SafeDownCast(copy), marked);
     });
   return this->Whole.anyOf(marked);
@@ -340,10 +341,11 @@ void PieceWarp::findTensors()
       {
         return;
       }
-      ofPiece = set.tensorsByRegion
-        ? tensorsOf(chosenArray(set.arrays, RegionArray, this->Piece.input, "of regions"),
-            set.regions, set.options.tensor.data())
-        : tensorsOf(chosenArray(set.arrays, TensorArray, this->Piece.input, "of coefficients"));
+      ofPiece = set.tensorsByRegion ? tensorsOf(chosenArray(set.arrays, RegionArray,
+                                                  this->Piece.input, "of regions", ArrayOf::Cells),
+                                        set.regions, set.options.tensor.data())
+                                    : tensorsOf(chosenArray(set.arrays, TensorArray,
+                                        this->Piece.input, "of coefficients", ArrayOf::Cells));
       for (std::size_t cell = 0; 6 * cell < ofPiece.size(); ++cell)
       {
         if (!this->Whole.skipped()[cell])

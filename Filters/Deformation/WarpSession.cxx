@@ -110,7 +110,7 @@ vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input)
     algorithm->GetInputArrayInformation(DisplacementArray)->Get(vtkDataObject::FIELD_NAME());
   if (name && *name && std::string(name) != "Automatic")
   {
-    return chosenArray(algorithm, DisplacementArray, input, "of displacements");
+    return chosenArray(algorithm, DisplacementArray, input, "of displacements", ArrayOf::Points);
   }
   vtkDataArray* named = input->GetPointData()->GetArray("Displacement");
   return named ? named : input->GetPointData()->GetVectors();
@@ -366,12 +366,14 @@ WarpTask WarpSession::task(const InputBlock& block, const RestingMesh& rest, vtk
   this->prescribe(block, rest, task);
   if (set.anisotropic() && set.tensorsByRegion)
   {
-    task.tensors = tensorsOf(chosenArray(set.arrays, RegionArray, block.input, "of regions"),
-      set.regions, set.options.tensor.data());
+    task.tensors =
+      tensorsOf(chosenArray(set.arrays, RegionArray, block.input, "of regions", ArrayOf::Cells),
+        set.regions, set.options.tensor.data());
   }
   else if (set.anisotropic() && set.options.coefficients == WarpCoefficients::PerCell)
   {
-    task.tensors = tensorsOf(chosenArray(set.arrays, TensorArray, block.input, "of coefficients"));
+    task.tensors = tensorsOf(
+      chosenArray(set.arrays, TensorArray, block.input, "of coefficients", ArrayOf::Cells));
   }
   // As cells of the input; the warper's are without lines, vertices and the surfaces of volumes.
   const auto checked = rest.cells.empty() ? task.tensors.size() / 6 : rest.cells.size();
@@ -388,7 +390,8 @@ void WarpSession::prescribe(const InputBlock& block, const RestingMesh& rest, Wa
 {
   const Mesh& mesh = rest.mesh->mesh();
   task.stay.assign(rest.boundary.size(), 0);
-  markPoints(mesh, chosenArray(this->settings.arrays, FixedArray, block.input, "of fixed points"),
+  markPoints(mesh,
+    chosenArray(this->settings.arrays, FixedArray, block.input, "of fixed points", ArrayOf::Points),
     false, task.stay);
   markPoints(mesh, block.selected, task.stay);
   markGhosts(block.input, task.stay);

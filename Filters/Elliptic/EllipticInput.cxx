@@ -30,16 +30,12 @@ constexpr std::array<int, TensorSize> OfFullTensor = { 0, 4, 8, 1, 5, 2 };
 vtkDataArray* cellArray(vtkAlgorithm* algorithm, int index, vtkDataSet* data,
   const std::string& purpose, const std::vector<int>& components)
 {
-  vtkDataArray* array = chosenArray(algorithm, index, data, purpose.c_str());
+  vtkDataArray* array = chosenArray(algorithm, index, data, purpose.c_str(), ArrayOf::Cells);
   if (!array)
   {
     return nullptr;
   }
   const std::string subject = "The array '" + std::string(array->GetName()) + "' chosen " + purpose;
-  if (data->GetCellData()->GetArray(array->GetName()) != array)
-  {
-    throw Error(subject + " is on points; one on cells is needed: run Point Data to Cell Data.");
-  }
   const int has = array->GetNumberOfComponents();
   if (std::find(components.begin(), components.end(), has) == components.end())
   {

@@ -229,7 +229,8 @@ std::vector<double> valuesAt(
     return values;
   }
   const std::string purpose = "to take the " + function.what + " from";
-  vtkDataArray* array = chosenArray(algorithm, function.arrayIndex, data, purpose.c_str());
+  vtkDataArray* array =
+    chosenArray(algorithm, function.arrayIndex, data, purpose.c_str(), ArrayOf::Points);
   if (!array)
   {
     throw Error("No array is chosen " + purpose + ": choose one, or a constant or an expression.");
@@ -237,10 +238,6 @@ std::vector<double> valuesAt(
   const std::string subject =
     "The array '" + std::string(array->GetName()) + "' of the " + function.what;
   const int has = array->GetNumberOfComponents();
-  if (data->GetPointData()->GetArray(array->GetName()) != array)
-  {
-    throw Error(subject + " is on cells; one on points is needed: run Cell Data to Point Data.");
-  }
   if (components == 1 ? has != 1 : has != 2 && has != 3)
   {
     throw Error(subject + " has " + std::to_string(has) + " components; " +

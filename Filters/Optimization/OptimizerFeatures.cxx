@@ -56,11 +56,12 @@ std::vector<signed char> kindsOf(vtkDataArray* array, const std::vector<Index>& 
 //------------------------------------------------------------------------------
 void OptimizerSetup::findFeaturesOf(const OptimizerSettings& settings, const InputBlock& block)
 {
-  const std::vector<signed char> kinds =
-    kindsOf(chosenArray(settings.arrays, KindArray, block.input, "of feature kinds"),
-      this->TheMesh.representative());
+  const std::vector<signed char> kinds = kindsOf(
+    chosenArray(settings.arrays, KindArray, block.input, "of feature kinds", ArrayOf::Points),
+    this->TheMesh.representative());
   const std::vector<double> regions =
-    scalarsOf(chosenArray(settings.arrays, RegionArray, block.input, "of regions"), "regions");
+    scalarsOf(chosenArray(settings.arrays, RegionArray, block.input, "of regions", ArrayOf::Cells),
+      "regions");
   FeatureOptions options;
   options.angle = settings.featureAngle;
   options.kinds = kinds.empty() ? nullptr : kinds.data();
@@ -82,7 +83,7 @@ bool OptimizerSetup::slidesOnModel(const OptimizerSettings& settings) const
 void OptimizerSetup::setFeatures(const OptimizerSettings& settings, const InputBlock& block)
 {
   const bool regions =
-    chosenArray(settings.arrays, RegionArray, block.input, "of regions") != nullptr;
+    chosenArray(settings.arrays, RegionArray, block.input, "of regions", ArrayOf::Cells) != nullptr;
   const bool keep = this->slidesOnModel(settings) || (settings.keepFeatures && regions);
   vtkDataSet* geometry = settings.geometry ? counterpartOf(block, settings.geometry) : nullptr;
   if (settings.geometry && !this->slidesOnModel(settings))
@@ -230,9 +231,9 @@ void OptimizerSetup::findLeaving(const OptimizerSettings& settings, const InputB
   {
     return;
   }
-  const std::vector<signed char> kinds =
-    kindsOf(chosenArray(settings.arrays, KindArray, block.input, "of feature kinds"),
-      this->TheMesh.representative());
+  const std::vector<signed char> kinds = kindsOf(
+    chosenArray(settings.arrays, KindArray, block.input, "of feature kinds", ArrayOf::Points),
+    this->TheMesh.representative());
   const bool planar = this->TheMesh.mesh().dimension() == Dimension::Planar;
   this->Leaving.assign(this->Found.kind.size(), 0);
   std::vector<unsigned char> onInterface = this->Leaving;

@@ -247,7 +247,7 @@ void setObjectives(const tautline::OptimizerSettings& settings, tautline::RankGr
       if (input->GetNumberOfCells() > 0)
       {
         weights = tautline::scalarsOf(tautline::chosenArray(settings.arrays, tautline::WeightArray,
-                                        input, "of element weights"),
+                                        input, "of element weights", tautline::ArrayOf::Cells),
           "weights");
       }
       for (std::size_t cell = 0; cell < weights.size(); ++cell)
@@ -285,7 +285,9 @@ std::vector<double> readArrays(const tautline::OptimizerSettings& settings, vtkD
     return {};
   }
   const auto chosen = [&](int index, const char* purpose)
-  { return tautline::chosenArray(settings.arrays, index, input, purpose); };
+  {
+    return tautline::chosenArray(settings.arrays, index, input, purpose, tautline::ArrayOf::Points);
+  };
   mesh.fix(chosen(tautline::FixedArray, "of fixed points"), false);
   mesh.fixSelected(input, selection);
   std::vector<double> limits =

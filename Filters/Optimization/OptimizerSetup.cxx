@@ -45,7 +45,9 @@ void OptimizerSetup::setFixed(const OptimizerSettings& settings, const InputBloc
 {
   MovableMesh& mesh = this->TheMesh;
   const auto points = static_cast<std::size_t>(mesh.mesh().view().numberOfPoints);
-  mesh.fix(chosenArray(settings.arrays, FixedArray, block.input, "of fixed points"), false);
+  mesh.fix(
+    chosenArray(settings.arrays, FixedArray, block.input, "of fixed points", ArrayOf::Points),
+    false);
   fixSelected(mesh, block.selected);
   const bool onSurface =
     settings.boundary == BoundaryMotion::OnSurface && !this->slidesOnModel(settings);
@@ -79,7 +81,8 @@ void OptimizerSetup::setFixed(const OptimizerSettings& settings, const InputBloc
 //------------------------------------------------------------------------------
 void OptimizerSetup::setLimits(const OptimizerSettings& settings, const InputBlock& block)
 {
-  vtkDataArray* array = chosenArray(settings.arrays, LimitArray, block.input, "of limits");
+  vtkDataArray* array =
+    chosenArray(settings.arrays, LimitArray, block.input, "of limits", ArrayOf::Points);
   this->Limits = scalarsOf(array, "limits");
   for (double& limit : this->Limits)
   {
@@ -135,7 +138,8 @@ void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const Inpu
     this->keepTotalSize();
   }
   this->Weights = scalarsOf(
-    chosenArray(settings.arrays, WeightArray, block.input, "of element weights"), "weights");
+    chosenArray(settings.arrays, WeightArray, block.input, "of element weights", ArrayOf::Cells),
+    "weights");
   if (settings.preset != Preset::Custom)
   {
     for (Objective& objective : objectives)

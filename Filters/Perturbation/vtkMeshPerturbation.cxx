@@ -151,9 +151,9 @@ void vtkMeshPerturbation::Perturb(
   const std::string oriented = adapter.orient();
   notices += (notices.empty() || oriented.empty() ? "" : " ") + oriented;
   const std::vector<tautline::Index>& one = adapter.coincident().representative;
-  std::vector<unsigned char> fixed =
-    fixedPoints(tautline::chosenArray(this, FixedArray, points, "of fixed points"), adapter,
-      points->GetNumberOfPoints());
+  std::vector<unsigned char> fixed = fixedPoints(
+    tautline::chosenArray(this, FixedArray, points, "of fixed points", tautline::ArrayOf::Points),
+    adapter, points->GetNumberOfPoints());
   tautline::unite(fixed, one);
   const int type = points->GetPoints()->GetDataType();
   const int blocks = tautline::countBlocks(this->GetInputDataObject(0, 0));
@@ -244,7 +244,9 @@ void vtkMeshPerturbation::PerturbPiece(tautline::RankMesh& mesh, vtkDataObject* 
       output->ShallowCopy(this->GetInputDataObject(0, 0));
       if (any)
       {
-        mesh.fix(tautline::chosenArray(this, FixedArray, input, "of fixed points"), false);
+        mesh.fix(tautline::chosenArray(
+                   this, FixedArray, input, "of fixed points", tautline::ArrayOf::Points),
+          false);
       }
     });
   const std::vector<unsigned char> fixed = mesh.fixed(true);

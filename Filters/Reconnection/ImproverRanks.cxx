@@ -135,9 +135,12 @@ void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkData
     {
       if (input->GetNumberOfPoints() > 0)
       {
-        mesh->fix(tautline::chosenArray(this, FixedArray, input, "of fixed points"), false);
+        mesh->fix(tautline::chosenArray(
+                    this, FixedArray, input, "of fixed points", tautline::ArrayOf::Points),
+          false);
         mesh->fixSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
-        regions = tautline::chosenArray(this, RegionArray, input, "of regions");
+        regions =
+          tautline::chosenArray(this, RegionArray, input, "of regions", tautline::ArrayOf::Cells);
       }
     });
   tautline::ReconnectablePiece piece = tautline::takePiece(group, *mesh, input, regions);

@@ -194,7 +194,9 @@ void vtkMeshUntangler::ClearResult()
 void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::TableRows& history)
 {
   tautline::MovableMesh mesh(block.input, this->Threads, this->MergeCoincidentPoints, true);
-  mesh.fix(tautline::chosenArray(this, FixedArray, block.input, "of fixed points"), false);
+  mesh.fix(tautline::chosenArray(
+             this, FixedArray, block.input, "of fixed points", tautline::ArrayOf::Points),
+    false);
   tautline::fixSelected(mesh, block.selected);
   if (this->FixBoundary)
   {
@@ -300,7 +302,9 @@ void vtkMeshUntangler::UntangleOnRanks(
     {
       if (input->GetNumberOfPoints() > 0)
       {
-        mesh.fix(tautline::chosenArray(this, FixedArray, input, "of fixed points"), false);
+        mesh.fix(tautline::chosenArray(
+                   this, FixedArray, input, "of fixed points", tautline::ArrayOf::Points),
+          false);
         mesh.fixSelected(data, vtkSelection::GetData(inputVector[SelectionPort]));
       }
     });

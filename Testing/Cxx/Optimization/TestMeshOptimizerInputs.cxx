@@ -9,9 +9,12 @@
 #include "vtkMeshOptimizer.h"
 
 #include "vtkCallbackCommand.h"
+#include "vtkCellData.h"
+#include "vtkDoubleArray.h"
 #include "vtkImageData.h"
 #include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
+#include "vtkPointData.h"
 #include "vtkSphereSource.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
@@ -134,6 +137,55 @@ void testRefused()
 }
 
 /// Empty, without a free point, with one, reversed, disconnected, far from the origin, not finite.
+/// Of an array the name counts, where only points or only cells can have it: ParaView's Python
+/// leaves the association of a property that is set to a name.
+void testAssociations()
+{
+  const MeshData data = perturbed(CellType::Tetrahedron, 3);
+  const auto grid = toGrid(data);
+  vtkNew<vtkDoubleArray> mark, region;
+  mark->SetName("mark");
+  region->SetName("region");
+  for (Index p = 0; p < data.numberOfPoints(); ++p)
+  {
+    mark->InsertNextValue(p % 2);
+  }
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c)
+  {
+    region->InsertNextValue(grid->GetCell(c)->GetBounds()[1] > 1.5 ? 1 : 0);
+  }
+  grid->GetPointData()->AddArray(mark);
+  grid->GetCellData()->AddArray(region);
+  constexpr int points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
+  constexpr int cells = vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  const auto run = [&](int index, int association, const char* name)
+  {
+    vtkNew<vtkMeshOptimizer> filter;
+    Messages messages(filter);
+    filter->SetInputData(grid);
+    filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE); // reads the kinds of features
+    filter->SetInputArrayToProcess(index, 0, 0, association, name);
+    filter->Update();
+    const bool taken = meshOf(filter) && meshOf(filter)->GetNumberOfPoints() > 0;
+    TAUTLINE_CHECK(taken != messages.has("is needed: run"));
+    return taken ? withPointsOf(data, meshOf(filter)).points : std::vector<double>();
+  };
+  constexpr int fixed = 2, limits = 3, weights = 4, kinds = 5, regions = 6;
+  for (const int index : { weights, regions })
+  {
+    TAUTLINE_CHECK(run(index, points, "mark").empty());
+    TAUTLINE_CHECK(run(index, cells, "mark").empty());
+    TAUTLINE_CHECK(!run(index, cells, "region").empty());
+    TAUTLINE_CHECK(run(index, points, "region") == run(index, cells, "region"));
+  }
+  for (const int index : { fixed, limits, kinds })
+  {
+    TAUTLINE_CHECK(run(index, cells, "region").empty());
+    TAUTLINE_CHECK(run(index, points, "region").empty());
+    TAUTLINE_CHECK(run(index, cells, "mark") == run(index, points, "mark"));
+  }
+}
+
 void testTaken()
 {
   vtkNew<vtkMeshOptimizer> filter;
@@ -489,6 +541,7 @@ void testSurface()
 int TestMeshOptimizerInputs(int, char*[])
 {
   testRefused();
+  testAssociations();
   testTaken();
   testPrecision();
   testBlocks();
