@@ -98,6 +98,18 @@ def test_zero():
     assert shown > 30, shown
 
 
+def test_no_array():
+    """A menu of arrays shows None, not "None (?)": its first entry is None of the points."""
+    menus = 0
+    for group, name in PROXIES:
+        for key, prop in properties(servermanager.ProxyManager().NewProxy(group, name)):
+            count = prop.GetNumberOfElements() if prop.FindDomain("vtkSMArrayListDomain") else 0
+            if count == 5 and prop.GetElement(4) == "None":
+                assert prop.GetElement(3) == "0", f"{name}.{key} shows None (?)"
+                menus += 1
+    assert menus > 30, menus
+
+
 def test_empty():
     """An empty input is reported once, with a remedy, and nothing else is."""
     for group, name in PROXIES:
