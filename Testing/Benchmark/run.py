@@ -255,7 +255,10 @@ def main() -> int:
                         help="optimization: also 10,000,000 tetrahedra; stiff: also 1,000,000 cells; "
                         "reconnection-aims: also 1,000,000 tetrahedra")
     parser.add_argument("--output", type=Path, help="where the results go")
+    parser.add_argument("--check-arguments", action="store_true", help="check the other arguments, and end")
     options = parser.parse_args()
+    if options.check_arguments:
+        return 0
     output = options.output or options.build / "benchmark"
     if not any((options.build / "bin").glob("Benchmark*")):
         parser.error(f"no benchmarks in {options.build / 'bin'}: ./run bench builds them and starts this script")

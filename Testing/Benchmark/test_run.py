@@ -4,6 +4,7 @@
 import csv
 import json
 import math
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -119,7 +120,19 @@ def check_user_metric(output: Path) -> None:
     assert len(ratios) == 2 * (16 + 5) and all(number > 0 for number in (*measured.values(), *ratios.values())), ratios
 
 
+def check_arguments(output: Path) -> None:
+    """./run bench prints its help, and refuses wrong arguments, before it builds: which would take minutes."""
+    script = Path(__file__).parents[2] / "run"
+    absent = output / "absent"
+    for arguments, code, text in ((["--help"], 0, "--only"), (["--only", "nothing"], 2, "'nothing'")):
+        done = subprocess.run([str(script), "bench", *arguments], env=dict(os.environ, TAUTLINE_BUILD=str(absent)),
+                              capture_output=True, text=True, timeout=60)  # fmt: skip
+        assert done.returncode == code and text in done.stdout + done.stderr, done
+        assert not absent.exists(), done
+
+
 def main(build: Path, output: Path) -> int:
+    check_arguments(output)
     subprocess.run(["cmake", "--build", str(build), "--target", "benchmarks"], check=True)
     script = Path(__file__).with_name("run.py")
     run = [sys.executable, str(script), "--build", str(build), "--output", str(output)]
