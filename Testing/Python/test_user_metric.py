@@ -102,7 +102,7 @@ def test_refused():
     refused("did you mean 'triangle'", tl.register_metric, "mine", ones, cell_types=["triangel"])
     refused("did you mean 'larger is better'", tl.register_metric, "mine", ones, direction="larger is beter")
     refused("depends on the scale", tl.register_metric, "mine", longest, scale_invariant=True)
-    refused("depends on the rotation", tl.register_metric, "mine", lambda p, cell: p[:, 0, 0])
+    refused("set rotation_invariant to False", tl.register_metric, "mine", lambda p, cell: p[:, 0, 0])
     assert not any(facts["name"] == "mine" for facts in tl.metrics())
     # A function that fails later: an error of the filter, and the next mesh is measured.
     wrong = {"now": False}

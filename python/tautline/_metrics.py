@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 import warnings
 from pathlib import Path
@@ -153,7 +154,10 @@ def register_metric(
         if replaced is not None:  # the metric that was there stays
             replaced.AddToRegistry()
             _REGISTERED[name] = replaced
-        messages.raise_errors()
+        try:
+            messages.raise_errors()
+        except Error as error:
+            raise Error(_NAMES_OF_FACTS.sub(lambda found: found[1] + "_invariant to False", str(error))) from None
     _REGISTERED[name] = metric
     server = None if _loading else _server()
     if server and server.IsRemote():
@@ -165,6 +169,9 @@ def register_metric(
         )
     return next(int(facts["number"]) for facts in metrics() if facts["name"] == name)
 
+
+#: The names of arguments in C++, in messages.
+_NAMES_OF_FACTS = re.compile(r"\b(scale|rotation)Invariant to false")
 
 #: The metrics that Python has registered.
 _REGISTERED: dict[str, Any] = {}

@@ -422,7 +422,12 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--reference", metavar="FILE", help="target: the same cells of this mesh")
     parser.add_argument("--size", metavar="ARRAY", help="target: the size in this array")
     parser.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array")
-    parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
+    parser.add_argument(
+        "--boundary",
+        choices=BOUNDARIES,
+        default="fixed",
+        help="sliding: points move within its flat parts; on surface: on smooth curved ones, too (default: fixed)",
+    )
     parser.add_argument("--flat-angle", type=float, metavar="DEGREES", default=1.0,
                         help="facets that differ by at most this are one plane (default: 1)")  # fmt: skip
     parser.add_argument("--worst-metric", metavar="NAME", help="the metric by which the worst element is found")

@@ -268,8 +268,13 @@ def add_commands(commands: Any) -> None:
     for name in _OPERATIONS:
         parser.add_argument(f"--no-{name}", action="store_false", dest=name, help="with --preset custom")
     parser.add_argument("--flat-angle", type=float, metavar="DEGREES", default=0.01,
-                        help="up to which facets are coplanar, with --boundary flat (default: 0.01)")  # fmt: skip
-    parser.add_argument("--boundary", choices=BOUNDARIES, default="fixed")
+                        help="up to which facets are coplanar, with --boundary sliding (default: 0.01)")  # fmt: skip
+    parser.add_argument(
+        "--boundary",
+        choices=BOUNDARIES,
+        default="fixed",
+        help="sliding: points move within its flat parts; on surface: on smooth curved ones, too (default: fixed)",
+    )
     parser.add_argument("--objective", choices=OBJECTIVES, default=OBJECTIVES[0],
                         help="what the worst tetrahedra are improved for")  # fmt: skip
     parser.add_argument("--metric", metavar="NAME", help="a metric instead of an objective, its worst values first")
