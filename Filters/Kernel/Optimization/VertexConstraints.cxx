@@ -339,9 +339,9 @@ bool VertexOptimizer<Dim>::turnAlongLimit(
       }
     };
     remove([&](int c) { return way[c]; }, 1 / (length * length));
-    for (int k = 0; k < found; ++k)
+    if (found > 0) // one, at most
     {
-      remove([&](int c) { return along[c][k]; }, 1.0);
+      remove([&](int c) { return along[c][0]; }, 1.0);
     }
     for (int c = 0; c < Dim; ++c)
     {
