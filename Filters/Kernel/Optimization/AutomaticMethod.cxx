@@ -54,7 +54,7 @@ private:
 /// elements whose patches have no closed form.
 bool Stage::startsWithNewton(const IterationRecord& first)
 {
-  return this->Options.objectives.size() == 1 && this->Steps.hasMostlyCorners() &&
+  return this->Options.objectives.size() == 1 && this->Steps.hasManyCorners() &&
     first.inverted == 0 && this->Steps.hasConvexPart();
 }
 

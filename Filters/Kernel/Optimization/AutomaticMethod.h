@@ -11,6 +11,10 @@
 
 namespace tautline
 {
+/// Elements with corners beside simplices: from so many on, for each of these, sweeps take several
+/// times as long as Newton's method.
+constexpr double manyCorners = 0.01;
+
 /**
  * @class tautline::OptimizationSteps
  * @brief What the rules need of an optimization. On ranks all methods are collective and return the
@@ -32,9 +36,9 @@ public:
   /// does not fit and the optimizer is Automatic.
   virtual StopReason minimizeAll(Optimizer method) = 0;
 
-  /// Whether most elements have several corners that together make one value: quadrilaterals,
-  /// hexahedra and wedges.
-  virtual bool hasMostlyCorners() const = 0;
+  /// Whether more than manyCorners of the elements have several corners that together make one
+  /// value: quadrilaterals, hexahedra, wedges and pyramids. Sweeps have no closed form there.
+  virtual bool hasManyCorners() const = 0;
   /// See HessianMatrix::hasConvexPart(), of the first objective.
   virtual bool hasConvexPart() = 0;
   /// Whether points slide on lines or planes or have limits, or an objective has targets.

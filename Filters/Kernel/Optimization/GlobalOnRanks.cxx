@@ -78,7 +78,7 @@ StopReason OptimizationOnRanks::minimizeAll(Optimizer method)
 }
 
 //------------------------------------------------------------------------------
-bool OptimizationOnRanks::hasMostlyCorners() const
+bool OptimizationOnRanks::hasManyCorners() const
 {
   Index simplices = 0, others = 0;
   const MeshView& view = this->TheMesh.view();
@@ -90,7 +90,8 @@ bool OptimizationOnRanks::hasMostlyCorners() const
       ++(t.samples > 1 ? others : simplices);
     }
   }
-  return this->Group.sum(others) > this->Group.sum(simplices);
+  return static_cast<double>(this->Group.sum(others)) >
+    manyCorners * static_cast<double>(this->Group.sum(simplices));
 }
 
 //------------------------------------------------------------------------------

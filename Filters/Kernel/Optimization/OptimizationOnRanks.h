@@ -41,7 +41,7 @@ private:
   // All vertices at once: GlobalOnRanks.cxx.
   const RankRows& rows();
   StopReason minimizeAll(Optimizer method) override;
-  bool hasMostlyCorners() const override;
+  bool hasManyCorners() const override;
   bool hasConvexPart() override;
   bool hasConstraintsOrTargets() const override;
   bool slidesOnSurface() const override { return false; } // such meshes are gathered

@@ -239,7 +239,7 @@ public:
     return method == Optimizer::NewtonConjugateGradient ? this->inMemory(minimize) : minimize();
   }
 
-  bool hasMostlyCorners() const override
+  bool hasManyCorners() const override
   {
     const Mesh& mesh = this->Problem.moving();
     const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
@@ -249,7 +249,7 @@ public:
       const CellTopology& t = topology(block.type);
       (t.samples > 1 ? others : simplices) += t.dimension == dimension ? block.count : 0;
     }
-    return others > simplices;
+    return static_cast<double>(others) > manyCorners * static_cast<double>(simplices);
   }
 
   bool hasConvexPart() override { return HessianMatrix::hasConvexPart(this->Problem.sum(0)); }

@@ -20,8 +20,8 @@ namespace tautline
 enum class Optimizer : int
 {
   /**
-   * @brief LocalNewton. Sums of the inverse mean ratio on meshes mostly of quadrilaterals,
-   * hexahedra or wedges, and where its sweeps converge slowly (by the ratio of their gains):
+   * @brief LocalNewton. Sums of the inverse mean ratio on meshes with more than 1 % of other cells
+   * than simplices, and where its sweeps converge slowly (by the ratio of their gains):
    * NewtonConjugateGradient from the start, or from its harmonic map if valid and the objective
    * smaller there; near the minimum, where more than 25 sweeps are to be expected, from where they
    * are. Where that stops short of the minimum, or holds points, sweeps and

@@ -120,6 +120,36 @@ void testStiff()
   }
 }
 
+/// Few quadrilaterals among triangles make sweeps slow, not Newton's method: it comes first.
+void testFewQuadrilaterals()
+{
+  constexpr Index n = 30, every = 20;
+  const MeshData quads = perturbedBlock(CellType::Quadrilateral, n, 0.2);
+  MeshData data;
+  data.points = quads.points;
+  for (Index c = 0; c < quads.numberOfCells(); ++c)
+  {
+    const Index* q = &quads.connectivity[quads.offsets[c]];
+    if (c % every == 0)
+    {
+      data.addCell(CellType::Quadrilateral, std::vector<Index>{ q[0], q[1], q[2], q[3] });
+      continue;
+    }
+    const Index shift = c / 7 % 2;
+    data.addCell(CellType::Triangle, std::vector<Index>{ q[shift], q[shift + 1], q[shift + 2] });
+    data.addCell(
+      CellType::Triangle, std::vector<Index>{ q[shift], q[shift + 2], q[(shift + 3) % 4] });
+  }
+  OptimizeOptions options;
+  options.holdWorst = false;
+  const OptimizeResult result = run(data, options);
+  options.optimizer = Optimizer::LocalNewton;
+  const OptimizeResult swept = run(data, options);
+  TAUTLINE_CHECK(result.history.back().objective <= 1.0001 * swept.history.back().objective);
+  TAUTLINE_CHECK(result.iterations <= 10);
+  TAUTLINE_CHECK(swept.iterations > 20);
+}
+
 /// Where the matrix of Newton's method does not fit into memory, the sweeps go on, or begin.
 /// @param beforeNewton sweeps before it is tried
 /// @param mebibytes left for it: the sweeps need less, the matrix alone 11, its grids as much
@@ -165,6 +195,7 @@ int TestOptimizeStiff(int, char*[])
   testStiff();
   testStiffThreads();
   testStiffRing();
+  testFewQuadrilaterals();
   if (!TAUTLINE_ADDRESS_SANITIZER)
   {
     // With less memory the harmonic map does not fit, either.
