@@ -252,8 +252,8 @@ bool VertexOptimizer<Dim>::isUpright(
 }
 
 //------------------------------------------------------------------------------
-/// The largest step up to t that keeps x + d + t s within the vertex's limit. On a surface in space,
-/// whose steps are along its tangents, placeOnSurface() does.
+/// The largest step up to t that keeps x + d + t s within the limit of the vertex. On a surface in
+/// space, where steps are along tangents, placeOnSurface() keeps it.
 template <int Dim>
 double VertexOptimizer<Dim>::limited(
   std::int32_t v, const double* d, const double* s, double t) const

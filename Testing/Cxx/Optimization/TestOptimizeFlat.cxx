@@ -187,7 +187,7 @@ void testFirstRow()
 }
 
 /// A tangled mesh that is barely planar: untangling moves points into a plane, from which that of
-/// the boundary that is highest is then farther. It stays planar, so that a global method may go on.
+/// the boundary that is highest is then farther. It stays planar: a global method may go on.
 void testBarelyPlanar()
 {
   int less = 0;
