@@ -133,7 +133,7 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
   {
     throw Error(std::string(surface  ? "A surface in space needs"
                     : options.limits ? "Limits on the way of points need"
-                                     : "Points that slide on a boundary or on interfaces need") +
+                                     : "Sliding on a boundary or on interfaces needs") +
       " a local optimizer: choose Automatic or Local Newton.");
   }
   checkSizes(mesh, options);
