@@ -141,8 +141,9 @@ void pqTautlineResultPanel::setText(const QString& text)
   const bool changed = this->Text != text;
   this->Text = text;
   this->Note->hide();
-  this->Browser->setHtml(
-    text.isEmpty() ? "<i>No result: apply the filter.</i>" : pqTautlineResultPanel::linked(text));
+  this->Browser->setHtml(text.isEmpty()
+      ? "<i>No result: the filter was not applied, or failed (see Output Messages).</i>"
+      : pqTautlineResultPanel::linked(text));
   this->Copy->setEnabled(!text.isEmpty());
   this->Save->setEnabled(!text.isEmpty());
   pqPipelineSource* filter = this->source();
