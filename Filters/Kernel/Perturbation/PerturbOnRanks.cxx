@@ -286,7 +286,8 @@ void PerturbationOnRanks::move(const std::vector<unsigned char>& chosen)
         {
           for (const std::int32_t vertex : neighbour.received)
           {
-            if (before[i++] == 0 && sent[components * vertex + 3] != 0)
+            // A rank that owns no point has no cells either, but copies of points of others.
+            if (before[i++] == 0 && sent[components * vertex + 3] != 0 && this->Points)
             {
               this->Points->follow(vertex, &sent[components * vertex]);
               order->done(vertex);

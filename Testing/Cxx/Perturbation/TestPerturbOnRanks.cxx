@@ -67,7 +67,8 @@ std::vector<Index> placesOf(const MeshData& data)
   return places;
 }
 
-void testCuts(const char* name, const MeshData& whole, const PerturbOptions& given, bool shuffled)
+void testCuts(const char* name, const MeshData& whole, const PerturbOptions& given, bool shuffled,
+  const std::vector<int>& numbers = { 1, 2, 3, 4 })
 {
   const Context context(name);
   const std::vector<Index> places = placesOf(whole);
@@ -90,7 +91,7 @@ void testCuts(const char* name, const MeshData& whole, const PerturbOptions& giv
   const Perturbation one = perturb(Mesh(whole.view()), fixed.data(), options);
   TAUTLINE_CHECK(one.moved > 0 && one.moved < one.movable + 1);
   TAUTLINE_CHECK(one.points != whole.points);
-  forEachCut({ 1, 2, 3, 4 },
+  forEachCut(numbers,
     [&](Cut cut, int ranks)
     {
       const auto moved = runOn(whole, cut, ranks, given, idOf);
@@ -171,6 +172,8 @@ int TestPerturbOnRanks(int, char*[])
   testCuts("all tetrahedra", distorted(CellType::Tetrahedron, 5), most, true);
   testCuts("hexahedra", distorted(CellType::Hexahedron, 5), single, true);
   testCuts("triangles", distorted(CellType::Triangle, 12), most, false);
+  // Ranks with a cell, all of whose points others own.
+  testCuts("few triangles", distorted(CellType::Triangle, 2), most, false, { 4, 8 });
   testRefusals();
   return exitCode();
 }
