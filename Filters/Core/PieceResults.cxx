@@ -97,20 +97,32 @@ void unpackTable(vtkTable* table, vtkDataSetAttributes* data)
 }
 
 //------------------------------------------------------------------------------
-/// Sends the names of arrays in their order, which messages of data sets do not keep: active ones
-/// come first in them.
-void sendOrder(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
+/// Sends the names of arrays in their order, and their types. Messages of data sets keep neither:
+/// active arrays come first in them, and a signed char becomes a char.
+void sendLayout(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
 {
   stream << data->GetNumberOfArrays();
   for (int i = 0; i < data->GetNumberOfArrays(); ++i)
   {
     const char* name = data->GetArrayName(i);
-    stream << std::string(name ? name : "");
+    stream << std::string(name ? name : "") << data->GetAbstractArray(i)->GetDataType();
   }
 }
 
-/// Puts the arrays in the order of sendOrder().
-void restoreOrder(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
+/// The array itself, or a copy of the type.
+vtkSmartPointer<vtkAbstractArray> ofType(vtkAbstractArray* array, int type)
+{
+  if (!vtkDataArray::SafeDownCast(array) || array->GetDataType() == type)
+  {
+    return array;
+  }
+  auto copy = vtkSmartPointer<vtkAbstractArray>::Take(vtkDataArray::CreateDataArray(type));
+  copy->DeepCopy(array);
+  return copy;
+}
+
+/// Gives the arrays the order and types of sendLayout().
+void restoreLayout(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
 {
   vtkNew<vtkCellData> received;
   received->ShallowCopy(data);
@@ -118,12 +130,14 @@ void restoreOrder(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
   stream >> count;
   const auto arrayOf = [&received](const std::string& name)
   { return name.empty() ? nullptr : received->GetAbstractArray(name.c_str()); };
-  std::vector<vtkAbstractArray*> ordered;
+  std::vector<vtkSmartPointer<vtkAbstractArray>> ordered;
   for (int i = 0; i < count; ++i)
   {
     std::string name;
-    stream >> name;
-    ordered.push_back(arrayOf(name));
+    int type = 0;
+    stream >> name >> type;
+    vtkAbstractArray* array = arrayOf(name);
+    ordered.push_back(array ? ofType(array, type) : nullptr);
   }
   const bool known = count == received->GetNumberOfArrays() &&
     std::find(ordered.begin(), ordered.end(), nullptr) == ordered.end();
@@ -132,7 +146,7 @@ void restoreOrder(vtkMultiProcessStream& stream, vtkDataSetAttributes* data)
     return; // arrays without names, or with one name
   }
   data->Initialize();
-  for (vtkAbstractArray* array : ordered)
+  for (const auto& array : ordered)
   {
     data->AddArray(array);
   }
@@ -360,8 +374,13 @@ PieceResults::Packages PieceResults::exchange(Packages& packages) const
         stream << package.group << static_cast<int>(package.mesh != nullptr);
         if (package.mesh)
         {
-          sendOrder(stream, package.mesh->GetPointData());
-          sendOrder(stream, package.mesh->GetCellData());
+          sendLayout(stream, package.mesh->GetPointData());
+          sendLayout(stream, package.mesh->GetCellData());
+        }
+        else
+        {
+          sendLayout(stream, package.points->GetRowData());
+          sendLayout(stream, package.cells->GetRowData());
         }
       }
       this->Controller->Send(stream, process, ResultTag);
@@ -396,13 +415,15 @@ PieceResults::Packages PieceResults::exchange(Packages& packages) const
     if (isMesh)
     {
       package.mesh = vtkDataSet::SafeDownCast(receive());
-      restoreOrder(stream, package.mesh->GetPointData());
-      restoreOrder(stream, package.mesh->GetCellData());
+      restoreLayout(stream, package.mesh->GetPointData());
+      restoreLayout(stream, package.mesh->GetCellData());
     }
     else
     {
       package.points = vtkTable::SafeDownCast(receive());
       package.cells = vtkTable::SafeDownCast(receive());
+      restoreLayout(stream, package.points->GetRowData());
+      restoreLayout(stream, package.cells->GetRowData());
     }
     own.push_back(package);
   }

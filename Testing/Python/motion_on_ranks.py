@@ -9,6 +9,7 @@ by their settings or their pieces, and with copies of points that differ by roun
 import json
 import os
 import sys
+from pathlib import Path
 
 import numpy as np
 from paraview import servermanager, simple
@@ -50,6 +51,17 @@ holders = divided(places[cells].mean(axis=1), "{cut}", RANKS)[(cells == point).a
 if RANK == holders.{which}():
     points[point] = np.nan
 """
+# Runs on every rank: writes the types of the arrays of its cells to a file.
+TYPES = """
+import json
+from rank_meshes import CONTROLLER, RANK
+
+data = self.GetInputDataObject(0, 0).GetCellData()
+arrays = [data.GetArray(i) for i in range(data.GetNumberOfArrays())]
+with open("{file}." + str(RANK), "w") as out:
+    json.dump({{array.GetName(): array.GetDataTypeAsString() for array in arrays}}, out)
+CONTROLLER.Barrier()  # the first rank reads the files
+"""
 SLIDING = 1  # of the enumeration Boundary
 CUSTOM = 0  # of the enumeration Preset
 GLOBAL = {"L-BFGS": 5, "Newton-CG": 6}  # of the enumeration Optimizer
@@ -75,6 +87,13 @@ def points_of(proxy) -> list:
     whole[where] = points
     assert np.array_equal(whole[where], points, equal_nan=True)
     return whole.tolist()
+
+
+def types_of(proxy) -> list:
+    """The types of the arrays of the cells, by name, on each rank."""
+    file = sys.argv[1] + ".types"
+    simple.ProgrammableFilter(proxy, Script=TYPES.format(file=file)).UpdatePipeline()
+    return [json.loads(Path(f"{file}.{rank}").read_text(encoding="utf-8")) for rank in range(RANKS)]
 
 
 def table(proxy, port: int, column: str) -> list:
@@ -114,7 +133,9 @@ for scattered in (0, 1):  # (scripts of sources import into this module: not "ra
     note(f"untangle {scattered}", UntangleMesh(Input=cube(5, 0.45, scattered), ReproducibleOrder=1))
 
 for cut in CUTS:
-    note(f"turned {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, TURN, ids=True)))
+    turned = OptimizeMesh(Input=cut_cube(4, 0.3, cut, TURN, ids=True))
+    note(f"turned {cut}", turned)
+    results[f"turned {cut}"]["types"] = types_of(turned)
     note(f"broken {cut}", OptimizeMesh(Input=cut_cube(4, 0.3, cut, BREAK, ids=True)))
     for name, which in {"last": "max", "first": "min"}.items():
         broken = cut_cube(4, 0.3, cut, BREAK_COPY.replace("{which}", which), ids=True)
