@@ -150,7 +150,8 @@ void testStretched(const Surface& surface, CellType type, bool smooth)
   TAUTLINE_CHECK(three.points == result.points);
 }
 
-/// Far flatter rows: no element turns over, and the minimum is reached but for a few per cent.
+/// Far flatter rows: no element turns over, and a minimum is reached. On the bump, rows of
+/// quadrilaterals have a second one, 9.6 % above; rounding decides which of them it is.
 void testFlat(const Surface& surface, CellType type)
 {
   const Context context(surface.name);
@@ -160,7 +161,7 @@ void testFlat(const Surface& surface, CellType type)
   const MeshData data = meshOf(surface, type, cells, 3);
   const OptimizeResult result = runOnModel(data, true, OptimizeOptions());
   TAUTLINE_CHECK(result.history.front().objective > 1000 * least);
-  TAUTLINE_CHECK(result.history.back().objective <= 1.05 * least);
+  TAUTLINE_CHECK(result.history.back().objective <= 1.15 * least);
   offSurface(data, result.points, surface);
 }
 }
