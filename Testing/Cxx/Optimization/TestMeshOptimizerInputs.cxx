@@ -503,7 +503,9 @@ void testStops()
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(StopReason::TimeLimit));
   TAUTLINE_CHECK(filter->GetIterations() <= 2);
-  TAUTLINE_CHECK(sumOfSquares(withPointsOf(data, meshOf(filter))) <= sumOfSquares(data));
+  constexpr double rounding = 1e-12; // of points that come back from the units of the sweeps
+  TAUTLINE_CHECK(
+    sumOfSquares(withPointsOf(data, meshOf(filter))) <= (1 + rounding) * sumOfSquares(data));
   filter->SetTimeLimit(0);
   filter->Update();
   TAUTLINE_CHECK(sumOfSquares(withPointsOf(data, meshOf(filter))) < aborted);
