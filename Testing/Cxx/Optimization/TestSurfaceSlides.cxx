@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <functional>
+#include <string>
 
 using namespace tautline;
 
@@ -161,7 +162,8 @@ void testFlat(const Surface& surface, CellType type)
   const MeshData data = meshOf(surface, type, cells, 3);
   const OptimizeResult result = runOnModel(data, true, OptimizeOptions());
   TAUTLINE_CHECK(result.history.front().objective > 1000 * least);
-  TAUTLINE_CHECK(result.history.back().objective <= 1.15 * least);
+  const bool twoMinima = type == CellType::Quadrilateral && surface.name == std::string("bump");
+  TAUTLINE_CHECK(result.history.back().objective <= (twoMinima ? 1.15 : 1.002) * least);
   offSurface(data, result.points, surface);
 }
 }
