@@ -3,6 +3,7 @@
 
 #include "ValidityLevels.h"
 #include "tautline/Mesh/JacobianBounds.h"
+#include "tautline/Mesh/MeshElements.h"
 #include "tautline/Objectives/ObjectiveSumState.h"
 
 #include <algorithm>
@@ -89,7 +90,9 @@ bool GlobalFunction::hasElements(std::size_t objective) const
   const Objective& o = this->Problem.resolved()[objective];
   for (const CellBlock& block : this->Problem.moving().blocks())
   {
-    for (Index i = 0; metricInfo(o.metric).definedOn(block.type) && i < block.count; ++i)
+    const bool counts =
+      isElement(this->Problem.moving(), block.type) && metricInfo(o.metric).definedOn(block.type);
+    for (Index i = 0; counts && i < block.count; ++i)
     {
       if (!o.elementWeights || o.elementWeights[block.cell(i)] > 0)
       {

@@ -129,15 +129,21 @@ void OptimizationProblem::keepClosedForms(const std::vector<unsigned char>& flag
 LocalTerm OptimizationProblem::fastTerm(const Objective& objective) const
 {
   LocalTerm term;
+  const CellTopology* elements = nullptr;
   for (const CellBlock& block : this->Moving->blocks())
   {
-    if (!isElement(*this->Moving, block.type) || topology(block.type).samples > 1)
+    if (!isElement(*this->Moving, block.type))
+    {
+      continue;
+    }
+    elements = &topology(block.type);
+    if (elements->samples > 1)
     {
       return term; // several corners make one value
     }
   }
   // Weights and tensors belong to cells, which the energies do not distinguish.
-  if (this->Moving->blocks().empty() || objective.elementWeights ||
+  if (!elements || objective.elementWeights ||
     (objective.evaluation.targets && !objective.evaluation.targets->metricRoots.empty()))
   {
     return term;
@@ -160,13 +166,12 @@ LocalTerm OptimizationProblem::fastTerm(const Objective& objective) const
     !objective.evaluation.targets && this->Simplices->uniform() && !this->Simplices->surface())
   {
     // V = size of the ideal cell x D, in units of the simplices' scale.
-    const CellTopology& t = topology(this->Moving->blocks()[0].type);
-    const double size = t.sizePerDeterminant / this->Simplices->target(0).det *
-      std::pow(this->Simplices->scale(), t.dimension);
+    const double size = elements->sizePerDeterminant / this->Simplices->target(0).det *
+      std::pow(this->Simplices->scale(), elements->dimension);
     term.sizeSquared = size * size;
   }
   else if (!this->Options.allowInversion && addsUp(objectiveTemplate) &&
-    isOfInvariants(metricInfo(objective.metric), this->Moving->blocks()[0].type))
+    isOfInvariants(metricInfo(objective.metric), elements->type))
   {
     const bool ideal = !objective.evaluation.targets && this->Simplices->uniform();
     term.invariantScale = metricInfo(objective.metric).scaleInvariant ? 1.0

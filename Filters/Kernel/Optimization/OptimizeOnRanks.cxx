@@ -7,6 +7,7 @@
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/JacobianBounds.h"
+#include "tautline/Mesh/MeshElements.h"
 #include "tautline/Objectives/ObjectiveSumState.h"
 #include "tautline/Untangling/UntangleOnRanks.h"
 
@@ -211,7 +212,8 @@ void OptimizationOnRanks::checkWeights(const std::vector<unsigned char>& closed)
     for (Index cell = 0; this->Problem && cell < view.numberOfCells && !counts; ++cell)
     {
       const CellType type = cornerType(view.cellTypes[cell]);
-      const bool has = type != CellType::Unsupported && info.definedOn(type);
+      const bool has = type != CellType::Unsupported && isElement(this->Problem->moving(), type) &&
+        info.definedOn(type);
       defined = defined || has;
       counts = has && (!weights || weights[cell] > 0);
     }

@@ -86,8 +86,8 @@ public:
       const Metric metric = sum.objective.metric;
       const Mesh& mesh = sum.elements.mesh();
       this->Contexts.push_back(contextFor(mesh, block, metric, sum.elements.options()));
-      this->Value.push_back(evaluatorFor(mesh, metric, metricCode(metric), block, false));
-      this->Gradient.push_back(evaluatorFor(mesh, metric, metricCode(metric), block, true));
+      this->Value.push_back(elementEvaluatorFor(mesh, metric, metricCode(metric), block, false));
+      this->Gradient.push_back(elementEvaluatorFor(mesh, metric, metricCode(metric), block, true));
     }
   }
 

@@ -90,7 +90,7 @@ bool colourChunks(const Mesh& mesh, Metric metric, bool reordered,
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
     const CellBlock& block = blocks[b];
-    if (!evaluatorFor(mesh, metric, code, block, false))
+    if (!elementEvaluatorFor(mesh, metric, code, block, false))
     {
       continue;
     }
@@ -197,7 +197,7 @@ void ElementSum::pack()
   this->PackedConnectivity.resize(blocks.size());
   for (std::size_t b = 0; b < blocks.size(); ++b)
   {
-    if (!evaluatorFor(
+    if (!elementEvaluatorFor(
           this->TheMesh, this->TheMetric, metricCode(this->TheMetric), blocks[b], false))
     {
       continue;

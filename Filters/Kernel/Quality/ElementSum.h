@@ -36,6 +36,11 @@ void requireDerivatives(const MetricInfo& info);
 BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& code,
   const CellBlock& block, bool withGradient);
 
+/// As evaluatorFor(), and null for cells that are not elements: the facets of a volume mesh, which
+/// are measured but are in no sum.
+BatchEvaluator elementEvaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& code,
+  const CellBlock& block, bool withGradient);
+
 BatchContext contextFor(
   const Mesh& mesh, const CellBlock& block, Metric metric, const EvaluationOptions& options);
 
@@ -121,7 +126,7 @@ public:
   /// The evaluator of a chunk, and the order of its cells (or null).
   BatchEvaluator evaluator(const Chunk& chunk, bool withGradient) const
   {
-    return evaluatorFor(this->TheMesh, this->TheMetric, metricCode(this->TheMetric),
+    return elementEvaluatorFor(this->TheMesh, this->TheMetric, metricCode(this->TheMetric),
       this->TheMesh.blocks()[chunk.block], withGradient);
   }
   BatchContext context(const Chunk& chunk) const

@@ -4,6 +4,7 @@
 #include "UserMetric.h"
 
 #include "tautline/Mesh/CoordinateFrame.h"
+#include "tautline/Mesh/MeshElements.h"
 
 #include <algorithm>
 #include <atomic>
@@ -67,6 +68,13 @@ BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& c
   }
   return flat ? (withGradient ? code.gradient2D : code.value2D)
               : (withGradient ? code.gradient3D : code.value3D);
+}
+
+BatchEvaluator elementEvaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& code,
+  const CellBlock& block, bool withGradient)
+{
+  return isElement(mesh, block.type) ? evaluatorFor(mesh, metric, code, block, withGradient)
+                                     : nullptr;
 }
 
 //------------------------------------------------------------------------------
