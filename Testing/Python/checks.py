@@ -4,11 +4,13 @@
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import tautline as tl
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from wording import wording  # noqa: F401, for those that import from here
 
 DATA, OUT = Path(os.environ["TAUTLINE_DATA_DIR"]), Path(os.environ["TAUTLINE_TEST_DIR"])
 SKIPPED = 77  # exit code, SKIP_RETURN_CODE of ctest
@@ -55,9 +57,24 @@ def test_data(name: str) -> Path:
     sys.exit(SKIPPED)
 
 
+def slow(test):
+    """Mark a test that takes long: it runs in ./run test --all (TAUTLINE_SLOW_TESTS=1), or where it is named."""
+    test.slow = True
+    return test
+
+
 def run_tests(module: dict) -> None:
-    """Run the functions test_... of a module, in their order."""
+    """Run the functions test_... of a module, in their order, and print how long each takes.
+
+    Where the environment variable TAUTLINE_TEST_PART is set, the tests whose names contain it.
+    """
+    part, all_of_them = os.environ.get("TAUTLINE_TEST_PART", ""), os.environ.get("TAUTLINE_SLOW_TESTS") == "1"
     for name, test in list(module.items()):
-        if name.startswith("test_") and test is not test_data:
-            test()
-            print(f"{name} passed", flush=True)
+        if not name.startswith("test_") or test is test_data or part not in name:
+            continue
+        if getattr(test, "slow", False) and not part and not all_of_them:
+            print(f"{name} left out: slow", flush=True)
+            continue
+        began = time.monotonic()
+        test()
+        print(f"{name} passed in {time.monotonic() - began:.2f} s", flush=True)

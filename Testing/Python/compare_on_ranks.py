@@ -11,6 +11,7 @@ import sys
 import numpy as np
 from paraview import servermanager, simple
 from parallel_tools import RANKS, columns, parts, update
+from wording import wording
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 METRICS = ["Mean ratio", "Size (area or volume)", "Untangling beta", "Edge length ratio"]
@@ -162,7 +163,7 @@ if RANKS > 1:
     drop = "output.VTKObject.ShallowCopy(inputs[0].VTKObject); output.CellData.VTKObject.RemoveArray('vtkGhostType')"
     unmarked = [simple.ProgrammableFilter(mesh(ghosts=1, after=after), Script=drop) for after in (0, 1)]
     refused("copies", *unmarked)
-    refused("no ids", mesh(ids=0), mesh(cut="random", ids=0, after=1))
+    refused(wording("no-ids"), mesh(ids=0), mesh(cut="random", ids=0, after=1))
 
 results["ranks"] = RANKS
 with open(sys.argv[1], "w", encoding="utf-8") as out:

@@ -12,6 +12,7 @@ import numpy as np
 from paraview import servermanager, simple
 from parallel_tools import RANKS, parts, update
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from wording import wording
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 results = {}
@@ -197,13 +198,13 @@ for case, change in {
 # A cell of the last rank has the id of one of the first rank; a mesh of one rank keeps its order whatever the ids are.
 if RANKS > 1:
     same = BREAK.format(change="vtk_to_numpy(grid.GetCellData().GetGlobalIds())[0] = 0")
-    refused("horizon ids", HorizonNeighbors(simple.ProgrammableFilter(mesh(), Script=same)))
-    refused("layer ids", InteractionLayer(simple.ProgrammableFilter(mesh(), Script=same)))
+    refused(wording("horizon-ids"), HorizonNeighbors(simple.ProgrammableFilter(mesh(), Script=same)))
+    refused(wording("layer-ids"), InteractionLayer(simple.ProgrammableFilter(mesh(), Script=same)))
 flat = simple.ProgrammableFilter(mesh(), Script=BREAK.format(change="connectivity[0] = connectivity[1]"))
-refused("layer flat", InteractionLayer(flat))
-refused("horizon zero", HorizonNeighbors(mesh(), Horizon=0))
-refused("layer width", InteractionLayer(mesh(), Width=0))
-refused("layer time", InteractionLayer(mesh(), ElementSize=0.002, Width=0.5, TimeLimit=0.2))
+refused(wording("layer-flat"), InteractionLayer(flat))
+refused(wording("horizon-zero"), HorizonNeighbors(mesh(), Horizon=0))
+refused(wording("layer-width"), InteractionLayer(mesh(), Width=0))
+refused(wording("layer-time"), InteractionLayer(mesh(), ElementSize=0.002, Width=0.5, TimeLimit=0.2))
 
 
 

@@ -12,6 +12,7 @@ import sys
 import numpy as np
 from paraview import servermanager, simple
 from parallel_tools import RANKS, columns, parts, update
+from wording import wording
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 WARP_ANGLE, METHOD_ANGLE, WARP_STEPS = 30, 8, 2
@@ -128,7 +129,7 @@ def motions(name, cut, **given):
     cells = np.concatenate([arrays["smallest"] for arrays in parts(quality_of(improved), sys.argv[1])])
     # A mesh that is small is put together, and the summary states it.
     text, _, why = improved.Summary.partition("\nThe mesh was put together on the first process: ")
-    assert RANKS == 1 or "Gather Below" in why, improved.Summary
+    assert RANKS == 1 or wording("gather-below") in why, improved.Summary
     results[f"improve {name}"] = [sorted(cells.tolist()), table(improved, 1), improved.WorstAfter, text]
 
 
@@ -158,7 +159,7 @@ def methods(name, source):
                    "MovedArray": ["POINTS", "place"]},
     }.items():
         warped = update(WarpMesh(source, **options))
-        assert "put together" not in warped.Summary, warped.Summary
+        assert wording("put-together") not in warped.Summary, warped.Summary
         results[f"{case} {name}"] = [values(warped, ["points"]), values(warped, ["TMP shape"], "cell"),
                                      table(warped, 1), table(warped, 2)]  # fmt: skip
 

@@ -6,7 +6,7 @@ import time
 from inspect import Parameter, isfunction, signature
 
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, shell, square
+from checks import DATA, OUT, refused, run_tests, shell, square, wording
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkTable, vtkUnstructuredGrid
 
 FUNCTIONS = {name: value for name, value in vars(tl).items() if isfunction(value) and not name.startswith("_")}
@@ -45,8 +45,8 @@ def test_unknown_keywords() -> None:
         text = outcome(function, *given, no_such_keyword=1)
         assert "no_such_keyword" in text, f"{name}: '{text}'"
         assert not positional or f"{name}()" in outcome(function), f"{name} without arguments"
-    refused("did you mean 'youngs_modulus'?; there are mesh, pde, solver", tl.solve, square(2), youngs_moduls=1)
-    refused("there is no argument of perturb() 'fracton'; did you mean 'fraction'?", tl.perturb, square(2), fracton=1)
+    refused(wording("did-you-mean-youngs-modulus-there-are"), tl.solve, square(2), youngs_moduls=1)
+    refused(wording("there-is-no-argument-of-perturb-fracton"), tl.perturb, square(2), fracton=1)
 
 
 def test_no_mesh() -> None:
@@ -63,7 +63,7 @@ def test_no_mesh() -> None:
                 assert outcome(function, wrong, *others), f"{name} accepted {wrong!r}"
     denied.chmod(0)
     if os.geteuid() != 0:
-        refused("cannot be read", tl.quality, denied)
+        refused(wording("cannot-be-read"), tl.quality, denied)
 
 
 def test_composite_data() -> None:
@@ -74,7 +74,7 @@ def test_composite_data() -> None:
                 outcome(function, data, OUT / "arguments.vtm")
             outcome(function, data, *NEEDED.get(name, ()))
             outcome(function, vtkMultiBlockDataSet(), *NEEDED.get(name, ()))
-    refused("no interaction layer", tl.peridynamics, blocks(), delta=0.2)
+    refused(wording("no-interaction-layer"), tl.peridynamics, blocks(), delta=0.2)
 
 
 def test_empty_mesh() -> None:
@@ -99,8 +99,8 @@ def test_sizes_of_domains() -> None:
         assert "amount" in outcome(lambda: tl.domain("rectangle", amount=amount)), amount
     assert outcome(tl.domain, "square", "many") and outcome(tl.domain, 7)
     file = OUT / "arguments-domain.vtu"
-    assert "element size" in shell("domain", "square", "--element-size", "1e-9", "-o", file, code=1)
-    assert "element size" in shell("domain", "square", "--element-size", "0", "-o", file, code=1)
+    assert wording("element-size") in shell("domain", "square", "--element-size", "1e-9", "-o", file, code=1)
+    assert wording("element-size") in shell("domain", "square", "--element-size", "0", "-o", file, code=1)
     assert "cells" in shell("domain", "rectangle", "--cells", "99999999999", "-o", file, code=1)
     source = tl.vtkDomainSource()  # as in ParaView: refused by the source itself
     messages = []

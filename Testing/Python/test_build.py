@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 import tautline
-from checks import OUT
+from checks import OUT, wording
 from tautline import _build, _vtk
 from tautline.__main__ import _parser
 
@@ -38,8 +38,8 @@ def check_sentences() -> None:
     build = json.loads((PACKAGE / "build.json").read_text())
     assert _build.problem(build) == ""
     assert _build.problem({}).startswith("these are the sources")
-    assert "built for Python 2.1" in _build.problem(dict(build, python="2.1"))
-    assert "built with VTK 1.2.3" in _build.problem(dict(build, vtk="1.2.3"))
+    assert wording("built-for-python-2-1") in _build.problem(dict(build, python="2.1"))
+    assert wording("built-with-vtk-1-2-3") in _build.problem(dict(build, vtk="1.2.3"))
     assert f"use {sys.executable} or pvpython" in _build.problem(dict(build, vtk="1.2.3"))
 
 
@@ -62,7 +62,7 @@ def check_wrong_python() -> None:
     assert done.returncode == 1 and done.stdout == "", done
     assert re.fullmatch(r"tautline: .*built for Python 2\.1.*\n", done.stderr), done.stderr
     done = run(sys.executable, "-c", "import tautline", PYTHONPATH=path)
-    assert "ImportError: tautline was built for Python 2.1" in done.stderr, done.stderr
+    assert wording("importerror-tautline-was-built-for-python-2") in done.stderr, done.stderr
 
 
 def check_python_without_vtk() -> None:

@@ -6,6 +6,7 @@ Skipped without mpirun. The two meshes are cut alike or otherwise.
 
 import numpy as np
 from on_ranks import run_with_output
+from wording import wording
 
 COUNTS = ("Better", "Worse", "Equal", "InvertedBefore", "InvertedAfter")
 
@@ -36,7 +37,7 @@ for case in cases:
     assert (np.asarray(points)[:, :3] != 0).any() or case == "unmoved", case
     tangled = any(word in case for word in ("tangled", "mixed", "two", "several"))
     assert (table["InvertedBefore"][0] > 0) == tangled, (case, summary)
-    assert "put together" not in summary, summary
+    assert wording("put-together") not in summary, summary
 for ranks in (2, 3, 4):
     found, text = run_with_output("compare_on_ranks.py", ranks)
     for case in cases:
@@ -49,7 +50,7 @@ for ranks in (2, 3, 4):
         # Only what lists its cells in opposite orders is put together.
         mixed = "mixed" in case or "flattened" in case
         text_of, _, why = summary.partition("\nThe mesh was put together on the first process: ")
-        assert text_of == expected[3] and ("opposite orders" in why) == mixed, (where, summary)
+        assert text_of == expected[3] and (wording("opposite-orders") in why) == mixed, (where, summary)
         assert why == "" or mixed, (where, why)
         assert found[f"cells {case}"] == found[f"cells of {case}"], where
         # With ghost cells random pieces of so few cells have nearly all.
@@ -61,7 +62,7 @@ for ranks in (2, 3, 4):
     check_table(found["blocks"][0], one["blocks"][0], f"{ranks} ranks, blocks")
     assert found["blocks"][1] == one["blocks"][1], found["blocks"][1]
     check_table(found["more blocks"][0], one["more blocks"][0], f"{ranks} ranks, more blocks")
-    assert "the same blocks" in found["more blocks"][1], found["more blocks"][1]
+    assert wording("the-same-blocks") in found["more blocks"][1], found["more blocks"][1]
     # Each rank reports each error.
     for problem in ("with these points in this order", "points, the second", "no global ids to match them",
                     "and are not marked as ghost cells"):  # fmt: skip

@@ -3,7 +3,7 @@
 
 import numpy as np
 import tautline as tl
-from checks import DATA, refused, run_tests
+from checks import DATA, refused, run_tests, wording
 
 BRACKET, PLATE = (DATA / f"{name}.vtu" for name in ("bracket", "plate"))
 
@@ -19,7 +19,7 @@ def test_compare():
     assert set(np.unique(result.change)) == {-1, 0, 1}
     assert (tl.compare(mesh, mesh).change == 0).all()
     refused("", tl.compare, mesh, PLATE)
-    refused("there is no such file", tl.compare, mesh, "absent.vtu")
+    refused(wording("there-is-no-such-file"), tl.compare, mesh, "absent.vtu")
 
 
 run_tests(globals())

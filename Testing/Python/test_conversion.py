@@ -2,7 +2,7 @@
 """The command convert: formats, options, errors."""
 
 import tautline as tl
-from checks import DATA, OUT, run_tests, shell
+from checks import DATA, OUT, run_tests, shell, wording
 
 OUTPUT = OUT / "conversion"
 OUTPUT.mkdir(parents=True, exist_ok=True)
@@ -14,7 +14,7 @@ def test_convert():
     shell("convert", DATA / "cube.1.node", OUTPUT / "cube.msh", "--binary")
     tl.write(tl.read(DATA / "cube.1.node"), OUTPUT / "binary.msh", binary=True)
     assert (OUTPUT / "cube.msh").read_bytes() == (OUTPUT / "binary.msh").read_bytes()
-    assert "no reader" in shell("convert", "thesis.docx", OUTPUT / "x.vtu", code=1)
+    assert wording("no-reader") in shell("convert", "thesis.docx", OUTPUT / "x.vtu", code=1)
 
 
 run_tests(globals())

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, refused, shell, square
+from checks import DATA, OUT, refused, shell, square, wording
 from vtkmodules.vtkCommonDataModel import (
     vtkMultiBlockDataSet,
     vtkPolyData,
@@ -224,20 +224,20 @@ def test_not_a_file() -> None:
         zero.symlink_to("/dev/zero")
         directory.mkdir(exist_ok=True)
         loop.symlink_to(loop.name)
-        refused("is not a regular file", tl.read, pipe)
-        refused("is not a regular file", tl.read, zero)
-        refused("is a directory", tl.read, directory)
-        refused("cannot be read", tl.read, loop)
-        refused("there is no such file", tl.read, folder / f"absent{ending}")
-    refused("is not a regular file", tl.silhouette, folder / "pipe.vtk")
-    refused("is not a regular file", tl.read_silhouettes, folder / "zero.vtk")
+        refused(wording("is-not-a-regular-file"), tl.read, pipe)
+        refused(wording("is-not-a-regular-file"), tl.read, zero)
+        refused(wording("is-a-directory"), tl.read, directory)
+        refused(wording("cannot-be-read"), tl.read, loop)
+        refused(wording("there-is-no-such-file"), tl.read, folder / f"absent{ending}")
+    refused(wording("is-not-a-regular-file"), tl.silhouette, folder / "pipe.vtk")
+    refused(wording("is-not-a-regular-file"), tl.read_silhouettes, folder / "zero.vtk")
     (folder / "list.csv").write_text("file,class\npipe.vtk,a\n")
-    refused("is not a regular file", tl.read_silhouettes, folder / "list.csv")
+    refused(wording("is-not-a-regular-file"), tl.read_silhouettes, folder / "list.csv")
     (folder / "blocks.vtm").write_text(
         '<VTKFile type="vtkMultiBlockDataSet"><vtkMultiBlockDataSet><DataSet index="0" file="pipe.vtu"/>'
         "</vtkMultiBlockDataSet></VTKFile>"
     )
-    refused("is not a regular file", tl.read, folder / "blocks.vtm")
+    refused(wording("is-not-a-regular-file"), tl.read, folder / "blocks.vtm")
     assert time.monotonic() - start < 5.0
 
 
@@ -249,7 +249,7 @@ def test_images() -> None:
     files = sorted(folder.iterdir())
     blocks = tl.read_silhouettes(folder)
     assert blocks.GetNumberOfBlocks() == len(files) - 1, "all but the TGA file"
-    refused("it is none of PNG, JPEG, TIFF, BMP", tl.silhouette, folder / "short.tga")
+    refused(wording("it-is-none-of-png-jpeg-tiff-2"), tl.silhouette, folder / "short.tga")
     for file in files:
         whole = file.read_bytes()
         for size in range(0, len(whole), max(1, len(whole) // CUTS)):
@@ -272,7 +272,7 @@ def test_no_permission() -> None:
         if child == 0:
             try:
                 os.setuid(65534)
-                refused("cannot be read: Permission denied", tl.read, file)
+                refused(wording("cannot-be-read-permission-denied"), tl.read, file)
                 os._exit(0)
             finally:
                 os._exit(1)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import tautline as tl
-from checks import OUT, refused
+from checks import OUT, refused, wording
 from study_checks import Studies, refused_command
 from tautline._errors import Messages
 from tautline.studies import _common, _verdicts, decomposition
@@ -21,7 +21,7 @@ FINDINGS = 7 * len(DOMAINS) + len(decomposition.RANK_CELLS) + 7
 
 def run_all() -> None:
     printed = studies.run("decomposition")
-    assert "What breaks it" in printed
+    assert wording("what-breaks-it") in printed
     parts = len(decomposition.SMALL_PARTS)
     tables = {f"{domain}_{method}": parts for domain in DOMAINS for method in METHODS}
     tables |= {"weak": parts + 1, "sizes": len(decomposition.SMALL_SIZES), "model": 3, "efficiency": 3, "anchor": 1}
@@ -84,7 +84,7 @@ def test_errors() -> None:
         messages.errors.clear()
     decomposer.SetNumberOfParts(1000000)
     decomposer.DivideGraph(mesh, array)
-    refused("cannot have 1000000 parts", messages.raise_errors)
+    refused(wording("cannot-have-1000000-parts"), messages.raise_errors)
     assert array.GetNumberOfValues() == 0
     for option in ("--latency=-1", "--bandwidth=0", "--latency=nan"):
         refused_command("positive numbers are needed", "study", "decomposition", "--small", option)

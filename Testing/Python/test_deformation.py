@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell
+from checks import DATA, OUT, points, refused, run_tests, shell, wording
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -89,7 +89,7 @@ def test_arrays_and_targets():
     uneven = tl.warp(mesh, transform={"rotate": 30}, method="anisotropic femwarp", coefficients=(1, 9, 1))
     assert np.abs(turned.displacement - uneven.displacement).max() > 1e-3 and np.isclose(uneven.statistics["cyy"], 9)
     back = tl.warp(turned, target=mesh, method="femwarp")
-    assert "as the same mesh" in back.summary and 0 < np.abs(points(back.mesh) - x).max() < 0.3
+    assert wording("as-the-same-mesh") in back.summary and 0 < np.abs(points(back.mesh) - x).max() < 0.3
     edge = np.flatnonzero(x[:, 0] == x[:, 0].max())
     assert len(edge) > 5 and np.abs(points(back.mesh) - x)[edge].max() < 1e-12
     assert not tl.warp(turned, "Displacement", amount=0).displacement.any()
@@ -113,13 +113,13 @@ def test_arrays_and_targets():
     round_ = tl.warp(mesh, target=sphere.GetOutput())
     moved = np.linalg.norm(round_.displacement, axis=1) > 0
     radius = np.linalg.norm(points(round_.mesh) - 3.5, axis=1)
-    assert "by projection" in round_.summary and round_.inverted == 0 and moved.any()
+    assert wording("by-projection") in round_.summary and round_.inverted == 0 and moved.any()
     assert radius.min() > 1.48 and np.abs(radius[np.argsort(radius)[:20]] - 1.5).max() < 0.02
     x = points(round_.mesh)
     numbers = np.array([0, 1, 2])
     target = (x[numbers] + [0, 0, -0.5], {"triangle": []})
     by_id = tl.warp(mesh, target=target, target_ids=numbers, method="inverse distance")
-    assert "by point ids: 3 of" in by_id.summary
+    assert wording("by-point-ids-3-of") in by_id.summary
     assert np.allclose(by_id.displacement[numbers], [0, 0, -0.5])
 
 
@@ -147,35 +147,35 @@ def test_methods():
 
 
 def test_refused():
-    refused("nothing is given", tl.warp, PLATE)
-    refused("displacement and transform are given", tl.warp, PLATE, "d", transform={"rotate": 1})
-    refused("method is 'magic'", tl.warp, PLATE, method="magic")
-    refused("no point array 'd'", tl.warp, PLATE, "d")
-    refused("has the shape (3, 3)", tl.warp, PLATE, np.zeros((3, 3)))
-    refused("amount is -1", tl.warp, PLATE, amount=-1)
-    refused("no option 'speed'", tl.warp, PLATE, speed=3)
-    refused("transform has to have one of", tl.warp, PLATE, transform={"turn": 30})
-    refused("no 'center'", tl.warp, PLATE, transform={"translate": (1, 0, 0), "center": (0, 0, 0)})
-    refused("rotate is 'far'", tl.warp, PLATE, transform={"rotate": "far"})
-    refused("16 finite numbers", tl.warp, PLATE, transform=[1, 2, 3])
-    refused("no boundary part 7", tl.warp, PLATE, transform={"rotate": 30}, moved=7)
-    refused("run Untangle Mesh first", tl.warp, DATA / "bracket-tangled.vtu", transform={"rotate": 30})
-    refused("NaN or infinite at 179 of 179", tl.warp, PLATE, np.full((tl.read(PLATE).GetNumberOfPoints(), 3), np.nan))
-    refused("regions are", tl.warp, PLATE, transform={"rotate": 1}, regions="region")
+    refused(wording("nothing-is-given"), tl.warp, PLATE)
+    refused(wording("displacement-and-transform-are-given"), tl.warp, PLATE, "d", transform={"rotate": 1})
+    refused(wording("method-is-magic"), tl.warp, PLATE, method="magic")
+    refused(wording("no-point-array-d"), tl.warp, PLATE, "d")
+    refused(wording("has-the-shape-3-3"), tl.warp, PLATE, np.zeros((3, 3)))
+    refused(wording("amount-is-1"), tl.warp, PLATE, amount=-1)
+    refused(wording("no-option-speed"), tl.warp, PLATE, speed=3)
+    refused(wording("transform-has-to-have-one-of"), tl.warp, PLATE, transform={"turn": 30})
+    refused(wording("no-center"), tl.warp, PLATE, transform={"translate": (1, 0, 0), "center": (0, 0, 0)})
+    refused(wording("rotate-is-far"), tl.warp, PLATE, transform={"rotate": "far"})
+    refused(wording("16-finite-numbers"), tl.warp, PLATE, transform=[1, 2, 3])
+    refused(wording("no-boundary-part-7"), tl.warp, PLATE, transform={"rotate": 30}, moved=7)
+    refused(wording("run-untangle-mesh-first"), tl.warp, DATA / "bracket-tangled.vtu", transform={"rotate": 30})
+    refused(wording("nan-or-infinite-at-179-of-179"), tl.warp, PLATE, np.full((tl.read(PLATE).GetNumberOfPoints(), 3), np.nan))
+    refused(wording("regions-are"), tl.warp, PLATE, transform={"rotate": 1}, regions="region")
     refused("mirrors", tl.warp, PLATE, transform=np.diag([-1.0, 1, 1, 1]))
 
 
 def test_command():
     output, table = OUT / "warped.vtu", OUT / "warped.csv"
     text = shell("warp", PLATE, "--rotate", 30, "-o", output, "--csv", table)
-    assert "all 1913 elements are valid" in text, text
+    assert wording("all-1913-elements-are-valid") in text, text
     moved = tl.read(output)
     assert (points(moved) == points(tl.warp(PLATE, transform={"rotate": 30}).mesh)).all()
     with open(table, encoding="utf-8") as lines:
         rows = list(csv.DictReader(lines))
     assert rows[0]["stage"] == "warp" and rows[-1]["inverted"] == "0"
     options = ("-o", OUT / "back.vtu", "--method", "femwarp", "--coefficients", "1,2,1")
-    assert "as the same mesh" in shell("warp", output, "--target", PLATE, *options)
+    assert wording("as-the-same-mesh") in shell("warp", output, "--target", PLATE, *options)
     shell("warp", PLATE, "--bend", 60, "--moved", "1,2", "--direction", "0,1,0", "-o", OUT / "bent.vtu")
     shell("warp", PLATE, "-o", output, code=2)
     assert "translate" in shell("warp", PLATE, "--translate", "1", "-o", output, code=1)

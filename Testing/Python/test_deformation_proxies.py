@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 from paraview import servermanager, simple
+from wording import wording
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
@@ -41,7 +42,7 @@ assert moved(warp) == (0, 0)
 warp.TransformKind, warp.Angle, warp.OwnCenter, warp.Center = "Rotation", 30, 0, [0, 0, 0]
 assert moved(warp)[0] == 48
 warp.UpdatePropertyInformation()
-assert "Hybrid: all 1913 elements are valid" in warp.Summary and warp.Inverted == 0, warp.Summary
+assert wording("hybrid-all-1913-elements-are-valid") in warp.Summary and warp.Inverted == 0, warp.Summary
 assert warp.WorstShape == warp.CellData["TMP shape"].GetRange()[1] > 0
 warp.TransformKind, warp.Translation = "Translation", [0, 0.1, 0]
 assert moved(warp) == (48, 0.1)
@@ -105,11 +106,11 @@ to = WarpMesh(registrationName="To", Input=plate, Motion="Target data set", Targ
 count, far = moved(to)
 assert count == 179 and abs(far - 0.5) < 1e-6, (count, far)
 to.UpdatePropertyInformation()
-assert "The target corresponds as the same mesh, point by point: 179 of 179" in to.Summary, to.Summary
+assert wording("the-target-corresponds-as-the-same-mesh") in to.Summary, to.Summary
 to.Correspondence = "Closest point"
 moved(to)
 to.UpdatePropertyInformation()
-assert "by projection: 48 points" in to.Summary, to.Summary
+assert wording("by-projection-48-points") in to.Summary, to.Summary
 
 # by an array, which is found by itself; the amount is animated, and matrices are kept
 array = WarpMesh(registrationName="Array", Input=to, Motion="Displacement array")  # noqa: F821

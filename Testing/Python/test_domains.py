@@ -2,7 +2,7 @@
 """The functions domain and domains, the command domain: sizes, motions, errors."""
 
 import tautline as tl
-from checks import OUT, refused, run_tests, shell
+from checks import OUT, refused, run_tests, shell, wording
 
 OUTPUT = OUT / "domains"
 OUTPUT.mkdir(parents=True, exist_ok=True)
@@ -13,9 +13,9 @@ def test_domain():
     square = tl.domain("square", element_size=0.1, aspect_ratio=4, layer_width=0.2)
     assert square.GetNumberOfCells() == 392
     assert square.GetCellData().GetArray("Reference").GetRange() == (1, 2)
-    refused("there is no domain 'torus'; there are wrench, hinge", tl.domain, "torus")
-    refused("the number of cells is -1; it must be a number from 0", tl.domain, "wrench", -1)
-    refused("whole numbers", tl.domain, "square", aspect_ratio=2)
+    refused(wording("there-is-no-domain-torus-there-are"), tl.domain, "torus")
+    refused(wording("the-number-of-cells-is-1-it"), tl.domain, "wrench", -1)
+    refused(wording("whole-numbers"), tl.domain, "square", aspect_ratio=2)
     if tl.vtkDomainSource.HasMeshing():
         cylinder = tl.domain("cylinder", cells=5000, amount=0.5)
         assert abs(cylinder.GetNumberOfCells() - 5000) < 250

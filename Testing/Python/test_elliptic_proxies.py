@@ -4,6 +4,7 @@
 import os
 
 from paraview import servermanager, simple
+from wording import wording
 
 PLUGIN = os.environ["TAUTLINE_PLUGIN"]
 simple.LoadPlugin(PLUGIN, ns=globals())
@@ -66,7 +67,7 @@ update(solved)
 assert solved.GetDataInformation().GetNumberOfCells() == 0
 solved.PETScOptions = "-ksp_max_it 1"
 update(solved)
-assert "limit of iterations" in solved.Summary and solved.GetDataInformation().GetNumberOfCells() == 1913
+assert wording("limit-of-iterations") in solved.Summary and solved.GetDataInformation().GetNumberOfCells() == 1913
 
 estimate = update(ConditionEstimator(Input=plate))
 assert abs(estimate.Condition / 1619.5 - 1) < 1e-3 and 1 < estimate.PreconditionedCondition < 2, estimate.Summary
@@ -88,4 +89,4 @@ simple.Render()
 chart = simple.CreateView("XYBarChartView")
 display = simple.Show(servermanager.OutputPort(study, 1), chart)
 shown = display.SeriesVisibility
-assert "Total time (s)" in shown and "N iterations" not in shown, shown[:]
+assert wording("total-time-s") in shown and "N iterations" not in shown, shown[:]

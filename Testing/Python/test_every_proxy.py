@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonCore import vtkOutputWindow
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "Plugin"))
 import list_proxies  # noqa: E402
+from wording import wording
 
 LIMIT = 600
 #: Finds the elements around one point; ends at once.
@@ -131,7 +132,7 @@ def test_empty():
         assert len(MESSAGES) == 1 and expected in MESSAGES[0], (name, MESSAGES)
         if "Summary" in filter_.ListProperties() and name != "ShapeRetrieval":
             filter_.UpdatePropertyInformation()
-            assert "has no" in filter_.Summary, (name, filter_.Summary)
+            assert wording("has-no") in filter_.Summary, (name, filter_.Summary)
 
 
 def test_error_once():
@@ -152,7 +153,7 @@ def test_error_once():
             simple.OutputPort(filter_, port).UpdatePipeline()
             assert servermanager.Fetch(filter_, idx=port).GetNumberOfElements(0) == 0, (name, port)
         assert len(MESSAGES) == 1, (name, MESSAGES)
-        assert "returned failure" not in MESSAGES[0], MESSAGES
+        assert wording("returned-failure") not in MESSAGES[0], MESSAGES
         # After a change it executes, and reports, again.
         executed = filter_.SMProxy.GetClientSideObject()
         executed.Modified()

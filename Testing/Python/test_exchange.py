@@ -6,7 +6,7 @@ import warnings
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, square
+from checks import DATA, OUT, points, refused, run_tests, shell, square, wording
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkUnstructuredGrid
 
@@ -104,7 +104,7 @@ def test_ucd():
         mesh = tl.read(FOLDER / f"one{ending}")
         assert mesh.GetNumberOfCells() == 1 and mesh.GetCellType(0) == 10 and mesh.GetPoint(3) == (0, 0, 1)
         assert mesh.GetPointData().GetArray("height").GetValue(3) == 1
-    refused("has no time steps", tl.read, FOLDER / "one.avs", time=1)
+    refused(wording("has-no-time-steps"), tl.read, FOLDER / "one.avs", time=1)
 
 
 def test_ensight():
@@ -116,7 +116,7 @@ def test_ensight():
     assert tl.read(FOLDER / "run.case", time=1.9).GetPoint(0) == (0.25, 0, 0)
     shell("convert", FOLDER / "run.case", FOLDER / "late.vtu", "--time", 2)
     assert tl.read(FOLDER / "late.vtu").GetPoint(0) == (0.25, 0, 0)
-    refused("time is 'x'", tl.read, FOLDER / "run.case", time="x")
+    refused(wording("time-is-x"), tl.read, FOLDER / "run.case", time="x")
     (FOLDER / "run1.geo").unlink()
     refused("run.case: ", tl.read, FOLDER / "run.case", time=2)
 
@@ -126,7 +126,7 @@ def test_xdmf():
         from vtkmodules.vtkIOXdmf2 import vtkXdmfWriter
     except ImportError:  # Debian's VTK without ParaView
         (FOLDER / "run.xmf").write_text("<Xdmf/>")
-        refused("run.xmf: this VTK has no reader for XDMF 2", tl.read, FOLDER / "run.xmf")
+        refused(wording("run-xmf-this-vtk-has-no-reader"), tl.read, FOLDER / "run.xmf")
         return
     writer = vtkXdmfWriter()
     writer.SetFileName(str(FOLDER / "run.xmf"))
@@ -150,7 +150,7 @@ def test_pvd():
     blocks = tl.read(FOLDER / "parts.pvd")
     assert isinstance(blocks, vtkMultiBlockDataSet) and tl.quality(blocks).inverted == 0
     (FOLDER / "none.pvd").write_text("<VTKFile/>")
-    refused("names no files", tl.read, FOLDER / "none.pvd")
+    refused(wording("names-no-files"), tl.read, FOLDER / "none.pvd")
     (FOLDER / "cut.pvd").write_text("<VTKFile")
     refused("cut.pvd: ", tl.read, FOLDER / "cut.pvd")
 
@@ -166,11 +166,11 @@ def test_messages():
             assert "0x" not in str(error) and "line " not in str(error).split(name)[0], error
             assert name in str(error), error
         (FOLDER / name).write_bytes(b"")
-        refused("the file is empty", tl.read, FOLDER / name)
-    refused("no reader for '.unv': convert it with Gmsh", tl.read, FOLDER / "x.unv")
-    refused("mesh it with Gmsh", tl.read, FOLDER / "x.step")
-    refused("no reader for '.xyz'", tl.times, FOLDER / "x.xyz")
-    refused("has no time steps", tl.read, BRACKET, time=1)
+        refused(wording("the-file-is-empty"), tl.read, FOLDER / name)
+    refused(wording("no-reader-for-unv-convert-it-with"), tl.read, FOLDER / "x.unv")
+    refused(wording("mesh-it-with-gmsh"), tl.read, FOLDER / "x.step")
+    refused(wording("no-reader-for-xyz"), tl.times, FOLDER / "x.xyz")
+    refused(wording("has-no-time-steps"), tl.read, BRACKET, time=1)
     assert tl.times(BRACKET) == []
 
 
@@ -180,7 +180,7 @@ def test_medit():
     (FOLDER / "bamg.mesh").write_text(text)
     assert tl.quality(FOLDER / "bamg.mesh").mesh.GetNumberOfCells() == 1
     (FOLDER / "mfem.mesh").write_text("MFEM mesh v1.0\n\ndimension\n2\n")
-    refused("mfem.mesh:1: this is a mesh of MFEM", tl.read, FOLDER / "mfem.mesh")
+    refused(wording("mfem-mesh-1-this-is-a-mesh"), tl.read, FOLDER / "mfem.mesh")
 
 
 def test_formats():
@@ -196,7 +196,7 @@ def test_formats():
         try:
             tl.read(FOLDER / f"table{ending}")
         except tl.Error as error:
-            assert row["read"] == ("no reader" not in str(error) and "not installed" not in str(error)), error
+            assert row["read"] == (wording("no-reader") not in str(error) and wording("not-installed") not in str(error)), error
 
 
 def test_meshio():
@@ -205,8 +205,8 @@ def test_meshio():
     try:
         import meshio
     except ImportError:
-        refused("meshio (Debian: apt-get install python3-meshio)", tl.to_meshio, mesh)
-        refused("which is not installed", tl.write, mesh, FOLDER / "x.bdf")
+        refused(wording("meshio-debian-apt-get-install-python3-meshio"), tl.to_meshio, mesh)
+        refused(wording("which-is-not-installed"), tl.write, mesh, FOLDER / "x.bdf")
         return
     measured = tl.quality(tl.perturb(mesh, seed=3), ["imr", "rr"])
     there = tl.to_meshio(measured)
@@ -235,12 +235,12 @@ def test_meshio():
     grid = tl.quality(plane).mesh
     assert [grid.GetCellType(i) for i in range(2)] == [9, 5]
     assert vtk_to_numpy(grid.GetCellData().GetArray("part")).tolist() == [1, 0]
-    refused("cells 'triangle10' of meshio are not supported", tl.quality,
+    refused(wording("cells-triangle10-of-meshio-are-not-supported"), tl.quality,
             meshio.Mesh(np.zeros((10, 3)), [("triangle10", [list(range(10))])]))  # fmt: skip
-    refused("meshio cannot read it", tl.read, broken(".bdf"))
-    refused("use the points 0 to 9", tl.quality, meshio.Mesh(np.zeros((3, 3)), [("triangle", [[0, 1, 9]])]))
+    refused(wording("meshio-cannot-read-it"), tl.read, broken(".bdf"))
+    refused(wording("use-the-points-0-to-9"), tl.quality, meshio.Mesh(np.zeros((3, 3)), [("triangle", [[0, 1, 9]])]))
     images = tl.metric_field(dimensions=(3, 3)).mesh
-    refused("VTK's type 8", tl.to_meshio, images)
+    refused(wording("vtk-s-type-8"), tl.to_meshio, images)
     assert tl.to_meshio(square(2)).points.shape == (9, 3)
 
 
@@ -253,7 +253,7 @@ def test_views():
     last = text.split('View "imr" {', 1)[1].split("\n};", 1)[0].splitlines()[-1]
     value = float(last.split("){", 1)[1].split(",", 1)[0])
     assert value == measured.values["imr"][-1], (value, measured.values["imr"][-1])
-    refused("write .msh", tl.read, FOLDER / "bracket.pos")
+    refused(wording("write-msh"), tl.read, FOLDER / "bracket.pos")
     values = measured.values["imr"].copy()
     values[[3, 5]] = np.nan
     gaps = vtkUnstructuredGrid()
@@ -266,8 +266,8 @@ def test_views():
     expected = f'gaps.pos: view "gaps": 2 of {len(values)} elements are left out'
     assert len(told) == 1 and expected in str(told[0].message), [str(each.message) for each in told]
     assert told[0].filename == __file__, told[0].filename
-    refused("this mesh has none", tl.write, BRACKET, FOLDER / "none.pos")
-    refused("views are written as text", tl.write, measured, FOLDER / "none.pos", binary=True)
+    refused(wording("this-mesh-has-none"), tl.write, BRACKET, FOLDER / "none.pos")
+    refused(wording("views-are-written-as-text"), tl.write, measured, FOLDER / "none.pos", binary=True)
     assert not (FOLDER / "none.pos").exists()
 
 
@@ -332,7 +332,7 @@ def test_pyvista():
         def IsA(self, name):
             return name == "vtkDataSet"
 
-    refused("this Other is of another VTK", tl.quality, Other())
+    refused(wording("this-other-is-of-another-vtk"), tl.quality, Other())
 
     class Derived(vtkUnstructuredGrid):  # as PyVista's classes are
         pass

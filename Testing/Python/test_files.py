@@ -19,7 +19,7 @@ import time
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, refused, shell, square
+from checks import DATA, OUT, refused, shell, square, wording
 from tautline import _files, studies
 from tautline.__main__ import _parser as shell_parser
 from tautline.__main__ import main as shell_main
@@ -173,7 +173,7 @@ def test_full_disk() -> None:
                 large = tl.metric_field(dimensions=(600, 600, 1), metrics=["imr", "si"]).mesh
             write(writer, small, disk / file_of(writer))
             before, files = content(disk, writer), names(disk)
-            refused("No space left on device", write, writer, large, disk / file_of(writer))
+            refused(wording("no-space-left-on-device"), write, writer, large, disk / file_of(writer))
             assert content(disk, writer) == before, f"{writer}: the older file is not as it was"
             assert names(disk) == files, f"{writer}: {names(disk) ^ files} are left"
             write(writer, small, disk / file_of(writer))  # and there is room again
@@ -212,7 +212,7 @@ def test_directory_without_permission() -> None:
 
     def check() -> None:
         for writer in WRITERS:
-            refused("cannot be written", write, writer, meshes[writer], folder / file_of(writer))
+            refused(wording("cannot-be-written"), write, writer, meshes[writer], folder / file_of(writer))
 
     as_nobody(check)
     folder.chmod(0o777)
@@ -238,7 +238,7 @@ def test_links() -> None:
         assert not any(name.endswith(".part") for name in names(folder)), names(folder)
         link.unlink()
         link.symlink_to(link.name)
-        refused("cannot be written", write, writer, large, link)
+        refused(wording("cannot-be-written"), write, writer, large, link)
     if os.geteuid() == 0:  # a link that another user put into a directory for everybody
         folder = new_folder("everybody")
         folder.chmod(0o1777)
@@ -248,7 +248,7 @@ def test_links() -> None:
             link = folder / file_of(writer)
             link.symlink_to(victim)
             os.lchown(link, NOBODY, NOBODY)
-            refused("link of another user", write, writer, mesh_for(writer, 3), link)
+            refused(wording("link-of-another-user"), write, writer, mesh_for(writer, 3), link)
         assert victim.read_text() == "precious"
 
 
@@ -294,9 +294,9 @@ def test_name_first() -> None:
         refused(text, tl.write, no_mesh, FOLDER / name)
         assert text in shell("quality", no_mesh, "-o", FOLDER / name, code=1)
         assert text in shell("convert", no_mesh, FOLDER / name, code=1)
-    assert "there is no directory" in shell("quality", no_mesh, "--csv", absent / "x.csv", code=1)
+    assert wording("there-is-no-directory") in shell("quality", no_mesh, "--csv", absent / "x.csv", code=1)
     (FOLDER / "folder.vtu").mkdir(exist_ok=True)
-    refused("it is a directory", tl.write, no_mesh, FOLDER / "folder.vtu")
+    refused(wording("it-is-a-directory"), tl.write, no_mesh, FOLDER / "folder.vtu")
 
 
 def commands() -> dict[str, argparse.ArgumentParser]:
@@ -347,7 +347,7 @@ def test_every_study_first() -> None:
     blocked.write_text("")
     for name in studies.names():
         signal.alarm(20)  # ends the test with an error
-        refused("cannot be made", studies.main, [name, "--out", str(blocked / "out")])
+        refused(wording("cannot-be-made"), studies.main, [name, "--out", str(blocked / "out")])
     signal.alarm(0)
     assert len(studies.names()) > 20
 
@@ -362,12 +362,12 @@ def test_streams() -> None:
     pipe = new_folder("pipes") / "pipe.vtu"
     os.mkfifo(pipe)
     os.mkfifo(pipe.with_suffix(".mesh"))
-    refused("not a regular file", tl.write, DATA / "plate.vtu", pipe)
+    refused(wording("not-a-regular-file"), tl.write, DATA / "plate.vtu", pipe)
     own = tl.vtkMeditWriter()
     own.SetInputData(square(2))
     own.SetFileName(str(pipe.with_suffix(".mesh")))
     own.AddObserver("ErrorEvent", lambda *_: None)
-    assert not own.Write() and "not a regular file" in own.GetErrorText()
+    assert not own.Write() and wording("not-a-regular-file") in own.GetErrorText()
 
 
 FOLDER.mkdir(parents=True, exist_ok=True)

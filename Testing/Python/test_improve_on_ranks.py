@@ -7,6 +7,7 @@ that of one process and does not depend on how the mesh was cut. What needs the 
 
 import numpy as np
 from on_ranks import OUT, run_with_output
+from wording import wording
 
 CUTS = ("slabs", "tree", "random")
 ROUNDING = 1e-13
@@ -138,7 +139,7 @@ def check_parts(ranks: int, found: dict, one: dict, given: dict, serial: dict) -
             assert outer(whole) == outer(serial[name]), case
             if name == "kept":
                 check_kept(whole, given, case)
-                assert "triangles beside the tetrahedra are left out" in numbers["summary"], numbers["summary"]
+                assert wording("triangles-beside-the-tetrahedra-are-left-out") in numbers["summary"], numbers["summary"]
                 assert numbers["summary"].count(f"that are kept: {len(given['facets'])}") == 1, numbers["summary"]
             shapes = (whole.points.tolist(), whole.shapes())
             assert expected in (None, shapes), f"{ranks} ranks: {case} depends on the cut"
@@ -151,7 +152,7 @@ def check_parts(ranks: int, found: dict, one: dict, given: dict, serial: dict) -
     for case in ("single", "selected", "sliding", "late", "reversed", "once"):
         whole = Whole(file, case, ranks)
         if case == "reversed":
-            assert "treated as its mirror image" in found[case]["summary"], found[case]["summary"]
+            assert wording("treated-as-its-mirror-image") in found[case]["summary"], found[case]["summary"]
             whole.cells = whole.cells[:, [1, 0, 2, 3]]
         assert whole.precise != (case == "single"), case
         if case != "single":
@@ -166,12 +167,12 @@ def check_parts(ranks: int, found: dict, one: dict, given: dict, serial: dict) -
 def check_gathered(ranks: int, found: dict, one: dict) -> None:
     for case, why in GATHERED.items():
         numbers = found[case]
-        assert "was put together on the first process: " in numbers["summary"], (case, numbers["summary"])
+        assert wording("was-put-together-on-the-first-process") in numbers["summary"], (case, numbers["summary"])
         assert why in numbers["summary"], (case, numbers["summary"])
-        assert "In parts" not in numbers["summary"], case
+        assert wording("in-parts") not in numbers["summary"], case
         assert numbers["elements"][0] == one[case]["elements"][0], case
-    assert "opposite orders" in found["failed order"], found["failed order"]
-    assert "In parts" not in found["failed order"], found["failed order"]
+    assert wording("opposite-orders") in found["failed order"], found["failed order"]
+    assert wording("in-parts") not in found["failed order"], found["failed order"]
 
 
 one = run_with_output("improve_on_ranks.py", 1, symmetric=True)[0]

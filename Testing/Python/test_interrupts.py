@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Iterator
 
 import tautline as tl
-from checks import OUT
+from checks import OUT, wording
 from interrupted_operations import BEST, LIMIT, OPERATIONS, commands, cube, write_input
 from tautline._interrupts import reporting
 from tautline._vtk import CLASSES
@@ -191,7 +191,7 @@ def check_limit(name: str) -> None:
         with polling(name):
             operation(time_limit=TIME_LIMIT)
     except tl.Error as error:
-        assert outcome != BEST and "time limit" in str(error), (name, str(error))
+        assert outcome != BEST and wording("time-limit") in str(error), (name, str(error))
     else:
         assert outcome != LIMIT, f"{name} did not end at its time limit"
     overrun = cpu.overrun()

@@ -13,7 +13,7 @@ import sys
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, run_tests
+from checks import DATA, OUT, run_tests, wording
 
 MEBIBYTE = 2**20
 FOLDER = OUT / "memory"
@@ -75,7 +75,7 @@ def complaint(done: subprocess.CompletedProcess) -> str:
     errors = [line for line in done.stderr.strip().splitlines() if line != OF_THREADS]
     if done.returncode < 0:
         return f"ended by signal {-done.returncode}"
-    if "Traceback" in done.stderr or "terminate called" in done.stderr:
+    if "Traceback" in done.stderr or wording("terminate-called") in done.stderr:
         return "a traceback"
     if done.returncode == 0:
         return ""

@@ -3,7 +3,7 @@
 
 import numpy as np
 import tautline as tl
-from checks import refused, run_tests
+from checks import refused, run_tests, wording
 
 ROOT3 = 3**0.5
 
@@ -20,10 +20,10 @@ def test_metric_field():
     assert np.allclose(flat.values["untangle_beta"][:, 0], [0.25, 0, 0, 0, 0]), "(3.3) at y = 0, 0.5, ..."
     assert tl.metric_field("untangle_beta", beta=0.0).values["untangle_beta"].max() == 0
     refused("beta", tl.metric_field, beta=float("nan"))
-    refused("there are 'triangle', 'tetrahedron'", tl.metric_field, cell="prism")
-    refused("vertices have the shape (1, 3)", tl.metric_field, vertices=[[0, 0, 0]])
-    refused("whole numbers from 1", tl.metric_field, dimensions=(0, 1, 1))
-    refused("no metric 'nope'", tl.metric_field, "nope")
+    refused(wording("there-are-triangle-tetrahedron"), tl.metric_field, cell="prism")
+    refused(wording("vertices-have-the-shape-1-3"), tl.metric_field, vertices=[[0, 0, 0]])
+    refused(wording("whole-numbers-from-1"), tl.metric_field, dimensions=(0, 1, 1))
+    refused(wording("no-metric-nope"), tl.metric_field, "nope")
 
 
 run_tests(globals())

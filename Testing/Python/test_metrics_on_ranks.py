@@ -9,6 +9,7 @@ import sys
 import numpy as np
 from on_ranks import ENVIRONMENT, run_with_output
 from vtkmodules.vtkParallelCore import vtkDummyController, vtkMultiProcessController
+from wording import wording
 
 controller = vtkDummyController()
 vtkMultiProcessController.SetGlobalController(controller)
@@ -35,7 +36,7 @@ def check_table(found: dict, expected: dict, where) -> None:
 
 
 one, text = run_with_output("metrics_on_ranks.py", 1)
-assert text.count("ERR|") == 1 and "Slenderness has no derivatives" in text, text
+assert text.count("ERR|") == 1 and wording("slenderness-has-no-derivatives") in text, text
 assert one["loaded"] == ["height", "slenderness"], one["loaded"]
 
 # The values of one process are those of numpy.
@@ -86,5 +87,5 @@ for ranks in (2, 3):
     message = "is not registered in this process. Register it in all processes of the server"
     assert text.count(message) == 4 * ranks and text.count("ERR|") == 5 * ranks, text
     assert f"process {ranks - 1} of the server cannot load the metrics: " in found["wrong"], found["wrong"]
-    assert "not here" in found["wrong"], found["wrong"]
+    assert wording("not-here") in found["wrong"], found["wrong"]
     print(ranks, "ranks:", found["tree"]["summary"].splitlines()[0])

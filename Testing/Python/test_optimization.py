@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell as run
+from checks import DATA, OUT, points, refused, run_tests, shell as run, wording
 from vtkmodules.vtkCommonCore import VTK_DOUBLE, VTK_INT, vtkIntArray, vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_QUAD, vtkImageData, vtkMultiBlockDataSet, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -63,7 +63,7 @@ def test_features():
     kept = tl.optimize(mesh, show_features=True, hold_worst=False)  # all triangles are alike
     now = points(kept.mesh)
     flush = (places == 0) | (places == 1)
-    assert np.abs(now - places)[flush].max() < 1e-12 and "8 corners, 12 curves, 6 patches" in kept.summary
+    assert np.abs(now - places)[flush].max() < 1e-12 and wording("8-corners-12-curves-6-patches") in kept.summary
     assert (array(kept, "FeatureKind") == ends - 1).all() and kept.mesh.GetCellData().GetArray("PatchId") is not None
     assert (np.abs(now - places).max(axis=1)[ends == 2] > 1e-3).any() and (now == places)[ends == 3].all()
     assert array(tl.optimize(mesh), "FeatureKind") is None
@@ -79,13 +79,13 @@ def test_features():
     low = np.array([places[c].mean(axis=0)[2] < 0.5 for c in cells])
     halves = tl.optimize(mesh, regions=low.astype(float))
     middle = places[:, 2] == 0.5
-    assert np.abs(points(halves.mesh)[middle, 2] - 0.5).max() < 1e-12 and "20 curves, 10 patches" in halves.summary
+    assert np.abs(points(halves.mesh)[middle, 2] - 0.5).max() < 1e-12 and wording("20-curves-10-patches") in halves.summary
     # another surface
     larger = (1.04 * cube_surface(9)[0] - 0.02, cube_surface(9)[1])
     placed = tl.optimize(mesh, geometry=larger)
     far = points(placed.mesh)[flush]
     assert np.allclose(np.minimum(np.abs(far + 0.02), np.abs(far - 1.02)), 0, atol=1e-12)
-    assert "8 corners and 12 curves have a counterpart" in placed.summary and placed.surface_error < 1e-12
+    assert wording("8-corners-and-12-curves-have-a") in placed.summary and placed.surface_error < 1e-12
     for wrong, message in (
         ({"feature_kinds": [1.0]}, "shape"),
         ({"feature_kinds": np.full(len(places), 4)}, "must be 0 (patch)"),
@@ -95,7 +95,7 @@ def test_features():
         ({"feature_angle": 200}, "feature_angle"),
     ):
         refused(message, tl.optimize, mesh, **wrong)
-    refused("planar mesh", tl.optimize, PLATE, geometry=larger, boundary="on surface")
+    refused(wording("planar-mesh"), tl.optimize, PLATE, geometry=larger, boundary="on surface")
     # the shell
     path, out, other = OUT / "cube.vtu", OUT / "cube-features.vtu", OUT / "cube-larger.vtu"
     tl.write(mesh, path)
@@ -217,14 +217,14 @@ def test_worst_metric():
     least = tl.quality(by_angle.mesh, "min_angle").statistics["min_angle"]["minimum"]
     assert angle["worst_before"] <= angle["worst_after"] == least, angle
     assert f"worst {angle['worst_before']:g} to {least:g}." in by_angle.summary.splitlines()[-1], by_angle.summary
-    refused("no metric 'beauty'", tl.optimize, PLATE, worst_metric="beauty")
+    refused(wording("no-metric-beauty"), tl.optimize, PLATE, worst_metric="beauty")
 
 
 def test_ranges():
     """Numbers out of range are refused with the range in words."""
     for option, value, allowed in (("power", 0, "above 0"), ("relaxation", 2.5, "from 1 to 1.99")):
         refused(f"{option} is {value}; it must be a number {allowed}", tl.optimize, PLATE, ["imr"], **{option: value})
-    refused("time_limit is -1; it must be a number from 0", tl.optimize, PLATE, time_limit=-1)
+    refused(wording("time-limit-is-1-it-must-be"), tl.optimize, PLATE, time_limit=-1)
 
 
 def test_remaining_inverted():
@@ -291,7 +291,7 @@ def test_points_that_leave_the_surface():
                              leave_surface=leave)  # fmt: skip
         worst[leave] = tl.quality(result.mesh, ["scaled_jacobian"]).values["scaled_jacobian"].min()
         assert result.surface_error <= 0.005 * mesh.GetLength()
-        assert ("left the surface" in result.summary) == leave, result.summary
+        assert (wording("left-the-surface") in result.summary) == leave, result.summary
         name = OUT / f"sheared-{leave}.vtu"
         run("optimize", OUT / "sheared.vtu", "-o", name, "--preset", "worst element", "--boundary", "on surface",
             "--surface-tolerance", "0.005", "--leave-surface" if leave else "--no-leave-surface")  # fmt: skip
@@ -317,7 +317,7 @@ def test_points_that_stay():
     near = tl.optimize(mesh, boundary="on surface", surface_tolerance=2e-5)
     assert 0 < near.surface_error <= 2e-5 * mesh.GetLength() < on_surface.surface_error
     refused("surface_tolerance", tl.optimize, mesh, boundary="on surface", surface_tolerance=-1)
-    refused("needs a local optimizer", tl.optimize, mesh, optimizer="l-bfgs", boundary="on surface")
+    refused(wording("needs-a-local-optimizer"), tl.optimize, mesh, optimizer="l-bfgs", boundary="on surface")
     weights = np.zeros(mesh.GetNumberOfCells())
     weights[0] = 1
     weighted = tl.optimize(mesh, element_weights=weights)
@@ -366,8 +366,8 @@ def test_refused():
     image.SetDimensions(3, 3, 3)
     refused("implicit", tl.optimize, image)
     refused("implicit", tl.untangle, image)
-    refused("effort is 'x'", tl.untangle, PLATE, "x")
-    refused("there is no such file", tl.untangle, "absent.vtu")
+    refused(wording("effort-is-x"), tl.untangle, PLATE, "x")
+    refused(wording("there-is-no-such-file"), tl.untangle, "absent.vtu")
 
 
 def test_untangle():
@@ -377,17 +377,17 @@ def test_untangle():
     assert result.history["inverted"][0] == 41 and result.history["inverted"][-1] == 0
     assert result.summary == "All elements are valid; 41 were not." and "valid" in result.reason
     worst = tl.optimize(TANGLED)
-    assert worst.inverted_before == 41 and worst.inverted == 0 and "untangled first" in worst.summary
+    assert worst.inverted_before == 41 and worst.inverted == 0 and wording("untangled-first") in worst.summary
     stopped = tl.optimize(TANGLED, time_limit=1e-6)  # one limit for untangling and optimization
-    assert stopped.inverted > 0 and "untangling came first and left some inverted." in stopped.summary, stopped.summary
-    refused("untangle first", tl.optimize, TANGLED, untangle_first=False)
+    assert stopped.inverted > 0 and wording("untangling-came-first-and-left-some-inverted") in stopped.summary, stopped.summary
+    refused(wording("untangle-first"), tl.optimize, TANGLED, untangle_first=False)
     every = tl.untangle(TANGLED, method="simultaneous")  # moves all, and smooths
     assert every.inverted == 0 and tl.quality(every, "imr").values["imr"].mean() < tl.quality(
         result, "imr").values["imr"].mean()
-    refused("method is 'x'", tl.untangle, TANGLED, method="x")
+    refused(wording("method-is-x"), tl.untangle, TANGLED, method="x")
     stuck = tl.untangle(TANGLED, fixed=np.ones(2343))
     assert stuck.inverted == stuck.impossible == 41 and (np.unique(stuck.obstacle) == [0, 2]).all()
-    assert "all its points are fixed" in stuck.summary and "Element " in stuck.summary
+    assert wording("all-its-points-are-fixed") in stuck.summary and "Element " in stuck.summary
     inverted = np.flatnonzero(tl.quality(TANGLED).validity == -1)
     assert (np.flatnonzero(stuck.obstacle) == inverted).all() and f"Element {inverted[0]} at (" in stuck.summary
 
@@ -401,13 +401,13 @@ def test_commands():
     with open(table, newline="") as lines:
         rows = list(csv.DictReader(lines))
     assert [float(row["objective"]) for row in rows] == expected.history["objective"].tolist()
-    assert "Inverse mean ratio: mean" in text and str(mesh) in text
-    assert "All elements are valid; 41 were not." in run("untangle", TANGLED, "-o", mesh)
+    assert wording("inverse-mean-ratio-mean-2") in text and str(mesh) in text
+    assert wording("all-elements-are-valid-41-were-not") in run("untangle", TANGLED, "-o", mesh)
     run("untangle", TANGLED, "-o", mesh, "--method", "simultaneous")
     assert (points(tl.read(mesh)) == points(tl.untangle(TANGLED, method="simultaneous").mesh)).all()
-    assert "no metric 'nope'" in run("optimize", PLATE, "-o", mesh, "--objective", "nope", code=1)
-    assert "is not KEY=VALUE" in run("optimize", PLATE, "-o", mesh, "--objective", "imr,x", code=2)
-    assert "invalid choice: 'x'" in run("untangle", PLATE, "-o", mesh, "--effort", "x", code=2)
+    assert wording("no-metric-nope") in run("optimize", PLATE, "-o", mesh, "--objective", "nope", code=1)
+    assert wording("is-not-key-value") in run("optimize", PLATE, "-o", mesh, "--objective", "imr,x", code=2)
+    assert wording("invalid-choice-x") in run("untangle", PLATE, "-o", mesh, "--effort", "x", code=2)
 
 
 run_tests(globals())

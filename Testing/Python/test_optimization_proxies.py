@@ -6,6 +6,7 @@ from pathlib import Path
 
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from wording import wording
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
@@ -27,7 +28,7 @@ objective = [history.GetValueByName(row, "Objective").ToDouble() for row in rang
 assert rows > 3 and objective == sorted(objective, reverse=True)
 assert statistics.GetValueByName(0, "WorstAfter").ToDouble() == after[1]
 best.UpdatePropertyInformation()
-assert "Inverse mean ratio: mean" in best.Summary and best.Reason.startswith("Converged"), best.Summary
+assert wording("inverse-mean-ratio-mean-2") in best.Summary and best.Reason.startswith("Converged"), best.Summary
 
 # every property of the panel arrives
 for preset in ("Fast clean-up", "Uniform size", "Low interpolation error", "Untangle then improve", "Worst element"):

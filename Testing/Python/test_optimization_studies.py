@@ -4,7 +4,7 @@
 from importlib import import_module
 
 import numpy as np
-from checks import OUT, shell
+from checks import OUT, shell, wording
 from study_checks import Studies, pictures, refused_command
 from tautline.studies import _verdicts, names, smoothing_times
 from wrong_data import verdicts
@@ -35,7 +35,7 @@ STUDIES = {
 
 def run_all():
     for study, expected in STUDIES.items():
-        assert "Findings of the dissertation" in studies.run(study)
+        assert wording("findings-of-the-dissertation") in studies.run(study)
         theirs = dissertation(studies.calls[study]) if study == "smoothing_times" else ()
         studies.check(study, *expected, theirs)
     found = verdicts(theirs, studies.directory / "dissertation")
@@ -99,7 +99,7 @@ def check_untangling():
     for study in ("hydrocephalus", "bore"):
         start = studies.column(study, "inverted", "method", "0")
         assert set(start.values()) == {5.0}, f"{study}: the warp inverts the requested number of elements: {start}"
-        assert "5 inverted before, 0 after" in (studies.directory / study / f"{study}.txt").read_text(encoding="utf-8")
+        assert wording("5-inverted-before-0-after") in (studies.directory / study / f"{study}.txt").read_text(encoding="utf-8")
 
 
 def check_angles():

@@ -8,6 +8,7 @@ import itertools
 
 import numpy as np
 from on_ranks import run_with_output
+from wording import wording
 
 CLOSE = 1e-9
 INTEGRALS = 2e-6
@@ -47,8 +48,8 @@ def check_untangled(found: dict, several: dict, ranks: int) -> None:
         where = f"{key} {case}"
         (points, *counts, summary), (expected, *numbers, first) = found.pop(where), one[where]
         assert counts == numbers == [0, 0], (where, counts, numbers)
-        assert "put together" not in summary, (where, summary)
-        assert "elements are valid" in first, first
+        assert wording("put-together") not in summary, (where, summary)
+        assert wording("elements-are-valid") in first, first
         assert summary.splitlines()[0].split(".")[0] == first.splitlines()[0].split(".")[0], (summary, first)
         far = np.abs(np.asarray(points) - np.asarray(expected)).max()
         assert far < SIMILAR, (where, far)

@@ -11,6 +11,7 @@ import shutil
 
 import numpy as np
 from on_ranks import OUT, run, run_with_output
+from wording import wording
 
 FOLDER = OUT / "partitions-on-ranks"
 CLOSE = 1e-9
@@ -36,7 +37,7 @@ def check_messages(found: dict, text: str, ranks: int) -> None:
         there = [int(worst[key][i]) for key in ("Cell", "Block", "Process", "Partition")]
         assert there == [int(cell), int(block), int(process or 0), 0], (ranks, names, there)
     assert {int(block) for _, block, _ in names} <= {1, 2} and (ranks == 1) == (names[0][2] == ""), (ranks, names)
-    assert "Worst: element with global id " in found["global names"], (ranks, found["global names"])
+    assert wording("worst-element-with-global-id") in found["global names"], (ranks, found["global names"])
     # The rank that has no such array is named, and the block.
     for name in ("MeshOptimizer", "MeshPerturbation", "MeshImprover"):
         for kind in ("blocks", "collection", "grid"):
@@ -54,9 +55,9 @@ def check_messages(found: dict, text: str, ranks: int) -> None:
 one: dict = {}
 for ranks in (1, 2, 3):
     found, text = run_with_output("partitions_on_ranks.py", ranks, str(FOLDER))
-    errors = [line for line in text.splitlines() if "ERR|" in line and "There is no point array 'stay'" not in line]
+    errors = [line for line in text.splitlines() if "ERR|" in line and wording("there-is-no-point-array-stay") not in line]
     assert not errors, (ranks, errors)
-    assert "seam between blocks is a boundary" not in text, (ranks, text)
+    assert wording("seam-between-blocks-is-a-boundary") not in text, (ranks, text)
     check_messages(found, text, ranks)
     one = one or found
     assert found.keys() == one.keys(), (ranks, set(found) ^ set(one))

@@ -4,6 +4,7 @@
 import os
 
 from paraview import servermanager, simple
+from wording import wording
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 
@@ -18,7 +19,7 @@ source = MeshDomain(Domain="Square with Interaction Layer, Structured", ElementS
 condition = PeridynamicCondition(Input=source)
 update(condition)
 assert abs(condition.Condition / 9.2827 - 1) < 1e-3, condition.Condition
-assert "Condition number" in condition.Summary
+assert wording("condition-number") in condition.Summary
 assert {"Unknown", "Neighbors", "RowSum", "Diagonal", "SmallestMode", "LargestMode"} <= set(condition.PointData.keys())
 table = servermanager.Fetch(condition, idx=1)
 assert table.GetNumberOfRows() == 1 and table.GetValueByName(0, "Rows").ToInt() == 81
@@ -36,7 +37,7 @@ assert image.GetDimensions() == (50, 50, 1)
 assert condition.SolverIterations > 0
 condition.Preconditioner = "AMG of the local limit"
 update(condition)
-assert "(preconditioner: AMG of the local limit)" in condition.Summary
+assert wording("preconditioner-amg-of-the-local-limit") in condition.Summary
 assert servermanager.Fetch(condition, idx=1).GetValueByName(0, "SolverConverged").ToInt() == 1
 
 condition.Kernel = "Table"

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests
+from checks import DATA, OUT, refused, run_tests, wording
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 BRACKET, TANGLED, PLATE = (DATA / f"{name}.vtu" for name in ("bracket", "bracket-tangled", "plate"))
@@ -96,11 +96,11 @@ def test_criteria():
     file = OUT / "criteria.json"
     file.write_text(json.dumps(mine))
     assert tl.quality(TANGLED, criteria=file).index == result.index
-    refused("did you mean 'fem'", tl.criteria, "fam")
-    refused("neither a file that can be read nor a preset", tl.quality, ONE, criteria="absent.json")
-    refused("not valid JSON", tl.quality, ONE, criteria="{")
-    refused("cannot be written as JSON", tl.quality, ONE, criteria={"name": float("nan")})
-    refused("no key \"limit\"", tl.quality, ONE, criteria={"limit": 1})
+    refused(wording("did-you-mean-fem"), tl.criteria, "fam")
+    refused(wording("neither-a-file-that-can-be-read"), tl.quality, ONE, criteria="absent.json")
+    refused(wording("not-valid-json"), tl.quality, ONE, criteria="{")
+    refused(wording("cannot-be-written-as-json"), tl.quality, ONE, criteria={"name": float("nan")})
+    refused(wording("no-key-limit"), tl.quality, ONE, criteria={"limit": 1})
 
 
 def test_targets():
@@ -112,11 +112,11 @@ def test_targets():
     assert tl.quality(flat, "mu_shape").values["mu_shape"][0] > 0.5
     assert abs(tl.quality(flat, "mu_shape", reference=flat).values["mu_shape"][0]) < 1e-12
     assert abs(tl.quality(flat, "mu_shape", tensor=[[1, 1, 16, 0, 0, 0]]).values["mu_shape"][0]) < 1e-12
-    refused("only one target", tl.quality, ONE, size=1, reference=ONE)
-    refused("'size' is not given", tl.quality, ONE, target="size")
-    refused("target is 'tensor' but 'size'", tl.quality, ONE, target="tensor", size=1)
-    refused("no array 'h'", tl.quality, ONE, "mu_size", size="h")
-    refused("3 rows; there are 1 cells and 4 points", tl.quality, ONE, "mu_size", size=[1, 2, 3])
+    refused(wording("only-one-target"), tl.quality, ONE, size=1, reference=ONE)
+    refused(wording("size-is-not-given"), tl.quality, ONE, target="size")
+    refused(wording("target-is-tensor-but-size"), tl.quality, ONE, target="tensor", size=1)
+    refused(wording("no-array-h"), tl.quality, ONE, "mu_size", size="h")
+    refused(wording("3-rows-there-are-1-cells-and"), tl.quality, ONE, "mu_size", size=[1, 2, 3])
 
 
 def test_inputs():
@@ -170,18 +170,18 @@ def test_metrics():
 
 
 def test_errors():
-    refused("no metric 'nope'", tl.quality, ONE, "nope")
-    refused("no metric is chosen", tl.quality, ONE, [])
-    refused("by its name, not 3", tl.quality, ONE, [3])
-    refused("combination is 'sum'; there are 'mean', 'worst', 'power mean'", tl.quality, ONE, combination="sum")
-    refused("power is 0", tl.quality, ONE, power=0)
-    refused("not int", tl.quality, 3)
+    refused(wording("no-metric-nope"), tl.quality, ONE, "nope")
+    refused(wording("no-metric-is-chosen"), tl.quality, ONE, [])
+    refused(wording("by-its-name-not-3"), tl.quality, ONE, [3])
+    refused(wording("combination-is-sum-there-are-mean-worst"), tl.quality, ONE, combination="sum")
+    refused(wording("power-is-0"), tl.quality, ONE, power=0)
+    refused(wording("not-int"), tl.quality, 3)
     refused("m x 3 or 4", tl.quality, (SQUARE, [[0, 1, 2, 3, 0]]))
-    refused("use the points 0 to 9; there are 0 to 3", tl.quality, (TET, [[0, 1, 2, 9]]))
-    refused("whole numbers are expected", tl.quality, (TET, [[0.0, 1, 2, 3]]))
-    refused("there are no cells 'line'", tl.quality, (TET, {"line": [[0, 1]]}))
+    refused(wording("use-the-points-0-to-9-there"), tl.quality, (TET, [[0, 1, 2, 9]]))
+    refused(wording("whole-numbers-are-expected"), tl.quality, (TET, [[0.0, 1, 2, 3]]))
+    refused(wording("there-are-no-cells-line"), tl.quality, (TET, {"line": [[0, 1]]}))
     refused("n x 2 or n x 3", tl.quality, (np.zeros((4, 4)), [[0, 1, 2]]))
-    refused("points are not an array of numbers", tl.quality, (["a", "b"], [[0, 1, 2]]))
+    refused(wording("points-are-not-an-array-of-numbers"), tl.quality, (["a", "b"], [[0, 1, 2]]))
 
 
 run_tests(globals())

@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import OUT, points, refused, run_tests, shell as run
+from checks import OUT, points, refused, run_tests, shell as run, wording
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -56,7 +56,7 @@ def test_improve():
         assert (np.diff(history["worst_imr"]) <= little).all() and (np.diff(history["seconds"]) >= 0).all()
         assert history["moves"].dtype == int and (preset != "swap only" or history["moves"][-1] == 0)
         assert len(result.remaining.get("cell", ())) == history["below_target"][-1]
-        assert "Smallest dihedral angle: " in result.summary and result.reason in result.summary
+        assert wording("smallest-dihedral-angle") in result.summary and result.reason in result.summary
     easy = tl.improve(mesh, target_angle=1)
     assert easy.reason == "Every element has reached the target." and not easy.remaining, easy.summary
 
@@ -76,7 +76,7 @@ def test_data():
     assert result.mesh.GetPointData().HasArray("field")
     still = tl.improve(mesh, "swap and smooth", fixed=np.ones(mesh.GetNumberOfPoints()))
     assert (points(still.mesh) == points(mesh)).all()
-    assert "it has a fixed point" in still.remaining["reason"]
+    assert wording("it-has-a-fixed-point") in still.remaining["reason"]
 
 
 def test_objective():
@@ -146,8 +146,8 @@ def test_edge_length():
     named = tl.improve(mesh, "aggressive", edge_length="field")  # 0.5 to 5.5 times the size of the mesh
     assert named.history["insertions"][-1] == 0
     refused("edge_factor", tl.improve, mesh, edge_factor=0.5)
-    refused("not positive", tl.improve, mesh, edge_length=np.zeros(count))
-    refused("no point array 'x'", tl.improve, mesh, edge_length="x")
+    refused(wording("not-positive"), tl.improve, mesh, edge_length=np.zeros(count))
+    refused(wording("no-point-array-x"), tl.improve, mesh, edge_length="x")
     refused("above 0", tl.improve, mesh, edge_length=0)
 
 
@@ -158,10 +158,10 @@ def test_inputs():
     blocks = vtkMultiBlockDataSet()
     for i in range(2):
         blocks.SetBlock(i, tl.from_arrays(points(mesh), cells[region == i]))
-    refused("blocks would come apart", tl.improve, blocks, boundary="sliding")
+    refused(wording("blocks-would-come-apart"), tl.improve, blocks, boundary="sliding")
     both = tl.improve(blocks)
     assert both.elements_before == len(cells) and set(both.history["block"]) == {"block 1", "block 2"}
-    assert np.isclose(both.smallest_angle, both.min_angle.min()) and "In block 2: " in both.summary
+    assert np.isclose(both.smallest_angle, both.min_angle.min()) and wording("in-block-2") in both.summary
     cells = [[0, 1, 2, 3]]
     assert tl.improve(([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], cells)).elements == 1
     custom = tl.improve(slivers(), "custom", smooth=False, insert=False, contract=False, compound=False)
@@ -199,7 +199,7 @@ def test_on_surface():
     assert fixed.boundary_distance == 0 < moved.boundary_distance < 0.02 * diagonal, moved.boundary_distance
     target = 33.4  # degrees, where it ends: with GCC 16 both come as far
     assert moved.smallest_angle > min(fixed.smallest_angle, target), (moved.smallest_angle, fixed.smallest_angle)
-    assert "Largest distance between the boundary" in moved.summary and "Volume: " in moved.summary, moved.summary
+    assert wording("largest-distance-between-the-boundary") in moved.summary and "Volume: " in moved.summary, moved.summary
     assert 0 < abs(volumes(moved.mesh).sum() / volumes(ball).sum() - 1) < 0.02
     assert moved.history["boundary_swaps"][-1] > 0
     source, out = OUT / "ball.vtu", OUT / "ball_improved.vtu"
@@ -225,10 +225,10 @@ def test_metric():
     excess = total.imr.sum() - total.elements, tl.quality(mesh, ["imr"]).values["imr"].sum() - total.elements_before
     assert excess[0] < 0.6 * excess[1], excess
     assert total.smallest_angle >= total.smallest_angle_before and total.worst <= total.worst_before
-    refused("no metric 'x'", tl.improve, mesh, metric="x")
-    refused("neither better larger nor smaller", tl.improve, mesh, metric="size")
-    refused("depends on the orientation", tl.improve, mesh, metric="mu_shape_orientation")
-    refused("either an objective or a metric", tl.improve, mesh, metric="imr", objective="angles")
+    refused(wording("no-metric-x"), tl.improve, mesh, metric="x")
+    refused(wording("neither-better-larger-nor-smaller"), tl.improve, mesh, metric="size")
+    refused(wording("depends-on-the-orientation"), tl.improve, mesh, metric="mu_shape_orientation")
+    refused(wording("either-an-objective-or-a-metric"), tl.improve, mesh, metric="imr", objective="angles")
     source, out = OUT / "metric.vtu", OUT / "metric_improved.vtu"
     tl.write(mesh, source)
     run("improve", source, "-o", out, "--preset", "aggressive", "--metric", "rr")
@@ -281,7 +281,7 @@ def test_triangles():
             assert history["elements"][-1] == result.elements == result.mesh.GetNumberOfCells()
             assert history["face_removals"][-1] == 0 and history["edge_removals"][-1] > 0
             assert len(result.remaining.get("cell", ())) == history["below_target"][-1]
-            assert "Triangles: " in result.summary and "Smallest angle: " in result.summary
+            assert "Triangles: " in result.summary and wording("smallest-angle") in result.summary
             if preset == "aggressive":  # moved points keep their values, inserted ones interpolate
                 field = vtk_to_numpy(result.mesh.GetPointData().GetArray("field"))
                 assert np.isfinite(field).all() and len(field) == result.mesh.GetNumberOfPoints()
@@ -311,7 +311,7 @@ def test_surface():
     lined.SetLines(lines)
     lined.SetPolys(grid.GetCells())
     kept = tl.improve(lined, "swap only")
-    assert kept.history["edge_removals"][-1] == 0 and "1 lines beside the triangles" in kept.summary, kept.summary
+    assert kept.history["edge_removals"][-1] == 0 and wording("1-lines-beside-the-triangles") in kept.summary, kept.summary
     assert kept.original_cell.tolist() == [1, 2]
 
 
@@ -343,7 +343,7 @@ def test_refused():
         ("no point array 'x'", {"fixed": "x"}),
     ):
         refused(text, tl.improve, slivers(), **options)
-    refused("run Untangle Mesh first", tl.improve, tl.perturb(slivers(), tangle=0.05))
+    refused(wording("run-untangle-mesh-first"), tl.improve, tl.perturb(slivers(), tangle=0.05))
     for text, options in (
         ("feature_angle is 181", {"feature_angle": 181}),
         ("surface_angle is -1", {"surface_angle": -1}),
@@ -352,9 +352,9 @@ def test_refused():
         refused(text, tl.improve, sheet(), **options)
     quads = tl.from_arrays([[0, 0], [1, 0], [1, 1], [0, 1], [2, 0]], {
         "quadrilateral": [[0, 1, 2, 3]], "triangle": [[1, 4, 2]]})
-    refused("1 quadrilaterals: Improve Mesh takes linear triangles only; run Triangulate first", tl.improve, quads)
-    refused("run Untangle Mesh first", tl.improve, tl.perturb(sheet(), tangle=0.05))
-    refused("there is no such file", tl.improve, "absent.vtu")
+    refused(wording("1-quadrilaterals-improve-mesh-takes-linear-triangles"), tl.improve, quads)
+    refused(wording("run-untangle-mesh-first"), tl.improve, tl.perturb(sheet(), tangle=0.05))
+    refused(wording("there-is-no-such-file"), tl.improve, "absent.vtu")
 
 
 def test_unused_far_point():
@@ -372,7 +372,7 @@ def test_command():
     source, mesh, table = OUT / "slivers.vtu", OUT / "improved.vtu", OUT / "improved.csv"
     tl.write(slivers(), source)
     text = run("improve", source, "-o", mesh, "--csv", table, "--preset", "aggressive", "--regions", "region")
-    assert "Smallest dihedral angle: " in text, text
+    assert wording("smallest-dihedral-angle") in text, text
     expected = tl.improve(source, "aggressive", regions="region")
     assert (points(tl.read(mesh)) == points(expected.mesh)).all()
     rows = list(csv.DictReader(open(table, encoding="utf-8")))
@@ -389,12 +389,12 @@ def test_command():
     assert "Triangles: " in text and (points(tl.read(mesh)) == points(tl.improve(flat, "aggressive").mesh)).all()
     sized, plain = (tl.improve(flat, "aggressive", edge_length=length, smallest_count=0) for length in (1e-3, None))
     assert sized.history["contractions"][-1] == 0 < plain.history["contractions"][-1]  # no edge is as short
-    refused("is for tetrahedra", tl.improve, flat, boundary="on surface")
-    refused("objective is for tetrahedra", tl.improve, flat, metric="imr")
+    refused(wording("is-for-tetrahedra"), tl.improve, flat, boundary="on surface")
+    refused(wording("objective-is-for-tetrahedra"), tl.improve, flat, metric="imr")
     shaped, plain = (tl.improve(flat, "aggressive", then_best_shape=yes) for yes in (True, False))
     assert shaped.smallest_angle >= plain.smallest_angle and shaped.worst <= plain.worst
     assert shaped.imr.mean() < 1 + 0.95 * (plain.imr.mean() - 1), (shaped.imr.mean(), plain.imr.mean())
-    refused("objective is for tetrahedra", tl.improve, flat, objective="angles")
+    refused(wording("objective-is-for-tetrahedra"), tl.improve, flat, objective="angles")
     run("improve", source, "-o", mesh, "--objective", "angles", "--target-angle", "40", "--preset", "aggressive")
     angles = tl.improve(source, "aggressive", objective="angles", target_angle=40)
     assert (points(tl.read(mesh)) == points(angles.mesh)).all()
@@ -405,7 +405,7 @@ def test_command():
     shaped = tl.improve(source, then_best_shape=True, cell_transfer="conservative")
     assert (points(tl.read(mesh)) == points(shaped.mesh)).all()
     assert (points(shaped.mesh) != points(tl.improve(source).mesh)).any()
-    assert "invalid choice: 'x'" in run("improve", source, "-o", mesh, "--preset", "x", code=2)
+    assert wording("invalid-choice-x") in run("improve", source, "-o", mesh, "--preset", "x", code=2)
 
 
 run_tests(globals())

@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 
 from paraview import servermanager, simple
+from wording import wording
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
 STATE = str(Path(os.environ["TAUTLINE_TEST_DIR"], "reconnection.pvsm"))
@@ -26,7 +27,7 @@ best.UpdatePropertyInformation()
 assert best.SmallestAngleAfter > best.SmallestAngleBefore and best.WorstAfter < best.WorstBefore
 assert abs(best.CellData["min_angle"].GetRange()[0] - best.SmallestAngleAfter) < 1e-6
 assert abs(best.CellData["imr"].GetRange()[1] - best.WorstAfter) < 1e-6
-assert "Smallest dihedral angle: " in best.Summary, best.Summary
+assert wording("smallest-dihedral-angle") in best.Summary, best.Summary
 assert column(best, 1, "N elements")[-1] == best.ElementsAfter
 assert len(column(best, 2, "Cell") if best.Remaining else []) == best.Remaining
 
@@ -44,7 +45,7 @@ best.RegionArray = ["CELLS", "region"]
 best.UpdatePipeline()
 best.UpdatePropertyInformation()
 assert column(best, 1, "N moves")[-1] == 0 and column(best, 1, "N edge removals")[-1] > 0
-assert "the target of 20 degrees" in best.Summary, best.Summary
+assert wording("the-target-of-20-degrees") in best.Summary, best.Summary
 expected = best.CellData["min_angle"].GetRange()
 
 # cell data and average shape
@@ -71,8 +72,8 @@ named = ImproveMesh(Input=worse, Preset="Aggressive", Objective="Metric", Metric
 named.Boundary, named.SurfaceDistance = "Slide on smooth parts", 0.01
 named.UpdatePipeline()
 named.UpdatePropertyInformation()
-assert "Radius ratio of the worst tetrahedron: " in named.Summary, named.Summary
-assert 0 <= named.BoundaryDistance < 0.1 and "Largest distance between the boundary" in named.Summary, named.Summary
+assert wording("radius-ratio-of-the-worst-tetrahedron") in named.Summary, named.Summary
+assert 0 <= named.BoundaryDistance < 0.1 and wording("largest-distance-between-the-boundary") in named.Summary, named.Summary
 
 # points that stay
 fixed = simple.Calculator(worse, AttributeType="Point Data", ResultArrayName="stay", Function="1")

@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, shell
+from checks import DATA, OUT, refused, run_tests, shell, wording
 
 VOID = {"meta", "img", "br", "rect"}
 
@@ -68,8 +68,8 @@ def test_before():
     after = tl.untangle(before)
     html = tl.report(after, before=before, title="a & b")
     outline = Outline(html)
-    assert "<title>a &amp; b</title>" in html
-    assert "Before and after" in outline.headings and "Histogram before" in outline.headings
+    assert wording("title-a-amp-b-title") in html
+    assert wording("before-and-after") in outline.headings and wording("histogram-before") in outline.headings
     measured = [tl.quality(mesh).statistics["imr"] for mesh in (before, after)]
     expected = " to ".join(f"{statistics['worst']:.6g}" for statistics in measured)
     assert outline.rows["imr, worst"] == [expected], outline.rows["imr, worst"]
@@ -80,7 +80,7 @@ def test_before():
     assert first != second
     # Of other cells only the statistics are compared.
     html = tl.report(DATA / "plate.vtu", before=before)
-    assert "The meshes have different cells" in html and len(pictures(html)) == 2
+    assert wording("the-meshes-have-different-cells") in html and len(pictures(html)) == 2
 
 
 def test_shell():
@@ -96,9 +96,9 @@ def test_shell():
 
 
 def test_errors():
-    refused("no metric", tl.report, DATA / "plate.vtu", metrics="no such")
+    refused(wording("no-metric"), tl.report, DATA / "plate.vtu", metrics="no such")
     for mesh in (DATA / "plate.vtu", OUT / "no-such-mesh.vtu"):  # the name is checked first
-        refused("cannot be written", tl.report, mesh, Path("/no-such-folder/report.html"))
+        refused(wording("cannot-be-written"), tl.report, mesh, Path("/no-such-folder/report.html"))
 
 
 run_tests(globals())

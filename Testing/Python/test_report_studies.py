@@ -11,7 +11,7 @@ from html import escape
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, run_tests
+from checks import DATA, OUT, run_tests, wording
 from study_checks import Studies, refused_command
 from tautline import __main__ as command_line
 from tautline.studies import _common, _intersections, _inventory, _page, figures, names, peridynamics_local, toy
@@ -118,7 +118,7 @@ def test_report():
         assert found and all(escape(sentence) in page for sentence in found), study
         drawn = len(list((OUT / "all").glob("*/*.png")))
         assert page.count("data:image/png") == drawn and (drawn > 0 or not _common.pyplot), drawn
-    assert "Condition number by 1/h" in page
+    assert wording("condition-number-by-1-h") in page
     targets = set(re.findall(r" id='([^']+)'", page))
     links = set(re.findall(r"href='#([^']+)'", page))
     assert {"figure-3-2"} <= targets and {link for link in links if link not in targets} <= {
@@ -130,7 +130,7 @@ def test_report():
     toy.main = broken
     try:
         code, page = run_report(OUT / "all", "--studies", "toy")
-        assert code == 1 and "the reason &lt;why&gt;" in page
+        assert code == 1 and wording("the-reason-lt-why-gt") in page
     finally:
         toy.main = before
     code, page = run_report(OUT / "all", "--studies", "peridynamics_local", "--reuse")

@@ -11,7 +11,7 @@ from dataclasses import fields, is_dataclass
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, square
+from checks import DATA, OUT, refused, run_tests, square, wording
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 
 TANGLED, PLATE = DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
@@ -56,7 +56,7 @@ def test_notebook():
         assert png.startswith(b"\x89PNG") and len(png) > 5000 and legend in page, page[:500]
         assert "class=" not in page, "layout of a report that the notebook does not have"
     assert "<img" not in tl.metric_field(dimensions=(5, 4))._repr_html_()
-    assert "UntangleResult: vtkUnstructuredGrid" in tl.untangle(TANGLED)._repr_html_()
+    assert wording("untangleresult-vtkunstructuredgrid") in tl.untangle(TANGLED)._repr_html_()
 
 
 def test_copies():
@@ -115,13 +115,13 @@ def test_tables():
     rows = (OUT / "result.csv").read_text().splitlines()
     assert rows[0].split(",") == list(result.history) and len(rows) == len(result.history["objective"]) + 1
     assert tl.quality(PLATE, ["imr", "rr"]).table()[1]["metric"] == "rr"
-    refused("has no table", tl.perturb(PLATE).to_csv, OUT / "none.csv")
+    refused(wording("has-no-table"), tl.perturb(PLATE).to_csv, OUT / "none.csv")
     for result in some_results():
         json.loads(result.to_json())
     try:
         import pandas
     except ImportError:
-        refused("pandas is not installed", result.to_pandas)
+        refused(wording("pandas-is-not-installed"), result.to_pandas)
         return
     frame = tl.optimize(PLATE).to_pandas()
     assert isinstance(frame, pandas.DataFrame) and list(frame["iteration"]) == list(range(len(frame)))

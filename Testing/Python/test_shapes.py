@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import OUT, refused, run_tests, shell
+from checks import OUT, refused, run_tests, shell, wording
 from study_checks import Studies
 from tautline.studies import _silhouettes, shapes
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -44,9 +44,9 @@ def test_silhouette():
     y, x = np.nonzero(images[2])
     assert np.allclose(shape.centre, [x.mean(), y.mean()], atol=0.15), (shape.centre, x.mean(), y.mean())
     assert shape.components == 1 and shape.holes == 0
-    refused("one value", tl.silhouette, np.ones((9, 9)))
+    refused(wording("one-value"), tl.silhouette, np.ones((9, 9)))
     refused("spacing", tl.silhouette, images[0], 0)
-    refused("no such file", tl.silhouette, "nowhere.png")
+    refused(wording("no-such-file"), tl.silhouette, "nowhere.png")
     refused("axes", tl.silhouette, np.ones(9))
     refused("foreground", tl.silhouette, images[0], foreground="pink")
 
@@ -67,9 +67,9 @@ def test_match():
     assert plain.energy < like.energy
     one, two = (tl.match(images[2], images[3], threads=threads, grid=(12, 12)) for threads in (1, 2))
     assert one.energy == two.energy and (one.points == two.points).all()
-    refused("no option 'c'", tl.match, images[2], images[3], c=1)
+    refused(wording("no-option-c"), tl.match, images[2], images[3], c=1)
     refused("finite", tl.match, images[2], images[3], a=float("nan"))
-    refused("too small", tl.match, images[2], images[3], grid=(1, 1))
+    refused(wording("too-small"), tl.match, images[2], images[3], grid=(1, 1))
 
 
 def test_retrieval():
@@ -92,12 +92,12 @@ def test_retrieval():
     assert 12 < known.sum() < 144 and (some.distances[known] == found.distances[known]).all()
     assert f"{known.sum() - 12} of 132 pairs were matched" in some.summary, some.summary
     passed = tl.retrieval(images, labels, best=2, neighbors=3)
-    assert passed.rate >= 80 and "after diffusion" in passed.summary, passed.summary
+    assert passed.rate >= 80 and wording("after-diffusion") in passed.summary, passed.summary
     assert passed.distances.min() == 0 and passed.distances.max() <= 1
     refused("shortlist", tl.retrieval, images, labels, shortlist=-1)
     refused("neighbors", tl.retrieval, images, labels, neighbors=float("nan"))
     refused("SheetSize", tl.retrieval, images, labels, sheet_size=0)
-    refused("labels for", tl.retrieval, images, labels[:3])
+    refused(wording("labels-for"), tl.retrieval, images, labels[:3])
     refused("setting", tl.retrieval, images, labels, setting="best")
 
 
@@ -116,17 +116,17 @@ def test_commands():
     told = run("match", folder / "2.png", folder / "3.png", "--locations", "contour", "-o", "found.vtu")
     assert "Energy" in told and (OUTPUT / "found.vtu").is_file()
     told = run("retrieval", folder.parent, "--best", 1, "--csv", "best.csv", "--sheet", "sheet.png", "--neighbors", 0)
-    assert "6 shapes of 3 classes" in told, told
+    assert wording("6-shapes-of-3-classes") in told, told
     expected = tl.retrieval(folder.parent, best=1).sheet
     written = tl._shapes.as_image(OUTPUT / "sheet.png")
     pixels = vtk_to_numpy(written.GetPointData().GetScalars()).reshape(expected.shape)
     assert np.array_equal(pixels[::-1], expected)
-    assert "no directory" in run("retrieval", folder.parent, "--sheet", "nowhere/sheet.png", code=1)
+    assert wording("no-directory") in run("retrieval", folder.parent, "--sheet", "nowhere/sheet.png", code=1)
     rows = list(csv.DictReader(open(OUTPUT / "best.csv")))
     assert len(rows) == 6 and rows[0]["QueryLabel"] == "disc"
-    assert "no such file" in run("match", "a.png", "b.png", code=1)
+    assert wording("no-such-file") in run("match", "a.png", "b.png", code=1)
     assert "shapes" in run("study", "list")
-    assert "no study 'x'" in run("study", "x", code=1)
+    assert wording("no-study-x") in run("study", "x", code=1)
 
 
 def test_study():
@@ -136,7 +136,7 @@ def test_study():
     rows = {row["method"]: row for row in studies.rows("shapes", "table_5_1")}
     assert rows["dissertation"]["dissertation"] == "72.2" and rows["felzenszwalb"]["dissertation"] == "64.4"
     assert 100 > float(rows["dissertation"]["rate"]) > float(rows["felzenszwalb"]["rate"]) > 30, rows
-    assert "synthetic silhouettes" in told
+    assert wording("synthetic-silhouettes") in told
     assert "labels.csv" in run("study", "shapes", "--data", "nowhere", code=1)
     function, (rates, halves, _, _), _ = studies.calls["shapes"][0]
     high = {**rates, **shapes.PRINTED, "highest": 99.0, "diffusion": 100.0}
@@ -157,7 +157,7 @@ def test_unseen_study():
         write_png(folder / f"{label}-{i}.png", image)
     studies = Studies(OUTPUT / "study_unseen")
     told = studies.run("shapes", "--data", str(folder), "--unseen", "--per-class", "3")
-    assert "9 silhouettes of 3 classes" in told, told
+    assert wording("9-silhouettes-of-3-classes") in told, told
     function, (rates, seconds, count, real), _ = studies.calls["shapes"][0]
     large = [(function, (rates, time, 1400, True), {}) for time in (1.0, 1e6)]
     studies.check("shapes", 3, (), {"unseen": 2}, large)

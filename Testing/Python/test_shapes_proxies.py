@@ -6,6 +6,7 @@ import subprocess
 from pathlib import Path
 
 from paraview import simple as pv
+from wording import wording
 
 DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
 pv.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], remote=False, ns=globals())
@@ -44,7 +45,7 @@ shapes = SilhouetteSetReader(FileName=str(DATA / "silhouettes.csv"))  # noqa: F8
 found = ShapeRetrieval(Input=shapes, BestMatches=1)  # noqa: F821
 found.UpdatePipeline()
 found.UpdatePropertyInformation()
-assert "4 shapes of 2 classes" in found.Result, found.Result
+assert wording("4-shapes-of-2-classes") in found.Result, found.Result
 table = found.GetClientSideObject().GetOutputDataObject(2)
 assert table.GetNumberOfRows() == 1, table
 distances = pv.servermanager.Fetch(found)

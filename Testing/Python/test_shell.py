@@ -10,7 +10,7 @@ import subprocess
 import sys
 
 import tautline as tl
-from checks import DATA, OUT, points, run_tests, shell, square
+from checks import DATA, OUT, points, run_tests, shell, square, wording
 from tautline.__main__ import _parser
 
 FOLDER = OUT / "shell"
@@ -71,7 +71,7 @@ do = "untangle"
     assert len(COMMANDS) >= 20
     for command in COMMANDS:
         text = shell(command, "--help")
-        assert "exit codes: see" in text and "--json" in text and "--quiet" in text, text
+        assert wording("exit-codes-see") in text and "--json" in text and "--quiet" in text, text
         example = re.search(r"^example:\n  python3 -m tautline (.*)$", text, re.MULTILINE)[1]
         done = subprocess.run(f"{sys.executable} -m tautline {example}", shell=True, cwd=FOLDER, capture_output=True,
                               text=True)  # fmt: skip
@@ -117,7 +117,7 @@ def test_pipes():
     (FOLDER / "piped.vtu").write_bytes(content)
     valid = tl.untangle(FOLDER / "tangled.vtu")
     assert (points(tl.read(FOLDER / "piped.vtu")) == points(tl.optimize(valid).mesh)).all()
-    assert "All elements are valid" in errors and "Inverse mean ratio: mean" in errors, errors
+    assert wording("all-elements-are-valid-2") in errors and wording("inverse-mean-ratio-mean-2") in errors, errors
     content, errors = piped(("convert", "plate.vtu", "-"), ("quality", "-", "--json"))
     assert json.loads(content)["inverted"] == 0 and errors.startswith("1190 points"), errors
     content, _ = piped(("quality", "plate.vtu", "--quiet", "--csv", "-"))
@@ -128,10 +128,10 @@ def test_pipes():
     tl.write(square(3), FOLDER / "b.off")
     content, _ = piped(("convert", "b.off", "-"), ("convert", "-", "back.vtu"))
     assert tl.read(FOLDER / "back.vtu").GetNumberOfCells() == tl.read(FOLDER / "b.off").GetNumberOfCells()
-    assert "the file is empty" in piped(("quality", "-"), code=1)[1]
-    assert "would all write to the standard output" in piped(("perturb", "plate.vtu", "-o", "-", "--json"), code=1)[1]
-    assert "cannot both be the standard input" in piped(("compare", "-", "-"), code=1)[1]
-    assert "cannot hold" in piped(("metric-field", "-o", "f.vtp"), code=1)[1]
+    assert wording("the-file-is-empty") in piped(("quality", "-"), code=1)[1]
+    assert wording("would-all-write-to-the-standard-output") in piped(("perturb", "plate.vtu", "-o", "-", "--json"), code=1)[1]
+    assert wording("cannot-both-be-the-standard-input") in piped(("compare", "-", "-"), code=1)[1]
+    assert wording("cannot-hold") in piped(("metric-field", "-o", "f.vtp"), code=1)[1]
 
 
 def test_progress_bar():
@@ -149,7 +149,7 @@ def test_progress_bar():
         tl.perturb(FOLDER / "plate.vtu", progress=3)
         raise AssertionError("progress=3 was accepted")
     except tl.Error as error:
-        assert "True or a function is expected" in str(error)
+        assert wording("true-or-a-function-is-expected") in str(error)
 
 
 run_tests(globals())

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, SKIPPED, points, refused, run_tests, shell
+from checks import DATA, OUT, SKIPPED, points, refused, run_tests, shell, wording
 
 FOLDER = OUT / "steps"
 FOLDER.mkdir(exist_ok=True)
@@ -60,7 +60,7 @@ def test_run():
                                                           "WarpResult"]  # fmt: skip
     assert not result.passed and result.results[0].verdict == "failed"
     assert result.files == [str(FOLDER / "report.html"), str(FOLDER / "better.vtu")]
-    assert "Before and after" in (FOLDER / "report.html").read_text()
+    assert wording("before-and-after") in (FOLDER / "report.html").read_text()
     assert (points(tl.read(FOLDER / "better.vtu")) == points(bent.mesh)).all()
     lines = result.summary.splitlines()
     assert len(lines) == 7 and lines[2] == f"3 untangle: {valid.summary.splitlines()[0]}", lines
@@ -69,7 +69,7 @@ def test_run():
 def test_stop():
     (FOLDER / "better.vtu").unlink(missing_ok=True)
     stopped = tl.run_steps(with_steps(STEPS.replace("stop = false", "stop = true")))
-    assert not stopped.passed and len(stopped.results) == 1 and "were not run" in stopped.summary
+    assert not stopped.passed and len(stopped.results) == 1 and wording("were-not-run") in stopped.summary
     assert not (FOLDER / "better.vtu").exists()
     assert tl.run_steps(with_steps(STEPS), check_only=True) is None and not (FOLDER / "better.vtu").exists()
 
@@ -95,12 +95,12 @@ def test_checks():
     wrong("no writer for '.xyz'", 'do = "write"\nfile = "a.xyz"')
     wrong("there is no directory", 'do = "write"\nfile = "absent/a.vtu"')
     wrong("steps.toml: ", "do = ")
-    refused("there are no steps", tl.run_steps, with_steps(""))
-    refused("there is no key of the file of steps 'steps'; did you mean 'step'?", tl.run_steps, {"steps": []})
-    refused("the first step has to be read", tl.run_steps, {"step": [{"do": "untangle"}]})
-    refused("there is no such file", tl.run_steps, FOLDER / "absent.toml")
+    refused(wording("there-are-no-steps"), tl.run_steps, with_steps(""))
+    refused(wording("there-is-no-key-of-the-file"), tl.run_steps, {"steps": []})
+    refused(wording("the-first-step-has-to-be-read"), tl.run_steps, {"step": [{"do": "untangle"}]})
+    refused(wording("there-is-no-such-file"), tl.run_steps, FOLDER / "absent.toml")
     # What only the run can find has the number of the step, too.
-    refused("step 2, warp: nothing is given", tl.run_steps,
+    refused(wording("step-2-warp-nothing-is-given"), tl.run_steps,
             {"step": [{"do": "read", "file": str(DATA / "plate.vtu")}, {"do": "warp"}]})  # fmt: skip
     # Lists are taken where a function takes them.
     read = {"do": "read", "file": str(DATA / "plate.vtu")}
@@ -117,11 +117,11 @@ def test_checks():
 def test_shell():
     file = with_steps(STEPS)
     text = shell("run", file, code=3)
-    assert "3 untangle: All elements are valid" in text and str(FOLDER / "better.vtu") in text, text
+    assert wording("3-untangle-all-elements-are-valid") in text and str(FOLDER / "better.vtu") in text, text
     assert shell("run", file, "--check") == "the steps are correct\n"
     facts = json.loads(shell("run", file, "--json", code=3))
     assert facts["results"][1]["inverted_before"] == 41 and not facts["passed"], facts.keys()
-    assert "did you mean 'step'" in shell("run", with_steps("[[stp]]\n"), code=1)
+    assert wording("did-you-mean-step") in shell("run", with_steps("[[stp]]\n"), code=1)
 
 
 if sys.version_info < (3, 11):

@@ -8,7 +8,7 @@ import sys
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests
+from checks import DATA, OUT, refused, run_tests, wording
 
 LIBRARY = sys.argv[1]
 PLATE, BRACKET = DATA / "plate.vtu", DATA / "bracket.vtu"
@@ -77,8 +77,8 @@ def test_replaced_and_removed():
                        np.zeros(len(corners)))  # fmt: skip
     assert (tl.quality(PLATE, "constant").values["constant"] == 0).all(), "what is not finite becomes 0"
     tl.unregister_metric("constant")
-    refused("There is no metric 'constant'", tl.quality, PLATE, "constant")
-    refused("no metric 'constant' was registered", tl.unregister_metric, "constant")
+    refused(wording("there-is-no-metric-constant"), tl.quality, PLATE, "constant")
+    refused(wording("no-metric-constant-was-registered"), tl.unregister_metric, "constant")
 
 
 def test_only_some_cells():
@@ -92,29 +92,29 @@ def test_refused():
         raise KeyError("no such thing")
 
     ones = lambda corners, cell: np.ones(len(corners))  # noqa: E731
-    refused("there is a metric 'imr'", tl.register_metric, "imr", ones)
-    refused("cannot be the name", tl.register_metric, "My metric", ones)
-    refused("a function is expected", tl.register_metric, "mine", 3)
-    refused("KeyError: 'no such thing'", tl.register_metric, "mine", fails)
-    refused("values of shape (3,); (2,) is expected", tl.register_metric, "mine", lambda p, cell: np.ones(3))
-    refused("could not convert", tl.register_metric, "mine", lambda p, cell: ["a"] * len(p))
-    refused("not finite on a valid triangle", tl.register_metric, "mine", lambda p, cell: np.full(len(p), np.inf))
-    refused("did you mean 'triangle'", tl.register_metric, "mine", ones, cell_types=["triangel"])
-    refused("did you mean 'larger is better'", tl.register_metric, "mine", ones, direction="larger is beter")
-    refused("depends on the scale", tl.register_metric, "mine", longest, scale_invariant=True)
-    refused("set rotation_invariant to False", tl.register_metric, "mine", lambda p, cell: p[:, 0, 0])
+    refused(wording("there-is-a-metric-imr"), tl.register_metric, "imr", ones)
+    refused(wording("cannot-be-the-name"), tl.register_metric, "My metric", ones)
+    refused(wording("a-function-is-expected"), tl.register_metric, "mine", 3)
+    refused(wording("keyerror-no-such-thing"), tl.register_metric, "mine", fails)
+    refused(wording("values-of-shape-3-2-is-expected"), tl.register_metric, "mine", lambda p, cell: np.ones(3))
+    refused(wording("could-not-convert"), tl.register_metric, "mine", lambda p, cell: ["a"] * len(p))
+    refused(wording("not-finite-on-a-valid-triangle"), tl.register_metric, "mine", lambda p, cell: np.full(len(p), np.inf))
+    refused(wording("did-you-mean-triangle"), tl.register_metric, "mine", ones, cell_types=["triangel"])
+    refused(wording("did-you-mean-larger-is-better"), tl.register_metric, "mine", ones, direction="larger is beter")
+    refused(wording("depends-on-the-scale"), tl.register_metric, "mine", longest, scale_invariant=True)
+    refused(wording("set-rotation-invariant-to-false"), tl.register_metric, "mine", lambda p, cell: p[:, 0, 0])
     assert not any(facts["name"] == "mine" for facts in tl.metrics())
     # A function that fails later: an error of the filter, and the next mesh is measured.
     wrong = {"now": False}
     tl.register_metric("sometimes", lambda p, cell: p[:, 0, 5] if wrong["now"] else np.ones(len(p)))
     wrong["now"] = True
-    refused("The metric sometimes failed on", tl.quality, PLATE, "sometimes")
+    refused(wording("the-metric-sometimes-failed-on"), tl.quality, PLATE, "sometimes")
     wrong["now"] = False
     assert (tl.quality(PLATE, "sometimes").values["sometimes"] == 1).all()
     # It cannot be optimized.
     if hasattr(tl, "optimize"):
-        refused("has no derivatives", tl.optimize, PLATE, objectives=["sometimes"])
-    refused("cannot be loaded", tl.load_metrics, "/nonexistent.so")
+        refused(wording("has-no-derivatives"), tl.optimize, PLATE, objectives=["sometimes"])
+    refused(wording("cannot-be-loaded"), tl.load_metrics, "/nonexistent.so")
 
 
 def shell(*arguments, library=LIBRARY):
@@ -131,9 +131,9 @@ def test_library():
     assert measured.returncode == 0, measured.stderr
     assert "my_distortion" in measured.stdout
     wrong = shell("quality", str(PLATE), "--metrics", "my_distortion", library="/nonexistent.so")
-    assert wrong.returncode != 0 and "TAUTLINE_METRICS" in wrong.stderr and "cannot be loaded" in wrong.stderr, wrong
+    assert wrong.returncode != 0 and "TAUTLINE_METRICS" in wrong.stderr and wording("cannot-be-loaded") in wrong.stderr, wrong
     wrong = shell("metrics", library="/nonexistent.so")
-    assert wrong.returncode != 0 and "cannot be loaded" in wrong.stderr
+    assert wrong.returncode != 0 and wording("cannot-be-loaded") in wrong.stderr
 
     assert tl.load_metrics(LIBRARY) == ["my_distortion", "longest_edge"]
     result = tl.quality(BRACKET, ["my_distortion", "imr", "longest_edge"])

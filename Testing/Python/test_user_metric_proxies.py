@@ -3,6 +3,7 @@
 
 import os
 import sys
+from wording import wording
 
 os.environ["TAUTLINE_METRICS"] = sys.argv[1]
 
@@ -31,7 +32,7 @@ sheared = simple.WarpByVector(
 )
 sheared.Vectors = ["POINTS", "d"]
 optimizer = OptimizeMesh(Input=sheared)  # noqa: F821
-assert "My distortion" in optimizer.GetProperty("Metric1").GetAvailable()
+assert wording("my-distortion") in optimizer.GetProperty("Metric1").GetAvailable()
 worst = optimizer.GetProperty("WorstElementBy").GetAvailable()
 assert worst[0] == "Automatic" and worst[1] == "Inverse mean ratio" and len(worst) == 42, worst
 optimizer.Preset = "Custom"
@@ -54,7 +55,7 @@ assert after[0] < before[0] and after[1] <= before[1], (before, after)
 # One that Python registers now is in the menus of filters made afterwards; its number is that of its name.
 tl.register_metric("height", lambda corners, cell: corners[:, :, 2].mean(axis=1), label="Height of the centre",
                    rotation_invariant=False)  # fmt: skip
-assert "Height of the centre" not in quality.GetProperty("Metrics").GetAvailable()
+assert "height of the centre" not in quality.GetProperty("Metrics").GetAvailable()
 another = ElementQuality(Input=cubes)  # noqa: F821
 another.Metrics = ["Height of the centre"]
 another.UpdatePipeline()
@@ -68,5 +69,5 @@ with open(state, encoding="utf-8") as file:
 simple.ResetSession()
 simple.LoadState(state)
 loaded = [s for (name, _), s in simple.GetSources().items() if s.GetXMLName() == "ElementQuality"]
-assert any("Height of the centre" in s.GetProperty("Metrics").GetData() for s in loaded), loaded
+assert any("height of the centre" in s.GetProperty("Metrics").GetData() for s in loaded), loaded
 print("ok")

@@ -6,6 +6,7 @@ Over time steps, and to targets in other pieces; no rank gets the whole mesh.
 
 import numpy as np
 from on_ranks import run_with_output
+from wording import wording
 
 CLOSE = 1e-10
 MATCHED = {
@@ -37,7 +38,7 @@ for ranks in (1, 2, 3, 4):
         expected = one[name if name == "after" else ", ".join([*name.split(", ")[:-1], "slabs"])]
         far = np.abs(np.asarray(case["points"]) - np.asarray(expected["points"])).max()
         assert far <= CLOSE, (ranks, name, far)
-        assert case["inverted"] == 0 and "put together" not in case["summary"], (ranks, name, case["summary"])
+        assert case["inverted"] == 0 and wording("put-together") not in case["summary"], (ranks, name, case["summary"])
         how = MATCHED.get(name.split(",")[0], "")
         assert how in case["summary"], (ranks, name, case["summary"])
         farthest = max(farthest, far)

@@ -160,7 +160,8 @@ void testGathered(const char* name, vtkMPIController* controller, const MeshData
   vtkMultiProcessController::SetGlobalController(nullptr);
   const std::vector<double> expected = pointsOf(whole, all, setFor(all), serial.Get(), true);
   vtkMultiProcessController::SetGlobalController(controller);
-  TAUTLINE_CHECK(std::string(serial->GetSummary()).find("put together") == std::string::npos);
+  TAUTLINE_CHECK(
+    std::string(serial->GetSummary()).find(wording("put-together")) == std::string::npos);
   double moved = 0;
   for (std::size_t i = 0; i < expected.size(); ++i)
   {

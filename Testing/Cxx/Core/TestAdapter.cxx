@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Data sets of VTK through MeshAdapter: what is copied, what becomes of the cells, the messages.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "MeshAdapter.h"
@@ -106,7 +106,7 @@ void testRelatedTypes()
   TAUTLINE_CHECK(!contains(adapter.notice(), "vtkVertex")); // no quality is expected of it
   TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkPolygon"));
   TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkTriangleStrip"));
-  TAUTLINE_CHECK(contains(adapter.notice(), "Run Tetrahedralize first"));
+  TAUTLINE_CHECK(contains(adapter.notice(), wording("run-tetrahedralize-first")));
 }
 
 //------------------------------------------------------------------------------
@@ -137,7 +137,7 @@ void testPolyData()
     TAUTLINE_CHECK_EQUAL(values[i], triangle ? 0.5 : 0.0);
   }
   TAUTLINE_CHECK(all.mesh().dimension() == Dimension::Planar);
-  TAUTLINE_CHECK(contains(all.notice(), "Not measured: 1 vtkTriangleStrip."));
+  TAUTLINE_CHECK(contains(all.notice(), wording("not-measured-1-vtktrianglestrip")));
 }
 
 //------------------------------------------------------------------------------
@@ -247,7 +247,7 @@ void testNotices()
   MeshData data = blockMesh(CellType::Quadrilateral, 2, 2, 0);
   data.setPoint(4, { std::nan(""), 0, 0 });
   const auto broken = toGrid(data);
-  TAUTLINE_CHECK(contains(MeshAdapter(broken).notice(), "1 points have a NaN"));
+  TAUTLINE_CHECK(contains(MeshAdapter(broken).notice(), wording("1-points-have-a-nan")));
 
   const auto grid = toGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0));
   vtkNew<vtkUnsignedCharArray> ghosts;
@@ -300,15 +300,14 @@ void testMakePoints()
 }
 }
 
-int TestAdapter(int, char*[])
+TAUTLINE_TEST(TestAdapter)
 {
-  testUnstructuredGrid();
-  testRelatedTypes();
-  testPolyData();
-  testStructured();
-  testEmpty();
-  testNotices();
-  testDescription();
-  testMakePoints();
-  return exitCode();
+  TAUTLINE_RUN(testUnstructuredGrid());
+  TAUTLINE_RUN(testRelatedTypes());
+  TAUTLINE_RUN(testPolyData());
+  TAUTLINE_RUN(testStructured());
+  TAUTLINE_RUN(testEmpty());
+  TAUTLINE_RUN(testNotices());
+  TAUTLINE_RUN(testDescription());
+  TAUTLINE_RUN(testMakePoints());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The small tools of Core: disjoint sets, Cholesky factors, sums of vectors, the memory of L-BFGS,
 // the stopwatch.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 
 #include "tautline/Core/LimitedMemory.h"
@@ -182,16 +182,15 @@ void testStopwatch()
 }
 }
 
-int TestAlgebra(int, char*[])
+TAUTLINE_TEST(TestAlgebra)
 {
-  testUnionFind();
-  testCholesky<1, CholeskyDiagonal::Root>();
-  testCholesky<3, CholeskyDiagonal::Root>();
-  testCholesky<2, CholeskyDiagonal::InverseRoot>();
-  testCholesky<3, CholeskyDiagonal::InverseRoot>();
-  testCholesky<6, CholeskyDiagonal::InverseRoot>();
-  testSums();
-  testLimitedMemory();
-  testStopwatch();
-  return exitCode();
+  TAUTLINE_RUN(testUnionFind());
+  TAUTLINE_RUN(testCholesky<1, CholeskyDiagonal::Root>());
+  TAUTLINE_RUN(testCholesky<3, CholeskyDiagonal::Root>());
+  TAUTLINE_RUN(testCholesky<2, CholeskyDiagonal::InverseRoot>());
+  TAUTLINE_RUN(testCholesky<3, CholeskyDiagonal::InverseRoot>());
+  TAUTLINE_RUN(testCholesky<6, CholeskyDiagonal::InverseRoot>());
+  TAUTLINE_RUN(testSums());
+  TAUTLINE_RUN(testLimitedMemory());
+  TAUTLINE_RUN(testStopwatch());
 }

@@ -3,7 +3,7 @@
 // whole mesh on one process, also where pieces are inverted; a block that is wrong on one process
 // is an error on all, and none waits for another; blocks with a seam between them are one mesh of
 // the solvers, whichever process has them.
-#include "Check.h"
+#include "Registry.h"
 #include "ThreadRanks.h"
 #include "VtkMeshes.h"
 
@@ -389,7 +389,8 @@ void compareBlocks(const char* name, const std::vector<MeshData>& meshes, bool j
   update(serial, [](int, Index) { return true; });
   vtkMultiProcessController::SetGlobalController(controller);
   const auto expected = solutionOf(serial);
-  const bool one = std::string(serial->GetSummary()).find("are one mesh") != std::string::npos;
+  const bool one =
+    std::string(serial->GetSummary()).find(wording("are-one-mesh")) != std::string::npos;
   TAUTLINE_CHECK_EQUAL(one, joined);
   double largest = 0;
   for (const auto& [place, value] : expected)
@@ -417,7 +418,7 @@ void compareBlocks(const char* name, const std::vector<MeshData>& meshes, bool j
         TAUTLINE_CHECK_NEAR(value, expected.at(place), 1e-8 * largest);
       }
       const std::string summary = filter->GetSummary();
-      TAUTLINE_CHECK_EQUAL(summary.find("are one mesh") != std::string::npos, joined);
+      TAUTLINE_CHECK_EQUAL(summary.find(wording("are-one-mesh")) != std::string::npos, joined);
     }
   }
 }
@@ -462,16 +463,15 @@ void testSeams(vtkMultiProcessController* controller)
 }
 
 //------------------------------------------------------------------------------
-int TestBlockRanks(int argc, char* argv[])
+TAUTLINE_TEST(TestBlockRanks)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
   const int rank = controller->GetLocalProcessId(), ranks = controller->GetNumberOfProcesses();
-  testQuality(rank, ranks);
-  testWrongBlocks(rank, ranks);
-  testSeams(controller);
+  TAUTLINE_RUN(testQuality(rank, ranks));
+  TAUTLINE_RUN(testWrongBlocks(rank, ranks));
+  TAUTLINE_RUN(testSeams(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

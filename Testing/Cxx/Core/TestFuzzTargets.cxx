@@ -2,7 +2,7 @@
 // The targets of the fuzzers on their corpus, which holds every input that once failed, and on
 // seeded mutations of it for TAUTLINE_FUZZ_SECONDS (0.3 by default) each.
 
-#include "Check.h"
+#include "Registry.h"
 #include "Mutator.h"
 
 #include "vtkObject.h"
@@ -11,7 +11,7 @@
 
 using namespace tautline;
 
-int TestFuzzTargets(int, char* argv[])
+TAUTLINE_TEST(TestFuzzTargets)
 {
   const std::string folder = std::string(argv[2]) + "/fuzz-targets";
   std::filesystem::create_directories(folder);
@@ -37,5 +37,4 @@ int TestFuzzTargets(int, char* argv[])
       break;
     }
   }
-  return exitCode();
 }

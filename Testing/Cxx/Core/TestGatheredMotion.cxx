@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What Optimize Mesh gathers on the first process: the points are those of one process, the summary
 // states the reason on all processes, and what one process refuses all refuse.
+#include "Registry.h"
 #include "MotionRanks.h"
 #include "RankMesh.h"
 #include "Surfaces.h"
@@ -190,7 +191,7 @@ void testNotFinite(vtkMPIController* controller)
     }
     return grid;
   };
-  testStated("has a coordinate that is not finite", controller, change, true);
+  testStated(wording("has-a-coordinate-that-is-not-finite"), controller, change, true);
   const MeshData whole = block();
   const auto pointsOf = [&](const RankPart& part)
   {
@@ -198,7 +199,7 @@ void testNotFinite(vtkMPIController* controller)
     filter->SetInputDataObject(0, change(part));
     filter->Update();
     TAUTLINE_CHECK(
-      std::string(filter->GetSummary()).find("1 points have a NaN") != std::string::npos);
+      std::string(filter->GetSummary()).find(wording("1-points-have-a-nan")) != std::string::npos);
     TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 26); // of 3 x 3 x 3
     std::vector<double> points(whole.points.size(), HUGE_VAL);
     auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
@@ -246,7 +247,7 @@ void testErrors(vtkMPIController* controller)
 {
   const bool last = controller->GetLocalProcessId() == controller->GetNumberOfProcesses() - 1;
   testStated(
-    "there are none: run Generate Global Ids first.", controller,
+    wording("there-are-none-run-generate-global-ids"), controller,
     [=](const RankPart& part)
     {
       auto grid = numberedGridOf(part);
@@ -255,7 +256,7 @@ void testErrors(vtkMPIController* controller)
     },
     false);
   testRefused(
-    "Points at different places have the global id", controller,
+    wording("points-at-different-places-have-the-global"), controller,
     [=](const RankPart& part)
     {
       auto grid = numberedGridOf(part);
@@ -265,10 +266,10 @@ void testErrors(vtkMPIController* controller)
     },
     false);
   testRefused(
-    "cells of quadratic or higher order", controller,
+    wording("cells-of-quadratic-or-higher-order"), controller,
     [=](const RankPart& part) { return last ? toGrid(quadratic()) : numberedGridOf(part); }, true);
   testRefused(
-    "are implicit and cannot move", controller,
+    wording("are-implicit-and-cannot-move"), controller,
     [=](const RankPart& part) -> vtkSmartPointer<vtkDataObject>
     {
       if (!last)
@@ -284,16 +285,15 @@ void testErrors(vtkMPIController* controller)
 }
 
 //------------------------------------------------------------------------------
-int TestGatheredMotion(int argc, char* argv[])
+TAUTLINE_TEST(TestGatheredMotion)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
-  testSettings(controller);
-  testPieces(controller);
-  testNotFinite(controller);
-  testErrors(controller);
+  TAUTLINE_RUN(testSettings(controller));
+  TAUTLINE_RUN(testPieces(controller));
+  TAUTLINE_RUN(testNotFinite(controller));
+  TAUTLINE_RUN(testErrors(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

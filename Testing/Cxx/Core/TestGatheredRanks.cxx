@@ -2,7 +2,7 @@
 // Filters that gather their mesh on the first process: pieces of it on several processes, blocks,
 // in partitions, on another process than the first; what is selected of them; results, summary and
 // numbers on all processes; errors on all. Python-parallel-filters compares values.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Shapes/ShapeRetrieval.h"
@@ -160,7 +160,7 @@ void testFilter(const char* name, const MeshData& whole, bool stays, const Input
   }
   input(filter.Get(), wrong.Get());
   filter->Update();
-  TAUTLINE_CHECK(messages.has("In process 1"));
+  TAUTLINE_CHECK(messages.has(wording("in-process-1")));
   TAUTLINE_CHECK_EQUAL(cellsOf(filter), 0);
   messages.clear();
   input(filter.Get(), part(whole, rank(), ranks()));
@@ -210,7 +210,8 @@ void testNumbers()
   filter->SetInputData(part(square(), rank(), ranks()));
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 25);
-  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("of 25 movable") != std::string::npos);
+  TAUTLINE_CHECK(
+    std::string(filter->GetSummary()).find(wording("of-25-movable")) != std::string::npos);
   vtkNew<vtkMeshImprover> improver;
   improver->SetInputData(part(cube(), rank(), ranks()));
   improver->Update();
@@ -344,7 +345,7 @@ void testUpstream()
   {
     Messages messages(filter);
     filter->Update();
-    TAUTLINE_CHECK(messages.has("In process 1: An input could not be computed"));
+    TAUTLINE_CHECK(messages.has(wording("in-process-1-an-input-could-not")));
     TAUTLINE_CHECK_EQUAL(cellsOf(filter), 0);
   }
   source->Fails = false;
@@ -559,26 +560,25 @@ void testMeshers()
 }
 
 //------------------------------------------------------------------------------
-int TestGatheredRanks(int argc, char* argv[])
+TAUTLINE_TEST(TestGatheredRanks)
 {
   vtkNew<vtkMPIController> mpi;
   mpi->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(mpi);
   if (ranks() > 1)
   {
-    testMeshes();
-    testNumbers();
-    testBlocks();
-    testSelection();
-    testUpstream();
-    testShapes();
-    testRetrieval();
-    testNotJoined();
+    TAUTLINE_RUN(testMeshes());
+    TAUTLINE_RUN(testNumbers());
+    TAUTLINE_RUN(testBlocks());
+    TAUTLINE_RUN(testSelection());
+    TAUTLINE_RUN(testUpstream());
+    TAUTLINE_RUN(testShapes());
+    TAUTLINE_RUN(testRetrieval());
+    TAUTLINE_RUN(testNotJoined());
 #ifdef TAUTLINE_MESHING
-    testMeshers();
+    TAUTLINE_RUN(testMeshers());
 #endif
   }
   vtkMultiProcessController::SetGlobalController(nullptr);
   mpi->Finalize();
-  return exitCode();
 }

@@ -3,7 +3,7 @@
 // loop, an iteration and a factorization of a linear solver end, filters end on abort and at the
 // time limit, which blocks share.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "Systems.h"
 #include "VtkMeshes.h"
 
@@ -213,7 +213,7 @@ void testAbort()
   {
     const Messages messages(filter);
     filter->Update();
-    TAUTLINE_CHECK(messages.has("The time limit of 1e-09 s is reached"));
+    TAUTLINE_CHECK(messages.has(wording("the-time-limit-of-1e-09-s")));
     TAUTLINE_CHECK_EQUAL(
       vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
   }
@@ -445,16 +445,15 @@ void testWaitingCaller()
 }
 }
 
-int TestInterruption(int, char*[])
+TAUTLINE_TEST(TestInterruption)
 {
-  testScopes();
-  testPolls();
-  testLoop();
-  testWaitingCaller();
-  testSolver();
-  testAbort();
-  testHorizonNeighbors();
-  testMeasure();
-  testBlocksShareTheTime();
-  return exitCode();
+  TAUTLINE_RUN(testScopes());
+  TAUTLINE_RUN(testPolls());
+  TAUTLINE_RUN(testLoop());
+  TAUTLINE_RUN(testWaitingCaller());
+  TAUTLINE_RUN(testSolver());
+  TAUTLINE_RUN(testAbort());
+  TAUTLINE_RUN(testHorizonNeighbors());
+  TAUTLINE_RUN(testMeasure());
+  TAUTLINE_RUN(testBlocksShareTheTime());
 }

@@ -2,6 +2,7 @@
 // Filters that move points, of pieces whose copies of a point have the same global id and places
 // that differ by rounding: seams move as those of one mesh, on processes, gathered on the first
 // one, and in one data set on one process.
+#include "Registry.h"
 #include "MotionRanks.h"
 
 #include "vtkMeshImprover.h"
@@ -116,7 +117,7 @@ void testOwnNumbers(vtkMPIController* controller)
   checkSame(moved(whole, part, grid, set, filter.Get()), expected);
   TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), serial->GetFreePoints());
   TAUTLINE_CHECK(!remarked(filter->GetSummary()));
-  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("global id") == std::string::npos);
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(wording("global-id")) == std::string::npos);
 }
 
 /// Copies that are too far apart stay so, and the summary says it on all processes.
@@ -139,9 +140,8 @@ void testApart(vtkMPIController* controller)
     whole, part, numberedGridOf(part),
     [](vtkMeshOptimizer* optimizer) { optimizer->ReproducibleOrderOn(); }, filter.Get());
   TAUTLINE_CHECK(!remarked(filter->GetSummary()));
-  TAUTLINE_CHECK(
-    std::string(filter->GetSummary())
-      .find("1 global id is at places that are too far apart to be joined") != std::string::npos);
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(wording("1-global-id-is-at-places-that")) !=
+    std::string::npos);
 }
 
 /// A mesh of several pieces as one data set on one process: the seam moves as the rest.
@@ -271,26 +271,27 @@ void testImprover(vtkMPIController* controller)
 }
 
 //------------------------------------------------------------------------------
-int TestMotionCopies(int argc, char* argv[])
+TAUTLINE_TEST(TestMotionCopies)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
   const MeshData tets = jittered(CellType::Tetrahedron, 4, 0.25);
-  testFilter<vtkMeshOptimizer>("optimize", controller, tets, false,
-    [](vtkMeshOptimizer* filter) { filter->ReproducibleOrderOn(); });
-  testFilter<vtkMeshOptimizer>("optimize, gathered", controller, tets, true,
-    [](vtkMeshOptimizer* filter) { filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT); });
-  testFilter<vtkMeshUntangler>("untangle", controller, jittered(CellType::Tetrahedron, 5, 0.45),
-    false, [](vtkMeshUntangler* filter) { filter->ReproducibleOrderOn(); });
-  testFilter<vtkMeshPerturbation>("perturb, gathered", controller, tets, true,
-    [](vtkMeshPerturbation* filter) { filter->SetTangledFraction(0.01); });
-  testFilter<vtkMeshPerturbation>("perturb", controller, tets, false, [](vtkMeshPerturbation*) {});
-  testOwnNumbers(controller);
-  testApart(controller);
-  testImprover(controller);
-  testOneProcess(controller);
+  TAUTLINE_RUN(testFilter<vtkMeshOptimizer>("optimize", controller, tets, false,
+    [](vtkMeshOptimizer* filter) { filter->ReproducibleOrderOn(); }));
+  TAUTLINE_RUN(testFilter<vtkMeshOptimizer>("optimize, gathered", controller, tets, true,
+    [](vtkMeshOptimizer* filter) { filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT); }));
+  TAUTLINE_RUN(
+    testFilter<vtkMeshUntangler>("untangle", controller, jittered(CellType::Tetrahedron, 5, 0.45),
+      false, [](vtkMeshUntangler* filter) { filter->ReproducibleOrderOn(); }));
+  TAUTLINE_RUN(testFilter<vtkMeshPerturbation>("perturb, gathered", controller, tets, true,
+    [](vtkMeshPerturbation* filter) { filter->SetTangledFraction(0.01); }));
+  TAUTLINE_RUN(testFilter<vtkMeshPerturbation>(
+    "perturb", controller, tets, false, [](vtkMeshPerturbation*) {}));
+  TAUTLINE_RUN(testOwnNumbers(controller));
+  TAUTLINE_RUN(testApart(controller));
+  TAUTLINE_RUN(testImprover(controller));
+  TAUTLINE_RUN(testOneProcess(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

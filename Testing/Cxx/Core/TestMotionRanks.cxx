@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh and Untangle Mesh on processes: points, tables and summaries are those of one
 // process, however the mesh is cut.
+#include "Registry.h"
 #include "MotionRanks.h"
 
 #include "tautline/Optimization/Optimize.h"
@@ -155,7 +156,7 @@ void testGuard(vtkMPIController* controller)
       for (vtkMeshOptimizer* filter : { serial, ranks })
       {
         const std::string summary = filter->GetSummary();
-        TAUTLINE_CHECK(summary.find("put back") == std::string::npos);
+        TAUTLINE_CHECK(summary.find(wording("put-back")) == std::string::npos);
       }
       const MeshData after =
         toMesh(vtkUnstructuredGrid::SafeDownCast(serial->GetOutputDataObject(0)));
@@ -449,8 +450,9 @@ void testBlocks(vtkMPIController* controller)
   Messages messages(optimizer);
   optimizer->Update();
   TAUTLINE_CHECK(!messages.has("ERROR: "));
-  TAUTLINE_CHECK(std::string(optimizer->GetSummary())
-                   .find("put together on the first process: it has blocks.") != std::string::npos);
+  TAUTLINE_CHECK(
+    std::string(optimizer->GetSummary()).find(wording("put-together-on-the-first-process-it")) !=
+    std::string::npos);
   TAUTLINE_CHECK_EQUAL(optimizer->GetFreePoints(), serial->GetFreePoints());
   TAUTLINE_CHECK_EQUAL(optimizer->GetIterations(), serial->GetIterations());
   const auto block = [](vtkMeshOptimizer* filter, unsigned int i)
@@ -538,7 +540,7 @@ void testRefusals(vtkMPIController* controller)
   };
   const auto none = [](auto&&) {};
   refused(
-    "switch Animation off",
+    wording("switch-animation-off"),
     [](vtkMeshOptimizer* filter)
     {
       filter->AnimationOn();
@@ -551,7 +553,7 @@ void testRefusals(vtkMPIController* controller)
     { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "none"); },
     none);
   refused(
-    "weights must be finite and at least 0",
+    wording("weights-must-be-finite-and-at-least"),
     [](vtkMeshOptimizer* filter)
     { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "wrong"); },
     none);
@@ -600,23 +602,22 @@ void testUntanglerFailures(vtkMPIController* controller)
 }
 
 //------------------------------------------------------------------------------
-int TestMotionRanks(int argc, char* argv[])
+TAUTLINE_TEST(TestMotionRanks)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
-  testOptimizer(controller);
-  testGuard(controller);
-  testSingle(controller);
-  testElementArrays(controller);
-  testWholeMeshes(controller);
-  testUntangler(controller);
-  testMostlyInverted(controller);
-  testAnimation(controller);
-  testRefusals(controller);
-  testUntanglerFailures(controller);
-  testBlocks(controller);
+  TAUTLINE_RUN(testOptimizer(controller));
+  TAUTLINE_RUN(testGuard(controller));
+  TAUTLINE_RUN(testSingle(controller));
+  TAUTLINE_RUN(testElementArrays(controller));
+  TAUTLINE_RUN(testWholeMeshes(controller));
+  TAUTLINE_RUN(testUntangler(controller));
+  TAUTLINE_RUN(testMostlyInverted(controller));
+  TAUTLINE_RUN(testAnimation(controller));
+  TAUTLINE_RUN(testRefusals(controller));
+  TAUTLINE_RUN(testUntanglerFailures(controller));
+  TAUTLINE_RUN(testBlocks(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

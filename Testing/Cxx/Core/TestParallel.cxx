@@ -2,7 +2,7 @@
 // The loops of Parallel.h: every chunk once, errors of the first chunk, nested loops, loops of
 // several callers and of the child of a fork, callbacks on the calling thread, threads that wait
 // asleep.
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Core/LoopProgress.h"
 #include "tautline/Core/MachineLoad.h"
@@ -179,7 +179,8 @@ void testErrors()
       called = true;
       throw Error("from the callback");
     };
-    TAUTLINE_CHECK_THROWS(runChunks(n, threads, waitForCall, callback), "from the callback");
+    TAUTLINE_CHECK_THROWS(
+      runChunks(n, threads, waitForCall, callback), wording("from-the-callback"));
   }
 }
 
@@ -472,7 +473,7 @@ void testProgress()
 }
 }
 
-int TestParallel(int, char*[])
+TAUTLINE_TEST(TestParallel)
 {
   TAUTLINE_CHECK(resolveThreads(0) >= 1);
   TAUTLINE_CHECK_EQUAL(resolveThreads(3), 3);
@@ -482,5 +483,4 @@ int TestParallel(int, char*[])
   {
     inNewThread(test);
   }
-  return exitCode();
 }

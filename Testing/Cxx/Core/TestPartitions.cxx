@@ -2,6 +2,7 @@
 // On one process the partitions of a partitioned or multipiece data set are one mesh: filters find
 // what they find in it as one data set, and the results go back to the partitions. The names of
 // blocks and partitions in messages. Python-partitions-on-ranks has several processes.
+#include "Registry.h"
 #include "Seams.h"
 
 #include "vtkElementQuality.h"
@@ -189,7 +190,7 @@ void testSeams()
   TAUTLINE_CHECK(whole->GetFreePoints() > 0);
   TAUTLINE_CHECK_EQUAL(joined->GetFreePoints(), whole->GetFreePoints());
   TAUTLINE_CHECK(apart->GetFreePoints() < whole->GetFreePoints());
-  TAUTLINE_CHECK(contains(apart->GetSummary(), "In partition 2: "));
+  TAUTLINE_CHECK(contains(apart->GetSummary(), wording("in-partition-2")));
   // Two of the partitions have no array of fixed points.
   vtkNew<vtkMeshOptimizer> lacking;
   Messages messages(lacking);
@@ -203,7 +204,7 @@ void testSeams()
   lacking->SetInputDataObject(0, set);
   lacking->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "marks");
   lacking->Update();
-  TAUTLINE_CHECK(messages.has("'marks' of fixed points in partition 2: choose"));
+  TAUTLINE_CHECK(messages.has(wording("marks-of-fixed-points-in-partition-2")));
 }
 
 void testOthers()
@@ -244,12 +245,12 @@ void testQuality()
   parts->SetInputDataObject(0, partitioned<vtkPartitionedDataSet>(mesh, false));
   whole->Update();
   parts->Update();
-  TAUTLINE_CHECK(contains(whole->GetNotice(), "cells are treated as if listed"));
+  TAUTLINE_CHECK(contains(whole->GetNotice(), wording("cells-are-treated-as-if-listed")));
   TAUTLINE_CHECK_EQUAL(std::string(parts->GetNotice()), std::string(whole->GetNotice()));
   const auto worst = [](vtkElementQuality* filter)
   { return filter->GetStatistics()->GetValueByName(0, "Worst").ToDouble(); };
   TAUTLINE_CHECK_EQUAL(worst(parts), worst(whole));
-  TAUTLINE_CHECK(contains(parts->GetSummary(), " of partition "));
+  TAUTLINE_CHECK(contains(parts->GetSummary(), wording("of-partition")));
   vtkPointData* points = parts->GetWorst()->GetPointData();
   for (vtkIdType i = 0; i < parts->GetWorst()->GetNumberOfPoints(); ++i)
   {
@@ -270,7 +271,7 @@ void testQuality()
   global->AddMetricByName("imr");
   global->SetInputDataObject(0, numbered(mesh));
   global->Update();
-  TAUTLINE_CHECK(contains(global->GetSummary(), "Worst: element with global id "));
+  TAUTLINE_CHECK(contains(global->GetSummary(), wording("worst-element-with-global-id")));
 }
 
 /// The place that is named for a data set with a wrong cell.
@@ -319,12 +320,11 @@ void testNames()
 }
 
 //------------------------------------------------------------------------------
-int TestPartitions(int, char*[])
+TAUTLINE_TEST(TestPartitions)
 {
-  testMotions();
-  testSeams();
-  testOthers();
-  testQuality();
-  testNames();
-  return exitCode();
+  TAUTLINE_RUN(testMotions());
+  TAUTLINE_RUN(testSeams());
+  TAUTLINE_RUN(testOthers());
+  TAUTLINE_RUN(testQuality());
+  TAUTLINE_RUN(testNames());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes in pieces, with several points at each place of their seams: linear systems and nonlocal
 // models on them are those of the whole mesh; blocks with seams between them.
+#include "Registry.h"
 #include "Seams.h"
 
 #include "vtkConditionEstimator.h"
@@ -49,7 +50,7 @@ void testElliptic()
       TAUTLINE_CHECK_NEAR(a->GetComponent(i, 1), b->GetComponent(i, 1), 1e-10);
     }
     TAUTLINE_CHECK(contains(pieces->GetSummary(), said(both)));
-    TAUTLINE_CHECK(!contains(pieces->GetSummary(), "in no element"));
+    TAUTLINE_CHECK(!contains(pieces->GetSummary(), wording("in-no-element")));
     // Kept apart, the solution is 0 on the seams.
     pieces->MergeCoincidentPointsOff();
     pieces->Update();
@@ -84,7 +85,7 @@ void testElliptic()
   grid->GetPointData()->AddArray(ids);
   pieces->SetInputDataObject(0, grid);
   pieces->Update();
-  TAUTLINE_CHECK(contains(pieces->GetSummary(), "values differ in the point array 'ids'"));
+  TAUTLINE_CHECK(contains(pieces->GetSummary(), wording("values-differ-in-the-point-array-ids")));
   TAUTLINE_CHECK_EQUAL(
     component(pointsOf(pieces)->GetPointData(), "ids", ids->GetNumberOfTuples() - 1),
     static_cast<double>(ids->GetNumberOfTuples() - 1));
@@ -104,7 +105,7 @@ void testElliptic()
   Messages messages(filter);
   filter->SetInputDataObject(0, toGrid(twice));
   filter->Update();
-  TAUTLINE_CHECK(messages.has("stay apart") && messages.has("Clean to Grid"));
+  TAUTLINE_CHECK(messages.has(wording("stay-apart")) && messages.has(wording("clean-to-grid")));
   TAUTLINE_CHECK_EQUAL(pointsOf(filter)->GetNumberOfPoints(), 0);
 }
 
@@ -173,8 +174,8 @@ void testBlocks()
   }
   const double expected = pointsOf(whole)->GetPointData()->GetArray("Solution")->GetRange()[1];
   TAUTLINE_CHECK_RELATIVE(largest, expected, 1e-10);
-  TAUTLINE_CHECK(contains(solver->GetSummary(), "Blocks with a seam between them are one mesh"));
-  TAUTLINE_CHECK(contains(solver->GetSummary(), "In block 1, block 2, block 3, block 4: "));
+  TAUTLINE_CHECK(contains(solver->GetSummary(), wording("blocks-with-a-seam-between-them-are")));
+  TAUTLINE_CHECK(contains(solver->GetSummary(), wording("in-block-1-block-2-block-3")));
   solver->MergeCoincidentPointsOff();
   solver->Update();
   TAUTLINE_CHECK(solver->GetUnknowns() < whole->GetUnknowns());
@@ -188,8 +189,8 @@ void testBlocks()
     filter->Update();
     TAUTLINE_CHECK(said.has(std::to_string(both.pieces.copies) +
       " points of a block coincide with those of another one"));
-    TAUTLINE_CHECK(said.has("Merge Blocks"));
-    TAUTLINE_CHECK(contains(filter->GetSummary(), "Merge Blocks"));
+    TAUTLINE_CHECK(said.has(wording("merge-blocks")));
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("merge-blocks")));
     TAUTLINE_CHECK(vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0))
                      ->GetBlock(3)
                      ->GetNumberOfElements(vtkDataObject::POINT) == grids[3]->GetNumberOfPoints());
@@ -210,8 +211,8 @@ void testBlocks()
   sliding->SetInputDataObject(0, blocks);
   sliding->SetBoundary(vtkMeshOptimizer::SLIDING);
   sliding->Update();
-  TAUTLINE_CHECK(refused.has("blocks would come apart"));
-  TAUTLINE_CHECK(refused.has("Merge Blocks"));
+  TAUTLINE_CHECK(refused.has(wording("blocks-would-come-apart")));
+  TAUTLINE_CHECK(refused.has(wording("merge-blocks")));
 
   // Blocks at the same place are no neighbours, and those that are far from each other neither.
   blocks->SetBlock(1, grids[0]);
@@ -272,7 +273,7 @@ void testPeridynamics()
   TAUTLINE_CHECK_RELATIVE(stiffness->GetCondition(), expected->GetCondition(), 1e-12);
   TAUTLINE_CHECK_NEAR(farthest(cut, pointsOf(stiffness), pointsOf(expected), "Solution"), 0, 1e-12);
   TAUTLINE_CHECK_NEAR(farthest(cut, pointsOf(stiffness), pointsOf(expected), "Unknown"), 0, 0);
-  TAUTLINE_CHECK(contains(stiffness->GetSummary(), "treated as one"));
+  TAUTLINE_CHECK(contains(stiffness->GetSummary(), wording("treated-as-one")));
   const double condition = expected->GetCondition();
   stiffness->MergeCoincidentPointsOff();
   stiffness->Update();
@@ -290,15 +291,14 @@ void testPeridynamics()
     std::vector<Index>(cut.whole.connectivity.begin(), cut.whole.connectivity.begin() + 3));
   stiffness->SetInputDataObject(0, toGrid(twice));
   stiffness->Update();
-  TAUTLINE_CHECK(messages.has("1 duplicate cell has the same points as another one"));
+  TAUTLINE_CHECK(messages.has(wording("1-duplicate-cell-has-the-same-points")));
 }
 }
 
 //------------------------------------------------------------------------------
-int TestSeamSystems(int, char*[])
+TAUTLINE_TEST(TestSeamSystems)
 {
-  testElliptic();
-  testBlocks();
-  testPeridynamics();
-  return exitCode();
+  TAUTLINE_RUN(testElliptic());
+  TAUTLINE_RUN(testBlocks());
+  TAUTLINE_RUN(testPeridynamics());
 }

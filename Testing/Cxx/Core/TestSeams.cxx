@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes in pieces, with several points at each place of their seams: filters that move or measure
 // points take them as the whole mesh; duplicate cells; why no point is free.
+#include "Registry.h"
 #include "Seams.h"
 
 #include "vtkElementQuality.h"
@@ -97,7 +98,7 @@ void testUntangle()
   TAUTLINE_CHECK_EQUAL(pieces->GetInvertedBefore(), whole->GetInvertedBefore());
   TAUTLINE_CHECK_EQUAL(pieces->GetInvertedAfter(), 0);
   TAUTLINE_CHECK_NEAR(farthest(both, pointsOf(pieces), pointsOf(whole)), 0, 1e-12);
-  TAUTLINE_CHECK(contains(pieces->GetSummary(), "treated as one"));
+  TAUTLINE_CHECK(contains(pieces->GetSummary(), wording("treated-as-one")));
   pieces->MergeCoincidentPointsOff();
   pieces->Update();
   TAUTLINE_CHECK(pieces->GetInvertedAfter() > 0); // tangled points of the seam stay
@@ -197,8 +198,8 @@ void testWarp()
   filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
   filter->SetInputDataObject(0, grid);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("different displacements"));
-  TAUTLINE_CHECK(messages.has("switch Merge Coincident Points off"));
+  TAUTLINE_CHECK(messages.has(wording("different-displacements")));
+  TAUTLINE_CHECK(messages.has(wording("switch-merge-coincident-points-off")));
   messages.clear();
   filter->MergeCoincidentPointsOff();
   filter->Update();
@@ -223,13 +224,13 @@ void testQuality()
     std::to_string(both.pieces.copies) +
       " points on 1 seam are at the place of another one, the "
       "first is point "));
-  TAUTLINE_CHECK(messages.has("Clean to Grid"));
+  TAUTLINE_CHECK(messages.has(wording("clean-to-grid")));
   MeshData nearly = both.pieces.mesh;
   for (Index p = 0; p < nearly.numberOfPoints() / 2; ++p)
   {
     nearly.points[3 * p] += 1e-9;
   }
-  TAUTLINE_CHECK(contains(notice(nearly), "nearly coincide with another one"));
+  TAUTLINE_CHECK(contains(notice(nearly), wording("nearly-coincide-with-another-one")));
   MeshData twice = both.whole;
   for (Index cell : { 7, 9 })
   {
@@ -268,7 +269,7 @@ void testDuplicateCells()
       filter->SetInputDataObject(0, toGrid(*mesh));
       filter->Update();
       TAUTLINE_CHECK_EQUAL(
-        contains(filter->GetSummary(), "the same points as another one"), mesh != &data);
+        contains(filter->GetSummary(), wording("the-same-points-as-another-one")), mesh != &data);
       const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
       Index moved = 0;
       for (Index p = 0; p < data.numberOfPoints(); ++p)
@@ -292,7 +293,7 @@ void testDuplicateCells()
     Messages messages(solver);
     solver->SetInputDataObject(0, toGrid(*mesh));
     solver->Update();
-    TAUTLINE_CHECK(messages.has("Clean Cells to Grid"));
+    TAUTLINE_CHECK(messages.has(wording("clean-cells-to-grid")));
   }
 }
 
@@ -306,22 +307,22 @@ void testNothingFree()
     filter->Update();
     return std::string(filter->GetSummary());
   };
-  TAUTLINE_CHECK(!contains(summary(all.pieces.mesh), "No vertex is free"));
+  TAUTLINE_CHECK(!contains(summary(all.pieces.mesh), wording("no-vertex-is-free")));
   TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 9);
   filter->MergeCoincidentPointsOff();
   std::string text = summary(all.pieces.mesh);
-  TAUTLINE_CHECK(contains(text, "No vertex is free"));
-  TAUTLINE_CHECK(contains(text, "switch Merge Coincident Points on, or run Clean to Grid first"));
+  TAUTLINE_CHECK(contains(text, wording("no-vertex-is-free")));
+  TAUTLINE_CHECK(contains(text, wording("switch-merge-coincident-points-on-or-run")));
   filter->MergeCoincidentPointsOn();
   MeshData nearly = all.pieces.mesh;
   Random random(1);
   nearly.transform([&](Vec3 p) { return p + random.vector(-1e-9, 1e-9); });
   nearly.transform([](Vec3 p) { return Vec3{ p[0], p[1], 0 }; });
-  TAUTLINE_CHECK(contains(summary(nearly), "run Clean to Grid with a tolerance first"));
+  TAUTLINE_CHECK(contains(summary(nearly), wording("run-clean-to-grid-with-a-tolerance")));
   text = summary(blockMesh(CellType::Triangle, 3, 1, 0));
-  TAUTLINE_CHECK(contains(text, "Every point is on the boundary of the mesh, which is fixed"));
-  TAUTLINE_CHECK(contains(text, "choose another Boundary, or refine the mesh"));
-  TAUTLINE_CHECK(!contains(text, "Clean to Grid"));
+  TAUTLINE_CHECK(contains(text, wording("every-point-is-on-the-boundary-of")));
+  TAUTLINE_CHECK(contains(text, wording("choose-another-boundary-or-refine-the-mesh")));
+  TAUTLINE_CHECK(!contains(text, wording("clean-to-grid")));
   const auto grid = toGrid(blockMesh(CellType::Triangle, 4, 4, 0));
   vtkNew<vtkDoubleArray> marks;
   marks->SetName("marks");
@@ -332,25 +333,24 @@ void testNothingFree()
   filter->SetBoundary(vtkMeshOptimizer::FREE);
   filter->SetInputDataObject(0, grid);
   filter->Update();
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "fixed by an array or a selection"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("fixed-by-an-array-or-a-selection")));
   vtkNew<vtkMeshUntangler> untangler;
   MeshData tangled = blockMesh(CellType::Triangle, 3, 1, 0);
   std::swap(tangled.points[3 * 1], tangled.points[3 * 2]);
   untangler->SetInputDataObject(0, toGrid(tangled));
   untangler->Update();
-  TAUTLINE_CHECK(contains(untangler->GetSummary(), "switch Fix Boundary off"));
+  TAUTLINE_CHECK(contains(untangler->GetSummary(), wording("switch-fix-boundary-off")));
 }
 }
 
 //------------------------------------------------------------------------------
-int TestSeams(int, char*[])
+TAUTLINE_TEST(TestSeams)
 {
-  testOptimize();
-  testUntangle();
-  testPerturb();
-  testWarp();
-  testQuality();
-  testDuplicateCells();
-  testNothingFree();
-  return exitCode();
+  TAUTLINE_RUN(testOptimize());
+  TAUTLINE_RUN(testUntangle());
+  TAUTLINE_RUN(testPerturb());
+  TAUTLINE_RUN(testWarp());
+  TAUTLINE_RUN(testQuality());
+  TAUTLINE_RUN(testDuplicateCells());
+  TAUTLINE_RUN(testNothingFree());
 }

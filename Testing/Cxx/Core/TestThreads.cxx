@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Results are bitwise the same for any number of threads; sums over the mesh are what adding up its
 // cells gives, with the gradient that finite differences give.
-#include "Check.h"
+#include "Registry.h"
 #include "Blocks.h"
 
 #include <algorithm>
@@ -269,24 +269,23 @@ void testExtremeVertex()
     fan.addCell(CellType::Triangle, { 0, i + 1, i + 2 });
   }
   const Mesh mesh(fan.view());
-  TAUTLINE_CHECK_THROWS(MetricSum(mesh, Metric::Size, {}, 1), "extreme number of cells");
+  TAUTLINE_CHECK_THROWS(MetricSum(mesh, Metric::Size, {}, 1), wording("extreme-number-of-cells"));
 }
 }
 
-int TestThreads(int, char*[])
+TAUTLINE_TEST(TestThreads)
 {
   for (const NamedMesh& mesh : makeMeshes())
   {
     const Context context(mesh.name);
-    testEvaluation(Mesh(mesh.data.view()));
-    testSums(mesh.data, summedMetrics);
+    TAUTLINE_RUN(testEvaluation(Mesh(mesh.data.view())));
+    TAUTLINE_RUN(testSums(mesh.data, summedMetrics));
     const Context order("shuffled");
-    testSums(shuffled(mesh.data, 24), summedMetrics);
+    TAUTLINE_RUN(testSums(shuffled(mesh.data, 24), summedMetrics));
   }
-  testSums(shuffled(perturbedBlock(CellType::Tetrahedron, manyCubes, 0.15), 27),
-    { Metric::InverseMeanRatio });
-  testDifferences();
-  testNonFinite();
-  testExtremeVertex();
-  return exitCode();
+  TAUTLINE_RUN(testSums(shuffled(perturbedBlock(CellType::Tetrahedron, manyCubes, 0.15), 27),
+    { Metric::InverseMeanRatio }));
+  TAUTLINE_RUN(testDifferences());
+  TAUTLINE_RUN(testNonFinite());
+  TAUTLINE_RUN(testExtremeVertex());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the check of VTK's data objects finds, and how it names it. What filters do with such data
 // is tested by TestHostileInput.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "Meshes.h"
@@ -111,17 +111,17 @@ void testArrays()
   expect(solid(), "");
   expect(add(vtkSmartPointer<vtkIntArray>::New(), "a", 27, false), "");
   expect(add(vtkSmartPointer<vtkIntArray>::New(), "a", 26, false),
-    "The point array 'a' has 26 tuples, the mesh has 27 points");
+    wording("the-point-array-a-has-26-tuples"));
   expect(add(vtkSmartPointer<vtkIntArray>::New(), "b", 41, true),
-    "The cell array 'b' has 41 tuples, the mesh has 40 cells");
-  expect(add(vtkSmartPointer<vtkStringArray>::New(), "c", 1, true), "The cell array 'c' has 1 ");
+    wording("the-cell-array-b-has-41-tuples"));
+  expect(
+    add(vtkSmartPointer<vtkStringArray>::New(), "c", 1, true), wording("the-cell-array-c-has-1"));
   expect(add(vtkSmartPointer<vtkUnsignedCharArray>::New(), "vtkGhostType", 40, true), "");
   expect(add(vtkSmartPointer<vtkIntArray>::New(), "vtkGhostType", 40, true),
-    "'vtkGhostType' marks ghosts and has to be of type unsigned char with one component, it is of "
-    "type int with 1");
+    wording("vtkghosttype-marks-ghosts-and-has-to-be"));
   const auto noPoints = solid();
   noPoints->GetPoints()->SetNumberOfPoints(20);
-  expect(noPoints, "but the mesh has 20 points (0 to 19)");
+  expect(noPoints, wording("but-the-mesh-has-20-points-0"));
 }
 
 void testCells()
@@ -149,11 +149,11 @@ void testCells()
     [](auto*, auto* ids) { ids->SetNumberOfValues(159); });
   const auto types = solid();
   cellTypesOf(types)->SetValue(7, VTK_HEXAHEDRON);
-  expect(types, "Cell 7 is not a proper vtkHexahedron: it lists 4 points");
+  expect(types, wording("cell-7-is-not-a-proper-vtkhexahedron"));
   cellTypesOf(types)->SetValue(7, 250);
-  expect(types, "Cell 7 has the type 250, which does not exist");
+  expect(types, wording("cell-7-has-the-type-250-which"));
   cellTypesOf(types)->SetNumberOfValues(39);
-  expect(types, "There are 40 cells but 39 cell types");
+  expect(types, wording("there-are-40-cells-but-39-cell"));
 
   const auto poly = toPolyData(blockMesh(CellType::Triangle, 2, 2, 0));
   vtkNew<vtkCellArray> lines;
@@ -165,7 +165,7 @@ void testCells()
   polys->DeepCopy(poly->GetPolys());
   polys->InsertNextCell(2, line);
   poly->SetPolys(polys);
-  expect(poly, "Cell 9 is not a proper polygon: it lists 2 points");
+  expect(poly, wording("cell-9-is-not-a-proper-polygon"));
 }
 
 void testOthers()
@@ -173,33 +173,32 @@ void testOthers()
   const auto mesh = solid();
   mesh->GetPoints()->SetPoint(5, 0, NaN, 0);
   expect(mesh, "");
-  expect(mesh, "Point 5 has a coordinate that is not a finite number", { true, 1 });
+  expect(mesh, wording("point-5-has-a-coordinate-that-is"), { true, 1 });
 
   vtkNew<vtkStructuredGrid> grid;
   grid->SetDimensions(3, 3, 2);
   vtkNew<vtkPoints> points;
   points->SetNumberOfPoints(17);
   grid->SetPoints(points);
-  expect(grid, "The grid has 17 points, but its dimensions, 3 x 3 x 2, need 18");
+  expect(grid, wording("the-grid-has-17-points-but-its"));
   vtkNew<vtkImageData> image;
   image->SetDimensions(2, 2, 2);
   expect(image, "");
   image->SetSpacing(1, NaN, 1);
-  expect(image, "The spacing or the origin of the image is NaN or infinite");
+  expect(image, wording("the-spacing-or-the-origin-of-the"));
 
   vtkNew<vtkTable> table;
-  expect(table, "The input is a vtkTable, not a mesh");
+  expect(table, wording("the-input-is-a-vtktable-not-a"));
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, table);
-  expect(
-    blocks, "None of the blocks is a mesh. Blocks that are not meshes are left out: 1 (vtkTable).");
+  expect(blocks, wording("none-of-the-blocks-is-a-mesh"));
   blocks->SetBlock(1, nullptr);
   blocks->SetBlock(2, solid());
   expect(blocks, "");
   TAUTLINE_CHECK_EQUAL(
     skippedLeaves(blocks), "Blocks that are not meshes are left out: 1 (vtkTable).");
   blocks->SetBlock(3, grid);
-  expect(blocks, "In block 4: The grid has 17 points");
+  expect(blocks, wording("in-block-4-the-grid-has-17"));
   expect(nullptr, "");
 }
 
@@ -233,12 +232,11 @@ void testSelections()
 }
 
 //------------------------------------------------------------------------------
-int TestValidateInput(int, char*[])
+TAUTLINE_TEST(TestValidateInput)
 {
-  testSearches();
-  testArrays();
-  testCells();
-  testOthers();
-  testSelections();
-  return exitCode();
+  TAUTLINE_RUN(testSearches());
+  TAUTLINE_RUN(testArrays());
+  TAUTLINE_RUN(testCells());
+  TAUTLINE_RUN(testOthers());
+  TAUTLINE_RUN(testSelections());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One mesh of its pieces: the same whatever the pieces; with ghost cells, global ids, cracks and
 // points that only ghost cells have; images, surfaces; what cannot be put together.
-#include "Check.h"
+#include "Registry.h"
 #include "PointOrder.h"
 #include "VtkMeshes.h"
 #include "WholeMesh.h"
@@ -269,7 +269,7 @@ void testOtherTypes()
   }
   const int gap[6] = { 2, 5, 2, 3, 0, 0 };
   high->Crop(gap);
-  TAUTLINE_CHECK_THROWS(assemble({ high, low }), "do not fill it");
+  TAUTLINE_CHECK_THROWS(assemble({ high, low }), wording("do-not-fill-it"));
 
   // A surface: lines before triangles, as vtkPolyData has them.
   const auto surface = [](double shift)
@@ -299,9 +299,9 @@ void testErrors()
   const Owner halves = [](Index cell) { return static_cast<int>(cell % 2); };
   Grid a = piece(data, halves, 0, { true, false }), b = piece(data, halves, 1, { true, false });
   a->GetPoints()->SetPoint(0, 0.123, 0, 0);
-  TAUTLINE_CHECK_THROWS(assemble({ a, b }), "Points at different places have the global id");
+  TAUTLINE_CHECK_THROWS(assemble({ a, b }), wording("points-at-different-places-have-the-global"));
   a = piece(data, halves, 0, { true, false });
-  TAUTLINE_CHECK_THROWS(assemble({ a, a }), "Several cells have the global id");
+  TAUTLINE_CHECK_THROWS(assemble({ a, a }), wording("several-cells-have-the-global-id"));
   // Nothing at all, and nothing but one.
   Grid empty = Grid::New();
   TAUTLINE_CHECK_EQUAL(assemble({ empty, empty }).mesh->GetNumberOfPoints(), 0);
@@ -322,12 +322,11 @@ void testExtraction()
 }
 
 //------------------------------------------------------------------------------
-int TestWholeMesh(int, char*[])
+TAUTLINE_TEST(TestWholeMesh)
 {
-  testPartitions();
-  testCrack();
-  testOtherTypes();
-  testErrors();
-  testExtraction();
-  return exitCode();
+  TAUTLINE_RUN(testPartitions());
+  TAUTLINE_RUN(testCrack());
+  TAUTLINE_RUN(testOtherTypes());
+  TAUTLINE_RUN(testErrors());
+  TAUTLINE_RUN(testExtraction());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh: what is exact, what is kept between executions, what comes out.
+#include "Registry.h"
 #include "WarpingMeshes.h"
 
 #include "tautline/Deformation/PointMotion.h"
@@ -189,7 +190,7 @@ void testOutputs()
       history->GetValueByName(row, "Stage").ToString(), expected.history[row].stage);
     TAUTLINE_CHECK_EQUAL(value(history, "Inverted", row), expected.history[row].inverted);
   }
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "elements are valid"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("elements-are-valid")));
 
   std::vector<double> first;
   for (int threads : { 1, 2, 3 })
@@ -378,8 +379,8 @@ void testBlocks()
   TAUTLINE_CHECK_EQUAL(at(3)->GetNumberOfPoints(), 0);
   TAUTLINE_CHECK_EQUAL(filter->GetStatistics()->GetNumberOfRows(), 2);
   TAUTLINE_CHECK_EQUAL(filter->GetStatistics()->GetValueByName(1, "Block").ToString(), "block 3");
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "In block 1: FEMWARP: all"));
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "It is treated as if its cells were flipped"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("in-block-1-femwarp-all")));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("it-is-treated-as-if-its-cells")));
   filter->SetAmount(0.5);
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetReused(), 2);
@@ -387,14 +388,13 @@ void testBlocks()
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarp(int, char*[])
+TAUTLINE_TEST(TestMeshWarp)
 {
-  testAffine();
-  testAmountZero();
-  testOutputs();
-  testReuse();
-  testSimilarity();
-  testScales();
-  testBlocks();
-  return exitCode();
+  TAUTLINE_RUN(testAffine());
+  TAUTLINE_RUN(testAmountZero());
+  TAUTLINE_RUN(testOutputs());
+  TAUTLINE_RUN(testReuse());
+  TAUTLINE_RUN(testSimilarity());
+  TAUTLINE_RUN(testScales());
+  TAUTLINE_RUN(testBlocks());
 }

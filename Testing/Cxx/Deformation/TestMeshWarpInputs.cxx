@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh: what is refused, by name; boundaries that intersect themselves, and other cells.
+#include "Registry.h"
 #include "WarpingMeshes.h"
 
 #include "vtkCellData.h"
@@ -38,16 +39,16 @@ void testRefusals()
   const MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
   vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 3);
-  refused(image, "Image Data to Point Set");
+  refused(image, wording("image-data-to-point-set"));
   MeshData wrong = data;
   wrong.setPoint(6, { 2.5, 2.6, 0 });
-  refused(toGrid(wrong), "run Untangle Mesh first");
+  refused(toGrid(wrong), wording("run-untangle-mesh-first"));
   wrong = data;
   wrong.points[7] = std::numeric_limits<double>::quiet_NaN();
-  refused(toGrid(wrong), "1 points have a coordinate that is NaN");
+  refused(toGrid(wrong), wording("1-points-have-a-coordinate-that-is"));
   wrong = data;
   wrong.addCell(VTK_POLYGON, { 0, 1, 2, 3, 4 });
-  refused(toGrid(wrong), "1 polygons, polyhedra or other cells that cannot be warped");
+  refused(toGrid(wrong), wording("1-polygons-polyhedra-or-other-cells-that"));
   wrong = MeshData();
   wrong.points = data.points;
   wrong.addCell(VTK_QUADRATIC_TRIANGLE, { 0, 2, 10, 1, 6, 5 });
@@ -55,40 +56,40 @@ void testRefusals()
   wrong = MeshData();
   wrong.points = data.points;
   wrong.addCell(VTK_VERTEX, { 0 });
-  refused(toGrid(wrong), "There is no element");
+  refused(toGrid(wrong), wording("there-is-no-element"));
   refused(toGrid(blockMesh(CellType::Wedge, 2, 2, 2)), "wedges");
   vtkNew<vtkSphereSource> sphere;
   sphere->Update();
-  refused(sphere->GetOutput(), "no boundary");
+  refused(sphere->GetOutput(), wording("no-boundary"));
   wrong = data;
   wrong.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[0] }; });
-  refused(toGrid(wrong), "a surface in space");
+  refused(toGrid(wrong), wording("a-surface-in-space"));
   filter->SetTranslation(0.1, 0, 0.1);
-  refused(toGrid(data), "lead out of its plane");
+  refused(toGrid(data), wording("lead-out-of-its-plane"));
   filter->SetTransformKind(vtkMeshWarp::ROTATION);
   filter->SetAxis(0, 0, 0);
-  refused(toGrid(data), "The axis of the motion has no length");
+  refused(toGrid(data), wording("the-axis-of-the-motion-has-no"));
   filter->SetTransformKind(vtkMeshWarp::SCALING);
   filter->SetScaleFactors(1, 0, 1);
-  refused(toGrid(data), "A scale factor is not positive");
+  refused(toGrid(data), wording("a-scale-factor-is-not-positive"));
   filter->SetTransformKind(vtkMeshWarp::BENDING);
   filter->SetAxis(1, 0, 0);
-  refused(toGrid(data), "lies along the axis");
+  refused(toGrid(data), wording("lies-along-the-axis"));
   filter->SetTransformKind(vtkMeshWarp::MATRIX);
   vtkNew<vtkTransform> mirror;
   mirror->Scale(-1, 1, 1);
   filter->SetTransform(mirror);
-  refused(toGrid(data), "mirrors or flattens");
+  refused(toGrid(data), wording("mirrors-or-flattens"));
 
   // Arrays of displacements.
   filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
   auto grid = toGrid(data);
-  refused(grid, "No array of displacements is chosen");
+  refused(grid, wording("no-array-of-displacements-is-chosen"));
   filter->SetInputArrayToProcess(0, 0, 0, OnPoints, "d");
-  refused(grid, "There is no point array 'd' of displacements");
+  refused(grid, wording("there-is-no-point-array-d-of"));
   grid->GetPointData()->AddArray(
     arrayOf("d", data.numberOfPoints(), 1, [](Index, int) { return 0; }));
-  refused(grid, "The array 'd' has 1 components");
+  refused(grid, wording("the-array-d-has-1-components"));
   auto d = arrayOf("d", data.numberOfPoints(), 3,
     [](Index i, int) { return i == 2 || i == 6 || i == 24 ? std::nan("") : 0.01; });
   for (int k = 2; k < 3 * data.numberOfPoints(); k += 3)
@@ -96,8 +97,7 @@ void testRefusals()
     d->SetValue(k, 0);
   }
   grid->GetPointData()->AddArray(d);
-  refused(grid,
-    "The array 'd' is NaN or infinite at 2 of 16 points of the boundary, the first is point 2");
+  refused(grid, wording("the-array-d-is-nan-or-infinite"));
   d->SetComponent(2, 0, 0.01);
   d->SetComponent(2, 1, 0.01);
   d->SetComponent(24, 0, 0.01);
@@ -114,14 +114,14 @@ void testRefusals()
 
   // Coefficients.
   filter->SetCoefficients(vtkMeshWarp::PER_CELL);
-  refused(grid, "No array of coefficients is chosen");
+  refused(grid, wording("no-array-of-coefficients-is-chosen"));
   filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
   grid->GetCellData()->AddArray(
     arrayOf("c", data.numberOfCells(), 2, [](Index, int) { return 1; }));
-  refused(grid, "The array 'c' has 2 components");
+  refused(grid, wording("the-array-c-has-2-components"));
   grid->GetCellData()->AddArray(
     arrayOf("c", data.numberOfCells(), 3, [](Index, int) { return -1; }));
-  refused(grid, "cell 0 of the mesh are not finite or not positive semidefinite: correct");
+  refused(grid, wording("cell-0-of-the-mesh-are-not"));
   // The cell of the input, with a vertex, too.
   MeshData more = data;
   more.types.insert(more.types.begin(), VTK_VERTEX);
@@ -132,15 +132,15 @@ void testRefusals()
   withVertex->GetPointData()->ShallowCopy(grid->GetPointData());
   const auto values = [](Index i, int) { return i == 0 || i == 4 ? -1 : 1; };
   withVertex->GetCellData()->AddArray(arrayOf("c", more.numberOfCells(), 3, values));
-  refused(withVertex, "The coefficients of cell 4 of the mesh");
+  refused(withVertex, wording("the-coefficients-of-cell-4-of-the"));
   filter->SetCoefficients(vtkMeshWarp::PER_REGION);
-  refused(grid, "No array of regions is chosen");
+  refused(grid, wording("no-array-of-regions-is-chosen"));
 
   vtkNew<vtkUnstructuredGrid> empty;
   messages.clear();
   filter->SetInputData(empty);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The input has no cells"));
+  TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
 }
 
 /// A moved boundary that intersects itself: a warning with numbers, and the best mesh.
@@ -251,10 +251,9 @@ void testOtherCells()
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarpInputs(int, char*[])
+TAUTLINE_TEST(TestMeshWarpInputs)
 {
-  testRefusals();
-  testImpossible();
-  testOtherCells();
-  return exitCode();
+  TAUTLINE_RUN(testRefusals());
+  TAUTLINE_RUN(testImpossible());
+  TAUTLINE_RUN(testOtherCells());
 }

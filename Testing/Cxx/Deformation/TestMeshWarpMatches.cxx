@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh to a target: which of its points belong to which, and the closest ones.
+#include "Registry.h"
 #include "WarpingMeshes.h"
 
 #include "vtkDataSetSurfaceFilter.h"
@@ -95,7 +96,7 @@ void testTargets()
     check(moved(cloud), "by the order of the points that move");
     filter->SetMovedPart(vtkMeshWarp::AUTOMATIC_PART);
     filter->Update(); // that is the hole where nothing else distinguishes the parts
-    TAUTLINE_CHECK(messages.has("choose another Correspondence"));
+    TAUTLINE_CHECK(messages.has(wording("choose-another-correspondence")));
     messages.clear();
     filter->SetCorrespondence(vtkMeshWarp::AUTOMATIC_MATCH);
 
@@ -108,19 +109,18 @@ void testTargets()
     skin->GetPointData()->GetArray("id")->SetComponent(3, 0, -7);
     filter->SetInputData(1, moved(skin));
     filter->Update();
-    TAUTLINE_CHECK(
-      messages.has("has 1 values that are no values of the mesh's array of that name"));
+    TAUTLINE_CHECK(messages.has(wording("has-1-values-that-are-no-values")));
     filter->SetTargetIds("missing");
     filter->Update();
-    TAUTLINE_CHECK(messages.has("The target has no point array 'missing'"));
+    TAUTLINE_CHECK(messages.has(wording("the-target-has-no-point-array-missing")));
     messages.clear();
     filter->SetTargetIds("None");
     filter->SetCorrespondence(vtkMeshWarp::POINT_IDS);
     filter->Update();
-    TAUTLINE_CHECK(messages.has("No array of point ids is chosen"));
+    TAUTLINE_CHECK(messages.has(wording("no-array-of-point-ids-is-chosen")));
     filter->SetCorrespondence(vtkMeshWarp::SAME_MESH);
     filter->Update();
-    TAUTLINE_CHECK(flat || messages.has("it is not the same mesh"));
+    TAUTLINE_CHECK(flat || messages.has(wording("it-is-not-the-same-mesh")));
   }
 }
 
@@ -150,8 +150,9 @@ void testProjection()
     TAUTLINE_CHECK(parts[i] != 2 || std::abs(norm(p - c) - 1) < 3e-3);
     TAUTLINE_CHECK(parts[i] != 1 || p == data.point(i));
   }
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "by projection: 8 points"));
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "the farthest of them 0.13")); // 1 - sqrt(3) / 2
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("by-projection-8-points")));
+  TAUTLINE_CHECK(
+    contains(filter->GetSummary(), wording("the-farthest-of-them-0-13"))); // 1 - sqrt(3) / 2
   TAUTLINE_CHECK_NEAR(
     value(filter->GetStatistics(), "Largest displacement"), 1 - std::sqrt(0.75), 3e-3);
 
@@ -164,11 +165,11 @@ void testProjection()
   filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
   filter->SetAmount(0.25);
   filter->Update();
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "the farthest of them 2.0"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("the-farthest-of-them-2-0")));
   TAUTLINE_CHECK_NEAR(value(filter->GetStatistics(), "Largest displacement"), 0.5, 1e-12);
   blocks->SetBlock(2, toGrid(data));
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The target has several blocks and the mesh has none"));
+  TAUTLINE_CHECK(messages.has(wording("the-target-has-several-blocks-and-the")));
   messages.clear();
 
   // In the plane it is a curve.
@@ -202,23 +203,22 @@ void testProjection()
   cloud->SetPoints(one);
   planar->SetInputData(1, cloud);
   planar->Update();
-  TAUTLINE_CHECK(others.has("The target has no curve the boundary could be moved to"));
+  TAUTLINE_CHECK(others.has(wording("the-target-has-no-curve-the-boundary")));
   others.clear();
   vtkNew<vtkPolyData> nothing;
   planar->SetInputData(1, nothing);
   planar->Update();
-  TAUTLINE_CHECK(others.has("The target is empty"));
+  TAUTLINE_CHECK(others.has(wording("the-target-is-empty")));
   others.clear();
   planar->SetInputData(1, nullptr);
   planar->Update();
-  TAUTLINE_CHECK(others.has("There is no Target"));
+  TAUTLINE_CHECK(others.has(wording("there-is-no-target")));
 }
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarpMatches(int, char*[])
+TAUTLINE_TEST(TestMeshWarpMatches)
 {
-  testTargets();
-  testProjection();
-  return exitCode();
+  TAUTLINE_RUN(testTargets());
+  TAUTLINE_RUN(testProjection());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh: the paths of transforms, steps along them, and which part of the boundary they move.
+#include "Registry.h"
 #include "WarpingMeshes.h"
 
 #include "tautline/Mesh/BoundaryParts.h"
@@ -214,7 +215,7 @@ void testSteps()
   const double amount = value(filter->GetStatistics(), "Amount");
   TAUTLINE_CHECK_EQUAL(filter->GetInverted(), 0);
   TAUTLINE_CHECK(amount > 0.1 && amount < 1);
-  TAUTLINE_CHECK(messages.has("% of the motion"));
+  TAUTLINE_CHECK(messages.has(wording("of-the-motion")));
   filter->SetAmount(0.5 * amount);
   messages.clear();
   filter->Update();
@@ -284,15 +285,15 @@ void testParts()
   moves([&](Index i) { return parts[i] != 0; });
   filter->AddPart(3);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("There is no boundary part 3: there are parts 1 to 2"));
+  TAUTLINE_CHECK(messages.has(wording("there-is-no-boundary-part-3-there")));
   filter->RemoveAllParts();
   filter->Update();
-  TAUTLINE_CHECK(messages.has("No boundary part is given"));
+  TAUTLINE_CHECK(messages.has(wording("no-boundary-part-is-given")));
   messages.clear();
 
   filter->SetMovedPart(vtkMeshWarp::ARRAY_VALUES);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("No array is chosen for the part that moves"));
+  TAUTLINE_CHECK(messages.has(wording("no-array-is-chosen-for-the-part")));
   messages.clear();
   const auto points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   filter->SetInputArrayToProcess(1, 0, 0, points, "marker");
@@ -309,15 +310,15 @@ void testParts()
     });
   filter->SetInputArrayToProcess(1, 0, 0, points, "inner");
   filter->Update();
-  TAUTLINE_CHECK(messages.has("points chosen to move none is on the boundary"));
+  TAUTLINE_CHECK(messages.has(wording("points-chosen-to-move-none-is-on")));
   filter->SetInputArrayToProcess(1, 0, 0, points, "nothing");
   filter->Update();
-  TAUTLINE_CHECK(messages.has("There is no point array 'nothing'"));
+  TAUTLINE_CHECK(messages.has(wording("there-is-no-point-array-nothing")));
   messages.clear();
 
   filter->SetMovedPart(vtkMeshWarp::SELECTION);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("Nothing is selected that could move"));
+  TAUTLINE_CHECK(messages.has(wording("nothing-is-selected-that-could-move")));
   messages.clear();
   filter->SetInputData(2, select(vtkSelectionNode::POINT, { 3, 4, 30 }));
   moves([](Index i) { return i == 3 || i == 4 || i == 30; });
@@ -437,13 +438,12 @@ void testAnimation()
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarpMotions(int, char*[])
+TAUTLINE_TEST(TestMeshWarpMotions)
 {
-  testAnimation();
-  testPaths();
-  testBending();
-  testSteps();
-  testParts();
-  testBoundaryParts();
-  return exitCode();
+  TAUTLINE_RUN(testAnimation());
+  TAUTLINE_RUN(testPaths());
+  TAUTLINE_RUN(testBending());
+  TAUTLINE_RUN(testSteps());
+  TAUTLINE_RUN(testParts());
+  TAUTLINE_RUN(testBoundaryParts());
 }

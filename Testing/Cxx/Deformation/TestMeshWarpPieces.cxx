@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh on processes, each with its piece: every method and choice of coefficients moves the
 // points as one process does, however the mesh is cut, and nothing is put together.
+#include "Registry.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
 #include "WarpingRanks.h"
@@ -59,7 +60,7 @@ void testSame(const char* name, vtkMPIController* controller, const MeshData& wh
     TAUTLINE_CHECK_EQUAL(found.impossible, one.impossible);
     TAUTLINE_CHECK_RELATIVE(found.worst, one.worst, 1e4 * bound);
     checkTables(serial, filter, rank, 1e4 * bound);
-    TAUTLINE_CHECK(!contains(filter->GetSummary(), "put together"));
+    TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("put-together")));
     return far;
   };
   double far = 0;
@@ -109,7 +110,7 @@ void testValid(const char* name, vtkMPIController* controller, const MeshData& w
     TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfterWarp(), inverted);
     TAUTLINE_CHECK_EQUAL(filter->GetInverted(), 0);
     TAUTLINE_CHECK_EQUAL(filter->GetImpossible(), 0);
-    TAUTLINE_CHECK(!contains(filter->GetSummary(), "put together"));
+    TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("put-together")));
     constexpr double similar = 0.3; // of the size of a cell: no point goes elsewhere
     TAUTLINE_CHECK(farthest(here, one) <= similar);
     vtkTable *first = serial->GetHistory(), *history = filter->GetHistory();
@@ -290,7 +291,7 @@ void testPutTogether(vtkMPIController* controller)
   TAUTLINE_CHECK(contains(filter->GetSummary(), sentence));
   // All of it is in one place from the start.
   pointsOf(whole, partOf(whole, rank, all), set, onFirst.Get(), true);
-  TAUTLINE_CHECK(!contains(onFirst->GetSummary(), "put together"));
+  TAUTLINE_CHECK(!contains(onFirst->GetSummary(), wording("put-together")));
 }
 
 /// Wrong coefficients of one cell are an error on all processes.
@@ -429,13 +430,12 @@ void testPieces(vtkMPIController* controller)
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarpPieces(int argc, char* argv[])
+TAUTLINE_TEST(TestMeshWarpPieces)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
-  testPieces(controller);
+  TAUTLINE_RUN(testPieces(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh on several processes: a distributed mesh moves as it does on one process.
+#include "Registry.h"
 #include "Processes.h"
 #include "WarpingMeshes.h"
 
@@ -64,7 +65,7 @@ void testRanks(int rank, int ranks)
     there.points[i] = used[i / 3] ? there.points[i] : data.points[i];
   }
   TAUTLINE_CHECK_NEAR(distance(here, there), 0, 1e-10);
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "elements are valid"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("elements-are-valid")));
   messages.clear();
 
   // Whole on the first process, empty on the others.
@@ -72,8 +73,8 @@ void testRanks(int rank, int ranks)
   filter->Update();
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), rank == 0 ? data.numberOfCells() : 0);
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "elements are valid"));
-  TAUTLINE_CHECK(!contains(filter->GetSummary(), "divided anew"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("elements-are-valid")));
+  TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("divided-anew")));
 
   // The same, divided among all.
   for (const int how : { vtkMeshWarp::KD_TREE, vtkMeshWarp::PT_SCOTCH })
@@ -111,7 +112,7 @@ void testRanks(int rank, int ranks)
   blocks->Modified();
   messages.clear();
   filter->Update();
-  TAUTLINE_CHECK(messages.has("Untangle Mesh"));
+  TAUTLINE_CHECK(messages.has(wording("untangle-mesh")));
   blocks->SetBlock(rank, toGrid(data));
   blocks->Modified();
   messages.clear();
@@ -121,13 +122,12 @@ void testRanks(int rank, int ranks)
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarpRanks(int argc, char* argv[])
+TAUTLINE_TEST(TestMeshWarpRanks)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
-  testRanks(controller->GetLocalProcessId(), controller->GetNumberOfProcesses());
+  TAUTLINE_RUN(testRanks(controller->GetLocalProcessId(), controller->GetNumberOfProcesses()));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions of Warp Mesh to a target on processes where ids contradict what else points could
 // correspond by.
+#include "Registry.h"
 #include "WarpingRanks.h"
 
 using namespace tautline;
@@ -53,21 +54,20 @@ void testSwapped(vtkMPIController* controller, int correspondence)
   TAUTLINE_CHECK(farthest(pointsOf(whole, part, setTo(part), same.Get(), true), expected) <= 1e-10);
   for (vtkMeshWarp* one : { serial.Get(), filter.Get(), same.Get() })
   {
-    TAUTLINE_CHECK(contains(one->GetSummary(), "as the same mesh, point by point: 24 of 24"));
-    TAUTLINE_CHECK(!contains(one->GetSummary(), "put together"));
+    TAUTLINE_CHECK(contains(one->GetSummary(), wording("as-the-same-mesh-point-by-point")));
+    TAUTLINE_CHECK(!contains(one->GetSummary(), wording("put-together")));
   }
 }
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarpTargetIds(int argc, char* argv[])
+TAUTLINE_TEST(TestMeshWarpTargetIds)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
-  testSwapped(controller, vtkMeshWarp::AUTOMATIC_MATCH);
-  testSwapped(controller, vtkMeshWarp::SAME_MESH);
+  TAUTLINE_RUN(testSwapped(controller, vtkMeshWarp::AUTOMATIC_MATCH));
+  TAUTLINE_RUN(testSwapped(controller, vtkMeshWarp::SAME_MESH));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions of Warp Mesh to a target on processes: by ids, by the closest points, in the pieces of
 // the mesh or in others; what has lost the order of its points is refused.
+#include "Registry.h"
 #include "WarpingRanks.h"
 
 #include "vtkCellArray.h"
@@ -112,7 +113,7 @@ void testTargets(vtkMPIController* controller, const MeshData& whole, double mid
     const RankPart other = partOf(whole, rank, cutBy(whole, one.cut, size), one.cut == Cut::Slabs);
     const std::vector<double> here =
       pointsOf(whole, part, setTo(part, other), filter.Get(), one.numbered);
-    TAUTLINE_CHECK(!contains(filter->GetSummary(), "put together"));
+    TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("put-together")));
     TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
     const std::string summary = serial->GetSummary();
     const std::size_t at = summary.find(one.how);
@@ -160,7 +161,7 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
     const auto target = shifted(part, rank * rounding);
     const std::vector<double> here =
       pointsOf(whole, part, setTo(target, vtkMeshWarp::SAME_MESH), filter.Get());
-    TAUTLINE_CHECK(!contains(filter->GetSummary(), "put together"));
+    TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("put-together")));
     TAUTLINE_CHECK(farthest(here, expected) <= 1e-12);
     TAUTLINE_CHECK(farthest(here, whole.points) > 0.05);
     // The copies of a point on several processes are in one place, bitwise.
@@ -200,9 +201,9 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
       alone(controller, whole, setTo(rolled(entire), vtkMeshWarp::AUTOMATIC_MATCH), serial.Get());
     const std::vector<double> here =
       pointsOf(whole, part, setTo(rolled(part), vtkMeshWarp::AUTOMATIC_MATCH), filter.Get());
-    TAUTLINE_CHECK(contains(serial->GetSummary(), "as the same mesh, point by point: "));
-    TAUTLINE_CHECK(contains(filter->GetSummary(), "as the same mesh, point by point: "));
-    TAUTLINE_CHECK(!contains(filter->GetSummary(), "put together"));
+    TAUTLINE_CHECK(contains(serial->GetSummary(), wording("as-the-same-mesh-point-by-point-2")));
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("as-the-same-mesh-point-by-point-2")));
+    TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("put-together")));
     TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
   }
   {
@@ -221,8 +222,8 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
       setTo(targetOf(all, middle, angle), vtkMeshWarp::SAME_MESH), serial.Get());
     const std::vector<double> found = pointsOf(
       turned, here, setTo(targetOf(here, middle, angle), vtkMeshWarp::SAME_MESH), filter.Get());
-    TAUTLINE_CHECK(contains(filter->GetSummary(), "put together"));
-    TAUTLINE_CHECK(contains(filter->GetSummary(), "as the same mesh, point by point: "));
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("put-together")));
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("as-the-same-mesh-point-by-point-2")));
     TAUTLINE_CHECK(farthest(found, expected) <= 1e-10);
   }
   {
@@ -250,7 +251,7 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
       const std::vector<double> here = pointsOf(whole, first, extracted(match), filter.Get());
       TAUTLINE_CHECK(farthest(expected, whole.points) > 0.05);
       TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
-      TAUTLINE_CHECK(contains(filter->GetSummary(), "divided anew among "));
+      TAUTLINE_CHECK(contains(filter->GetSummary(), wording("divided-anew-among")));
       const std::string summary = serial->GetSummary();
       const std::size_t at = summary.find(": as the ");
       TAUTLINE_CHECK(at == std::string::npos ||
@@ -273,7 +274,7 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
   const auto grid = gridOf(part);
   constexpr double apart = 0.5;
   refused("torn", grid, shifted(part, rank * apart), vtkMeshWarp::AUTOMATIC_MATCH,
-    "the target has different places");
+    wording("the-target-has-different-places"));
   const char* unknown = "without an order of global ids of both";
   for (const Cut cut : { Cut::Slabs, Cut::FirstOnly })
   {
@@ -282,9 +283,9 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
     for (const int match :
       { vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::SAME_MESH, vtkMeshWarp::SAME_BOUNDARY })
     {
-      refused("no order", grid, target, match, unknown);
+      refused(wording("no-order"), grid, target, match, unknown);
     }
-    refused("ids of the target alone", grid, targetOf(other, middle, angle, true),
+    refused(wording("ids-of-the-target-alone"), grid, targetOf(other, middle, angle, true),
       vtkMeshWarp::AUTOMATIC_MATCH, unknown);
     // Ids that are others than the mesh has.
     const auto others = targetOf(other, middle, angle, true);
@@ -296,7 +297,7 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
     }
     for (const int match : { vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::SAME_MESH })
     {
-      refused("other ids", numberedGridOf(part), others, match,
+      refused(wording("other-ids"), numberedGridOf(part), others, match,
         cut == Cut::Slabs ? "but not its cells" : unknown);
     }
   }
@@ -305,11 +306,11 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
     // The surface of a volume has no boundary that a planar mesh could go to.
     const MeshData volume = blockWithHole(CellType::Tetrahedron);
     const auto closed = toGrid(partOf(volume, rank, cutBy(volume, Cut::Slabs, size)).data);
-    refused("closed", grid, closed, vtkMeshWarp::CLOSEST_POINT, "it is closed");
+    refused("closed", grid, closed, vtkMeshWarp::CLOSEST_POINT, wording("it-is-closed"));
   }
   vtkNew<vtkUnstructuredGrid> empty;
-  refused("missing", grid, nullptr, vtkMeshWarp::AUTOMATIC_MATCH, "There is no Target");
-  refused("empty", grid, empty, vtkMeshWarp::AUTOMATIC_MATCH, "The target is empty");
+  refused("missing", grid, nullptr, vtkMeshWarp::AUTOMATIC_MATCH, wording("there-is-no-target"));
+  refused("empty", grid, empty, vtkMeshWarp::AUTOMATIC_MATCH, wording("the-target-is-empty"));
 }
 
 /// Every so many cells of a curve or surface, with all points, and the ids of these.
@@ -362,7 +363,7 @@ void testBoundaryInPieces(vtkMPIController* controller, const MeshData& whole, d
         pointsOf(whole, part, setTo(mine, match, ids), filter.Get(), true);
       TAUTLINE_CHECK(farthest(expected, whole.points) > 0.05);
       TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
-      TAUTLINE_CHECK(!contains(filter->GetSummary(), "put together"));
+      TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("put-together")));
       const bool byIds = ids && match == vtkMeshWarp::AUTOMATIC_MATCH;
       TAUTLINE_CHECK(contains(filter->GetSummary(),
         byIds ? "by point ids: " : "as the boundary extracted from the mesh: "));
@@ -375,7 +376,7 @@ void testBoundaryInPieces(vtkMPIController* controller, const MeshData& whole, d
       pointsOf(whole, part, setTo(mine, vtkMeshWarp::CLOSEST_POINT, nullptr), several.Get());
     TAUTLINE_CHECK(farthest(closest, whole.points) > 0.05);
     TAUTLINE_CHECK(farthest(found, closest) <= 1e-10);
-    TAUTLINE_CHECK(!contains(several->GetSummary(), "put together"));
+    TAUTLINE_CHECK(!contains(several->GetSummary(), wording("put-together")));
     // Without ids one process has an order, and several have not.
     mine->GetPointData()->SetGlobalIds(nullptr);
     for (const int match : { vtkMeshWarp::AUTOMATIC_MATCH, vtkMeshWarp::SAME_BOUNDARY })
@@ -471,7 +472,7 @@ void testCurves(vtkMPIController* controller, const MeshData& whole, double midd
                             : "by the order of the points that move: ";
       TAUTLINE_CHECK(contains(serial->GetSummary(), how));
       TAUTLINE_CHECK(contains(filter->GetSummary(), how));
-      TAUTLINE_CHECK(!contains(filter->GetSummary(), "put together"));
+      TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("put-together")));
       TAUTLINE_CHECK(farthest(expected, whole.points) > 0.05);
       TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
     }
@@ -485,7 +486,7 @@ void testCurves(vtkMPIController* controller, const MeshData& whole, double midd
     filter->SetCorrespondence(vtkMeshWarp::SAME_BOUNDARY);
     Messages messages(filter);
     filter->Update();
-    TAUTLINE_CHECK(messages.has("its cells are not those of the boundary in the same order"));
+    TAUTLINE_CHECK(messages.has(wording("its-cells-are-not-those-of-the")));
   }
 }
 
@@ -542,9 +543,9 @@ void testCrackedMesh(vtkMPIController* controller)
   const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
   const std::vector<double> here = pointsOf(whole, part, setTo(mine), filter.Get(), true);
   TAUTLINE_CHECK(
-    contains(serial->GetSummary(), "as the boundary extracted from the mesh: 98 of 98"));
+    contains(serial->GetSummary(), wording("as-the-boundary-extracted-from-the-mesh")));
   TAUTLINE_CHECK(
-    contains(filter->GetSummary(), "as the boundary extracted from the mesh: 98 of 98"));
+    contains(filter->GetSummary(), wording("as-the-boundary-extracted-from-the-mesh")));
   TAUTLINE_CHECK(farthest(expected, whole.points) > 0.3);
   TAUTLINE_CHECK(farthest(here, expected) <= 1e-10);
 }
@@ -599,14 +600,14 @@ void testCrack(vtkMPIController* controller)
   vtkNew<vtkMeshWarp> filter;
   pointsOf(whole, part, setTo(here), filter.Get());
   // The face at x = 1, 0.22 from the last points; the sides of the cubes are 0.45 away.
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "the farthest of them 0.22"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("the-farthest-of-them-0-22")));
   // Two processes that have the same face have it in the inside.
   const auto apart = rank == 0 ? targetIn({ 0 })
     : rank == 1                ? targetIn({ 1 })
                                : vtkSmartPointer<vtkUnstructuredGrid>::New();
   vtkNew<vtkMeshWarp> inside;
   pointsOf(whole, part, setTo(apart), inside.Get());
-  TAUTLINE_CHECK(contains(inside->GetSummary(), "the farthest of them 0.45"));
+  TAUTLINE_CHECK(contains(inside->GetSummary(), wording("the-farthest-of-them-0-45")));
 }
 
 /// A defect of the target on one process is an error on all.
@@ -685,13 +686,12 @@ void testAll(vtkMPIController* controller)
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarpTargets(int argc, char* argv[])
+TAUTLINE_TEST(TestMeshWarpTargets)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
-  testAll(controller);
+  TAUTLINE_RUN(testAll(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

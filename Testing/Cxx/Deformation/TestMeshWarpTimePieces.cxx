@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions over time of Warp Mesh on processes: each keeps its piece, and the points are those of
 // one process, from the first time step or from the one before, whatever the order of the requests.
+#include "Registry.h"
 #include "MovingPieces.h"
 
 #include "vtkCommand.h"
@@ -87,7 +88,7 @@ void testSame(
       TAUTLINE_CHECK(messages.empty());
       far = std::max(far, farthest(here, expected[std::floor(time)]));
       TAUTLINE_CHECK(far <= Same);
-      TAUTLINE_CHECK(!contains(run.filter->GetSummary(), "put together"));
+      TAUTLINE_CHECK(!contains(run.filter->GetSummary(), wording("put-together")));
       TAUTLINE_CHECK_EQUAL(run.filter->GetInverted(), 0);
       TAUTLINE_CHECK_EQUAL(run.filter->GetHistory()->GetNumberOfRows(), rank == 0 ? 1 : 0);
     }
@@ -148,7 +149,7 @@ void testBeginsAgain(vtkMPIController* controller, const MeshData& whole, double
   run.filter->SetMotion(vtkMeshWarp::TRANSFORM);
   turn(run.filter, 20);
   run.at(0.0, whole, part);
-  TAUTLINE_CHECK(!contains(run.filter->GetSummary(), "put together"));
+  TAUTLINE_CHECK(!contains(run.filter->GetSummary(), wording("put-together")));
   run.filter->SetMotion(motion);
   check(slow);
 }
@@ -172,26 +173,26 @@ void testOtherPieces(vtkMPIController* controller, const MeshData& whole, double
       Messages messages(run.filter);
       run.filter->UpdateTimeStep(1.0);
       TAUTLINE_CHECK(messages.empty());
-      TAUTLINE_CHECK(!contains(run.filter->GetSummary(), "put together"));
+      TAUTLINE_CHECK(!contains(run.filter->GetSummary(), wording("put-together")));
       run.filter->UpdateTimeStep(3.0);
-      TAUTLINE_CHECK_EQUAL(messages.has("so that their order is not known"), !numbered);
+      TAUTLINE_CHECK_EQUAL(messages.has(wording("so-that-their-order-is-not-known-2")), !numbered);
       if (!numbered)
       {
         TAUTLINE_CHECK_EQUAL(meshOf(run.filter)->GetNumberOfPoints(), 0);
         continue;
       }
       TAUTLINE_CHECK(messages.empty());
-      TAUTLINE_CHECK(contains(run.filter->GetSummary(),
-        "The mesh was put together on the first process: its pieces change over time."));
+      TAUTLINE_CHECK(
+        contains(run.filter->GetSummary(), wording("the-mesh-was-put-together-on-the")));
       TAUTLINE_CHECK(farthest(spreadOf(whole, random, meshOf(run.filter)), expected) <= Same);
       // It stays so, until the source changes.
       const auto first = aloneAt(1.0, controller, whole, middle, motion, start, [](Run&) {});
       TAUTLINE_CHECK(farthest(run.at(1.0, whole, slabs), first) <= Same);
-      TAUTLINE_CHECK(contains(run.filter->GetSummary(), "put together"));
+      TAUTLINE_CHECK(contains(run.filter->GetSummary(), wording("put-together")));
       run.source->PartAt = [&](double) { return random; };
       run.source->Modified();
       TAUTLINE_CHECK(farthest(run.at(3.0, whole, random), expected) <= Same);
-      TAUTLINE_CHECK(!contains(run.filter->GetSummary(), "put together"));
+      TAUTLINE_CHECK(!contains(run.filter->GetSummary(), wording("put-together")));
       TAUTLINE_CHECK(messages.empty());
     }
   }
@@ -227,7 +228,7 @@ void testPutTogether(vtkMPIController* controller)
     run.source->Modified();
     Messages messages(run.filter);
     run.filter->UpdateTimeStep(3.0);
-    TAUTLINE_CHECK(messages.has("so that their order is not known: run Generate Global Ids"));
+    TAUTLINE_CHECK(messages.has(wording("so-that-their-order-is-not-known")));
   }
 }
 
@@ -253,10 +254,10 @@ void testWrong(vtkMPIController* controller, const MeshData& whole, double middl
     };
     const double when = start == vtkMeshWarp::FIRST_STEP ? 3 : 2;
     run.source->BrokenAt = last ? when : -1;
-    fails("prescribed points are NaN or infinite");
+    fails(wording("prescribed-points-are-nan-or-infinite"));
     run.source->BrokenAt = -1;
     run.source->FailsAt = last ? when : -1;
-    fails("An input could not be computed");
+    fails(wording("an-input-could-not-be-computed"));
     run.source->FailsAt = -1;
     run.source->Modified();
     run.filter->UpdateTimeStep(3.0);
@@ -268,7 +269,7 @@ void testWrong(vtkMPIController* controller, const MeshData& whole, double middl
   without->SetMotion(vtkMeshWarp::TIME_STEPS);
   Messages messages(without);
   without->Update();
-  TAUTLINE_CHECK(messages.has("The input has no time steps"));
+  TAUTLINE_CHECK(messages.has(wording("the-input-has-no-time-steps")));
 }
 
 /// A process without cells may have no time steps: it takes part in those of the others, also
@@ -315,7 +316,7 @@ void testTimes(vtkMPIController* controller, const MeshData& whole, double middl
         TAUTLINE_CHECK(farthest(spreadOf(whole, part, output), expected[time]) <= Same);
       }
       TAUTLINE_CHECK(messages.empty());
-      TAUTLINE_CHECK(!contains(run.filter->GetSummary(), "put together"));
+      TAUTLINE_CHECK(!contains(run.filter->GetSummary(), wording("put-together")));
     }
   }
   const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
@@ -359,7 +360,7 @@ void testStop(vtkMPIController* controller, const MeshData& whole, double middle
     rank == size - 1 ? run.filter->AddObserver(vtkCommand::ProgressEvent, stop) : 0;
   Messages messages(run.filter);
   run.filter->UpdateTimeStep(3.0);
-  TAUTLINE_CHECK(contains(run.filter->GetSummary(), "Stopped on request."));
+  TAUTLINE_CHECK(contains(run.filter->GetSummary(), wording("stopped-on-request")));
   TAUTLINE_CHECK_EQUAL(meshOf(run.filter)->GetNumberOfPoints(), part.data.numberOfPoints());
   if (rank == size - 1)
   {
@@ -373,7 +374,7 @@ void testStop(vtkMPIController* controller, const MeshData& whole, double middle
   TAUTLINE_CHECK(!contains(run.filter->GetSummary(), "Stopped"));
   run.filter->SetTimeLimit(1e-9);
   run.filter->UpdateTimeStep(2.0);
-  TAUTLINE_CHECK(contains(run.filter->GetSummary(), "The time limit was reached."));
+  TAUTLINE_CHECK(contains(run.filter->GetSummary(), wording("the-time-limit-was-reached")));
   // The steps after a limited one say so, also if they are not limited themselves.
   Run slow(part, middle, vtkMeshWarp::TIME_STEPS, vtkMeshWarp::PREVIOUS_STEP);
   slow.filter->SetTimeLimit(1e-9);
@@ -448,13 +449,12 @@ void testAll(vtkMPIController* controller)
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarpTimePieces(int argc, char* argv[])
+TAUTLINE_TEST(TestMeshWarpTimePieces)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   vtkMultiProcessController::SetGlobalController(controller);
-  testAll(controller);
+  TAUTLINE_RUN(testAll(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

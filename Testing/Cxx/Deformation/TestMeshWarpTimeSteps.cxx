@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh over time steps: from the first or from the one before, and what is kept.
+#include "Registry.h"
 #include "WarpingMeshes.h"
 
 #include "vtkInformation.h"
@@ -213,7 +214,7 @@ void testTimeCosts()
   filter->UpdateTimeStep(1);
   TAUTLINE_CHECK(messages.empty());
   filter->UpdateTimeStep(4);
-  TAUTLINE_CHECK(messages.has("only its points may change over time"));
+  TAUTLINE_CHECK(messages.has(wording("only-its-points-may-change-over-time")));
   messages.clear();
   source->Grows = false;
   source->Modified();
@@ -231,8 +232,8 @@ void testTimeCosts()
     source->FailsAt = 2;
     source->Modified();
     stepwise->UpdateTimeStep(4);
-    TAUTLINE_CHECK(upstream.has("The time step cannot be computed."));
-    TAUTLINE_CHECK(all.has("An input could not be computed"));
+    TAUTLINE_CHECK(upstream.has(wording("the-time-step-cannot-be-computed")));
+    TAUTLINE_CHECK(all.has(wording("an-input-could-not-be-computed")));
     TAUTLINE_CHECK_EQUAL(meshOf(stepwise)->GetNumberOfPoints(), 0);
     source->FailsAt = -1;
     source->Modified();
@@ -268,14 +269,13 @@ void testTimeCosts()
   without->SetInputData(toGrid(source->Data));
   without->SetMotion(vtkMeshWarp::TIME_STEPS);
   without->Update();
-  TAUTLINE_CHECK(others.has("The input has no time steps"));
+  TAUTLINE_CHECK(others.has(wording("the-input-has-no-time-steps")));
 }
 }
 
 //------------------------------------------------------------------------------
-int TestMeshWarpTimeSteps(int, char*[])
+TAUTLINE_TEST(TestMeshWarpTimeSteps)
 {
-  testTimeSteps();
-  testTimeCosts();
-  return exitCode();
+  TAUTLINE_RUN(testTimeSteps());
+  TAUTLINE_RUN(testTimeCosts());
 }

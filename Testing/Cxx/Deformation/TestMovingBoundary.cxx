@@ -2,6 +2,7 @@
 // The part of the boundary that Warp Mesh moves, shown before it moves: edges or faces of the hole,
 // parts of blocks, what is chosen by arrays, by displacements, by a target; what Warp Mesh would
 // refuse.
+#include "Registry.h"
 #include "WarpingMeshes.h"
 
 #include "vtkMovingBoundary.h"
@@ -126,7 +127,7 @@ void testNothingChosen()
   filter->SetInputData(toGrid(holedBlock(CellType::Triangle, N)));
   filter->SetMovedPart(vtkMeshWarp::ARRAY_VALUES);
   TAUTLINE_CHECK(boundaryOf(filter)->GetNumberOfPoints() == 0);
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "No array is chosen"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("no-array-is-chosen")));
   filter->SetMotion(vtkMeshWarp::TIME_STEPS); // the whole boundary
   checkBounds(boundaryOf(filter), 0, N, 0, 0);
   filter->SetMotion(vtkMeshWarp::TARGET);
@@ -136,12 +137,11 @@ void testNothingChosen()
 }
 
 //------------------------------------------------------------------------------
-int TestMovingBoundary(int, char*[])
+TAUTLINE_TEST(TestMovingBoundary)
 {
-  testHoles();
-  testSinglePoint();
-  testDisplacementsAndTarget();
-  testBlocks();
-  testNothingChosen();
-  return exitCode();
+  TAUTLINE_RUN(testHoles());
+  TAUTLINE_RUN(testSinglePoint());
+  TAUTLINE_RUN(testDisplacementsAndTarget());
+  TAUTLINE_RUN(testBlocks());
+  TAUTLINE_RUN(testNothingChosen());
 }

@@ -2,6 +2,7 @@
 // FEMWARP and its anisotropic forms: the propositions of section 4.9.1, the coefficients, the
 // limits in which they vanish, and what is kept for the next boundary position.
 
+#include "Registry.h"
 #include "../../Benchmark/KuhnMesh.h"
 #include "Warping.h"
 
@@ -400,8 +401,8 @@ void testDecoupled()
     {
       TAUTLINE_CHECK_NEAR(
         worst, 0, 1e-8); // Propositions 1 and 3, where there are prescribed points
-      TAUTLINE_CHECK(
-        result.message.find("no prescribed point determines 35 points") != std::string::npos);
+      TAUTLINE_CHECK(result.message.find(wording("no-prescribed-point-determines-35-points")) !=
+        std::string::npos);
     }
     TAUTLINE_CHECK(most < 0.4);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
@@ -501,14 +502,13 @@ void testReuse()
 }
 }
 
-int TestWarp(int, char*[])
+TAUTLINE_TEST(TestWarp)
 {
-  testPropositions();
-  testAffine();
-  testEquation();
-  testCoefficients();
-  testPerCell();
-  testDecoupled();
-  testReuse();
-  return exitCode();
+  TAUTLINE_RUN(testPropositions());
+  TAUTLINE_RUN(testAffine());
+  TAUTLINE_RUN(testEquation());
+  TAUTLINE_RUN(testCoefficients());
+  TAUTLINE_RUN(testPerCell());
+  TAUTLINE_RUN(testDecoupled());
+  TAUTLINE_RUN(testReuse());
 }

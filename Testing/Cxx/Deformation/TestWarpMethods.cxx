@@ -2,6 +2,7 @@
 // The methods beyond one harmonic solve: the hybrid algorithm, untangling, elasticity, the
 // biharmonic equation, steps.
 
+#include "Registry.h"
 #include "Warping.h"
 
 #include "tautline/Elliptic/FiniteElements.h"
@@ -266,7 +267,7 @@ void testElasticity()
   options.maximumStiffenings = 0;
   const WarpResult uniform = warped(data, turn, options);
   TAUTLINE_CHECK(uniform.invertedAfter > 0);
-  TAUTLINE_CHECK(uniform.message.find("after 0 rounds") != std::string::npos);
+  TAUTLINE_CHECK(uniform.message.find(wording("after-0-rounds")) != std::string::npos);
   options.maximumStiffenings = 100;
   const WarpResult stiffened = warped(data, turn, options);
   checkValid(data, turn, stiffened);
@@ -352,7 +353,7 @@ void testSteps()
   TAUTLINE_CHECK_EQUAL(invalid(data, small.points), 0);
   TAUTLINE_CHECK(small.amount > 0.4 && small.amount <= 1);
   TAUTLINE_CHECK_EQUAL(small.amount < 1,
-    small.message.find("could follow only a part of the motion") != std::string::npos);
+    small.message.find(wording("could-follow-only-a-part-of-the")) != std::string::npos);
   WarpOptions few = withMethod(WarpMethod::SmallStepFemwarp);
   few.maximumSteps = 2;
   const WarpResult stopped = warped(data, motion, few);
@@ -481,16 +482,15 @@ void testMirrored()
 }
 }
 
-int TestWarpMethods(int, char*[])
+TAUTLINE_TEST(TestWarpMethods)
 {
-  testTurnedBox();
-  testSimilarity();
-  testSecondStep();
-  testNoBarrier();
-  testBiharmonic();
-  testElasticity();
-  testSteps();
-  testThreads();
-  testMirrored();
-  return exitCode();
+  TAUTLINE_RUN(testTurnedBox());
+  TAUTLINE_RUN(testSimilarity());
+  TAUTLINE_RUN(testSecondStep());
+  TAUTLINE_RUN(testNoBarrier());
+  TAUTLINE_RUN(testBiharmonic());
+  TAUTLINE_RUN(testElasticity());
+  TAUTLINE_RUN(testSteps());
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testMirrored());
 }

@@ -2,7 +2,7 @@
 // Inverse distances, radial basis functions, weighted Laplacian: exact motions, known values,
 // invariances, limits.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Deformation/WarpPointwise.h"
 
@@ -545,12 +545,13 @@ void testControl()
   for (const double power : { 0.0, -1.0, 20.5, std::nan("") })
   {
     wrong.distancePower = power;
-    TAUTLINE_CHECK_THROWS(problem.run(warpByInverseDistance, wrong), "above 0 and at most 20");
+    TAUTLINE_CHECK_THROWS(
+      problem.run(warpByInverseDistance, wrong), wording("above-0-and-at-most-20"));
   }
   for (const double radius : { -1.0, std::nan(""), HUGE_VAL })
   {
     wrong.supportRadius = radius;
-    TAUTLINE_CHECK_THROWS(problem.run(warpByRadialBasis, wrong), "support radius");
+    TAUTLINE_CHECK_THROWS(problem.run(warpByRadialBasis, wrong), wording("support-radius"));
   }
   wrong.supportRadius = 0;
   wrong.fitTolerance = 1;
@@ -582,18 +583,17 @@ void testControl()
 }
 }
 
-int TestWarpPointwise(int, char*[])
+TAUTLINE_TEST(TestWarpPointwise)
 {
-  testInvariances(CellType::Triangle);
-  testInvariances(CellType::Tetrahedron);
-  testInvariances(CellType::Hexahedron);
-  testTies();
-  testInverseDistance();
-  testRadialBasis();
-  testManyCenters();
-  testWeights();
-  testTurning();
-  testLimits();
-  testControl();
-  return exitCode();
+  TAUTLINE_RUN(testInvariances(CellType::Triangle));
+  TAUTLINE_RUN(testInvariances(CellType::Tetrahedron));
+  TAUTLINE_RUN(testInvariances(CellType::Hexahedron));
+  TAUTLINE_RUN(testTies());
+  TAUTLINE_RUN(testInverseDistance());
+  TAUTLINE_RUN(testRadialBasis());
+  TAUTLINE_RUN(testManyCenters());
+  TAUTLINE_RUN(testWeights());
+  TAUTLINE_RUN(testTurning());
+  TAUTLINE_RUN(testLimits());
+  TAUTLINE_RUN(testControl());
 }

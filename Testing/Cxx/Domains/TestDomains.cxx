@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every domain: number of cells, valid cells, exact size, markers, motion; structured ones exactly.
 
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Domains/Domains.h"
 #include "tautline/Mesh/Mesh.h"
@@ -23,6 +23,8 @@
 #include <limits>
 #include <map>
 #include <sstream>
+
+using tautline::wording;
 
 namespace
 {
@@ -178,7 +180,7 @@ void checkSquare()
   }
   catch (const tautline::Error& error)
   {
-    thrown = std::string(error.what()).find("whole numbers") != std::string::npos;
+    thrown = std::string(error.what()).find(wording("whole-numbers")) != std::string::npos;
   }
   TAUTLINE_CHECK(thrown);
   const tautline::StructuredMesh rectangle = tautline::structuredRectangle(800);
@@ -193,8 +195,8 @@ void checkNames()
   source->SetDomainByName("gate");
   TAUTLINE_CHECK(!std::strcmp(vtkDomainSource::GetDomainName(source->GetDomain()), "gate"));
   source->SetDomainByName("nonsense");
-  TAUTLINE_CHECK(errors->GetErrorMessage().find(
-                   "there is no domain 'nonsense'; there are wrench") != std::string::npos);
+  TAUTLINE_CHECK(errors->GetErrorMessage().find(wording("there-is-no-domain-nonsense-there-are")) !=
+    std::string::npos);
   TAUTLINE_CHECK(vtkDomainSource::GetDomainName(-1) == nullptr);
 }
 
@@ -268,7 +270,8 @@ void checkMissingMeshers()
   source->SetDomainByName("disk2d");
   source->Update();
   TAUTLINE_CHECK(source->GetOutput()->GetNumberOfCells() == 0);
-  TAUTLINE_CHECK(errors->GetErrorMessage().find("without the module Meshing") != std::string::npos);
+  TAUTLINE_CHECK(
+    errors->GetErrorMessage().find(wording("without-the-module-meshing")) != std::string::npos);
 }
 
 /// Sizes that no memory holds are refused before anything is allocated.
@@ -292,7 +295,7 @@ void checkSizes()
     {
       message = error.what();
     }
-    TAUTLINE_CHECK(message.find("of memory") != std::string::npos);
+    TAUTLINE_CHECK(message.find(wording("of-memory")) != std::string::npos);
   }
   tautline::checkDomainSize(1e5, tautline::DomainKind::Solid);
 }
@@ -309,32 +312,32 @@ void checkExtremes()
     errors->Clear();
     set();
     TAUTLINE_CHECK(errors->GetErrorMessage().find(name) != std::string::npos);
-    TAUTLINE_CHECK(errors->GetErrorMessage().find("is kept") != std::string::npos);
+    TAUTLINE_CHECK(errors->GetErrorMessage().find(wording("is-kept")) != std::string::npos);
   };
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double extreme : { 1e-150, 1e150, 0.0, -1.0, std::nan(""), infinity })
   {
     const tautline::Context context(std::to_string(extreme));
-    refuses("ElementSize is ", [&] { source->SetElementSize(extreme); });
-    refuses("AspectRatio is ", [&] { source->SetAspectRatio(extreme); });
+    refuses(wording("elementsize-is"), [&] { source->SetElementSize(extreme); });
+    refuses(wording("aspectratio-is"), [&] { source->SetAspectRatio(extreme); });
     const bool tiny = extreme >= 0.0 && extreme < 1.0;
     if (!tiny)
     {
-      refuses("LayerWidth is ", [&] { source->SetLayerWidth(extreme); });
+      refuses(wording("layerwidth-is"), [&] { source->SetLayerWidth(extreme); });
     }
     if (!tiny && extreme != -1.0)
     {
-      refuses("Amount is ", [&] { source->SetAmount(extreme); });
+      refuses(wording("amount-is"), [&] { source->SetAmount(extreme); });
     }
-    TAUTLINE_CHECK_THROWS(tautline::structuredSquare(extreme, 1.0, 0.2), "whole elements");
+    TAUTLINE_CHECK_THROWS(tautline::structuredSquare(extreme, 1.0, 0.2), wording("whole-elements"));
     TAUTLINE_CHECK_THROWS(tautline::structuredSquare(0.1, extreme, 0.2),
       extreme >= 1.0 ? "whole elements" : "the aspect ratio must be");
     TAUTLINE_CHECK_THROWS(
-      tautline::planarBoundary("disk2d", extreme), "the spacing of a boundary is");
+      tautline::planarBoundary("disk2d", extreme), wording("the-spacing-of-a-boundary-is"));
     TAUTLINE_CHECK_THROWS(
-      tautline::solidBoundary("sphere", extreme), "the spacing of a boundary is");
+      tautline::solidBoundary("sphere", extreme), wording("the-spacing-of-a-boundary-is"));
   }
-  refuses("LayerWidth is ", [&] { source->SetLayerWidth(-1e-150); });
+  refuses(wording("layerwidth-is"), [&] { source->SetLayerWidth(-1e-150); });
   // What is inside: no layer, and one that is narrower than any element.
   source->Update();
   TAUTLINE_CHECK_EQUAL(source->GetOutput()->GetNumberOfCells(), vtkIdType(2 * 14 * 14));
@@ -348,30 +351,29 @@ void checkExtremes()
 }
 }
 
-int TestDomains(int, char* argv[])
+TAUTLINE_TEST(TestDomains)
 {
-  checkSizes();
-  checkExtremes();
-  checkMotion();
-  checkSquare();
-  checkNames();
-  checkXml(argv[1]);
+  TAUTLINE_RUN(checkSizes());
+  TAUTLINE_RUN(checkExtremes());
+  TAUTLINE_RUN(checkMotion());
+  TAUTLINE_RUN(checkSquare());
+  TAUTLINE_RUN(checkNames());
+  TAUTLINE_RUN(checkXml(argv[1]));
   for (int i = 0; i < vtkDomainSource::GetNumberOfDomains(); ++i)
   {
     const bool structured =
       tautline::domains()[static_cast<std::size_t>(i)].kind == tautline::DomainKind::Structured;
     if (structured || vtkDomainSource::HasMeshing())
     {
-      checkDomain(i);
+      TAUTLINE_RUN(checkDomain(i));
     }
   }
   if (!vtkDomainSource::HasMeshing())
   {
-    checkMissingMeshers();
-    return tautline::exitCode();
+    TAUTLINE_RUN(checkMissingMeshers());
+    return;
   }
-  checkTable();
-  checkDeterminism("hinge");
-  checkDeterminism("bore");
-  return tautline::exitCode();
+  TAUTLINE_RUN(checkTable());
+  TAUTLINE_RUN(checkDeterminism("hinge"));
+  TAUTLINE_RUN(checkDeterminism("bore"));
 }

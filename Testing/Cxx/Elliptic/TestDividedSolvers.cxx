@@ -2,7 +2,7 @@
 // Solve PDE, Condition Estimator and Solver Study on processes that divide the mesh anew: the
 // results are those of one process, at the points and in the cells of the pieces, however these are
 // cut; messages name the cells of the pieces, and what one process refuses all refuse.
-#include "Check.h"
+#include "Registry.h"
 #include "ThreadRanks.h"
 #include "VtkMeshes.h"
 
@@ -162,10 +162,11 @@ void testFilter(const char* name, const MeshData& whole, const Set<Filter>& set,
       set(filter, part);
       filter->Update();
       TAUTLINE_CHECK(messages.empty());
-      TAUTLINE_CHECK(std::string(filter->GetSummary()).find("divided anew") == std::string::npos ||
+      TAUTLINE_CHECK(
+        std::string(filter->GetSummary()).find(wording("divided-anew")) == std::string::npos ||
         std::string(filter->GetSummary()).find(sentence(how)) != std::string::npos);
       TAUTLINE_CHECK_EQUAL(
-        std::string(filter->GetSummary()).find("divided anew") != std::string::npos,
+        std::string(filter->GetSummary()).find(wording("divided-anew")) != std::string::npos,
         how != vtkEllipticAlgorithm::NO_REDISTRIBUTION);
       TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(), serial->GetUnknowns());
       for (const Compared& array : arrays)
@@ -313,7 +314,7 @@ void testConditions()
       if (how == vtkEllipticAlgorithm::NO_REDISTRIBUTION)
       {
         undivided = summary.substr(summary.find("\nElement "));
-        TAUTLINE_CHECK(undivided.find(" of process ") != std::string::npos);
+        TAUTLINE_CHECK(undivided.find(wording("of-process")) != std::string::npos);
       }
       else
       {
@@ -408,13 +409,13 @@ void testRefusals()
       TAUTLINE_CHECK_EQUAL(
         vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
     };
-    refused(part, "In process 0: 2 elements (the first is cell 68) inverted");
+    refused(part, wording("in-process-0-2-elements-the-first"));
     filter->SetSourceType(vtkEllipticSolver::EXPRESSION);
     filter->SetSourceExpression("1/((x - 6) + (y - 6))"); // at the last point only
-    refused(good, "is not finite at point ");
+    refused(good, wording("is-not-finite-at-point"));
     filter->SetSourceExpression("x");
     filter->SetFixedPart(vtkEllipticSolver::ONLY_CHOSEN);
-    refused(good, "without a fixed point");
+    refused(good, wording("without-a-fixed-point"));
     filter->SetFixedPart(vtkEllipticSolver::WHOLE_BOUNDARY);
     messages.clear();
     filter->SetInputData(gridOf(good));
@@ -428,18 +429,17 @@ void testRefusals()
 }
 
 //------------------------------------------------------------------------------
-int TestDividedSolvers(int argc, char* argv[])
+TAUTLINE_TEST(TestDividedSolvers)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
   processes = controller;
   vtkMultiProcessController::SetGlobalController(controller);
-  testSolutions();
-  testTime();
-  testConditions();
-  testSpaces();
-  testRefusals();
+  TAUTLINE_RUN(testSolutions());
+  TAUTLINE_RUN(testTime());
+  TAUTLINE_RUN(testConditions());
+  TAUTLINE_RUN(testSpaces());
+  TAUTLINE_RUN(testRefusals());
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

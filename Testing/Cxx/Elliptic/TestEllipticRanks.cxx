@@ -3,7 +3,7 @@
 // steps in time and the study of solvers are those of the whole mesh in one process; what one rank
 // rejects all reject. Runs on any number of ranks.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Elliptic/ErrorNorms.h"
 #include "tautline/Elliptic/SolverStudy.h"
@@ -205,7 +205,7 @@ void testRefusals(MPI_Comm comm)
     {
       const std::string message = error.what();
       named = message.find(text) != std::string::npos;
-      TAUTLINE_CHECK(named || message.find("Another rank") != std::string::npos);
+      TAUTLINE_CHECK(named || message.find(wording("another-rank")) != std::string::npos);
     }
     MPI_Allreduce(MPI_IN_PLACE, &named, 1, MPI_INT, MPI_SUM, comm);
     TAUTLINE_CHECK(named > 0);
@@ -213,28 +213,28 @@ void testRefusals(MPI_Comm comm)
   const MeshData good = blockMesh(CellType::Triangle, 5, 5, 0);
   MeshData data = good;
   std::swap(data.connectivity[0], data.connectivity[1]);
-  refused(data, {}, "inverted against the rest");
+  refused(data, {}, wording("inverted-against-the-rest"));
   data = good;
   data.addCell(3, { 0, 1 });
-  refused(data, {}, "1 cells are not triangles");
-  refused(MeshData(), {}, "no cells");
+  refused(data, {}, wording("1-cells-are-not-triangles"));
+  refused(MeshData(), {}, wording("no-cells"));
   EllipticProblem problem;
   problem.source[0] = std::numeric_limits<double>::quiet_NaN();
   refused(good, problem, "source f");
   problem = {};
   problem.pde = Pde::Elasticity;
   problem.source = { 0, 0, 1 };
-  refused(good, problem, "out of the plane");
+  refused(good, problem, wording("out-of-the-plane"));
   // Bent where one rank's part ends: each part is flat, the mesh is not.
   problem.source = { 0, 0, 0 };
   data = good;
   data.transform([](const Vec3& p) { return p[0] > 3 ? Vec3{ 3, p[1], p[0] - 3 } : p; });
-  refused(data, problem, "surface in space");
+  refused(data, problem, wording("surface-in-space"));
   // Nothing fixed: no part of any rank is held. One point fixed on one rank holds them all.
   std::vector<unsigned char> fixed(good.numberOfPoints(), 0);
   problem = {};
   problem.fixed = fixed.data();
-  refused(good, problem, "without a fixed point");
+  refused(good, problem, wording("without-a-fixed-point"));
   const Share share(comm, good, true);
   const Mesh mesh(share.data.view());
   fixed[0] = rank == ranks - 1;
@@ -244,15 +244,14 @@ void testRefusals(MPI_Comm comm)
 }
 
 //------------------------------------------------------------------------------
-int TestEllipticRanks(int, char*[])
+TAUTLINE_TEST(TestEllipticRanks)
 {
   MPI_Init(nullptr, nullptr);
   const MPI_Comm comm = MPI_COMM_WORLD;
-  testSolutions(comm, CellType::Triangle, Pde::Poisson, false, false);
-  testSolutions(comm, CellType::Quadrilateral, Pde::Elasticity, true, false);
-  testSolutions(comm, CellType::Tetrahedron, Pde::Elliptic, true, true);
-  testSolutions(comm, CellType::Hexahedron, Pde::Elasticity, false, true);
-  testRefusals(comm);
+  TAUTLINE_RUN(testSolutions(comm, CellType::Triangle, Pde::Poisson, false, false));
+  TAUTLINE_RUN(testSolutions(comm, CellType::Quadrilateral, Pde::Elasticity, true, false));
+  TAUTLINE_RUN(testSolutions(comm, CellType::Tetrahedron, Pde::Elliptic, true, true));
+  TAUTLINE_RUN(testSolutions(comm, CellType::Hexahedron, Pde::Elasticity, false, true));
+  TAUTLINE_RUN(testRefusals(comm));
   MPI_Finalize();
-  return exitCode();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Solve PDE: the sections of volume meshes, by their areas and the values on them.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "vtkEllipticSolver.h"
@@ -157,9 +157,8 @@ void testBlocks()
 }
 }
 
-int TestSections(int, char*[])
+TAUTLINE_TEST(TestSections)
 {
-  testCube();
-  testBlocks();
-  return exitCode();
+  TAUTLINE_RUN(testCube());
+  TAUTLINE_RUN(testBlocks());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Time steps of Solve PDE that are shown one after the other: one assembly for all of them.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "vtkEllipticSolver.h"
@@ -71,8 +71,7 @@ void testTimeSteps()
 }
 }
 
-int TestShownTimeSteps(int, char*[])
+TAUTLINE_TEST(TestShownTimeSteps)
 {
-  testTimeSteps();
-  return exitCode();
+  TAUTLINE_RUN(testTimeSteps());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Solver Study, the filter: combinations by number, the table, the recommendation, limits.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "vtkSolverStudy.h"
@@ -73,7 +73,7 @@ void testTable()
     std::string(filter->GetSummary()).find(clear ? "Recommended: " : "No clear recommendation: ") ==
     0);
   TAUTLINE_CHECK(std::string(filter->GetWhy()).find(fastest) != std::string::npos);
-  TAUTLINE_CHECK(std::string(filter->GetWhy()).find(" times as long") != std::string::npos);
+  TAUTLINE_CHECK(std::string(filter->GetWhy()).find(wording("times-as-long")) != std::string::npos);
   TAUTLINE_CHECK_EQUAL(
     vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 512);
   TAUTLINE_CHECK(messages.empty());
@@ -94,7 +94,8 @@ void testFailures()
   TAUTLINE_CHECK_EQUAL(text(filter, 0, "Result").back(), 's');
   TAUTLINE_CHECK_EQUAL(text(filter, 1, "Result"), "*");
   TAUTLINE_CHECK_EQUAL(number(filter, 1, "Total time (s)"), 0);
-  TAUTLINE_CHECK(text(filter, 1, "Reason").find("limit of iterations") != std::string::npos);
+  TAUTLINE_CHECK(
+    text(filter, 1, "Reason").find(wording("limit-of-iterations")) != std::string::npos);
   TAUTLINE_CHECK_EQUAL(std::string(filter->GetRecommended()), "direct solver");
   TAUTLINE_CHECK(std::string(filter->GetSummary()).find("1 failed (*)") != std::string::npos);
   TAUTLINE_CHECK(messages.empty());
@@ -104,22 +105,22 @@ void testFailures()
   filter->AddCombination(13);
   filter->Update();
   TAUTLINE_CHECK_EQUAL(std::string(filter->GetRecommended()), "");
-  TAUTLINE_CHECK(messages.has("limit of iterations") || messages.has("converged"));
+  TAUTLINE_CHECK(messages.has(wording("limit-of-iterations")) || messages.has("converged"));
   messages.clear();
 
   filter->SetMaximumIterations(10000);
   // Nothing is computed by then: an error, and no table of an earlier execution.
   filter->SetTimeLimit(1e-9);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The time limit of 1e-09 s is reached"));
+  TAUTLINE_CHECK(messages.has(wording("the-time-limit-of-1e-09-s")));
   TAUTLINE_CHECK_EQUAL(
     vtkTable::SafeDownCast(filter->GetOutputDataObject(1))->GetNumberOfRows(), 0);
   filter->SetTimeLimit(0);
   messages.clear();
   filter->AddCombination(0);
   filter->AddCombination(vtkSolverStudy::GetNumberOfCombinations() + 1);
-  TAUTLINE_CHECK(messages.has("There is no combination 0"));
-  TAUTLINE_CHECK(messages.has("There is no combination 26"));
+  TAUTLINE_CHECK(messages.has(wording("there-is-no-combination-0")));
+  TAUTLINE_CHECK(messages.has(wording("there-is-no-combination-26")));
   messages.clear();
   filter->SetPETScOptions("-nonsense");
   filter->Update();
@@ -149,10 +150,9 @@ void testNames()
 }
 }
 
-int TestSolverStudyFilter(int, char*[])
+TAUTLINE_TEST(TestSolverStudyFilter)
 {
-  testTable();
-  testFailures();
-  testNames();
-  return exitCode();
+  TAUTLINE_RUN(testTable());
+  TAUTLINE_RUN(testFailures());
+  TAUTLINE_RUN(testNames());
 }

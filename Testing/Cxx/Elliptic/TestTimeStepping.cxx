@@ -3,7 +3,7 @@
 // orders of convergence in time and in space, mass matrices, conservation of energy, elastic waves,
 // what is refused and what stops.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Elliptic/TimeStepping.h"
 
@@ -357,7 +357,7 @@ void testRefused()
   TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), "above 0");
   time.step = 0.1;
   time.steps = 0;
-  TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), "at least 1");
+  TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), wording("at-least-1"));
   time.steps = 3;
   time.density = -1;
   TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), "density");
@@ -365,10 +365,11 @@ void testRefused()
   time.scheme = TimeScheme::Stationary;
   TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), "stationary");
   time.scheme = TimeScheme::Newmark;
-  TAUTLINE_CHECK_THROWS(integrate(system, time, start, { 1.0 }, {}), "1 initial velocities");
+  TAUTLINE_CHECK_THROWS(
+    integrate(system, time, start, { 1.0 }, {}), wording("1-initial-velocities"));
   std::vector<double> wrong = start;
   wrong[0] = std::nan("");
-  TAUTLINE_CHECK_THROWS(integrate(system, time, wrong, rest, {}), "not finite");
+  TAUTLINE_CHECK_THROWS(integrate(system, time, wrong, rest, {}), wording("not-finite"));
 
   // 160,000 unknowns and 100,000,000 steps: 116 TiB.
   const MeshData fine = unitSquare(CellType::Triangle, 400);
@@ -377,7 +378,7 @@ void testRefused()
   const std::vector<double> zero(large.matrix().size, 0.0);
   time.scheme = TimeScheme::BackwardEuler;
   time.steps = 100000000;
-  TAUTLINE_CHECK_THROWS(integrate(large, time, zero, zero, {}), "fewer time steps");
+  TAUTLINE_CHECK_THROWS(integrate(large, time, zero, zero, {}), wording("fewer-time-steps"));
   time.steps = 3;
 
   // A solver that fails ends the integration; the observer ends it, too.
@@ -402,14 +403,13 @@ void testRefused()
 }
 }
 
-int TestTimeStepping(int, char*[])
+TAUTLINE_TEST(TestTimeStepping)
 {
-  testEigenmodes();
-  testOrders();
-  testSpace();
-  testStationary();
-  testElasticWaves();
-  testDecay();
-  testRefused();
-  return exitCode();
+  TAUTLINE_RUN(testEigenmodes());
+  TAUTLINE_RUN(testOrders());
+  TAUTLINE_RUN(testSpace());
+  TAUTLINE_RUN(testStationary());
+  TAUTLINE_RUN(testElasticWaves());
+  TAUTLINE_RUN(testDecay());
+  TAUTLINE_RUN(testRefused());
 }

@@ -2,7 +2,7 @@
 // Constrained Delaunay triangulation of simple polygons: known ones, random ones, degenerate ones,
 // refused ones.
 
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Geometry/Polygon.h"
 
@@ -90,13 +90,14 @@ void checkMesh(const std::vector<Vec2>& polygon, double tolerance)
 }
 }
 
-int TestPolygon(int, char*[])
+TAUTLINE_TEST(TestPolygon)
 {
-  checkMesh({ { 0, 0 }, { 1, 0 }, { 0, 1 } }, 0);
-  checkMesh({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } }, 0);           // cocircular: either diagonal
-  checkMesh({ { 0, 0 }, { 0, 1 }, { 1, 1 }, { 1, 0 } }, 0);           // clockwise
-  checkMesh({ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 2, 1 }, { 0, 4 } }, 0); // concave
-  checkMesh({ { 0, 0 }, { 1, 0 }, { 2, 0 }, { 3, 0 }, { 1.5, 1 } }, 0); // collinear vertices
+  TAUTLINE_RUN(checkMesh({ { 0, 0 }, { 1, 0 }, { 0, 1 } }, 0));
+  TAUTLINE_RUN(
+    checkMesh({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } }, 0)); // cocircular: either diagonal
+  TAUTLINE_RUN(checkMesh({ { 0, 0 }, { 0, 1 }, { 1, 1 }, { 1, 0 } }, 0));             // clockwise
+  TAUTLINE_RUN(checkMesh({ { 0, 0 }, { 4, 0 }, { 4, 4 }, { 2, 1 }, { 0, 4 } }, 0));   // concave
+  TAUTLINE_RUN(checkMesh({ { 0, 0 }, { 1, 0 }, { 2, 0 }, { 3, 0 }, { 1.5, 1 } }, 0)); // collinear
   {
     // The flat quadrilateral: its short diagonal is the Delaunay one.
     const PolygonMesh mesh = triangulatePolygon({ { 0, 0 }, { 2, -0.2 }, { 4, 0 }, { 2, 0.2 } });
@@ -125,20 +126,19 @@ int TestPolygon(int, char*[])
     }
   }
   // A nearly flat spike: exact signs keep every triangle positive.
-  checkMesh({ { 0, 0 }, { 1, 1e-17 }, { 2, 0 }, { 1, 1 } }, 1e-12);
+  TAUTLINE_RUN(checkMesh({ { 0, 0 }, { 1, 1e-17 }, { 2, 0 }, { 1, 1 } }, 1e-12));
 
-  TAUTLINE_CHECK_THROWS(triangulatePolygon({ { 0, 0 }, { 1, 0 } }), "at least 3");
+  TAUTLINE_CHECK_THROWS(triangulatePolygon({ { 0, 0 }, { 1, 0 } }), wording("at-least-3"));
   TAUTLINE_CHECK_THROWS(
-    triangulatePolygon({ { 0, 0 }, { 2, 2 }, { 2, 0 }, { 0, 2 } }), "meets itself");
+    triangulatePolygon({ { 0, 0 }, { 2, 2 }, { 2, 0 }, { 0, 2 } }), wording("meets-itself"));
   TAUTLINE_CHECK_THROWS(
-    triangulatePolygon({ { 0, 0 }, { 1, 0 }, { 1, 0 }, { 0, 1 } }), "meets itself");
+    triangulatePolygon({ { 0, 0 }, { 1, 0 }, { 1, 0 }, { 0, 1 } }), wording("meets-itself"));
   TAUTLINE_CHECK_THROWS(triangulatePolygon({ { 0, 0 }, { 1, 0 }, { 2, 0 } }), "");
   TAUTLINE_CHECK_THROWS(
     triangulatePolygon({ { 0, 0 }, { std::numeric_limits<double>::quiet_NaN(), 0 }, { 0, 1 } }),
-    "not finite");
+    wording("not-finite"));
 
   const Vec2 centre = centreOfMass({ { 0, 0 }, { 6, 0 }, { 0, 3 } });
   TAUTLINE_CHECK_NEAR(centre[0], 2.0, 1e-14);
   TAUTLINE_CHECK_NEAR(centre[1], 1.0, 1e-14);
-  return exitCode();
 }

@@ -2,14 +2,14 @@
 // Every filter and writer with hostile data: no crash, no hang; an error of Tautline, or a result
 // that is finite, has the points, cells and arrays of the input, and leaves the input as it was.
 //
-//   TestHostileInput DATA OUTPUT MODULE CLASS...    all of a module, whose classes these are
-//   TestHostileInput DATA OUTPUT only FILTER DATUM  one combination, in this process
+//   TautlineTests TestHostileInput -- MODULE CLASS...    all of a module, whose classes these are
+//   TautlineTests TestHostileInput -- only FILTER DATUM  one combination, in this process
 //
 // TAUTLINE_FUZZ is the number of random mutations per filter.
 #include "HostileData.h"
 #include "HostileFilters.h"
 
-#include "Check.h"
+#include "Registry.h"
 #include "Sanitized.h"
 #include "VtkMeshes.h"
 
@@ -344,7 +344,7 @@ Verdict execute(const HostileFilter& entry, const HostileData& datum, vtkDataObj
   }
 
   // Types that a port does not take are refused by VTK before the filter is asked.
-  const bool refusedType = errors.ofPipeline().find("is of type") != std::string::npos;
+  const bool refusedType = errors.ofPipeline().find(wording("is-of-type")) != std::string::npos;
   const std::string& own = errors.ofFilter();
   const bool failed = !own.empty() || refusedType;
   if (writer && failed == succeeded)
@@ -586,13 +586,12 @@ void checkClasses(const std::string& module, const std::vector<std::string>& cla
 }
 
 //------------------------------------------------------------------------------
-int TestHostileInput(int argc, char* argv[])
+TAUTLINE_TEST(TestHostileInput)
 {
   constexpr int FirstClass = 4;
   if (argc < FirstClass)
   {
-    std::cerr << "a module, or \"only\", is missing\n";
-    return EXIT_FAILURE;
+    throw std::runtime_error("A module, or \"only\", is missing.");
   }
   const std::string module = argv[FirstClass - 1];
   const std::vector<std::string> names(argv + FirstClass, argv + argc);
@@ -611,9 +610,9 @@ int TestHostileInput(int argc, char* argv[])
         }
       }
     }
-    return EXIT_SUCCESS;
+    return;
   }
-  checkClasses(module, names, filters);
+  TAUTLINE_RUN(checkClasses(module, names, filters));
   int combinations = 0;
   for (const HostileFilter& entry : filters)
   {
@@ -625,5 +624,4 @@ int TestHostileInput(int argc, char* argv[])
   }
   std::cout << combinations << " combinations of the module " << module << ", " << failures()
             << " failures\n";
-  return exitCode();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts of the boundary on ranks are those of one process, however the mesh is cut.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/BoundaryParts.h"
 #include "tautline/Mesh/BoundaryShape.h"
@@ -149,13 +149,12 @@ void testShape(CellType type)
 }
 
 //------------------------------------------------------------------------------
-int TestBoundaryPartsOnRanks(int, char*[])
+TAUTLINE_TEST(TestBoundaryPartsOnRanks)
 {
-  testCuts("triangles", holed(CellType::Triangle, 3), 6);
-  testCuts("quadrilaterals", holed(CellType::Quadrilateral, 2), 3);
-  testCuts("hexahedra", holed(CellType::Hexahedron, 3), 6);
-  testCuts("tetrahedra", holed(CellType::Tetrahedron, 2), 3);
-  testShape(CellType::Triangle);
-  testShape(CellType::Hexahedron);
-  return exitCode();
+  TAUTLINE_RUN(testCuts("triangles", holed(CellType::Triangle, 3), 6));
+  TAUTLINE_RUN(testCuts("quadrilaterals", holed(CellType::Quadrilateral, 2), 3));
+  TAUTLINE_RUN(testCuts("hexahedra", holed(CellType::Hexahedron, 3), 6));
+  TAUTLINE_RUN(testCuts("tetrahedra", holed(CellType::Tetrahedron, 2), 3));
+  TAUTLINE_RUN(testShape(CellType::Triangle));
+  TAUTLINE_RUN(testShape(CellType::Hexahedron));
 }

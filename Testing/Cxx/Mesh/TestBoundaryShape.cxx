@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which points of a boundary may slide, and where.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Mesh/BoundaryShape.h"
 
@@ -63,8 +63,8 @@ void testAngle()
   TAUTLINE_CHECK_EQUAL(int(boundaryShape(mesh, 1).fixed[top]), 0); // 1.1 degrees: along the fold
   TAUTLINE_CHECK_NEAR(std::abs(at(boundaryShape(mesh, 1).lines, top)[1]), 1, 1e-12);
   TAUTLINE_CHECK_NEAR(norm(at(boundaryShape(mesh, 5).planes, top)), 1, 1e-12);
-  TAUTLINE_CHECK_THROWS(boundaryShape(mesh, -1), "between 0 and 90");
-  TAUTLINE_CHECK_THROWS(boundaryShape(mesh, std::nan("")), "between 0 and 90");
+  TAUTLINE_CHECK_THROWS(boundaryShape(mesh, -1), wording("between-0-and-90"));
+  TAUTLINE_CHECK_THROWS(boundaryShape(mesh, std::nan("")), wording("between-0-and-90"));
 }
 
 /// Of a square: the sides slide along themselves, inner points are free, corners stay.
@@ -117,7 +117,7 @@ void testSmooth()
     });
   const BoundaryShape smooth = boundaryShape(Mesh(bent.view()), 1, 60);
   TAUTLINE_CHECK_EQUAL(smooth.onSurface, 9);
-  TAUTLINE_CHECK_THROWS(boundaryShape(Mesh(cube.view()), 1, -5), "between 0 and 180");
+  TAUTLINE_CHECK_THROWS(boundaryShape(Mesh(cube.view()), 1, -5), wording("between-0-and-180"));
 }
 
 /// A ring (of volume cells, a thick one) of so many edges around, whose inner points are at the
@@ -232,14 +232,13 @@ void testFaulty()
 }
 
 //------------------------------------------------------------------------------
-int TestBoundaryShape(int, char*[])
+TAUTLINE_TEST(TestBoundaryShape)
 {
-  testCube();
-  testAngle();
-  testFlat();
-  testSmooth();
-  testFineCircle();
-  testBentSide();
-  testFaulty();
-  return exitCode();
+  TAUTLINE_RUN(testCube());
+  TAUTLINE_RUN(testAngle());
+  TAUTLINE_RUN(testFlat());
+  TAUTLINE_RUN(testSmooth());
+  TAUTLINE_RUN(testFineCircle());
+  TAUTLINE_RUN(testBentSide());
+  TAUTLINE_RUN(testFaulty());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells that ranks send each other: each goes to one rank, with its points, and so do ghosts;
 // values go to the parts and back to the pieces.
-#include "Check.h"
+#include "Registry.h"
 #include "MovingOnRanks.h"
 
 #include "tautline/Mesh/CellDivision.h"
@@ -164,13 +164,12 @@ void testOwners()
 }
 
 //------------------------------------------------------------------------------
-int TestCellDivision(int, char*[])
+TAUTLINE_TEST(TestCellDivision)
 {
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Hexahedron })
   {
     const Context context(topology(type).plural);
     forEachCut({ 1, 2, 3, 4 }, [type](Cut cut, int ranks) { testDivision(type, cut, ranks); });
   }
-  testOwners();
-  return exitCode();
+  TAUTLINE_RUN(testOwners());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points at the same place on the seams of meshes in pieces: which are one, and which stay apart.
 // Duplicate cells, and the boundary of meshes that have some.
-#include "Check.h"
+#include "Registry.h"
 #include "Pieces.h"
 
 #include "tautline/Core/CountingSort.h"
@@ -472,14 +472,13 @@ void testGhosts()
 }
 
 //------------------------------------------------------------------------------
-int TestCoincidentPoints(int, char*[])
+TAUTLINE_TEST(TestCoincidentPoints)
 {
-  testPieces();
-  testInvariance();
-  testApart();
-  testSurfaces();
-  testDuplicates();
-  testThreads();
-  testGhosts();
-  return exitCode();
+  TAUTLINE_RUN(testPieces());
+  TAUTLINE_RUN(testInvariance());
+  TAUTLINE_RUN(testApart());
+  TAUTLINE_RUN(testSurfaces());
+  TAUTLINE_RUN(testDuplicates());
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testGhosts());
 }

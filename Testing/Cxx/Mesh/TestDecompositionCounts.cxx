@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is counted for parts of a mesh is what ranks with these parts have and send.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DecompositionCounts.h"
 #include "tautline/Mesh/DistributedMesh.h"
@@ -153,25 +153,24 @@ void testErrors()
     }
   };
   std::vector<int> parts(whole.numberOfCells(), 0);
-  refused(parts, 0, "at least 1");
-  refused({ 0 }, 1, "1 numbers of parts for");
+  refused(parts, 0, wording("at-least-1"));
+  refused({ 0 }, 1, wording("1-numbers-of-parts-for"));
   parts[3] = 2;
-  refused(parts, 2, "Cell 3 is in part 2");
+  refused(parts, 2, wording("cell-3-is-in-part-2"));
   parts[3] = -1;
-  refused(parts, 2, "Cell 3 is in part -1");
+  refused(parts, 2, wording("cell-3-is-in-part-1"));
 }
 }
 
 //------------------------------------------------------------------------------
-int TestDecompositionCounts(int, char*[])
+TAUTLINE_TEST(TestDecompositionCounts)
 {
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Hexahedron })
   {
-    testCounts(type, Cut::Slabs, 2);
-    testCounts(type, Cut::Random, 3);
-    testCounts(type, Cut::FirstOnly, 2);
+    TAUTLINE_RUN(testCounts(type, Cut::Slabs, 2));
+    TAUTLINE_RUN(testCounts(type, Cut::Random, 3));
+    TAUTLINE_RUN(testCounts(type, Cut::FirstOnly, 2));
   }
-  testCounts(CellType::Tetrahedron, Cut::Random, 7);
-  testErrors();
-  return exitCode();
+  TAUTLINE_RUN(testCounts(CellType::Tetrahedron, Cut::Random, 7));
+  TAUTLINE_RUN(testErrors());
 }

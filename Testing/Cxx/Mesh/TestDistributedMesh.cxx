@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mesh on ranks: numbers, owners, halos and sets are those of the mesh, however it is cut.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "Sanitized.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DistributedMesh.h"
@@ -399,7 +399,7 @@ void testMemoryOfMessages()
       catch (const Error& error)
       {
         const std::lock_guard<std::mutex> lock(mutex);
-        number += std::string(error.what()).find("Not enough memory") != std::string::npos;
+        number += std::string(error.what()).find(wording("not-enough-memory")) != std::string::npos;
       }
     };
     onRanks<AbsurdRank>(ranks,
@@ -485,16 +485,15 @@ void testIntervals()
 }
 
 //------------------------------------------------------------------------------
-int TestDistributedMesh(int, char*[])
+TAUTLINE_TEST(TestDistributedMesh)
 {
-  testMemoryOfMessages();
-  testSum();
-  testTranspose();
-  testIntervals();
-  testLayout(CellType::Tetrahedron);
-  testLayout(CellType::Hexahedron);
-  testDivision();
-  testDivisionOfFew();
-  testErrors();
-  return exitCode();
+  TAUTLINE_RUN(testMemoryOfMessages());
+  TAUTLINE_RUN(testSum());
+  TAUTLINE_RUN(testTranspose());
+  TAUTLINE_RUN(testIntervals());
+  TAUTLINE_RUN(testLayout(CellType::Tetrahedron));
+  TAUTLINE_RUN(testLayout(CellType::Hexahedron));
+  TAUTLINE_RUN(testDivision());
+  TAUTLINE_RUN(testDivisionOfFew());
+  TAUTLINE_RUN(testErrors());
 }

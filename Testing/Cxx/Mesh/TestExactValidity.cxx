@@ -2,7 +2,7 @@
 // Validity between the corners of hexahedra and wedges, and of pyramids: against dense samples of
 // the determinant, in any frame and numbering, at the limits; the minimum.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include <filesystem>
@@ -12,7 +12,6 @@ using namespace tautline;
 namespace
 {
 constexpr CellType solidTypes[] = { CellType::Hexahedron, CellType::Wedge, CellType::Pyramid };
-constexpr int Skipped = 77;
 
 /// The map of an element, written down anew: a pyramid's is B(u, v) + w (apex - B(u, v)).
 Vec3 mapAt(CellType type, const std::vector<Vec3>& p, const Vec3& x)
@@ -360,24 +359,17 @@ void testFiles(const std::string& directory)
 }
 }
 
-int TestExactValidity(int argc, char* argv[])
+TAUTLINE_TEST(TestExactValidity)
 {
-  if (argc > 3 && argv[3] == std::string("files"))
-  {
-    const char* data = std::getenv("TAUTLINE_TEST_DATA");
-    const std::string directory = std::string(data ? data : "") + "/hex";
-    if (!data || !std::filesystem::is_directory(directory))
-    {
-      std::cout << (data ? "There is no " + directory : "TAUTLINE_TEST_DATA is not set.") << "\n";
-      return Skipped;
-    }
-    testFiles(directory);
-    return exitCode();
-  }
-  testSamples();
-  testFrames();
-  testNumberings();
-  testTwists();
-  testKnownValues();
-  return exitCode();
+  TAUTLINE_RUN(testSamples());
+  TAUTLINE_RUN(testFrames());
+  TAUTLINE_RUN(testNumberings());
+  TAUTLINE_RUN(testTwists());
+  TAUTLINE_RUN(testKnownValues());
+}
+
+// Meshes that are not part of the repository.
+TAUTLINE_TEST(TestExactValidityFiles)
+{
+  testFiles(externalData("hex"));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Corners, curves and patches of surfaces, of boundaries and of regions.
-#include "Check.h"
+#include "Registry.h"
 #include "Surfaces.h"
 
 #include "tautline/Mesh/Features.h"
@@ -164,18 +164,17 @@ void testKinds()
   }
   checkCounts(featuresOf(sphere, options), 0, 1, 2);
   kinds[0] = 5;
-  TAUTLINE_CHECK_THROWS(featuresOf(sphere, options), "must be 0 (patch), 1 (curve), 2 (corner)");
+  TAUTLINE_CHECK_THROWS(featuresOf(sphere, options), wording("must-be-0-patch-1-curve-2"));
   options = FeatureOptions();
   options.angle = 200;
-  TAUTLINE_CHECK_THROWS(featuresOf(sphere, options), "between 0 and 180");
+  TAUTLINE_CHECK_THROWS(featuresOf(sphere, options), wording("between-0-and-180"));
 }
 }
 
-int TestFeatures(int, char*[])
+TAUTLINE_TEST(TestFeatures)
 {
-  testSurfaces();
-  testBoundaries();
-  testNumbering();
-  testKinds();
-  return exitCode();
+  TAUTLINE_RUN(testSurfaces());
+  TAUTLINE_RUN(testBoundaries());
+  TAUTLINE_RUN(testNumbering());
+  TAUTLINE_RUN(testKinds());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is derived from a mesh: dimension and plane, boundary, adjacency; rejected meshes.
-#include "Check.h"
+#include "Registry.h"
 #include "Blocks.h"
 
 #include <algorithm>
@@ -301,13 +301,13 @@ void testRefusals()
   for (Index wrong : { Index(-1), good.numberOfPoints(), Index(1) << 40 })
   {
     bad.connectivity[4 * 17 + 2] = wrong;
-    TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 17 is not a proper tetrahedron");
+    TAUTLINE_CHECK_THROWS(Mesh(bad.view()), wording("cell-17-is-not-a-proper-tetrahedron"));
   }
   bad.connectivity[4 * 5] = -1; // the first of several is named
   TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 5 ");
   bad = good;
   bad.types[3] = static_cast<unsigned char>(CellType::Hexahedron);
-  TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 3 is not a proper hexahedron");
+  TAUTLINE_CHECK_THROWS(Mesh(bad.view()), wording("cell-3-is-not-a-proper-hexahedron"));
   bad = good;
   bad.offsets[8] = bad.offsets[7];
   TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 7 ");
@@ -330,20 +330,19 @@ void testRefusals()
 }
 }
 
-int TestMesh(int, char*[])
+TAUTLINE_TEST(TestMesh)
 {
-  testDimension();
+  TAUTLINE_RUN(testDimension());
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);
-    testBoundary(type);
-    testAdjacency(box(type));
-    testAtOtherPoints(box(type), topology(type).dimension == 3);
+    TAUTLINE_RUN(testBoundary(type));
+    TAUTLINE_RUN(testAdjacency(box(type)));
+    TAUTLINE_RUN(testAtOtherPoints(box(type), topology(type).dimension == 3));
   }
-  testAtOtherPoints(mixedMesh(), false);
-  testMixed();
-  testNonManifold();
-  testHigherOrder();
-  testRefusals();
-  return exitCode();
+  TAUTLINE_RUN(testAtOtherPoints(mixedMesh(), false));
+  TAUTLINE_RUN(testMixed());
+  TAUTLINE_RUN(testNonManifold());
+  TAUTLINE_RUN(testHigherOrder());
+  TAUTLINE_RUN(testRefusals());
 }

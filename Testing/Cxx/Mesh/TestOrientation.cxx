@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which way round the cells are listed: consistently, all reversed, or mixed; and tangled is not
 // mixed.
-#include "Check.h"
+#include "Registry.h"
 #include "Blocks.h"
 #include "tautline/Mesh/CellOrder.h"
 
@@ -247,16 +247,15 @@ void testFarPoint()
   }
 }
 
-int TestOrientation(int, char*[])
+TAUTLINE_TEST(TestOrientation)
 {
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);
-    testOrientation(type);
+    TAUTLINE_RUN(testOrientation(type));
   }
-  testMostlyInverted();
-  testFarPoint();
-  testSurfaceOrientation();
-  testTangledAndMixed();
-  return exitCode();
+  TAUTLINE_RUN(testMostlyInverted());
+  TAUTLINE_RUN(testFarPoint());
+  TAUTLINE_RUN(testSurfaceOrientation());
+  TAUTLINE_RUN(testTangledAndMixed());
 }

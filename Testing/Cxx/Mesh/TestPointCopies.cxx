@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Copies of a point whose places differ by rounding get one place by their global ids, on any
 // number of ranks; ids that are not those of one mesh join nothing.
-#include "Check.h"
+#include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DistributedMesh.h"
 #include "tautline/Mesh/PointCopies.h"
@@ -169,13 +169,12 @@ void testOneRank()
 }
 
 //------------------------------------------------------------------------------
-int TestPointCopies(int, char*[])
+TAUTLINE_TEST(TestPointCopies)
 {
-  testParts(CellType::Tetrahedron);
-  testParts(CellType::Hexahedron);
-  testParts(CellType::Triangle);
-  testOtherIds();
-  testApart();
-  testOneRank();
-  return exitCode();
+  TAUTLINE_RUN(testParts(CellType::Tetrahedron));
+  TAUTLINE_RUN(testParts(CellType::Hexahedron));
+  TAUTLINE_RUN(testParts(CellType::Triangle));
+  TAUTLINE_RUN(testOtherIds());
+  TAUTLINE_RUN(testApart());
+  TAUTLINE_RUN(testOneRank());
 }

@@ -2,7 +2,7 @@
 // The plane and the orientation of a mesh in pieces are those of the whole, however it is cut, and
 // points of a mesh are found in another one that is cut otherwise.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/CellOrder.h"
 #include "tautline/Mesh/RankPieces.h"
@@ -288,14 +288,15 @@ void testMatch(CellType type)
         { return problemOf([&] { pointsInOther(group, { one }, { other }); }); };
         const std::string lacking =
           problem({ &is, b.ghosts.data(), nullptr }, { &was, a.ghosts.data(), nullptr });
-        TAUTLINE_CHECK(lacking.find("Generate Global Ids") != std::string::npos);
+        TAUTLINE_CHECK(lacking.find(wording("generate-global-ids")) != std::string::npos);
         // An id that the other mesh has not, on one rank: an error on all.
         std::vector<Index> wrong = b.pointOf;
         const bool here = std::find(wrong.begin(), wrong.end(), Index(5)) != wrong.end();
         std::replace(wrong.begin(), wrong.end(), Index(5), Index(50000));
         TAUTLINE_CHECK(group.any(here));
         const std::string unknown = problem({ &is, b.ghosts.data(), wrong.data() }, before);
-        TAUTLINE_CHECK(unknown.find("global id 50000, the first has not") != std::string::npos);
+        TAUTLINE_CHECK(
+          unknown.find(wording("global-id-50000-the-first-has-not")) != std::string::npos);
         // A cell that lists its points in another order, on one rank.
         RankPart turned = b;
         if (group.rank() == ranks - 1 && turned.data.numberOfCells() > 0)
@@ -305,7 +306,7 @@ void testMatch(CellType type)
         const bool any = group.any(group.rank() == ranks - 1 && b.data.numberOfCells() > 0);
         const class Mesh other(turned.data.view());
         const std::string order = problem({ &other, b.ghosts.data(), b.pointOf.data() }, before);
-        TAUTLINE_CHECK_EQUAL(order.find("in this order") != std::string::npos, any);
+        TAUTLINE_CHECK_EQUAL(order.find(wording("in-this-order")) != std::string::npos, any);
         // An id that is at two places, in either mesh.
         RankPart shifted = b;
         const auto place = std::find(b.pointOf.begin(), b.pointOf.end(), Index(5));
@@ -321,33 +322,35 @@ void testMatch(CellType type)
         const RankPiece torn = { &apart, b.ghosts.data(), b.pointOf.data() };
         for (const std::string& text : { problem(torn, before), problem(before, torn) })
         {
-          TAUTLINE_CHECK_EQUAL(text.find("have the global id 5:") != std::string::npos, shared);
+          TAUTLINE_CHECK_EQUAL(
+            text.find(wording("have-the-global-id-5")) != std::string::npos, shared);
         }
         // Cells that one mesh has twice, as they are not marked as ghosts.
         const std::string twice = problem(after, { &was, nullptr, a.pointOf.data() });
-        TAUTLINE_CHECK_EQUAL(twice.find(" cells, the second ") != std::string::npos, ranks > 1);
+        TAUTLINE_CHECK_EQUAL(
+          twice.find(wording("cells-the-second")) != std::string::npos, ranks > 1);
         const RankPiece unmarked = { &was, nullptr, a.pointOf.data() };
         const std::string copies = problem(unmarked, unmarked);
         TAUTLINE_CHECK_EQUAL(
-          copies.find("are not marked as ghost cells") != std::string::npos, ranks > 1);
+          copies.find(wording("are-not-marked-as-ghost-cells")) != std::string::npos, ranks > 1);
         // Without ids, rather than that points have moved.
         const std::string more =
           problem({ &is, b.ghosts.data(), nullptr }, { &was, nullptr, nullptr });
-        TAUTLINE_CHECK_EQUAL(more.find(" cells, the second ") != std::string::npos, ranks > 1);
+        TAUTLINE_CHECK_EQUAL(
+          more.find(wording("cells-the-second")) != std::string::npos, ranks > 1);
       });
   }
 }
 }
 
-int TestRankPieces(int, char*[])
+TAUTLINE_TEST(TestRankPieces)
 {
   for (const CellTopology& t : topologies())
   {
-    testOrientations(t.type);
-    testOverlap(t.type);
+    TAUTLINE_RUN(testOrientations(t.type));
+    TAUTLINE_RUN(testOverlap(t.type));
   }
-  testSpaces();
-  testMatch(CellType::Triangle);
-  testMatch(CellType::Hexahedron);
-  return exitCode();
+  TAUTLINE_RUN(testSpaces());
+  TAUTLINE_RUN(testMatch(CellType::Triangle));
+  TAUTLINE_RUN(testMatch(CellType::Hexahedron));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables of the cell types, and every metric on the ideal cell of each.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 
 #include <map>
@@ -178,7 +178,7 @@ void testTypeCodes()
     TAUTLINE_CHECK(!isHigherOrder(codes[i]));
   }
   TAUTLINE_CHECK_EQUAL(topologyIndex(CellType::Unsupported), -1);
-  TAUTLINE_CHECK_THROWS(topology(CellType::Unsupported), "triangles, quadrilaterals");
+  TAUTLINE_CHECK_THROWS(topology(CellType::Unsupported), wording("triangles-quadrilaterals"));
   for (int none : { 0, 1, 2, 3, 4, 6, 7, 8, 11, 15, 16, 21, 35, 41, 42, 68, 255 })
   {
     TAUTLINE_CHECK(cornerType(none) == CellType::Unsupported);
@@ -187,16 +187,15 @@ void testTypeCodes()
 }
 }
 
-int TestTopology(int, char*[])
+TAUTLINE_TEST(TestTopology)
 {
-  testTypeCodes();
+  TAUTLINE_RUN(testTypeCodes());
   for (const IdealFacts& facts : idealFacts)
   {
     const CellTopology& t = topology(facts.type);
     const Context context(t.name);
-    testIdealInverse(t);
-    testIncidence(t);
-    testIdealValues(t, facts);
+    TAUTLINE_RUN(testIdealInverse(t));
+    TAUTLINE_RUN(testIncidence(t));
+    TAUTLINE_RUN(testIdealValues(t, facts));
   }
-  return exitCode();
 }

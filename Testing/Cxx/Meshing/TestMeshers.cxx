@@ -2,7 +2,7 @@
 // The meshers: bounds kept, sizes exact, markers and regions, failures that are errors and not
 // exits.
 
-#include "Check.h"
+#include "Registry.h"
 
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
@@ -29,6 +29,8 @@
 #include <cmath>
 #include <filesystem>
 #include <string>
+
+using tautline::wording;
 
 namespace
 {
@@ -239,27 +241,28 @@ void testTriangleFailures()
   fine->SetSize(1.0);
   TAUTLINE_CHECK(contains(
     failure(fine, outline({ { -half, -half }, { half, -half }, { half, half }, { -half, half } })),
-    "a size is 1, less than coordinates of up to 1.47574e+20 resolve"));
+    wording("a-size-is-1-less-than-coordinates")));
   fine->SetSize(1e-8);
   TAUTLINE_CHECK(contains(failure(fine, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } })),
-    "would divide the outlines into more than 20000000 parts"));
+    wording("would-divide-the-outlines-into-more-than")));
   vtkNew<vtkTriangleMesher> crossing;
   const std::string said = failure(crossing, outline({ { 0, 0 }, { 1, 1 }, { 1, 0 }, { 0, 1 } }));
-  TAUTLINE_CHECK(contains(said, "segment 2 (points 2 and 3) crosses another one"));
+  TAUTLINE_CHECK(contains(said, wording("segment-2-points-2-and-3-crosses")));
   vtkNew<vtkTriangleMesher> open;
   vtkSmartPointer<vtkPolyData> line = outline({ { 0, 0 }, { 1, 0 }, { 1, 1 } });
   vtkNew<vtkCellArray> two;
   two->InsertNextCell({ 0, 1 });
   two->InsertNextCell({ 1, 2 });
   line->SetLines(two);
-  TAUTLINE_CHECK(contains(failure(open, line), "is an outline closed?"));
+  TAUTLINE_CHECK(contains(failure(open, line), wording("is-an-outline-closed")));
   vtkNew<vtkSphereSource> sphere;
   sphere->Update();
   vtkNew<vtkTriangleMesher> solid;
-  TAUTLINE_CHECK(contains(failure(solid, sphere->GetOutput()), "not in a plane z = constant"));
+  TAUTLINE_CHECK(
+    contains(failure(solid, sphere->GetOutput()), wording("not-in-a-plane-z-constant")));
   vtkNew<vtkTriangleMesher> infinite;
-  TAUTLINE_CHECK(contains(
-    failure(infinite, outline({ { 0, 0 }, { 1, 0 }, { NAN, 1 } })), "not a finite number"));
+  TAUTLINE_CHECK(contains(failure(infinite, outline({ { 0, 0 }, { 1, 0 }, { NAN, 1 } })),
+    wording("not-a-finite-number")));
 
   // abort, as a user interface would ask for it
   vtkNew<vtkTriangleMesher> aborted;
@@ -448,7 +451,8 @@ void testTetrahedraFailures()
   both->SetPoints(points);
   both->SetPolys(polygons);
   vtkNew<vtkTetGenMesher> crossing;
-  TAUTLINE_CHECK(contains(failure(crossing, both), "the surface intersects itself: facets "));
+  TAUTLINE_CHECK(
+    contains(failure(crossing, both), wording("the-surface-intersects-itself-facets")));
   // TetGen 1.6 writes files then.
   TAUTLINE_CHECK(!std::filesystem::exists("tetgen-tmpfile_skipped.face"));
 
@@ -456,17 +460,17 @@ void testTetrahedraFailures()
   vtkNew<vtkSphereSource> half;
   half->SetEndTheta(180.0);
   half->Update();
-  TAUTLINE_CHECK(contains(failure(open, half->GetOutput()), "is it closed"));
+  TAUTLINE_CHECK(contains(failure(open, half->GetOutput()), wording("is-it-closed")));
 
   vtkNew<vtkTetGenMesher> flat;
-  TAUTLINE_CHECK(
-    contains(failure(flat, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 } })), "3 cells are no triangles"));
+  TAUTLINE_CHECK(contains(
+    failure(flat, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 } })), wording("3-cells-are-no-triangles")));
   vtkNew<vtkTetGenMesher> nan;
   vtkNew<vtkSphereSource> broken;
   broken->Update();
   broken->GetOutput()->GetPoints()->SetPoint(3, 0, NAN, 0);
-  TAUTLINE_CHECK(contains(
-    failure(nan, broken->GetOutput()), "Point 3 has a coordinate that is not a finite number"));
+  TAUTLINE_CHECK(
+    contains(failure(nan, broken->GetOutput()), wording("point-3-has-a-coordinate-that-is")));
 
   // abort ends TetGen in the midst of a million tetrahedra
   vtkNew<vtkTetGenMesher> aborted;
@@ -481,7 +485,7 @@ void testTetrahedraFailures()
   vtkNew<vtkTetGenMesher> slow;
   slow->SetVolume(1e-7);
   slow->SetTimeLimit(0.5);
-  TAUTLINE_CHECK(contains(failure(slow, read("cube.smesh")), "The time limit of 0.5 s is reached"));
+  TAUTLINE_CHECK(contains(failure(slow, read("cube.smesh")), wording("the-time-limit-of-0-5-s")));
 
   // and after all these failures it works
   vtkNew<vtkTetGenMesher> works;
@@ -495,16 +499,15 @@ void testTetrahedraFailures()
 }
 }
 
-int TestMeshers(int, char* argv[])
+TAUTLINE_TEST(TestMeshers)
 {
   data = argv[1];
-  testTriangles();
-  testTriangleScales();
-  testTriangleFailures();
-  testTetrahedra();
-  testTetrahedraScales();
-  testTetrahedraOfKeptSurface();
-  testRegionsAndHoles();
-  testTetrahedraFailures();
-  return tautline::exitCode();
+  TAUTLINE_RUN(testTriangles());
+  TAUTLINE_RUN(testTriangleScales());
+  TAUTLINE_RUN(testTriangleFailures());
+  TAUTLINE_RUN(testTetrahedra());
+  TAUTLINE_RUN(testTetrahedraScales());
+  TAUTLINE_RUN(testTetrahedraOfKeptSurface());
+  TAUTLINE_RUN(testRegionsAndHoles());
+  TAUTLINE_RUN(testTetrahedraFailures());
 }

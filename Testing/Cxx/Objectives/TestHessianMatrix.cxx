@@ -2,7 +2,7 @@
 // Hessians over the free points: against differences of the whole gradient, finite on tangled
 // meshes, with their preconditioners, and at work in a truncated Newton method.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Objectives/HessianMatrix.h"
 #include "tautline/Optimization/Minimize.h"
@@ -463,14 +463,13 @@ void testNewton()
 }
 }
 
-int TestHessianMatrix(int, char*[])
+TAUTLINE_TEST(TestHessianMatrix)
 {
-  testDifferences();
-  testConvex();
-  testTangled();
-  testThreads();
-  testPreconditioners();
-  testRestriction();
-  testNewton();
-  return exitCode();
+  TAUTLINE_RUN(testDifferences());
+  TAUTLINE_RUN(testConvex());
+  TAUTLINE_RUN(testTangled());
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testPreconditioners());
+  TAUTLINE_RUN(testRestriction());
+  TAUTLINE_RUN(testNewton());
 }

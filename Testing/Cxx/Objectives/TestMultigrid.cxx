@@ -2,7 +2,7 @@
 // The positive semidefinite part of Hessians, and multigrid as a preconditioner for it.
 
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Objectives/HessianMatrix.h"
 
@@ -293,13 +293,12 @@ void testSmall()
 }
 }
 
-int TestMultigrid(int, char*[])
+TAUTLINE_TEST(TestMultigrid)
 {
-  testSemidefinite();
-  testCancellation();
-  testSolve();
-  testFloating();
-  testThreads();
-  testSmall();
-  return exitCode();
+  TAUTLINE_RUN(testSemidefinite());
+  TAUTLINE_RUN(testCancellation());
+  TAUTLINE_RUN(testSolve());
+  TAUTLINE_RUN(testFloating());
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testSmall());
 }

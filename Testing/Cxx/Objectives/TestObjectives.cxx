@@ -2,7 +2,7 @@
 // Objectives: every metric by every template against sums by hand, their gradients against
 // fourth-order differences; weights, scales, elements at fault, threads, moving points, errors.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Objectives/ObjectiveSum.h"
 
@@ -486,15 +486,17 @@ void testErrors()
     objective.power = power;
     ObjectiveSum(mesh, objective);
   };
-  TAUTLINE_CHECK_THROWS(make1(Metric::WidthRatio, T::Sum), "not defined on any cell");
+  TAUTLINE_CHECK_THROWS(make1(Metric::WidthRatio, T::Sum), wording("not-defined-on-any-cell"));
   TAUTLINE_CHECK_THROWS(
-    ObjectiveSum(flat, make(Metric::RadiusRatio, T::Default)), "not defined on any cell");
+    ObjectiveSum(flat, make(Metric::RadiusRatio, T::Default)), wording("not-defined-on-any-cell"));
   const MeshData nothing;
-  TAUTLINE_CHECK_THROWS(ObjectiveSum(Mesh(nothing.view()), Objective{}), "not defined on any cell");
-  TAUTLINE_CHECK_THROWS(make1(Metric::MeanRatio, T::SumOfSquares), "sum of reciprocals");
-  TAUTLINE_CHECK_THROWS(make1(Metric::InverseMeanRatio, T::SumOfReciprocals), "sum of squares");
+  TAUTLINE_CHECK_THROWS(
+    ObjectiveSum(Mesh(nothing.view()), Objective{}), wording("not-defined-on-any-cell"));
+  TAUTLINE_CHECK_THROWS(make1(Metric::MeanRatio, T::SumOfSquares), wording("sum-of-reciprocals"));
+  TAUTLINE_CHECK_THROWS(
+    make1(Metric::InverseMeanRatio, T::SumOfReciprocals), wording("sum-of-squares"));
   TAUTLINE_CHECK_THROWS(make1(Metric::InverseMeanRatio, static_cast<T>(6)), "number 6");
-  TAUTLINE_CHECK_THROWS(make1(Metric::InverseMeanRatio, T::PowerMean, 0.5), "at least 1");
+  TAUTLINE_CHECK_THROWS(make1(Metric::InverseMeanRatio, T::PowerMean, 0.5), wording("at-least-1"));
   TAUTLINE_CHECK_THROWS(make1(Metric::InverseMeanRatio, T::Maximum, 0), "above 0");
   TAUTLINE_CHECK_THROWS(make1(Metric::InverseMeanRatio, T::Maximum, std::nan("")), "above 0");
   Objective objective;
@@ -503,17 +505,17 @@ void testErrors()
   for (double bad : { -1.0, std::nan(""), infinity })
   {
     weights[3] = bad;
-    TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), "weight of cell 3");
+    TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), wording("weight-of-cell-3"));
   }
   std::fill(weights.begin(), weights.end(), 0.0);
-  TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), "all elements are 0");
+  TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), wording("all-elements-are-0"));
   objective.elementWeights = nullptr;
   objective.weight = 0;
-  TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), "weight of an objective");
+  TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), wording("weight-of-an-objective"));
 }
 }
 
-int TestObjectives(int, char*[])
+TAUTLINE_TEST(TestObjectives)
 {
   int infinite = 0, compared = 0, skipped = 0;
   for (bool tangled : { false, true })
@@ -521,7 +523,7 @@ int TestObjectives(int, char*[])
     for (const NamedMesh& mesh : makeMeshes(tangled ? 0.7 : 0.12))
     {
       const Context name(mesh.name + (tangled ? ", tangled" : ""));
-      testByHand(mesh.data, tangled, infinite);
+      TAUTLINE_RUN(testByHand(mesh.data, tangled, infinite));
     }
   }
   TAUTLINE_CHECK(infinite > 100);
@@ -531,14 +533,13 @@ int TestObjectives(int, char*[])
     for (const NamedMesh& mesh : makeMeshes(0.12))
     {
       const Context name(mesh.name);
-      testDifferences(mesh.data, scale, compared, skipped);
+      TAUTLINE_RUN(testDifferences(mesh.data, scale, compared, skipped));
     }
   }
   std::cout << compared << " gradients compared, " << skipped << " skipped at kinks\n";
   TAUTLINE_CHECK(skipped * 20 < compared);
-  testThreads();
-  testFaults();
-  testStability();
-  testErrors();
-  return exitCode();
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testFaults());
+  TAUTLINE_RUN(testStability());
+  TAUTLINE_RUN(testErrors());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scalarizations: values against closed forms in long double, slopes against fourth-order
 // differences, extreme values, errors.
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Objectives/Scalarization.h"
 
@@ -222,10 +222,11 @@ void testLexicographic()
 void testErrors()
 {
   const ScalarizationOptions good;
-  TAUTLINE_CHECK_THROWS(Scalarizer(good, {}, {}), "no objective");
-  TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1 }, { 1, 2 }), "one weight");
-  TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1, 0 }, { 1, 2 }), "weight of objective 2");
-  TAUTLINE_CHECK_THROWS(Scalarizer(good, { std::nan(""), 1 }, { 1, 2 }), "weight of objective 1");
+  TAUTLINE_CHECK_THROWS(Scalarizer(good, {}, {}), wording("no-objective"));
+  TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1 }, { 1, 2 }), wording("one-weight"));
+  TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1, 0 }, { 1, 2 }), wording("weight-of-objective-2"));
+  TAUTLINE_CHECK_THROWS(
+    Scalarizer(good, { std::nan(""), 1 }, { 1, 2 }), wording("weight-of-objective-1"));
   TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1, 1 }, { 1, infinity }), "Untangle");
   TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1 }, { 1 }).value({ 1, 2 }), "2 values");
   auto with = [](auto change)
@@ -234,8 +235,8 @@ void testErrors()
     change(options);
     Scalarizer(options, { 1 }, { 1 });
   };
-  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.c = -1; }), "c of the exponential sum");
-  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.c = infinity; }), "c of the exponential sum");
+  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.c = -1; }), wording("c-of-the-exponential-sum"));
+  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.c = infinity; }), wording("c-of-the-exponential-sum"));
   TAUTLINE_CHECK_THROWS(with([](auto& o) { o.exponent = 0; }), "exponent");
   TAUTLINE_CHECK_THROWS(with([](auto& o) { o.tolerance = -0.1; }), "tolerance");
   TAUTLINE_CHECK_THROWS(with([](auto& o) { o.utopia = { 1, 2 }; }), "utopia");
@@ -245,11 +246,10 @@ void testErrors()
 }
 }
 
-int TestScalarization(int, char*[])
+TAUTLINE_TEST(TestScalarization)
 {
-  testClosedForms();
-  testExtremes();
-  testLexicographic();
-  testErrors();
-  return exitCode();
+  TAUTLINE_RUN(testClosedForms());
+  TAUTLINE_RUN(testExtremes());
+  TAUTLINE_RUN(testLexicographic());
+  TAUTLINE_RUN(testErrors());
 }

@@ -2,6 +2,7 @@
 // Random meshes of all cell types through the filter Optimize Mesh, with every preset and boundary,
 // in single and double precision, listed in both orders, near and far from the origin: what is
 // written is not worse than the input, and the numbers reported are those of what is written.
+#include "Registry.h"
 #include "NeverWorse.h"
 #include "VtkMeshes.h"
 
@@ -315,12 +316,12 @@ void print(const char* run, const Totals& totals)
 }
 
 //------------------------------------------------------------------------------
-int TestFilterNeverWorse(int, char*[])
+TAUTLINE_TEST(TestFilterNeverWorse)
 {
   Totals once, again;
   for (int i = 0; i < meshes; ++i)
   {
-    testOne(i, once, again);
+    TAUTLINE_RUN(testOne(i, once, again));
   }
   print("input", once);
   print("repeated", again);
@@ -329,5 +330,4 @@ int TestFilterNeverWorse(int, char*[])
   TAUTLINE_CHECK(once.better > 3 * once.valid / 4);
   TAUTLINE_CHECK(once.refused < meshes / 5);
   TAUTLINE_CHECK(again.valid > meshes / 2);
-  return exitCode();
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points that slide on flat and straight parts of a boundary, moved all at once by Newton's method.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include "tautline/Mesh/BoundaryShape.h"
@@ -253,9 +254,10 @@ void testWorstMetrics()
   OptimizeOptions options;
   applyPreset(Preset::WorstElement, options);
   options.worstMetric = Metric::Size;
-  TAUTLINE_CHECK_THROWS(optimize(mesh, options), "choose another metric for the worst element");
+  TAUTLINE_CHECK_THROWS(
+    optimize(mesh, options), wording("choose-another-metric-for-the-worst-element"));
   options.worstMetric = Metric::RadiusRatio;
-  TAUTLINE_CHECK_THROWS(optimize(mesh, options), "is not defined on every element");
+  TAUTLINE_CHECK_THROWS(optimize(mesh, options), wording("is-not-defined-on-every-element"));
   options.worstMetric = Metric::UntangleBeta;
   const OptimizeResult result = optimize(mesh, options);
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
@@ -266,16 +268,16 @@ void testWorstMetrics()
   const Vec3 first = folded.point(0);
   folded.setPoint(0, folded.point(1));
   folded.setPoint(1, first);
-  TAUTLINE_CHECK_THROWS(optimize(Mesh(folded.view()), OptimizeOptions()), "No element is valid");
+  TAUTLINE_CHECK_THROWS(
+    optimize(Mesh(folded.view()), OptimizeOptions()), wording("no-element-is-valid"));
 }
 }
 
-int TestFlatParts(int, char*[])
+TAUTLINE_TEST(TestFlatParts)
 {
-  testSizes();
-  testWorstMetrics();
-  testSlantedPlanes();
-  testDirections();
-  testSurface();
-  return exitCode();
+  TAUTLINE_RUN(testSizes());
+  TAUTLINE_RUN(testWorstMetrics());
+  TAUTLINE_RUN(testSlantedPlanes());
+  TAUTLINE_RUN(testDirections());
+  TAUTLINE_RUN(testSurface());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where no point is held, a mesh on ranks stays where it was, as on one process (TestOptimizeFree),
 // and where it is does not depend on the number of ranks.
+#include "Registry.h"
 #include "OptimizingOnRanks.h"
 
 #include <cstdio>
@@ -57,7 +58,7 @@ Drift drift(const MeshData& data, Optimizer optimizer)
 }
 
 //------------------------------------------------------------------------------
-int TestFreeOnRanks(int, char*[])
+TAUTLINE_TEST(TestFreeOnRanks)
 {
   constexpr double little = 1; // of elements, by sweeps over simplices
   constexpr double rounding = 1e-10;
@@ -85,5 +86,4 @@ int TestFreeOnRanks(int, char*[])
       }
     }
   }
-  return exitCode();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The points of a mesh are placed on the geometry before the first iteration, but for those of
 // elements that this would invert.
-#include "Check.h"
+#include "Registry.h"
 #include "Surfaces.h"
 #include "VtkMeshes.h"
 
@@ -74,12 +74,12 @@ Index invalid(const MeshData& like, const std::vector<double>& points)
 }
 }
 
-int TestGeometryPlacement(int, char*[])
+TAUTLINE_TEST(TestGeometryPlacement)
 {
   {
     const Context context("room for all");
     const MeshData data = blockWith(2, 2, 3.5);
-    checkTop(data, placed(data), [](double, double) { return false; });
+    TAUTLINE_RUN(checkTop(data, placed(data), [](double, double) { return false; }));
   }
   {
     // The point under the middle of the top is higher than the geometry: the four cells above it
@@ -87,8 +87,8 @@ int TestGeometryPlacement(int, char*[])
     const Context context("an element would be inverted");
     const MeshData data = blockWith(2, 2, 3.9);
     const std::vector<double> points = placed(data);
-    checkTop(data, points,
-      [](double x, double y) { return std::abs(x - 2) < 1.5 && std::abs(y - 2) < 1.5; });
+    TAUTLINE_RUN(checkTop(data, points,
+      [](double x, double y) { return std::abs(x - 2) < 1.5 && std::abs(y - 2) < 1.5; }));
     TAUTLINE_CHECK_EQUAL(invalid(data, points), Index(0));
   }
   {
@@ -96,7 +96,6 @@ int TestGeometryPlacement(int, char*[])
     const Context context("an inverted element");
     const MeshData data = blockWith(2, 2, 4.5);
     TAUTLINE_CHECK(invalid(data, data.points) > 0);
-    checkTop(data, placed(data), [](double, double) { return false; });
+    TAUTLINE_RUN(checkTop(data, placed(data), [](double, double) { return false; }));
   }
-  return exitCode();
 }

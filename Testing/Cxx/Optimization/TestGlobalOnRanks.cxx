@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimizers that move all points at once, on ranks: the result does not depend on how the mesh is
 // cut, and is as good as that of one process in its own order.
+#include "Registry.h"
 #include "OptimizingOnRanks.h"
 #include "StretchedMeshes.h"
 #include "tautline/Core/Memory.h"
@@ -275,7 +276,8 @@ void testMemory()
       catch (const MemoryError& error)
       {
         const std::lock_guard<std::mutex> lock(mutex);
-        errors += std::string(error.what()).find("choose another optimizer") != std::string::npos;
+        errors +=
+          std::string(error.what()).find(wording("choose-another-optimizer")) != std::string::npos;
       }
     });
   TAUTLINE_CHECK_EQUAL(errors, ranks);
@@ -306,19 +308,18 @@ void testLarge()
 }
 
 //------------------------------------------------------------------------------
-int TestGlobalOnRanks(int argc, char* argv[])
+TAUTLINE_TEST(TestGlobalOnRanks)
 {
   constexpr int most = 3; // the argument that is another number of ranks
   if (argc > most)
   {
     numbersOfRanks = { std::stoi(argv[most]) };
   }
-  testOptimizers();
-  testSlantedPlanes();
-  testObjectives();
-  testTangled();
-  testStiff();
-  testMemory();
-  testLarge();
-  return exitCode();
+  TAUTLINE_RUN(testOptimizers());
+  TAUTLINE_RUN(testSlantedPlanes());
+  TAUTLINE_RUN(testObjectives());
+  TAUTLINE_RUN(testTangled());
+  TAUTLINE_RUN(testStiff());
+  TAUTLINE_RUN(testMemory());
+  TAUTLINE_RUN(testLarge());
 }

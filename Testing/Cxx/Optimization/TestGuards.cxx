@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What became worse goes back to where it was, element by element: what that makes worse in turn
 // follows. After 20 rounds everything goes back.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include "tautline/Core/Stopwatch.h"
@@ -122,9 +123,8 @@ void testValidity()
 }
 }
 
-int TestGuards(int, char*[])
+TAUTLINE_TEST(TestGuards)
 {
-  testQuality();
-  testValidity();
-  return exitCode();
+  TAUTLINE_RUN(testQuality());
+  TAUTLINE_RUN(testValidity());
 }

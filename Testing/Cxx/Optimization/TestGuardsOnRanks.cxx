@@ -2,6 +2,7 @@
 // Never worse on ranks: where an objective makes the worst element worse than all of the input, it
 // is improved, as on one process; where there is no time for that, points about it go back to the
 // input. The same however the mesh is cut.
+#include "Registry.h"
 #include "OptimizingOnRanks.h"
 
 #include "tautline/Quality/UserMetric.h"
@@ -198,10 +199,10 @@ void testWithoutValue(bool larger)
 }
 
 //------------------------------------------------------------------------------
-int TestGuardsOnRanks(int, char*[])
+TAUTLINE_TEST(TestGuardsOnRanks)
 {
-  testWithoutValue(false);
-  testWithoutValue(true);
+  TAUTLINE_RUN(testWithoutValue(false));
+  TAUTLINE_RUN(testWithoutValue(true));
   constexpr int many = 300, few = 5;
   // Equal sizes at the cost of the shape of single elements.
   const Case cases[] = {
@@ -213,11 +214,10 @@ int TestGuardsOnRanks(int, char*[])
   };
   for (const Case& test : cases)
   {
-    testGuard(test, Remedy::Improve);
-    testGuard(test, Remedy::PutBack);
+    TAUTLINE_RUN(testGuard(test, Remedy::Improve));
+    TAUTLINE_RUN(testGuard(test, Remedy::PutBack));
   }
   // Converged, all points would have to go back.
-  testGuard(
-    { CellType::Hexahedron, 0.25, Metric::Size, Metric::EdgeRatio, many, 4 }, Remedy::Improve);
-  return exitCode();
+  TAUTLINE_RUN(testGuard(
+    { CellType::Hexahedron, 0.25, Metric::Size, Metric::EdgeRatio, many, 4 }, Remedy::Improve));
 }

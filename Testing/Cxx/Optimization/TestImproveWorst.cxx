@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rounds that improve the worst element: each that counts improves it, costs the mean no more than
 // allowed and inverts nothing; the points are those of the last such round.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include "tautline/Core/Stopwatch.h"
@@ -336,14 +337,13 @@ void testNeutral()
 }
 }
 
-int TestImproveWorst(int, char*[])
+TAUTLINE_TEST(TestImproveWorst)
 {
-  testRounds();
-  testBackToInput();
-  testPull();
-  testVerticesNear();
-  testManyMeshes();
-  testInversion();
-  testNeutral();
-  return exitCode();
+  TAUTLINE_RUN(testRounds());
+  TAUTLINE_RUN(testBackToInput());
+  TAUTLINE_RUN(testPull());
+  TAUTLINE_RUN(testVerticesNear());
+  TAUTLINE_RUN(testManyMeshes());
+  TAUTLINE_RUN(testInversion());
+  TAUTLINE_RUN(testNeutral());
 }

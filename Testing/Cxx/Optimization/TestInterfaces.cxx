@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points on interfaces of regions slide on these: they keep their shape in one run and in several,
 // within the surface tolerance.
+#include "Registry.h"
 #include "Optimizing.h"
 #include "SurfaceDistance.h"
 #include "VtkMeshes.h"
@@ -255,8 +256,10 @@ void testTolerance()
     const Context context("boundary " + std::to_string(boundary));
     const TwoRegions mesh = ballInBall(CellType::Hexahedron, 4, 2);
     const double diagonal = norm({ 2, 2, 2 });
-    const auto states = [](const Run& run) {
-      return run.summary.find(" of interfaces: their last steps went too far") != std::string::npos;
+    const auto states = [](const Run& run)
+    {
+      return run.summary.find(wording("of-interfaces-their-last-steps-went-too")) !=
+        std::string::npos;
     };
     const Run unlimited = optimized(mesh, boundary, 0);
     TAUTLINE_CHECK(offOf(mesh, unlimited) > 2e-3 * diagonal);
@@ -330,8 +333,8 @@ void testConverged()
     if (kept)
     {
       TAUTLINE_CHECK_EQUAL(run.summary.find("Converged: "), std::size_t(0));
-      TAUTLINE_CHECK(run.summary.find("the little that the objective can still be reduced by") !=
-        std::string::npos);
+      TAUTLINE_CHECK(
+        run.summary.find(wording("the-little-that-the-objective-can-still")) != std::string::npos);
     }
     mesh.data.points = run.points;
   }
@@ -339,13 +342,12 @@ void testConverged()
 }
 }
 
-int TestInterfaces(int, char*[])
+TAUTLINE_TEST(TestInterfaces)
 {
-  testSense();
-  testShapes();
-  testFineBall();
-  testTolerance();
-  testHeldWorst();
-  testConverged();
-  return exitCode();
+  TAUTLINE_RUN(testSense());
+  TAUTLINE_RUN(testShapes());
+  TAUTLINE_RUN(testFineBall());
+  TAUTLINE_RUN(testTolerance());
+  TAUTLINE_RUN(testHeldWorst());
+  TAUTLINE_RUN(testConverged());
 }

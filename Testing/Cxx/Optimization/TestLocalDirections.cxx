@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The directions in which the local optimizers move a vertex.
+#include "Registry.h"
 #include "Optimizing.h"
 
 using namespace tautline;
@@ -48,8 +49,7 @@ void testConjugateSteps()
 }
 }
 
-int TestLocalDirections(int, char*[])
+TAUTLINE_TEST(TestLocalDirections)
 {
-  testConjugateSteps();
-  return exitCode();
+  TAUTLINE_RUN(testConjugateSteps());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One sweep over the vertices: the objective it returns is that of the mesh, the gradient that of
 // the objective; after it only the vertices that moved and their neighbours are visited.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include "tautline/Optimization/LocalSweep.h"
@@ -247,17 +248,16 @@ void testAllowance()
 }
 }
 
-int TestLocalSweep(int, char*[])
+TAUTLINE_TEST(TestLocalSweep)
 {
   for (const bool slides : { false, true })
   {
-    testValues(CellType::Triangle, slides);
-    testValues(CellType::Tetrahedron, slides);
+    TAUTLINE_RUN(testValues(CellType::Triangle, slides));
+    TAUTLINE_RUN(testValues(CellType::Tetrahedron, slides));
   }
-  testGradient();
-  testRelaxation();
-  testCulling();
-  testConvergenceOfAll();
-  testAllowance();
-  return exitCode();
+  TAUTLINE_RUN(testGradient());
+  TAUTLINE_RUN(testRelaxation());
+  TAUTLINE_RUN(testCulling());
+  TAUTLINE_RUN(testConvergenceOfAll());
+  TAUTLINE_RUN(testAllowance());
 }

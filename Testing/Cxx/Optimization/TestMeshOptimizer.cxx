@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh against the kernel: every option arrives, arrays and tables report what happened.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Optimization/Optimize.h"
@@ -381,8 +381,8 @@ void testArrays()
     TAUTLINE_CHECK_RELATIVE(
       cell(filter->GetHistory(), filter->GetHistory()->GetNumberOfRows() - 1, "Objective"),
       sumOfSquares(after), 1e-10);
-    TAUTLINE_CHECK(
-      std::string(filter->GetSummary()).find("Inverse mean ratio: mean ") != std::string::npos);
+    TAUTLINE_CHECK(std::string(filter->GetSummary()).find(wording("inverse-mean-ratio-mean")) !=
+      std::string::npos);
   }
 }
 
@@ -659,19 +659,18 @@ void testThreads()
 }
 
 //------------------------------------------------------------------------------
-int TestMeshOptimizer(int, char*[])
+TAUTLINE_TEST(TestMeshOptimizer)
 {
-  testAgainstKernel();
-  testWorstMetric();
-  testCustom();
-  testOptions();
-  testArrays();
-  testFixed();
-  testBoundary();
-  testSlidingTangled();
-  testOnSurface();
-  testLimits();
-  testTargets();
-  testThreads();
-  return exitCode();
+  TAUTLINE_RUN(testAgainstKernel());
+  TAUTLINE_RUN(testWorstMetric());
+  TAUTLINE_RUN(testCustom());
+  TAUTLINE_RUN(testOptions());
+  TAUTLINE_RUN(testArrays());
+  TAUTLINE_RUN(testFixed());
+  TAUTLINE_RUN(testBoundary());
+  TAUTLINE_RUN(testSlidingTangled());
+  TAUTLINE_RUN(testOnSurface());
+  TAUTLINE_RUN(testLimits());
+  TAUTLINE_RUN(testTargets());
+  TAUTLINE_RUN(testThreads());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh on inputs of all kinds: refused by name, or taken as they are; blocks, precision,
 // iterations as time steps, abort.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Optimization/Optimize.h"
@@ -83,7 +83,7 @@ void testRefused()
   };
   vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 3);
-  refuse("Image Data to Point Set", image);
+  refuse(wording("image-data-to-point-set"), image);
 
   MeshData quadratic = data;
   const Index first = quadratic.numberOfPoints();
@@ -93,43 +93,43 @@ void testRefused()
   }
   quadratic.addCell(VTK_QUADRATIC_TETRA,
     { 0, 1, 4, 16, first, first + 1, first + 2, first + 3, first + 4, first + 5 });
-  refuse("run Tessellate", toGrid(quadratic));
+  refuse(wording("run-tessellate"), toGrid(quadratic));
 
   MeshData lines;
   lines.points = data.points;
   lines.addCell(VTK_LINE, { 0, 1 });
-  refuse("no element whose points could move", toGrid(lines));
+  refuse(wording("no-element-whose-points-could-move"), toGrid(lines));
 
   const auto custom = [](const char* metric, int form = -1, double weight = 1, int target = 0)
   {
     return [=](vtkMeshOptimizer* filter)
     { filter->AddObjectiveByName(metric, form, weight, target); };
   };
-  refuse("no template", toGrid(data),
+  refuse(wording("no-template"), toGrid(data),
     [&](auto* filter)
     {
       custom("imr", 17)(filter);
       filter->SetInputData(nullptr);
       filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "none");
     });
-  refuse("set the input Reference", toGrid(data), custom("mu_2", -1, 1, 1));
-  refuse("needs a size", toGrid(data), custom("mu_size", -1, 1, 2));
-  refuse("needs a metric tensor", toGrid(data), custom("mu_size", -1, 1, 3));
+  refuse(wording("set-the-input-reference"), toGrid(data), custom("mu_2", -1, 1, 1));
+  refuse(wording("needs-a-size"), toGrid(data), custom("mu_size", -1, 1, 2));
+  refuse(wording("needs-a-metric-tensor"), toGrid(data), custom("mu_size", -1, 1, 3));
   refuse("weight", toGrid(data), custom("imr", -1, -2));
-  refuse("no point array 'absent'", toGrid(data),
+  refuse(wording("no-point-array-absent"), toGrid(data),
     [](auto* filter) {
       filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "absent");
     });
-  refuse("no cell array 'absent'", toGrid(data),
+  refuse(wording("no-cell-array-absent"), toGrid(data),
     [](auto* filter)
     { filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "absent"); });
-  refuse("set the input Reference", toGrid(data),
+  refuse(wording("set-the-input-reference"), toGrid(data),
     [](auto* filter) { filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE); });
 
   vtkNew<vtkMeshOptimizer> filter;
   Messages messages(filter);
   filter->AddObjectiveByName("nonsense");
-  TAUTLINE_CHECK(messages.has("no metric 'nonsense'"));
+  TAUTLINE_CHECK(messages.has(wording("no-metric-nonsense")));
   messages.clear();
   filter->AddObjective(4711);
   TAUTLINE_CHECK(!messages.empty());
@@ -167,7 +167,7 @@ void testAssociations()
     filter->SetInputArrayToProcess(index, 0, 0, association, name);
     filter->Update();
     const bool taken = meshOf(filter) && meshOf(filter)->GetNumberOfPoints() > 0;
-    TAUTLINE_CHECK(taken != messages.has("is needed: run"));
+    TAUTLINE_CHECK(taken != messages.has(wording("is-needed-run")));
     return taken ? withPointsOf(data, meshOf(filter)).points : std::vector<double>();
   };
   constexpr int fixed = 2, limits = 3, weights = 4, kinds = 5, regions = 6;
@@ -193,7 +193,7 @@ void testTaken()
   vtkNew<vtkUnstructuredGrid> empty;
   filter->SetInputData(empty);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The input has no cells"));
+  TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), 0);
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 0);
@@ -203,7 +203,7 @@ void testTaken()
   filter->Update();
   TAUTLINE_CHECK(withPointsOf(none, meshOf(filter)).points == none.points);
   TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(StopReason::NoFreeVertices));
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "0 of 4 points were free"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("0-of-4-points-were-free")));
 
   MeshData one = blockMesh(CellType::Quadrilateral, 2, 2, 0);
   one.setPoint(4, { 1.6, 0.7, 0 });
@@ -224,7 +224,7 @@ void testTaken()
   }
   filter->SetInputData(toGrid(reversed));
   filter->Update();
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "The mesh is reversed"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("the-mesh-is-reversed")));
   const MeshData mirrored = withPointsOf(data, meshOf(filter));
   for (std::size_t i = 0; i < data.points.size(); ++i)
   {
@@ -240,7 +240,7 @@ void testTaken()
   }
   filter->SetInputData(toGrid(mixed));
   filter->Update();
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "24 of the 72 cells are treated as if listed"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("24-of-the-72-cells-are-treated")));
   const MeshData alike = withPointsOf(data, meshOf(filter));
   for (std::size_t i = 0; i < data.points.size(); ++i)
   {
@@ -340,7 +340,7 @@ void testPrecision()
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedBefore(), 1);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetPoints()->GetDataType(), VTK_DOUBLE);
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "given in double precision"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("given-in-double-precision")));
 }
 
 void testBlocks()
@@ -373,20 +373,20 @@ void testBlocks()
   TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), free);
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
   TAUTLINE_CHECK_EQUAL(filter->GetStatistics()->GetNumberOfRows(), 3);
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "In block 4: "));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("in-block-4")));
 
   Messages messages(filter);
   filter->SetInputData(1, toGrid(flat));
   filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("the reference has none"));
+  TAUTLINE_CHECK(messages.has(wording("the-reference-has-none")));
   messages.clear();
   references->SetBlock(0, toGrid(flat));
   references->SetBlock(2, toGrid(flat));
   references->SetBlock(3, toGrid(flat));
   filter->SetInputData(1, references);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("In block 4: "));
+  TAUTLINE_CHECK(messages.has(wording("in-block-4")));
 }
 
 /// A time is an iteration: the mesh the kernel's observer saw.
@@ -540,15 +540,14 @@ void testSurface()
 }
 
 //------------------------------------------------------------------------------
-int TestMeshOptimizerInputs(int, char*[])
+TAUTLINE_TEST(TestMeshOptimizerInputs)
 {
-  testRefused();
-  testAssociations();
-  testTaken();
-  testPrecision();
-  testBlocks();
-  testAnimation();
-  testStops();
-  testSurface();
-  return exitCode();
+  TAUTLINE_RUN(testRefused());
+  TAUTLINE_RUN(testAssociations());
+  TAUTLINE_RUN(testTaken());
+  TAUTLINE_RUN(testPrecision());
+  TAUTLINE_RUN(testBlocks());
+  TAUTLINE_RUN(testAnimation());
+  TAUTLINE_RUN(testStops());
+  TAUTLINE_RUN(testSurface());
 }

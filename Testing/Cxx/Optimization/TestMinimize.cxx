@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The global minimizers on functions whose minima are known.
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Optimization/Minimize.h"
 
@@ -513,9 +513,9 @@ void testStopping()
   Rosenbrock f(2);
   Vector x = f.start();
   TAUTLINE_CHECK_THROWS(
-    minimize(f, x.data(), optionsFor(Optimizer::LocalNewton, 1, 0)), "a global one");
+    minimize(f, x.data(), optionsFor(Optimizer::LocalNewton, 1, 0)), wording("a-global-one"));
   TAUTLINE_CHECK_THROWS(
-    minimize(f, x.data(), optionsFor(Optimizer::LimitedMemoryBFGS, -1, 0)), "at least 0");
+    minimize(f, x.data(), optionsFor(Optimizer::LimitedMemoryBFGS, -1, 0)), wording("at-least-0"));
 }
 
 //------------------------------------------------------------------------------
@@ -625,16 +625,15 @@ void testArmijo()
 }
 }
 
-int TestMinimize(int, char*[])
+TAUTLINE_TEST(TestMinimize)
 {
-  testConjugateDirections();
-  testRosenbrock();
-  testQuadratic();
-  testLateHessian();
-  testBarrier();
-  testRough();
-  testStopping();
-  testStalled();
-  testArmijo();
-  return exitCode();
+  TAUTLINE_RUN(testConjugateDirections());
+  TAUTLINE_RUN(testRosenbrock());
+  TAUTLINE_RUN(testQuadratic());
+  TAUTLINE_RUN(testLateHessian());
+  TAUTLINE_RUN(testBarrier());
+  TAUTLINE_RUN(testRough());
+  TAUTLINE_RUN(testStopping());
+  TAUTLINE_RUN(testStalled());
+  TAUTLINE_RUN(testArmijo());
 }

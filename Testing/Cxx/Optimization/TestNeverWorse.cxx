@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two thousand random meshes of all cell types, valid and tangled, with every preset and boundary:
 // neither the number of invalid elements, nor the worst element, nor the objective gets worse.
+#include "Registry.h"
 #include "NeverWorse.h"
 
 #include "tautline/Mesh/BoundaryShape.h"
@@ -110,12 +111,12 @@ void testOne(int number, Totals& totals)
 }
 
 //------------------------------------------------------------------------------
-int TestNeverWorse(int, char*[])
+TAUTLINE_TEST(TestNeverWorse)
 {
   Totals totals;
   for (int i = 0; i < meshes; ++i)
   {
-    testOne(i, totals);
+    TAUTLINE_RUN(testOne(i, totals));
   }
   std::printf("%d valid meshes, %d of them better; %d tangled; %d refused; points restored in %d\n",
     totals.valid, totals.better, totals.tangled, totals.refused, totals.restored);
@@ -123,5 +124,4 @@ int TestNeverWorse(int, char*[])
   TAUTLINE_CHECK(totals.tangled > meshes / 4);
   TAUTLINE_CHECK(totals.better > 3 * totals.valid / 4);
   TAUTLINE_CHECK(totals.refused < meshes / 5);
-  return exitCode();
 }

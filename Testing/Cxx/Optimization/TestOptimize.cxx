@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The optimizer: minima, invariances, objectives, stopping, faulty input.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include "tautline/Optimization/SweepControl.h"
@@ -469,12 +470,13 @@ void testReachOfOptimizers()
     TAUTLINE_CHECK_EQUAL(isLocal(optimizer), !global && optimizer != Optimizer::Automatic);
   }
   // `optimizers` has all numbers: those beside its own are refused.
-  TAUTLINE_CHECK_THROWS(isGlobal(static_cast<Optimizer>(-1)), "no optimizer -1");
-  TAUTLINE_CHECK_THROWS(isLocal(static_cast<Optimizer>(std::size(optimizers))), "no optimizer 7");
+  TAUTLINE_CHECK_THROWS(isGlobal(static_cast<Optimizer>(-1)), wording("no-optimizer-1"));
+  TAUTLINE_CHECK_THROWS(
+    isLocal(static_cast<Optimizer>(std::size(optimizers))), wording("no-optimizer-7"));
   const MeshData data = perturbedBlock(CellType::Triangle, 4, 0.1);
   OptimizeOptions options;
   options.optimizer = static_cast<Optimizer>(std::size(optimizers));
-  TAUTLINE_CHECK_THROWS(run(data, options), "no optimizer 7");
+  TAUTLINE_CHECK_THROWS(run(data, options), wording("no-optimizer-7"));
 }
 
 /// 0 is an ordinary best known objective: that of an untangling objective.
@@ -600,7 +602,7 @@ void testFaulty()
 
   const MeshData data = perturbedBlock(CellType::Triangle, 4, 0.1);
   options.objectives.clear();
-  TAUTLINE_CHECK_THROWS(run(data, options), "no objective");
+  TAUTLINE_CHECK_THROWS(run(data, options), wording("no-objective"));
   options = OptimizeOptions();
   options.relaxation = 2.5;
   TAUTLINE_CHECK_THROWS(run(data, options), "relaxation");
@@ -610,24 +612,23 @@ void testFaulty()
 }
 }
 
-int TestOptimize(int, char*[])
+TAUTLINE_TEST(TestOptimize)
 {
-  testMinima();
-  testSingleVertex();
-  testInvariance();
-  testThreads();
-  testScalarizations();
-  testLexicographic();
-  testLexicographicBeyondBound();
-  testSweepTakenBack();
-  testMetrics();
-  testTargetsAndWeights();
-  testStopping();
-  testTimeLimitOfWholeRun();
-  testReachOfOptimizers();
-  testBestKnownOfZero();
-  testWorst();
-  testUntanglingObjectives();
-  testFaulty();
-  return exitCode();
+  TAUTLINE_RUN(testMinima());
+  TAUTLINE_RUN(testSingleVertex());
+  TAUTLINE_RUN(testInvariance());
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testScalarizations());
+  TAUTLINE_RUN(testLexicographic());
+  TAUTLINE_RUN(testLexicographicBeyondBound());
+  TAUTLINE_RUN(testSweepTakenBack());
+  TAUTLINE_RUN(testMetrics());
+  TAUTLINE_RUN(testTargetsAndWeights());
+  TAUTLINE_RUN(testStopping());
+  TAUTLINE_RUN(testTimeLimitOfWholeRun());
+  TAUTLINE_RUN(testReachOfOptimizers());
+  TAUTLINE_RUN(testBestKnownOfZero());
+  TAUTLINE_RUN(testWorst());
+  TAUTLINE_RUN(testUntanglingObjectives());
+  TAUTLINE_RUN(testFaulty());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the optimizer must keep: fixed points, limits, planes, lines, surfaces.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include "tautline/Patches/SimplexMesh.h"
@@ -49,7 +50,7 @@ void testConstraints()
   TAUTLINE_CHECK(most > 0.99 * limit); // it was in the way
   checkHistory(data, result);
   options.optimizer = Optimizer::LimitedMemoryBFGS;
-  TAUTLINE_CHECK_THROWS(run(data, options), "need a local optimizer");
+  TAUTLINE_CHECK_THROWS(run(data, options), wording("need-a-local-optimizer"));
 
   // Points of the face z = 0 slide in it, those of its edges along them; the corners stay.
   for (Optimizer optimizer :
@@ -174,7 +175,7 @@ void testSlidingSurface()
       }
     }
     options.optimizer = Optimizer::LimitedMemoryBFGS;
-    TAUTLINE_CHECK_THROWS(run(data, options), "local optimizer");
+    TAUTLINE_CHECK_THROWS(run(data, options), wording("local-optimizer"));
   }
 }
 
@@ -209,14 +210,13 @@ void testSurface()
   }
   TAUTLINE_CHECK(most < edge * edge); // on the facets of the input, which cut the sphere's chords
   options.optimizer = Optimizer::LimitedMemoryBFGS;
-  TAUTLINE_CHECK_THROWS(run(data, options), "local optimizer");
+  TAUTLINE_CHECK_THROWS(run(data, options), wording("local-optimizer"));
 }
 }
 
-int TestOptimizeConstraints(int, char*[])
+TAUTLINE_TEST(TestOptimizeConstraints)
 {
-  testConstraints();
-  testSlidingSurface();
-  testSurface();
-  return exitCode();
+  TAUTLINE_RUN(testConstraints());
+  TAUTLINE_RUN(testSlidingSurface());
+  TAUTLINE_RUN(testSurface());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimization keeps the features of surfaces and the smooth shape between them.
+#include "Registry.h"
 #include "Optimizing.h"
 #include "Surfaces.h"
 
@@ -362,20 +363,19 @@ void testGeometry()
     volumeWithin(sphere, result.points) > 0.9995 * volumeWithin(sphere, sphere.points));
   MeshData lines;
   lines.addPoint({ 0, 0, 0 });
-  TAUTLINE_CHECK_THROWS(match(sphere, lines), "no triangles or quadrilaterals");
+  TAUTLINE_CHECK_THROWS(match(sphere, lines), wording("no-triangles-or-quadrilaterals"));
   options.parts = nullptr;
-  TAUTLINE_CHECK_THROWS(run(placed, options), "part of it");
+  TAUTLINE_CHECK_THROWS(run(placed, options), wording("part-of-it"));
 }
 }
 
-int TestOptimizeFeatures(int, char*[])
+TAUTLINE_TEST(TestOptimizeFeatures)
 {
-  testCube();
-  testCylinder();
-  testSphere();
-  testEllipsoid();
-  testTorus();
-  testVolume();
-  testGeometry();
-  return exitCode();
+  TAUTLINE_RUN(testCube());
+  TAUTLINE_RUN(testCylinder());
+  TAUTLINE_RUN(testSphere());
+  TAUTLINE_RUN(testEllipsoid());
+  TAUTLINE_RUN(testTorus());
+  TAUTLINE_RUN(testVolume());
+  TAUTLINE_RUN(testGeometry());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // optimize() from nearly flat elements: no method and no criterion takes a sum that is still far
 // from its minimum for converged.
+#include "Registry.h"
 #include "StretchedMeshes.h"
 
 #include "tautline/Untangling/Untangle.h"
@@ -227,13 +228,12 @@ void testBarelyPlanar()
 }
 
 //------------------------------------------------------------------------------
-int TestOptimizeFlat(int, char*[])
+TAUTLINE_TEST(TestOptimizeFlat)
 {
-  testNewton();
-  testObjectives();
-  testConvergence();
-  testReduction();
-  testFirstRow();
-  testBarelyPlanar();
-  return exitCode();
+  TAUTLINE_RUN(testNewton());
+  TAUTLINE_RUN(testObjectives());
+  TAUTLINE_RUN(testConvergence());
+  TAUTLINE_RUN(testReduction());
+  TAUTLINE_RUN(testFirstRow());
+  TAUTLINE_RUN(testBarelyPlanar());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Where no point is held, neither the shape of the elements nor the objective depends on where the
 // mesh is: it stays where it was, by each method.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include <cstdio>
@@ -26,7 +27,7 @@ double drift(const MeshData& data, Optimizer optimizer)
 }
 
 //------------------------------------------------------------------------------
-int TestOptimizeFree(int, char*[])
+TAUTLINE_TEST(TestOptimizeFree)
 {
   constexpr double little = 1; // of elements
   for (const CellType type : { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron,
@@ -58,5 +59,4 @@ int TestOptimizeFree(int, char*[])
         static_cast<int>(n), topology(type).plural, most[0], most[1]);
     }
   }
-  return exitCode();
 }

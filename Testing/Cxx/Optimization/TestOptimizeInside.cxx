@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hexahedra and wedges stay valid between their corners when a mesh is optimized, and become so
 // when it is untangled.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include "tautline/Untangling/Untangle.h"
@@ -172,11 +173,10 @@ void testEnds()
 }
 }
 
-int TestOptimizeInside(int, char*[])
+TAUTLINE_TEST(TestOptimizeInside)
 {
-  testKeepsValid();
-  testFoldedTargets();
-  testUnfolds();
-  testEnds();
-  return exitCode();
+  TAUTLINE_RUN(testKeepsValid());
+  TAUTLINE_RUN(testFoldedTargets());
+  TAUTLINE_RUN(testUnfolds());
+  TAUTLINE_RUN(testEnds());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Limits on the way of points: kept, and no stop short of the minimum within them.
+#include "Registry.h"
 #include "OptimizingOnRanks.h"
 #include "StretchedMeshes.h"
 
@@ -273,7 +274,7 @@ void testUntangling()
   limits[held] = 0;
   TAUTLINE_CHECK(wayOf(data, run(data, options).points, held) <= 1e-14);
   limits.assign(limits.size(), 0.9 * way);
-  TAUTLINE_CHECK_THROWS(run(data, options), "points farther than their limits");
+  TAUTLINE_CHECK_THROWS(run(data, options), wording("points-farther-than-their-limits"));
   int errors = 0;
   std::mutex mutex;
   onRanks(2,
@@ -293,7 +294,8 @@ void testUntangling()
       catch (const Error& error)
       {
         const std::lock_guard<std::mutex> lock(mutex);
-        errors += std::string(error.what()).find("farther than their limits") != std::string::npos;
+        errors +=
+          std::string(error.what()).find(wording("farther-than-their-limits")) != std::string::npos;
       }
     });
   TAUTLINE_CHECK_EQUAL(errors, 2);
@@ -336,28 +338,27 @@ void testRanks(CellType type, int cells, double limit)
 }
 
 //------------------------------------------------------------------------------
-int TestOptimizeLimits(int, char*[])
+TAUTLINE_TEST(TestOptimizeLimits)
 {
-  testMethods("quadrilaterals", CellType::Quadrilateral, 24, 0.1);
-  testMethods("triangles", CellType::Triangle, 24, 0.1);
-  testMethods("tetrahedra", CellType::Tetrahedron, 10, 0.1);
-  testMethods("hexahedra", CellType::Hexahedron, 10, 0.1);
-  testWide();
+  TAUTLINE_RUN(testMethods("quadrilaterals", CellType::Quadrilateral, 24, 0.1));
+  TAUTLINE_RUN(testMethods("triangles", CellType::Triangle, 24, 0.1));
+  TAUTLINE_RUN(testMethods("tetrahedra", CellType::Tetrahedron, 10, 0.1));
+  TAUTLINE_RUN(testMethods("hexahedra", CellType::Hexahedron, 10, 0.1));
+  TAUTLINE_RUN(testWide());
   for (const double limit : { 0.0, 0.02, 0.05 })
   {
-    testSome(limit);
+    TAUTLINE_RUN(testSome(limit));
   }
-  testSmall(CellType::Quadrilateral, 30);
-  testSmall(CellType::Tetrahedron, 8);
-  testSmall(CellType::Hexahedron, 10);
-  testSliding();
+  TAUTLINE_RUN(testSmall(CellType::Quadrilateral, 30));
+  TAUTLINE_RUN(testSmall(CellType::Tetrahedron, 8));
+  TAUTLINE_RUN(testSmall(CellType::Hexahedron, 10));
+  TAUTLINE_RUN(testSliding());
   for (const bool project : { true, false })
   {
-    testSurface(CellType::Triangle, project);
-    testSurface(CellType::Quadrilateral, project);
+    TAUTLINE_RUN(testSurface(CellType::Triangle, project));
+    TAUTLINE_RUN(testSurface(CellType::Quadrilateral, project));
   }
-  testUntangling();
-  testRanks(CellType::Hexahedron, 8, 0.1);
-  testRanks(CellType::Tetrahedron, 8, 0.1);
-  return exitCode();
+  TAUTLINE_RUN(testUntangling());
+  TAUTLINE_RUN(testRanks(CellType::Hexahedron, 8, 0.1));
+  TAUTLINE_RUN(testRanks(CellType::Tetrahedron, 8, 0.1));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimization and untangling on ranks: the points do not depend on how the mesh is cut, and are as
 // good as those of one process in its own order.
+#include "Registry.h"
 #include "OptimizingOnRanks.h"
 #include "tautline/Untangling/Untangle.h"
 
@@ -162,7 +163,7 @@ void testElementData()
   {
     message = error.what();
   }
-  TAUTLINE_CHECK(message.find("weights of all elements are 0") != std::string::npos);
+  TAUTLINE_CHECK(message.find(wording("weights-of-all-elements-are-0")) != std::string::npos);
 }
 
 /// See testConvergenceOfAll() of TestLocalSweep.
@@ -240,7 +241,7 @@ void testRefusals()
   TAUTLINE_CHECK_EQUAL(message(options), "");
   OptimizeOptions worst = options;
   worst.improveWorst = 0.1;
-  TAUTLINE_CHECK(message(worst).find("Improve Worst") != std::string::npos);
+  TAUTLINE_CHECK(message(worst).find(wording("improve-worst")) != std::string::npos);
   OptimizeOptions mean = options;
   mean.objectives[0].objectiveTemplate = ObjectiveTemplate::PowerMean;
   TAUTLINE_CHECK(message(mean).find("p-Mean") != std::string::npos);
@@ -248,7 +249,7 @@ void testRefusals()
 }
 
 //------------------------------------------------------------------------------
-int TestOptimizeOnRanks(int argc, char* argv[])
+TAUTLINE_TEST(TestOptimizeOnRanks)
 {
   constexpr int most = 3; // the argument that is another number of ranks
   if (argc > most)
@@ -258,20 +259,20 @@ int TestOptimizeOnRanks(int argc, char* argv[])
   const MeshData tets = jittered(CellType::Tetrahedron, 5, 0.2);
   const MeshData hexes = jittered(CellType::Hexahedron, 5, 0.2);
   const MeshData triangles = jittered(CellType::Triangle, 9, 0.25);
-  testOrders("tetrahedra", tets, with({ Metric::InverseMeanRatio }));
-  testOrders("hexahedra", hexes, with({ Metric::InverseMeanRatio }));
-  testOrders("triangles", triangles, with({ Metric::InverseMeanRatio }));
-  testOrders("tetrahedra that slide", tets, with({ Metric::InverseMeanRatio }), true);
+  TAUTLINE_RUN(testOrders("tetrahedra", tets, with({ Metric::InverseMeanRatio })));
+  TAUTLINE_RUN(testOrders("hexahedra", hexes, with({ Metric::InverseMeanRatio })));
+  TAUTLINE_RUN(testOrders("triangles", triangles, with({ Metric::InverseMeanRatio })));
+  TAUTLINE_RUN(testOrders("tetrahedra that slide", tets, with({ Metric::InverseMeanRatio }), true));
   OptimizeOptions product = with({ Metric::InverseMeanRatio, Metric::Size });
   product.scalarization.method = Scalarization::ObjectiveProduct;
-  testCuts("two objectives", tets, product);
-  testCuts("conjugate gradients", tets,
+  TAUTLINE_RUN(testCuts("two objectives", tets, product));
+  TAUTLINE_RUN(testCuts("conjugate gradients", tets,
     []
     {
       OptimizeOptions options = with({ Metric::InverseMeanRatio });
       options.optimizer = Optimizer::LocalConjugateGradient;
       return options;
-    }());
+    }()));
   constexpr double limit = 0.02;
   const Run limited =
     testCuts("limits", tets, with({ Metric::InverseMeanRatio }), Constraint::Limits, limit);
@@ -298,9 +299,8 @@ int TestOptimizeOnRanks(int argc, char* argv[])
   TAUTLINE_CHECK_EQUAL(both.result.invertedAfter, usual.invertedAfter);
   std::cout << "untangled " << untangled.result.invertedBefore << " elements, "
             << usual.invertedAfter << " remain\n";
-  testConvergenceOfAll();
-  testElementData();
-  testFailure();
-  testRefusals();
-  return exitCode();
+  TAUTLINE_RUN(testConvergenceOfAll());
+  TAUTLINE_RUN(testElementData());
+  TAUTLINE_RUN(testFailure());
+  TAUTLINE_RUN(testRefusals());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is prepared before an optimization and measured after it: the same for any number of
 // threads, and what is handed on is what would be measured anew.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include "tautline/Core/CountingSort.h"
@@ -208,11 +209,10 @@ void testVerified()
 }
 }
 
-int TestOptimizeSetup(int, char*[])
+TAUTLINE_TEST(TestOptimizeSetup)
 {
-  testCountingSort();
-  testSimplexMesh();
-  testDuplicates();
-  testVerified();
-  return exitCode();
+  TAUTLINE_RUN(testCountingSort());
+  TAUTLINE_RUN(testSimplexMesh());
+  TAUTLINE_RUN(testDuplicates());
+  TAUTLINE_RUN(testVerified());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // optimize() on sheared and strongly stretched meshes.
+#include "Registry.h"
 #include "Sanitized.h"
 #include "StretchedMeshes.h"
 
@@ -190,20 +191,19 @@ void testMemory(CellType type, int beforeNewton, double mebibytes)
 }
 }
 
-int TestOptimizeStiff(int, char*[])
+TAUTLINE_TEST(TestOptimizeStiff)
 {
-  testStiff();
-  testStiffThreads();
-  testStiffRing();
-  testFewQuadrilaterals();
+  TAUTLINE_RUN(testStiff());
+  TAUTLINE_RUN(testStiffThreads());
+  TAUTLINE_RUN(testStiffRing());
+  TAUTLINE_RUN(testFewQuadrilaterals());
   if (!TAUTLINE_ADDRESS_SANITIZER)
   {
     // With less memory the harmonic map does not fit, either.
     for (const double mebibytes : { 2.0, 14.0 })
     {
-      testMemory(CellType::Quadrilateral, 0, mebibytes);
-      testMemory(CellType::Triangle, 6, mebibytes);
+      TAUTLINE_RUN(testMemory(CellType::Quadrilateral, 0, mebibytes));
+      TAUTLINE_RUN(testMemory(CellType::Triangle, 6, mebibytes));
     }
   }
-  return exitCode();
 }

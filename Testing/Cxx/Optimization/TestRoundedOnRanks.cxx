@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What rounded points of a result break is found on ranks as on one process, however the mesh is
 // cut.
+#include "Registry.h"
 #include "OptimizingOnRanks.h"
 #include "tautline/Optimization/RoundedResult.h"
 
@@ -75,7 +76,7 @@ int compare(const MeshData& whole, const OptimizeOptions& options, double step)
 }
 
 //------------------------------------------------------------------------------
-int TestRoundedOnRanks(int, char*[])
+TAUTLINE_TEST(TestRoundedOnRanks)
 {
   std::vector<int> seen(8, 0);
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Hexahedron })
@@ -115,5 +116,4 @@ int TestRoundedOnRanks(int, char*[])
   TAUTLINE_CHECK(seen[1] > 0);           // valid elements lost
   TAUTLINE_CHECK(seen[2] + seen[6] > 0); // the worst element
   TAUTLINE_CHECK(seen[4] > 0);           // the objective alone
-  return exitCode();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Steps of one vertex that are shortened or refused: before an element inverts, and where the way
 // back to a surface would invert, fold, turn over or worsen the elements.
+#include "Registry.h"
 #include "Optimizing.h"
 
 #include "tautline/Optimization/LocalSweep.h"
@@ -268,12 +269,11 @@ void testFoldedOnSurface()
 }
 }
 
-int TestStepChecks(int, char*[])
+TAUTLINE_TEST(TestStepChecks)
 {
-  testSafety();
-  testInvertedOnCurve();
-  testWorseOnCurve();
-  testTurnedOnCurve();
-  testFoldedOnSurface();
-  return exitCode();
+  TAUTLINE_RUN(testSafety());
+  TAUTLINE_RUN(testInvertedOnCurve());
+  TAUTLINE_RUN(testWorseOnCurve());
+  TAUTLINE_RUN(testTurnedOnCurve());
+  TAUTLINE_RUN(testFoldedOnSurface());
 }

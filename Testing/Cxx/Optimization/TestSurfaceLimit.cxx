@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A boundary whose points slide stays within a distance of where it was, and the other way round;
 // so does one whose points may leave it to improve the worst elements.
+#include "Registry.h"
 #include "Optimizing.h"
 #include "SurfaceDistance.h"
 #include "Surfaces.h"
@@ -127,7 +128,7 @@ void testFilter()
       filter->Update();
       errors[limited] = filter->GetSurfaceError() / diagonal;
       const std::string summary = filter->GetSummary();
-      const bool says = summary.find("Surface Tolerance holds") != std::string::npos;
+      const bool says = summary.find(wording("surface-tolerance-holds")) != std::string::npos;
       TAUTLINE_CHECK_EQUAL(says, limited == 1);
     }
     TAUTLINE_CHECK(errors[0] > 0.005);
@@ -212,7 +213,7 @@ void testLeaving()
   const Leaving kept = leave(data, [](vtkMeshOptimizer* f) { f->SetLeaveSurface(false); });
   TAUTLINE_CHECK(kept.worst <= bound + 1e-9);
   TAUTLINE_CHECK_EQUAL(kept.left, Index(0));
-  TAUTLINE_CHECK(kept.summary.find("left the surface") == std::string::npos);
+  TAUTLINE_CHECK(kept.summary.find(wording("left-the-surface")) == std::string::npos);
   double last = bound;
   for (double tolerance : { 0.001, 0.003, 0.009 })
   {
@@ -336,7 +337,7 @@ void testOtherMeshes()
           std::accumulate(imr.begin(), imr.end(), 0.0) / static_cast<double>(imr.size());
         TAUTLINE_CHECK(filter->GetSurfaceError() <= tolerance * diagonal);
         const std::string summary = filter->GetSummary();
-        const bool left = summary.find("left the surface") != std::string::npos;
+        const bool left = summary.find(wording("left-the-surface")) != std::string::npos;
         TAUTLINE_CHECK(withRegions ? !left || leave == 1 : left == (leave == 1));
         for (Index p = 0; withRegions && p < data.numberOfPoints(); ++p)
         {
@@ -360,7 +361,7 @@ void testOtherMeshes()
       filter->SetInputDataObject(3, toGrid(geometry));
       filter->Update();
       TAUTLINE_CHECK(
-        std::string(filter->GetSummary()).find("left the surface") == std::string::npos);
+        std::string(filter->GetSummary()).find(wording("left-the-surface")) == std::string::npos);
     }
   }
 }
@@ -400,10 +401,10 @@ void testStopping()
   TAUTLINE_CHECK(worst > bound + 0.004 && worst < worstJacobian(data, whole.points));
   // Points that may leave need the flags of those that may not move otherwise.
   options.fixed = nullptr;
-  TAUTLINE_CHECK_THROWS(optimize(mesh, options), "flags of the fixed points");
+  TAUTLINE_CHECK_THROWS(optimize(mesh, options), wording("flags-of-the-fixed-points"));
   options.fixed = fixed.data();
   options.onGeometry = true;
-  TAUTLINE_CHECK_THROWS(optimize(mesh, options), "no other surface");
+  TAUTLINE_CHECK_THROWS(optimize(mesh, options), wording("no-other-surface"));
 }
 
 /// Steps of one vertex, in cells, of meshes whose cells have the size 1.
@@ -548,14 +549,13 @@ void testCracks()
 }
 }
 
-int TestSurfaceLimit(int, char*[])
+TAUTLINE_TEST(TestSurfaceLimit)
 {
-  testFlatParts();
-  testCracks();
-  testLimit();
-  testFilter();
-  testLeaving();
-  testOtherMeshes();
-  testStopping();
-  return exitCode();
+  TAUTLINE_RUN(testFlatParts());
+  TAUTLINE_RUN(testCracks());
+  TAUTLINE_RUN(testLimit());
+  TAUTLINE_RUN(testFilter());
+  TAUTLINE_RUN(testLeaving());
+  TAUTLINE_RUN(testOtherMeshes());
+  TAUTLINE_RUN(testStopping());
 }

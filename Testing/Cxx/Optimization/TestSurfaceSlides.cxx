@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Stretched meshes of curved surfaces, whose points Newton's method moves all at once.
+#include "Registry.h"
 #include "StretchedMeshes.h"
 
 #include "tautline/Mesh/Features.h"
@@ -169,16 +170,15 @@ void testFlat(const Surface& surface, CellType type)
 }
 
 //------------------------------------------------------------------------------
-int TestSurfaceSlides(int, char*[])
+TAUTLINE_TEST(TestSurfaceSlides)
 {
   for (const Surface& surface : surfaces)
   {
     for (const CellType type : { CellType::Triangle, CellType::Quadrilateral })
     {
-      testStretched(surface, type, true);
-      testStretched(surface, type, false);
-      testFlat(surface, type);
+      TAUTLINE_RUN(testStretched(surface, type, true));
+      TAUTLINE_RUN(testStretched(surface, type, false));
+      TAUTLINE_RUN(testFlat(surface, type));
     }
   }
-  return exitCode();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The worst tetrahedron by its smallest dihedral angle: never worse whatever the preset, and better
 // with the preset for it, of the kernel and of the filter. The angles are computed here.
+#include "Registry.h"
 #include "Optimizing.h"
 #include "VtkMeshes.h"
 
@@ -146,9 +147,8 @@ void testFilter()
 }
 }
 
-int TestWorstByAngle(int, char*[])
+TAUTLINE_TEST(TestWorstByAngle)
 {
-  testKernel();
-  testFilter();
-  return exitCode();
+  TAUTLINE_RUN(testKernel());
+  TAUTLINE_RUN(testFilter());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Simplices, patches and energies against the metrics and against differences.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Patches/Energies.h"
 #include "tautline/Mesh/BoundaryPoints.h"
@@ -232,21 +232,20 @@ void testProjection()
 }
 }
 
-int TestPatch(int, char*[])
+TAUTLINE_TEST(TestPatch)
 {
-  testBoundary();
+  TAUTLINE_RUN(testBoundary());
   for (CellType type : allTypes)
   {
-    testBlocks(type);
+    TAUTLINE_RUN(testBlocks(type));
   }
-  testPatches<2>(CellType::Triangle);
-  testPatches<2>(CellType::Quadrilateral);
-  testPatches<3>(CellType::Tetrahedron);
-  testPatches<3>(CellType::Hexahedron);
-  testPatches<3>(CellType::Wedge);
-  testPatches<3>(CellType::Pyramid);
-  testEnergies<2>();
-  testEnergies<3>();
-  testProjection();
-  return exitCode();
+  TAUTLINE_RUN(testPatches<2>(CellType::Triangle));
+  TAUTLINE_RUN(testPatches<2>(CellType::Quadrilateral));
+  TAUTLINE_RUN(testPatches<3>(CellType::Tetrahedron));
+  TAUTLINE_RUN(testPatches<3>(CellType::Hexahedron));
+  TAUTLINE_RUN(testPatches<3>(CellType::Wedge));
+  TAUTLINE_RUN(testPatches<3>(CellType::Pyramid));
+  TAUTLINE_RUN(testEnergies<2>());
+  TAUTLINE_RUN(testEnergies<3>());
+  TAUTLINE_RUN(testProjection());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The filters of nonlocal models: arrays, tables and pictures they make, input of every kind,
 // errors in words.
-#include "Check.h"
+#include "Registry.h"
 #include "HorizonMeshes.h"
 #include "VtkMeshes.h"
 
@@ -84,7 +84,7 @@ void testStiffness()
   TAUTLINE_CHECK_EQUAL(column(filter, "Rows"), 81.0);
   TAUTLINE_CHECK_EQUAL(column(filter, "Definite"), 1.0);
   TAUTLINE_CHECK(
-    std::string(filter->GetSummary()).find("Condition number 9.28") != std::string::npos);
+    std::string(filter->GetSummary()).find(wording("condition-number-9-28")) != std::string::npos);
 
   vtkPointData* points = filter->GetOutput()->GetPointData();
   auto* unknown = vtkUnsignedCharArray::SafeDownCast(points->GetArray("Unknown"));
@@ -175,7 +175,7 @@ void testGiven()
   TAUTLINE_CHECK_NEAR(filter->GetOutput()->GetPointData()->GetArray("Solution")->GetTuple1(112),
     given->GetValue(112), 2e-4);
   filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells");
-  TAUTLINE_CHECK(errorOf(filter).find("needs one on points") != std::string::npos);
+  TAUTLINE_CHECK(errorOf(filter).find(wording("needs-one-on-points")) != std::string::npos);
 }
 
 //------------------------------------------------------------------------------
@@ -220,7 +220,8 @@ void testInteractionLayer()
   filter->Update();
   TAUTLINE_CHECK(vtkPolyData::SafeDownCast(filter->GetOutput()) != nullptr);
   TAUTLINE_CHECK_EQUAL(filter->GetCondition(), 0.0);
-  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("null space") != std::string::npos);
+  TAUTLINE_CHECK(
+    std::string(filter->GetSummary()).find(wording("null-space")) != std::string::npos);
   vtkNew<vtkUnstructuredGrid> empty;
   filter->SetInputData(empty);
   filter->Update();
@@ -251,7 +252,7 @@ void testNeighbors()
   TAUTLINE_CHECK_EQUAL(circle->GetNumberOfLines(), 1);
   TAUTLINE_CHECK_EQUAL(pieces->GetNumberOfCells(), seen[1] + 2 * seen[2] + seen[3]);
   filter->SetHorizon(-1.0);
-  TAUTLINE_CHECK(errorOf(filter).find("horizon has to be above 0") != std::string::npos);
+  TAUTLINE_CHECK(errorOf(filter).find(wording("horizon-has-to-be-above-0")) != std::string::npos);
 }
 
 //------------------------------------------------------------------------------
@@ -307,12 +308,11 @@ void testErrors()
 }
 }
 
-int TestPeridynamicFilters(int, char*[])
+TAUTLINE_TEST(TestPeridynamicFilters)
 {
-  testStiffness();
-  testGiven();
-  testInteractionLayer();
-  testNeighbors();
-  testErrors();
-  return exitCode();
+  TAUTLINE_RUN(testStiffness());
+  TAUTLINE_RUN(testGiven());
+  TAUTLINE_RUN(testInteractionLayer());
+  TAUTLINE_RUN(testNeighbors());
+  TAUTLINE_RUN(testErrors());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nonlocal matrix and the strains do not depend on the order of points, triangles and corners.
-#include "Check.h"
+#include "Registry.h"
 #include "HorizonMeshes.h"
 
 #include "tautline/Peridynamics/Dilatation.h"
@@ -157,7 +157,7 @@ void compare(const HorizonMesh& mesh, const PeridynamicOptions& options)
 }
 }
 
-int TestPeridynamicOrder(int, char*[])
+TAUTLINE_TEST(TestPeridynamicOrder)
 {
   struct Case
   {
@@ -211,5 +211,4 @@ int TestPeridynamicOrder(int, char*[])
       compare(turned(shakenSquare(Elements, layers, 0.0), M_PI / 6.0), options);
     }
   }
-  return exitCode();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Nonlocal matrices assembled by ranks that are threads: those of one rank, bitwise; what is wrong
 // on one rank, and what stops one, ends all.
-#include "Check.h"
+#include "Registry.h"
 #include "HorizonMeshes.h"
 #include "ThreadRanks.h"
 
@@ -123,14 +123,14 @@ void testEnds()
   TAUTLINE_CHECK_THROWS(
     run(0,
       [](PeridynamicOptions& own, HorizonMesh&) { own.progress = [](double) { return false; }; }),
-    "stopped by the user");
+    wording("stopped-by-the-user"));
   TAUTLINE_CHECK_THROWS(run(2, [](PeridynamicOptions& own, HorizonMesh&) { own.timeLimit = 1e-9; }),
-    "In process 2: the time limit");
+    wording("in-process-2-the-time-limit"));
   TAUTLINE_CHECK_THROWS(
     run(1, [](PeridynamicOptions& own, HorizonMesh&) { own.memoryLimit = 1000; }),
-    "In process 1: the matrix");
-  TAUTLINE_CHECK_THROWS(
-    run(0, [](PeridynamicOptions& own, HorizonMesh&) { own.horizon = 0.5; }), "interaction layer");
+    wording("in-process-1-the-matrix"));
+  TAUTLINE_CHECK_THROWS(run(0, [](PeridynamicOptions& own, HorizonMesh&) { own.horizon = 0.5; }),
+    wording("interaction-layer"));
   // An interruption, which is no error, on one rank; the others do not wait for it.
   std::vector<std::string> ends(3);
   onRanks(3,
@@ -164,7 +164,7 @@ void testEnds()
   TAUTLINE_CHECK_THROWS(run(1,
                           [](PeridynamicOptions& own, HorizonMesh&)
                           { own.progress = [](double part) { return part < 0.8; }; }),
-    "stopped by the user");
+    wording("stopped-by-the-user"));
 }
 
 /// A rank that stops while pairs are integrated, the first half of the work, ends the others soon.
@@ -186,7 +186,7 @@ void testSoon()
                             };
                             assemblePeridynamics(group, mesh, own);
                           }),
-    "stopped by the user");
+    wording("stopped-by-the-user"));
   for (const double part : farthest)
   {
     TAUTLINE_CHECK(part > 0 && part < soon);
@@ -194,10 +194,9 @@ void testSoon()
 }
 }
 
-int TestPeridynamicRanks(int, char*[])
+TAUTLINE_TEST(TestPeridynamicRanks)
 {
-  testEqual();
-  testEnds();
-  testSoon();
-  return exitCode();
+  TAUTLINE_RUN(testEqual());
+  TAUTLINE_RUN(testEnds());
+  TAUTLINE_RUN(testSoon());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Preconditioners of nonlocal systems: the local limit in numbers, what B is, the same solutions,
 // iterations bounded in h, delta and p in the range of Tables 4.1 to 4.3 and beyond.
-#include "Check.h"
+#include "Registry.h"
 #include "HorizonMeshes.h"
 
 #include "tautline/Peridynamics/LocalLimit.h"
@@ -433,9 +433,10 @@ void testRefusals()
   std::vector<double> x;
   for (const NonlocalPreconditioner kind : others)
   {
-    TAUTLINE_CHECK_THROWS(PeridynamicPreconditioner(mesh, options, free, kind), "choose Jacobi");
     TAUTLINE_CHECK_THROWS(
-      solvePeridynamics(fine, options, indefinite, kind, load, x), "not positive definite");
+      PeridynamicPreconditioner(mesh, options, free, kind), wording("choose-jacobi"));
+    TAUTLINE_CHECK_THROWS(solvePeridynamics(fine, options, indefinite, kind, load, x),
+      wording("not-positive-definite"));
   }
   // A domain of two triangles has no free vertex: what is left is the diagonal.
   const HorizonMesh tiny = horizonSquare(1.0, 1, 1.0);
@@ -455,17 +456,16 @@ void testRefusals()
 }
 }
 
-int TestPeridynamicSolve(int, char*[])
+TAUTLINE_TEST(TestPeridynamicSolve)
 {
-  testModulus();
-  testLocalMatrix();
-  testEnergies();
-  testShortWaves();
-  testOperators();
-  testSolutions();
-  testTables();
-  testSmallHorizons();
-  testNearlyIncompressible();
-  testRefusals();
-  return exitCode();
+  TAUTLINE_RUN(testModulus());
+  TAUTLINE_RUN(testLocalMatrix());
+  TAUTLINE_RUN(testEnergies());
+  TAUTLINE_RUN(testShortWaves());
+  TAUTLINE_RUN(testOperators());
+  TAUTLINE_RUN(testSolutions());
+  TAUTLINE_RUN(testTables());
+  TAUTLINE_RUN(testSmallHorizons());
+  TAUTLINE_RUN(testNearlyIncompressible());
+  TAUTLINE_RUN(testRefusals());
 }

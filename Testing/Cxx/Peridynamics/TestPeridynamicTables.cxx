@@ -2,7 +2,7 @@
 // Condition numbers of Tables 4.1 to 4.3 (h = 0.1 and 0.05) in both discretizations, against the
 // printed values and against the columns and references of an independent prototype; what the
 // text's own rules give; that unstructured meshes converge to the same limits.
-#include "Check.h"
+#include "Registry.h"
 #include "HorizonMeshes.h"
 
 using namespace tautline;
@@ -160,12 +160,11 @@ void testConvergence()
 }
 }
 
-int TestPeridynamicTables(int, char*[])
+TAUTLINE_TEST(TestPeridynamicTables)
 {
-  testDissertation();
-  testExact();
-  testLiteral();
-  testTolerance();
-  testConvergence();
-  return exitCode();
+  TAUTLINE_RUN(testDissertation());
+  TAUTLINE_RUN(testExact());
+  TAUTLINE_RUN(testLiteral());
+  TAUTLINE_RUN(testTolerance());
+  TAUTLINE_RUN(testConvergence());
 }

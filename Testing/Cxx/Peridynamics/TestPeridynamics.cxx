@@ -2,7 +2,7 @@
 // The nonlocal matrices: formulas, symmetry, definiteness, null spaces, the local limit, kernels,
 // threads, whatever is refused; the interaction layer, the disc, the eigenvalues and the solver
 // they need.
-#include "Check.h"
+#include "Registry.h"
 #include "HorizonMeshes.h"
 
 #include "tautline/Peridynamics/InteractionLayer.h"
@@ -458,16 +458,17 @@ void testInteractionLayer()
     }
   }
   layer.width = 0.0;
-  TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), "width of the interaction layer is 0");
+  TAUTLINE_CHECK_THROWS(
+    addInteractionLayer(bare, layer), wording("width-of-the-interaction-layer-is-0"));
   layer.width = 0.2;
   layer.elementSize = 1e-7;
-  TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), "larger element size");
+  TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), wording("larger-element-size"));
   layer.elementSize = 0.0;
   layer.progress = [](double) { return false; };
   TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), "stopped");
   PeridynamicOptions far;
   far.horizon = 1e7;
-  TAUTLINE_CHECK_THROWS(assemblePeridynamics(bare, far), "the mesh extends over 1 only");
+  TAUTLINE_CHECK_THROWS(assemblePeridynamics(bare, far), wording("the-mesh-extends-over-1-only"));
 }
 
 //------------------------------------------------------------------------------
@@ -532,10 +533,10 @@ void testEigenvalues()
   TAUTLINE_CHECK_NEAR(x[n / 2], 3.0, 1e-7);
   a.values[0] = -1.0;
   TAUTLINE_CHECK(!extremeEigenvalues(a).definite);
-  TAUTLINE_CHECK_THROWS(solveConjugateGradients(a, x, x), "not positive definite");
+  TAUTLINE_CHECK_THROWS(solveConjugateGradients(a, x, x), wording("not-positive-definite"));
   TAUTLINE_CHECK_THROWS(extremeEigenvalues(SparseMatrix()), "empty");
   a.values[0] = std::numeric_limits<double>::quiet_NaN();
-  TAUTLINE_CHECK_THROWS(extremeEigenvalues(a), "not finite");
+  TAUTLINE_CHECK_THROWS(extremeEigenvalues(a), wording("not-finite"));
 }
 
 //------------------------------------------------------------------------------
@@ -553,55 +554,57 @@ void testRefusals()
   };
   using Mesh2 = HorizonMesh&;
   using Options = PeridynamicOptions&;
-  refuse("horizon is 0", [](Mesh2, Options o) { o.horizon = 0.0; });
-  refuse("horizon is nan", [](Mesh2, Options o) { o.horizon = std::nan(""); });
-  refuse("to below 4", [](Mesh2, Options o) { o.kernel.exponent = 4.0; });
-  refuse("to below 3",
+  refuse(wording("horizon-is-0"), [](Mesh2, Options o) { o.horizon = 0.0; });
+  refuse(wording("horizon-is-nan"), [](Mesh2, Options o) { o.horizon = std::nan(""); });
+  refuse(wording("to-below-4"), [](Mesh2, Options o) { o.kernel.exponent = 4.0; });
+  refuse(wording("to-below-3"),
     [](Mesh2, Options o)
     {
       o.kernel.exponent = 3.0;
       o.basis = PeridynamicBasis::Constant;
     });
   refuse("from 0", [](Mesh2, Options o) { o.kernel.exponent = -0.5; });
-  refuse("to below 6",
+  refuse(wording("to-below-6"),
     [](Mesh2, Options o)
     {
       o.kernel.exponent = 6.0;
       o.model = PeridynamicModel::Elastic;
     });
-  refuse("an interaction layer of width 0.3 is needed", [](Mesh2, Options o) { o.horizon = 0.3; });
-  refuse("has no interaction layer",
+  refuse(wording("an-interaction-layer-of-width-0-3"), [](Mesh2, Options o) { o.horizon = 0.3; });
+  refuse(wording("has-no-interaction-layer"),
     [](Mesh2 m, Options) { std::fill(m.layer.begin(), m.layer.end(), 0); });
-  refuse("no unknown",
+  refuse(wording("no-unknown"),
     [](Mesh2 m, Options)
     {
       m.givenPoints.clear();
       std::fill(m.layer.begin(), m.layer.end(), 1);
     });
-  refuse("1 of 72 triangles are inverted (the first is triangle 5)",
+  refuse(wording("1-of-72-triangles-are-inverted-the"),
     [](Mesh2 m, Options) { std::swap(m.triangles[15], m.triangles[16]); });
-  refuse("triangle 5 is degenerate", [](Mesh2 m, Options) { m.triangles[15] = m.triangles[16]; });
-  refuse("not finite", [](Mesh2 m, Options) { m.points[20] = std::nan(""); });
-  refuse("has point 4000", [](Mesh2 m, Options) { m.triangles[7] = 4000; });
-  refuse("MiB are allowed", [](Mesh2, Options o) { o.memoryLimit = 1000.0; });
-  refuse("time limit", [](Mesh2, Options o) { o.timeLimit = 1e-9; });
-  refuse(
-    "stopped by the user", [](Mesh2, Options o) { o.progress = [](double) { return false; }; });
-  refuse("tabulated kernel needs", [](Mesh2, Options o) { o.kernel.shape = KernelShape::Table; });
-  refuse("width of the Gaussian",
+  refuse(wording("triangle-5-is-degenerate"),
+    [](Mesh2 m, Options) { m.triangles[15] = m.triangles[16]; });
+  refuse(wording("not-finite"), [](Mesh2 m, Options) { m.points[20] = std::nan(""); });
+  refuse(wording("has-point-4000"), [](Mesh2 m, Options) { m.triangles[7] = 4000; });
+  refuse(wording("mib-are-allowed"), [](Mesh2, Options o) { o.memoryLimit = 1000.0; });
+  refuse(wording("time-limit"), [](Mesh2, Options o) { o.timeLimit = 1e-9; });
+  refuse(wording("stopped-by-the-user"),
+    [](Mesh2, Options o) { o.progress = [](double) { return false; }; });
+  refuse(wording("tabulated-kernel-needs"),
+    [](Mesh2, Options o) { o.kernel.shape = KernelShape::Table; });
+  refuse(wording("width-of-the-gaussian"),
     [](Mesh2, Options o)
     {
       o.kernel.shape = KernelShape::Gaussian;
       o.kernel.width = 0.0;
     });
   refuse("tolerance", [](Mesh2, Options o) { o.tolerance = 0.0; });
-  refuse("find no neighbour",
+  refuse(wording("find-no-neighbour"),
     [](Mesh2, Options o)
     {
       o.discretization = Discretization::Dissertation;
       o.horizon = 0.01;
     });
-  TAUTLINE_CHECK_THROWS(horizonSquare(0.1, 3, 0.2), "whole number");
+  TAUTLINE_CHECK_THROWS(horizonSquare(0.1, 3, 0.2), wording("whole-number"));
   TAUTLINE_CHECK_EQUAL(layerDeficit(mesh, 0.25), 0.0);
   TAUTLINE_CHECK_NEAR(layerDeficit(mesh, 0.4), 0.15, 1e-12);
 
@@ -629,16 +632,15 @@ void testRefusals()
 }
 }
 
-int TestPeridynamics(int, char*[])
+TAUTLINE_TEST(TestPeridynamics)
 {
-  testStructure();
-  testFormulas();
-  testLocalLimit();
-  testKernels();
-  testThreads();
-  testInteractionLayer();
-  testDisc();
-  testEigenvalues();
-  testRefusals();
-  return exitCode();
+  TAUTLINE_RUN(testStructure());
+  TAUTLINE_RUN(testFormulas());
+  TAUTLINE_RUN(testLocalLimit());
+  TAUTLINE_RUN(testKernels());
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testInteractionLayer());
+  TAUTLINE_RUN(testDisc());
+  TAUTLINE_RUN(testEigenvalues());
+  TAUTLINE_RUN(testRefusals());
 }

@@ -2,7 +2,7 @@
 // The linear ordinary state-based model: patch tests with the moduli of Hooke's law, energy and
 // forces against a sum over points, the bond-based model at its Poisson's ratio, the local limit,
 // definiteness, scales, threads; bonds that are cut at holes and cracks.
-#include "Check.h"
+#include "Registry.h"
 #include "HorizonMeshes.h"
 
 #include "tautline/Peridynamics/Dilatation.h"
@@ -560,7 +560,8 @@ void testSharedVertex()
   const double below[] = { 0, -0.01 };
   apart.points.insert(apart.points.end(), below, below + 2);
   apart.triangles[3] = 5;
-  TAUTLINE_CHECK_THROWS(assemblePeridynamics(apart, options), "row 0 of the matrix is empty");
+  TAUTLINE_CHECK_THROWS(
+    assemblePeridynamics(apart, options), wording("row-0-of-the-matrix-is-empty"));
   options.cutBonds = false;
   TAUTLINE_CHECK(std::abs(assemblePeridynamics(apart, options).matrix.at(0, 1)) > 1e-3);
 }
@@ -640,31 +641,31 @@ void testCutEnergy()
 void testRefusals()
 {
   const HorizonMesh mesh = shakenSquare(8, 2, 0.0);
-  TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, stateBased(0.3)), "twice the horizon");
+  TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, stateBased(0.3)), wording("twice-the-horizon"));
   TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, stateBased(0.5)), "below 0.5");
   TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, stateBased(-1.0)), "above -1");
-  TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, stateBased(NAN)), "Poisson's ratio is");
+  TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, stateBased(NAN)), wording("poisson-s-ratio-is"));
   PeridynamicOptions options = stateBased(0.3);
   options.discretization = Discretization::Dissertation;
-  TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, options), "take the exact discretization");
+  TAUTLINE_CHECK_THROWS(
+    assemblePeridynamics(mesh, options), wording("take-the-exact-discretization"));
   options = {};
-  TAUTLINE_CHECK_THROWS(peridynamicStrain(mesh, options, {}), "choose one of them");
+  TAUTLINE_CHECK_THROWS(peridynamicStrain(mesh, options, {}), wording("choose-one-of-them"));
   TAUTLINE_CHECK_THROWS(peridynamicStrain(mesh, stateBased(0.3), { 1.0 }), "1 values");
 }
 }
 
-int TestStateBased(int, char*[])
+TAUTLINE_TEST(TestStateBased)
 {
-  testLameRatio();
-  testPatch();
-  testReduction();
-  testEnergy();
-  testLocalLimit();
-  testMatrix();
-  testSolutions();
-  testCuts();
-  testSharedVertex();
-  testCutEnergy();
-  testRefusals();
-  return exitCode();
+  TAUTLINE_RUN(testLameRatio());
+  TAUTLINE_RUN(testPatch());
+  TAUTLINE_RUN(testReduction());
+  TAUTLINE_RUN(testEnergy());
+  TAUTLINE_RUN(testLocalLimit());
+  TAUTLINE_RUN(testMatrix());
+  TAUTLINE_RUN(testSolutions());
+  TAUTLINE_RUN(testCuts());
+  TAUTLINE_RUN(testSharedVertex());
+  TAUTLINE_RUN(testCutEnergy());
+  TAUTLINE_RUN(testRefusals());
 }

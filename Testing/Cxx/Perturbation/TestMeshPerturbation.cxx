@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Perturbation: nothing inverts, steps are within the fraction, tangling meets its fraction, and
 // the same seed gives the same mesh.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Perturbation/Perturb.h"
@@ -422,7 +422,7 @@ void testWhatStays()
   Messages messages(filter);
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "other");
   filter->Update();
-  TAUTLINE_CHECK(messages.has("no point array 'other'"));
+  TAUTLINE_CHECK(messages.has(wording("no-point-array-other")));
   TAUTLINE_CHECK_EQUAL(filter->GetOutput()->GetNumberOfElements(vtkDataObject::POINT), 0);
 
   // A line, and an interface of 2D cells, keep their points.
@@ -459,7 +459,7 @@ void testKindsOfInput()
   vtkNew<vtkUnstructuredGrid> nothing;
   filter->SetInputData(nothing);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The input has no cells"));
+  TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
 
   auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
@@ -491,7 +491,7 @@ void testKindsOfInput()
   image->SetDimensions(3, 3, 3);
   filter->SetInputData(image);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("run Image Data to Point Set"));
+  TAUTLINE_CHECK(messages.has(wording("run-image-data-to-point-set")));
 
   messages.clear();
   MeshData quadratic;
@@ -503,7 +503,7 @@ void testKindsOfInput()
   quadratic.addCell(VTK_QUADRATIC_TRIANGLE, { 0, 1, 2, 3, 4, 5 });
   filter->SetInputData(toGrid(quadratic));
   filter->Update();
-  TAUTLINE_CHECK(messages.has("run Tessellate"));
+  TAUTLINE_CHECK(messages.has(wording("run-tessellate")));
 
   messages.clear();
   MeshData pentagon = quadratic;
@@ -513,7 +513,7 @@ void testKindsOfInput()
   pentagon.addCell(VTK_POLYGON, { 0, 3, 1, 4, 2 });
   filter->SetInputData(toPolyData(pentagon));
   filter->Update();
-  TAUTLINE_CHECK(messages.has("Run Tetrahedralize first"));
+  TAUTLINE_CHECK(messages.has(wording("run-tetrahedralize-first")));
 }
 
 void testAbortAndProgress()
@@ -536,7 +536,8 @@ void testAbortAndProgress()
   TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() > 3000);
   TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() < 6000);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
-  TAUTLINE_CHECK(std::string(filter->GetSummary()).find("Stopped early") != std::string::npos);
+  TAUTLINE_CHECK(
+    std::string(filter->GetSummary()).find(wording("stopped-early")) != std::string::npos);
 }
 
 void testRefusedOptions()
@@ -544,27 +545,26 @@ void testRefusedOptions()
   const MeshData data = blockMesh(CellType::Triangle, 3, 3, 0);
   PerturbOptions options;
   options.percentage = 101;
-  TAUTLINE_CHECK_THROWS(perturb(Mesh(data.view()), nullptr, options), "between 0 and 100");
+  TAUTLINE_CHECK_THROWS(perturb(Mesh(data.view()), nullptr, options), wording("between-0-and-100"));
 }
 
 } // anonymous namespace
 
-int TestMeshPerturbation(int, char*[])
+TAUTLINE_TEST(TestMeshPerturbation)
 {
-  testNothingInverts();
-  testStepsAreWithinTheFraction();
-  testPercentageAndSeed();
-  testSameOnEveryMachine();
-  testTangling();
-  testTanglingOneElement();
-  testTangledInput();
-  testSurface();
-  testTiltedPlane();
-  testFloatPoints();
-  testWhatStays();
-  testReversed();
-  testKindsOfInput();
-  testAbortAndProgress();
-  testRefusedOptions();
-  return exitCode();
+  TAUTLINE_RUN(testNothingInverts());
+  TAUTLINE_RUN(testStepsAreWithinTheFraction());
+  TAUTLINE_RUN(testPercentageAndSeed());
+  TAUTLINE_RUN(testSameOnEveryMachine());
+  TAUTLINE_RUN(testTangling());
+  TAUTLINE_RUN(testTanglingOneElement());
+  TAUTLINE_RUN(testTangledInput());
+  TAUTLINE_RUN(testSurface());
+  TAUTLINE_RUN(testTiltedPlane());
+  TAUTLINE_RUN(testFloatPoints());
+  TAUTLINE_RUN(testWhatStays());
+  TAUTLINE_RUN(testReversed());
+  TAUTLINE_RUN(testKindsOfInput());
+  TAUTLINE_RUN(testAbortAndProgress());
+  TAUTLINE_RUN(testRefusedOptions());
 }

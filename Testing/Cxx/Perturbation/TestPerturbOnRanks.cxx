@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Perturbation on ranks: bitwise the points of one process, however the mesh is cut.
+#include "Registry.h"
 #include "MovingOnRanks.h"
 #include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Perturbation/PerturbOnRanks.h"
@@ -148,9 +149,9 @@ void testRefusals()
   };
   PerturbOptions tangled, wrong, stopped;
   tangled.tangledFraction = 0.1;
-  TAUTLINE_CHECK(message(tangled).find("Tangled Fraction") != std::string::npos);
+  TAUTLINE_CHECK(message(tangled).find(wording("tangled-fraction")) != std::string::npos);
   wrong.percentage = 101;
-  TAUTLINE_CHECK(message(wrong).find("between 0 and 100") != std::string::npos);
+  TAUTLINE_CHECK(message(wrong).find(wording("between-0-and-100")) != std::string::npos);
   // An interruption on one rank is one on all.
   stopped.progress = [](double) { return false; };
   const Run run = runOn(whole, Cut::Slabs, 2, stopped, {});
@@ -159,7 +160,7 @@ void testRefusals()
 }
 
 //------------------------------------------------------------------------------
-int TestPerturbOnRanks(int, char*[])
+TAUTLINE_TEST(TestPerturbOnRanks)
 {
   PerturbOptions half, most, single;
   most.percentage = 100;
@@ -167,13 +168,12 @@ int TestPerturbOnRanks(int, char*[])
   most.seed = 5;
   single.percentage = 70;
   single.singlePrecision = true;
-  testOrder();
-  testCuts("tetrahedra", distorted(CellType::Tetrahedron, 6), half, false);
-  testCuts("all tetrahedra", distorted(CellType::Tetrahedron, 5), most, true);
-  testCuts("hexahedra", distorted(CellType::Hexahedron, 5), single, true);
-  testCuts("triangles", distorted(CellType::Triangle, 12), most, false);
+  TAUTLINE_RUN(testOrder());
+  TAUTLINE_RUN(testCuts("tetrahedra", distorted(CellType::Tetrahedron, 6), half, false));
+  TAUTLINE_RUN(testCuts("all tetrahedra", distorted(CellType::Tetrahedron, 5), most, true));
+  TAUTLINE_RUN(testCuts("hexahedra", distorted(CellType::Hexahedron, 5), single, true));
+  TAUTLINE_RUN(testCuts("triangles", distorted(CellType::Triangle, 12), most, false));
   // Ranks with a cell, all of whose points others own.
-  testCuts("few triangles", distorted(CellType::Triangle, 2), most, false, { 4, 8 });
-  testRefusals();
-  return exitCode();
+  TAUTLINE_RUN(testCuts("few triangles", distorted(CellType::Triangle, 2), most, false, { 4, 8 }));
+  TAUTLINE_RUN(testRefusals());
 }

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the plugin does when it is loaded, as far as it needs no ParaView.
-#include "Check.h"
+#include "Registry.h"
 
 #include "ColorMaps.h"
 #include "VersionCheck.h"
 
 #include <cmath>
 #include <limits>
+
+using tautline::wording;
 
 namespace
 {
@@ -20,8 +22,8 @@ void testVersionCheck()
   for (const auto& running : others)
   {
     const std::string message = tautline::versionMismatch(built, running);
-    TAUTLINE_CHECK(message.find("built for ParaView 5.11.0") != std::string::npos);
-    TAUTLINE_CHECK(message.find("build it again") != std::string::npos);
+    TAUTLINE_CHECK(message.find(wording("built-for-paraview-5-11-0")) != std::string::npos);
+    TAUTLINE_CHECK(message.find(wording("build-it-again")) != std::string::npos);
   }
 }
 
@@ -74,10 +76,9 @@ void testMetricColorMaps()
 
 } // anonymous namespace
 
-int TestPluginStartup(int, char*[])
+TAUTLINE_TEST(TestPluginStartup)
 {
-  testVersionCheck();
-  testColorMapSettings();
-  testMetricColorMaps();
-  return tautline::exitCode();
+  TAUTLINE_RUN(testVersionCheck());
+  TAUTLINE_RUN(testColorMapSettings());
+  TAUTLINE_RUN(testMetricColorMaps());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Quality criteria: grades and penalties against their definition, the index and the verdict by
 // hand, and what the reader refuses.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Quality/Criteria.h"
@@ -71,33 +71,34 @@ void testParse()
   {
     TAUTLINE_CHECK(!parseCriteria(presetCriteria(name)).source.empty());
   }
-  TAUTLINE_CHECK_THROWS(presetCriteria("nastrin"), "there are fem, skewness, optistruct");
+  TAUTLINE_CHECK_THROWS(presetCriteria("nastrin"), wording("there-are-fem-skewness-optistruct"));
 }
 
 void testRefused()
 {
   const auto all = [](const std::string& limits) { return R"({ "all": )" + limits + " }"; };
-  TAUTLINE_CHECK_THROWS(parseCriteria(""), "not valid JSON");
-  TAUTLINE_CHECK_THROWS(parseCriteria("{ \"criteria\": ["), "not valid JSON");
-  TAUTLINE_CHECK_THROWS(parseCriteria("[]"), "an object");
-  TAUTLINE_CHECK_THROWS(parseCriteria("{}"), "at least one criterion");
-  TAUTLINE_CHECK_THROWS(parseCriteria(R"({ "criteria": [], "limit": 1 })"), "no key \"limit\"");
-  TAUTLINE_CHECK_THROWS(parseCriteria(json("imq", all(rising))), "no metric \"imq\"");
+  TAUTLINE_CHECK_THROWS(parseCriteria(""), wording("not-valid-json"));
+  TAUTLINE_CHECK_THROWS(parseCriteria("{ \"criteria\": ["), wording("not-valid-json"));
+  TAUTLINE_CHECK_THROWS(parseCriteria("[]"), wording("an-object"));
+  TAUTLINE_CHECK_THROWS(parseCriteria("{}"), wording("at-least-one-criterion"));
   TAUTLINE_CHECK_THROWS(
-    parseCriteria(json("imr", R"({ "tetra": )" + rising + " }")), "no such cell type");
+    parseCriteria(R"({ "criteria": [], "limit": 1 })"), wording("no-key-limit"));
+  TAUTLINE_CHECK_THROWS(parseCriteria(json("imq", all(rising))), wording("no-metric-imq"));
   TAUTLINE_CHECK_THROWS(
-    parseCriteria(json("mu_301", R"({ "triangle": )" + rising + " }")), "not defined on triangles");
-  TAUTLINE_CHECK_THROWS(parseCriteria(json("imr", all(falling))), "must rise");
-  TAUTLINE_CHECK_THROWS(parseCriteria(json("mean_ratio", all(rising))), "must fall");
+    parseCriteria(json("imr", R"({ "tetra": )" + rising + " }")), wording("no-such-cell-type"));
+  TAUTLINE_CHECK_THROWS(parseCriteria(json("mu_301", R"({ "triangle": )" + rising + " }")),
+    wording("not-defined-on-triangles"));
+  TAUTLINE_CHECK_THROWS(parseCriteria(json("imr", all(falling))), wording("must-rise"));
+  TAUTLINE_CHECK_THROWS(parseCriteria(json("mean_ratio", all(rising))), wording("must-fall"));
   TAUTLINE_CHECK_THROWS(parseCriteria(json("imr",
                           all(R"({ "ideal": 1, "good": 2, "warn": 1.5, "fail": 3, "worst": 4 })"))),
-    "rise, or fall, throughout");
+    wording("rise-or-fall-throughout"));
   TAUTLINE_CHECK_THROWS(parseCriteria(json("imr",
                           all(R"({ "ideal": 1, "good": 1, "warn": 1, "fail": 1, "worst": 1 })"))),
-    "rise, or fall, throughout");
+    wording("rise-or-fall-throughout"));
   TAUTLINE_CHECK_THROWS(
     parseCriteria(json("imr", all(R"({ "ideal": 1, "good": 2, "warn": 3, "fail": 4 })"))),
-    "\"worst\" is missing");
+    wording("worst-is-missing"));
   TAUTLINE_CHECK_THROWS(
     parseCriteria(
       json("imr", all(R"({ "ideal": 1, "good": 2, "warn": 3, "fail": 4, "worst": 1e999 })"))),
@@ -105,12 +106,12 @@ void testRefused()
   const std::string one = R"({ "metric": "imr", "weight": WEIGHT, "limits": )" + all(rising) + " }";
   const auto weighted = [&one](const std::string& weight)
   { return std::string(one).replace(one.find("WEIGHT"), 6, weight); };
-  TAUTLINE_CHECK_THROWS(
-    parseCriteria(R"({ "criteria": [ )" + weighted("-1") + " ] }"), "must not be negative");
+  TAUTLINE_CHECK_THROWS(parseCriteria(R"({ "criteria": [ )" + weighted("-1") + " ] }"),
+    wording("must-not-be-negative"));
   TAUTLINE_CHECK_THROWS(parseCriteria(R"({ "criteria": [ )" + weighted("0") + " ] }"), "above 0");
   TAUTLINE_CHECK_THROWS(
     parseCriteria(R"({ "criteria": [ )" + weighted("1") + ", " + weighted("1") + " ] }"),
-    "has a criterion already");
+    wording("has-a-criterion-already"));
 }
 
 /// Limits warn and fail of the presets, as their sources have them.
@@ -219,16 +220,15 @@ void testFilter(const std::string& folder)
   Messages messages(filter);
   filter->SetCriteria(folder.c_str());
   filter->Update();
-  TAUTLINE_CHECK(messages.has("neither a file that can be read nor a preset"));
+  TAUTLINE_CHECK(messages.has(wording("neither-a-file-that-can-be-read")));
 }
 }
 
-int TestCriteria(int, char* argv[])
+TAUTLINE_TEST(TestCriteria)
 {
-  testGrades();
-  testParse();
-  testPresets();
-  testRefused();
-  testFilter(argv[2]);
-  return exitCode();
+  TAUTLINE_RUN(testGrades());
+  TAUTLINE_RUN(testParse());
+  TAUTLINE_RUN(testPresets());
+  TAUTLINE_RUN(testRefused());
+  TAUTLINE_RUN(testFilter(argv[2]));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Elements no metric is made for: flat, collapsed, not finite, enormous and tiny. Each is flagged,
 // its values and gradients are finite, and where a metric is singular its value is 0.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 
 #include <algorithm>
@@ -249,16 +249,15 @@ void testSigns(CellType type)
 }
 }
 
-int TestDegenerate(int, char*[])
+TAUTLINE_TEST(TestDegenerate)
 {
   for (CellType type : allTypes)
   {
-    testCollapsed(type);
-    testNonFinite(type);
-    testMagnitudes(type);
-    testSlivers(type);
-    testSigns(type);
+    TAUTLINE_RUN(testCollapsed(type));
+    TAUTLINE_RUN(testNonFinite(type));
+    TAUTLINE_RUN(testMagnitudes(type));
+    TAUTLINE_RUN(testSlivers(type));
+    TAUTLINE_RUN(testSigns(type));
   }
-  testStraightAndInverted();
-  return exitCode();
+  TAUTLINE_RUN(testStraightAndInverted());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The filter: its arrays, tables and notices, on every kind of data set, in numbers known
 // beforehand.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "Meshes.h"
@@ -113,7 +113,7 @@ void testTables()
   TAUTLINE_CHECK(
     std::string(filter->GetSummary()).find("4 valid elements, 1 inverted, 1 degenerate") == 0);
   TAUTLINE_CHECK(
-    std::string(filter->GetSummary()).find("\nWorst: element 2 (") != std::string::npos);
+    std::string(filter->GetSummary()).find(wording("worst-element-2")) != std::string::npos);
 
   // Bins over the acceptable range 1 to 3 between a row of what is below and one of what is above.
   vtkTable* histogram = filter->GetHistogram();
@@ -264,7 +264,7 @@ void testSpecialCells()
   filter->SetInputData(vtkNew<vtkUnstructuredGrid>());
   Messages messages(filter);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The input has no cells"));
+  TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 0);
 
@@ -277,7 +277,7 @@ void testSpecialCells()
   TAUTLINE_CHECK_EQUAL(statistic(filter, "NonFinite"), 1);
   TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Validity", 1), -3);
   TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "imr", 1), 0);
-  TAUTLINE_CHECK(messages.has("1 points have a NaN"));
+  TAUTLINE_CHECK(messages.has(wording("1-points-have-a-nan")));
 
   auto grid = toGrid(triangles({ height, 0.1 }));
   grid->AllocateCellGhostArray();
@@ -320,7 +320,7 @@ void testReversed()
     filter->SetInputData(input);
     Messages messages(filter);
     filter->Update();
-    TAUTLINE_CHECK(messages.has("The mesh is reversed"));
+    TAUTLINE_CHECK(messages.has(wording("the-mesh-is-reversed")));
     TAUTLINE_CHECK_EQUAL(
       statistic(filter, "Inverted"), mode == vtkElementQuality::MEASURE_AS_GIVEN ? cells : 0);
     const double sign = mode == vtkElementQuality::MEASURE_AS_GIVEN ? -1 : 1;
@@ -343,7 +343,7 @@ void testReversed()
   filter->SetInputData(toGrid(mesh));
   Messages messages(filter);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("orientation of the mesh is mixed"));
+  TAUTLINE_CHECK(messages.has(wording("orientation-of-the-mesh-is-mixed")));
   TAUTLINE_CHECK(messages.has("1 of the " + std::to_string(cells) + " cells is treated as if"));
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Inverted"), 0);
   for (Index cell = 0; cell < cells; ++cell)
@@ -372,7 +372,7 @@ void testMoebius()
   filter->SetInputData(toGrid(moebiusBand(count)));
   Messages messages(filter);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("like those of a Moebius band"));
+  TAUTLINE_CHECK(messages.has(wording("like-those-of-a-moebius-band")));
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), count);
 }
 
@@ -431,9 +431,9 @@ void testErrors()
   vtkNew<vtkElementQuality> filter;
   Messages messages(filter);
   filter->AddMetricByName("beauty");
-  TAUTLINE_CHECK(messages.has("There is no metric 'beauty'"));
+  TAUTLINE_CHECK(messages.has(wording("there-is-no-metric-beauty")));
   filter->AddMetric(1000);
-  TAUTLINE_CHECK(messages.has("no metric number 1000"));
+  TAUTLINE_CHECK(messages.has(wording("no-metric-number-1000")));
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMetrics(), 0);
 
   const auto grid = toGrid(triangles({ height }));
@@ -448,22 +448,22 @@ void testErrors()
     TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), 0);
   };
   filter->SetTargetType(vtkElementQuality::REFERENCE);
-  refused("there is none");
+  refused(wording("there-is-none"));
   filter->SetInputData(1, toGrid(triangles({ height, height })));
-  refused("The reference mesh has 6 points");
+  refused(wording("the-reference-mesh-has-6-points"));
   filter->SetInputData(1, toGrid(triangles({ 0.0 })));
-  refused("inverted or degenerate in the reference mesh");
+  refused(wording("inverted-or-degenerate-in-the-reference-mesh"));
   filter->SetTargetType(vtkElementQuality::SIZE);
-  refused("needs a size");
+  refused(wording("needs-a-size"));
   vtkNew<vtkDoubleArray> sizes;
   sizes->SetName("sizes");
   sizes->InsertNextValue(-1);
   grid->GetCellData()->AddArray(sizes);
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sizes");
-  refused("sizes must be positive");
+  refused(wording("sizes-must-be-positive"));
   filter->SetTargetType(vtkElementQuality::IDEAL);
   filter->SetEpsilon(0);
-  refused("epsilon positive");
+  refused(wording("epsilon-positive"));
 }
 
 void testThreads()
@@ -598,23 +598,22 @@ void testAbort()
 }
 }
 
-int TestElementQuality(int, char*[])
+TAUTLINE_TEST(TestElementQuality)
 {
-  testTables();
-  testWorst();
-  testAngles();
-  testDataSets();
-  testBlocks();
-  testSpecialCells();
-  testReversed();
-  testMoebius();
-  testTargets();
-  testErrors();
-  testThreads();
-  testBad();
+  TAUTLINE_RUN(testTables());
+  TAUTLINE_RUN(testWorst());
+  TAUTLINE_RUN(testAngles());
+  TAUTLINE_RUN(testDataSets());
+  TAUTLINE_RUN(testBlocks());
+  TAUTLINE_RUN(testSpecialCells());
+  TAUTLINE_RUN(testReversed());
+  TAUTLINE_RUN(testMoebius());
+  TAUTLINE_RUN(testTargets());
+  TAUTLINE_RUN(testErrors());
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testBad());
 #if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 4, 0)
-  testStrayFaces();
+  TAUTLINE_RUN(testStrayFaces());
 #endif
-  testAbort();
-  return exitCode();
+  TAUTLINE_RUN(testAbort());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Random cells with random, repeated, enormous, tiny and non-finite coordinates, and random views:
 // never a crash, never a NaN, and what a cell gets does not depend on the cells beside it.
-#include "Check.h"
+#include "Registry.h"
 #include "Blocks.h"
 #include "Sanitized.h"
 
@@ -232,7 +232,7 @@ void fuzzViews(Random& random)
 }
 }
 
-int TestFuzz(int, char*[])
+TAUTLINE_TEST(TestFuzz)
 {
   Random random(18);
   for (CellType type : allTypes)
@@ -252,5 +252,4 @@ int TestFuzz(int, char*[])
     fuzzConnectivity(random);
     fuzzViews(random);
   }
-  return exitCode();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Reports: text is escaped, elements are closed, tables and histograms have the numbers.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "vtkCallbackCommand.h"
@@ -84,7 +84,7 @@ void testTable()
   TAUTLINE_CHECK(has(html, "<tr><th>Id</th><th>Value</th></tr>")); // 4 components are left out
   TAUTLINE_CHECK(has(html, "<tr><td>1234567</td><td>1.23457</td></tr>"));
   TAUTLINE_CHECK(has(html, "1234626") && !has(html, "1234627"));
-  TAUTLINE_CHECK(has(html, "The first 60 of 61 rows."));
+  TAUTLINE_CHECK(has(html, wording("the-first-60-of-61-rows")));
 }
 
 /// Triangles over a base of 1; the last is inverted.
@@ -111,14 +111,14 @@ void testQuality()
   TAUTLINE_CHECK_EQUAL(report->AddHistograms(filter->GetStatistics(), filter->GetHistogram()), 1);
   // Two in the first bin, one above the range, one inverted: the tooltips have the counts.
   TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), ": 2 elements</title>"), 1);
-  TAUTLINE_CHECK(has(report->GetHtml(), "above 3: 1 elements</title>"));
-  TAUTLINE_CHECK(has(report->GetHtml(), "inverted: 1 elements</title>"));
-  TAUTLINE_CHECK(has(report->GetHtml(), "Grey: acceptable, 1 to 3"));
+  TAUTLINE_CHECK(has(report->GetHtml(), wording("above-3-1-elements-title")));
+  TAUTLINE_CHECK(has(report->GetHtml(), wording("inverted-1-elements-title")));
+  TAUTLINE_CHECK(has(report->GetHtml(), wording("grey-acceptable-1-to-3")));
   TAUTLINE_CHECK_EQUAL(report->AddHistograms(filter->GetAngles(), nullptr), 0);
 
   TAUTLINE_CHECK(report->AddMeshPicture(filter->GetOutputDataObject(0), "imr"));
   TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "src=\"data:image/png;base64,iVBORw0KGgo"), 1);
-  TAUTLINE_CHECK(has(report->GetHtml(), "Inverse mean ratio; blue: inverted"));
+  TAUTLINE_CHECK(has(report->GetHtml(), wording("inverse-mean-ratio-blue-inverted")));
   TAUTLINE_CHECK(
     report->AddMeshPictures(filter->GetOutputDataObject(0), filter->GetOutputDataObject(0), "imr"));
   TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "<img "), 3);
@@ -136,7 +136,7 @@ void testQuality()
     { *static_cast<std::string*>(data) = static_cast<const char*>(text); });
   report->AddObserver(vtkCommand::ErrorEvent, command);
   TAUTLINE_CHECK(!report->AddMeshPicture(filter->GetOutputDataObject(0), "si"));
-  TAUTLINE_CHECK(has(message, "no cell array \"si\": measure it first"));
+  TAUTLINE_CHECK(has(message, wording("no-cell-array-si-measure-it-first")));
 }
 
 void testComposite()
@@ -157,11 +157,10 @@ void testComposite()
 }
 }
 
-int TestHtmlReport(int, char*[])
+TAUTLINE_TEST(TestHtmlReport)
 {
-  testText();
-  testTable();
-  testQuality();
-  testComposite();
-  return exitCode();
+  TAUTLINE_RUN(testText());
+  TAUTLINE_RUN(testTable());
+  TAUTLINE_RUN(testQuality());
+  TAUTLINE_RUN(testComposite());
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The comparison of two meshes: what is better, worse and equal, in numbers known beforehand.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "vtkMeshComparison.h"
@@ -99,8 +99,8 @@ void testKnownChanges()
   TAUTLINE_CHECK_NEAR(cellOf(filter, "MaximumBefore", 3), 0.15, 1e-15);
   vtkPointData* points = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPointData();
   TAUTLINE_CHECK_EQUAL(component(points, "Displacement", 8, 1), 0.6);
-  TAUTLINE_CHECK(
-    std::string(filter->GetSummary()).find("2 better, 2 worse, 2 equal") != std::string::npos);
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(wording("2-better-2-worse-2-equal")) !=
+    std::string::npos);
 }
 
 void testSeveralMetrics()
@@ -221,7 +221,7 @@ void testKindsOfInput()
   filter->SetInputData(0, nothing);
   filter->SetInputData(1, nothing);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The input has no cells"));
+  TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 0);
 
@@ -286,12 +286,12 @@ void testRefusals()
   const MeshData mesh = blockMesh(CellType::Triangle, 2, 2, 0);
   auto grid = toGrid(mesh);
   refuses(grid, toGrid(blockMesh(CellType::Triangle, 3, 2, 0)),
-    "the first mesh has 9 points, the second 12");
+    wording("the-first-mesh-has-9-points-the"));
   refuses(grid, toGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0)),
-    "the first mesh has 8 cells, the second 4");
+    wording("the-first-mesh-has-8-cells-the"));
   MeshData other = mesh;
   std::swap(other.connectivity[3 * 5], other.connectivity[3 * 5 + 1]);
-  refuses(grid, toGrid(other), "cell 5 has the points");
+  refuses(grid, toGrid(other), wording("cell-5-has-the-points"));
   other = mesh;
   other.types[6] = VTK_POLYGON;
   refuses(grid, toGrid(MeshData(blockMesh(CellType::Tetrahedron, 1, 1, 1))), "points");
@@ -299,24 +299,23 @@ void testRefusals()
   one->SetBlock(0, grid);
   two->SetBlock(0, grid);
   two->SetBlock(1, grid);
-  refuses(one, two, "first at block 2");
-  refuses(grid, two, "Extract Block");
+  refuses(one, two, wording("first-at-block-2"));
+  refuses(grid, two, wording("extract-block"));
   filter->AddMetricByName("mu_98");
   MeshData surface = mesh;
   surface.setPoint(4, { 1, 1, 1 });
-  refuses(toGrid(surface), toGrid(surface), "without orientation");
+  refuses(toGrid(surface), toGrid(surface), wording("without-orientation"));
 }
 
 } // anonymous namespace
 
-int TestMeshComparison(int, char*[])
+TAUTLINE_TEST(TestMeshComparison)
 {
-  testKnownChanges();
-  testSeveralMetrics();
-  testTolerance();
-  testReversed();
-  testEveryCellAndMetric();
-  testKindsOfInput();
-  testRefusals();
-  return exitCode();
+  TAUTLINE_RUN(testKnownChanges());
+  TAUTLINE_RUN(testSeveralMetrics());
+  TAUTLINE_RUN(testTolerance());
+  TAUTLINE_RUN(testReversed());
+  TAUTLINE_RUN(testEveryCellAndMetric());
+  TAUTLINE_RUN(testKindsOfInput());
+  TAUTLINE_RUN(testRefusals());
 }

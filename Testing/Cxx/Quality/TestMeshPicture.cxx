@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Pictures of meshes: where cells are, which are in front, which are seen through others.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 #include "tautline/Quality/MeshPicture.h"
 
@@ -135,11 +135,11 @@ void testLimits()
   const Mesh mesh(data.view());
   // The second cell has a point that is not finite: the first is as large as fits.
   TAUTLINE_CHECK(covered(drawMeshes({ { &mesh, { Red, Green }, {} } }, Width, Height)) > 0.2);
-  TAUTLINE_CHECK_THROWS(drawMeshes({}, 8, Height), "16 to 4096 pixels");
-  TAUTLINE_CHECK_THROWS(drawMeshes({}, Width, 5000), "16 to 4096 pixels");
+  TAUTLINE_CHECK_THROWS(drawMeshes({}, 8, Height), wording("16-to-4096-pixels"));
+  TAUTLINE_CHECK_THROWS(drawMeshes({}, Width, 5000), wording("16-to-4096-pixels"));
   TAUTLINE_CHECK_THROWS(
-    drawMeshes({ { &mesh, { Red }, {} } }, Width, Height), "one colour per cell");
-  TAUTLINE_CHECK_THROWS(drawMeshes({ {} }, Width, Height), "one colour per cell");
+    drawMeshes({ { &mesh, { Red }, {} } }, Width, Height), wording("one-colour-per-cell"));
+  TAUTLINE_CHECK_THROWS(drawMeshes({ {} }, Width, Height), wording("one-colour-per-cell"));
   // A mesh without extent is no division by zero.
   MeshData flat;
   flat.addCell(CellType::Triangle, std::vector<Vec3>{ { 1, 1, 1 }, { 1, 1, 1 }, { 1, 1, 1 } });
@@ -148,15 +148,14 @@ void testLimits()
 }
 }
 
-int TestMeshPicture(int, char*[])
+TAUTLINE_TEST(TestMeshPicture)
 {
-  testPlane(1, { 0, 0, 0 });
-  testPlane(1e-200, { 0, 0, 0 });
-  testPlane(1e200, { 0, 0, 0 });
-  testPlane(3, { -70, 20, 5 });
-  testFront(true);
-  testFront(false);
-  testInside();
-  testLimits();
-  return exitCode();
+  TAUTLINE_RUN(testPlane(1, { 0, 0, 0 }));
+  TAUTLINE_RUN(testPlane(1e-200, { 0, 0, 0 }));
+  TAUTLINE_RUN(testPlane(1e200, { 0, 0, 0 }));
+  TAUTLINE_RUN(testPlane(3, { -70, 20, 5 }));
+  TAUTLINE_RUN(testFront(true));
+  TAUTLINE_RUN(testFront(false));
+  TAUTLINE_RUN(testInside());
+  TAUTLINE_RUN(testLimits());
 }

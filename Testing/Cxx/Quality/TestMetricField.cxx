@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The field of a metric: ideal at the apex of the ideal cell, symmetric, negative below the base,
 // the same when streamed in pieces, and smooth enough to contour.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Quality/MetricField.h"
@@ -216,11 +216,11 @@ void testRefusals()
   };
   field->AddMetricByName("width_ratio");
   field->SetCellToTetrahedron();
-  refuses("Aspect ratio W/w is not defined on tetrahedra");
+  refuses(wording("aspect-ratio-w-w-is-not-defined"));
   field->ClearMetrics();
   field->SetVertex2(0.3, 0.1, 0.7);
   field->SetVertex3(0.99, 0.33, 2.31);
-  refuses("are on a line");
+  refuses(wording("are-on-a-line"));
   field->SetCellToTriangle();
   field->SetVertex2(0, 0, 5);
   refuses("coincide");
@@ -229,10 +229,10 @@ void testRefusals()
   refuses("Along x");
   messages.clear();
   field->AddMetric(99);
-  TAUTLINE_CHECK(messages.has("no metric number 99"));
+  TAUTLINE_CHECK(messages.has(wording("no-metric-number-99")));
   messages.clear();
   field->AddMetricByName("nonsense");
-  TAUTLINE_CHECK(messages.has("no metric 'nonsense'"));
+  TAUTLINE_CHECK(messages.has(wording("no-metric-nonsense")));
   TAUTLINE_CHECK_EQUAL(field->GetNumberOfMetrics(), 0);
 }
 
@@ -330,22 +330,21 @@ void testScales()
       field->SetVertex2(wrong, 0, 0);
       messages.clear();
       field->Update();
-      TAUTLINE_CHECK(messages.has("not finite: move one of them"));
+      TAUTLINE_CHECK(messages.has(wording("not-finite-move-one-of-them")));
     }
   }
 }
 
 } // anonymous namespace
 
-int TestMetricField(int, char*[])
+TAUTLINE_TEST(TestMetricField)
 {
-  testDefaults();
-  testBeta();
-  testIdealApex();
-  testTetrahedronAgainstCells();
-  testPieces();
-  testContour();
-  testRefusals();
-  testScales();
-  return exitCode();
+  TAUTLINE_RUN(testDefaults());
+  TAUTLINE_RUN(testBeta());
+  TAUTLINE_RUN(testIdealApex());
+  TAUTLINE_RUN(testTetrahedronAgainstCells());
+  TAUTLINE_RUN(testPieces());
+  TAUTLINE_RUN(testContour());
+  TAUTLINE_RUN(testRefusals());
+  TAUTLINE_RUN(testScales());
 }

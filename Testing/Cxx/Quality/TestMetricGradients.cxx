@@ -6,7 +6,7 @@
 // and so do the central ones with one and two steps. Where they do not, a kink (another edge, angle
 // or corner becomes the extreme one) lies within the stencil and differences mean nothing: that
 // component is skipped, and skips are counted and limited.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 
 #include <algorithm>
@@ -320,7 +320,7 @@ void testMetric(const MetricInfo& info, const Cloud& cloud, Counts& total)
 }
 }
 
-int TestMetricGradients(int, char*[])
+TAUTLINE_TEST(TestMetricGradients)
 {
   Counts total;
   for (const Cloud& cloud : makeClouds())
@@ -328,10 +328,9 @@ int TestMetricGradients(int, char*[])
     const Context context(cloud.name);
     for (const MetricInfo& info : metricRegistry())
     {
-      testMetric(info, cloud, total);
+      TAUTLINE_RUN(testMetric(info, cloud, total));
     }
   }
   std::cout << total.compared << " components compared, " << total.skipped << " skipped at kinks\n";
   TAUTLINE_CHECK(total.skipped < skippedFraction * total.compared);
-  return exitCode();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Published values of particular elements, and identities that tie the metrics to each other.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 
 using namespace tautline;
@@ -190,15 +190,14 @@ void testIdentities(CellType type)
 }
 }
 
-int TestMetricIdentities(int, char*[])
+TAUTLINE_TEST(TestMetricIdentities)
 {
-  testTriangles();
-  testTetrahedra();
-  testBlocks();
+  TAUTLINE_RUN(testTriangles());
+  TAUTLINE_RUN(testTetrahedra());
+  TAUTLINE_RUN(testBlocks());
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);
-    testIdentities(type);
+    TAUTLINE_RUN(testIdentities(type));
   }
-  return exitCode();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What must not change a value: moving, turning, renumbering, scaling; and what a mirror must do.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 
 #include <algorithm>
@@ -337,7 +337,7 @@ void testMirror(const Cloud& cloud)
 }
 }
 
-int TestMetricInvariance(int, char*[])
+TAUTLINE_TEST(TestMetricInvariance)
 {
   for (CellType type : allTypes)
   {
@@ -349,11 +349,10 @@ int TestMetricInvariance(int, char*[])
       }
       const Context context(topology(type).name + std::string(surface ? ", surface" : ""));
       const Cloud cloud = makeCloud(type, surface);
-      testMotion(cloud);
-      testRenumbering(cloud);
-      testScale(cloud);
-      testMirror(cloud);
+      TAUTLINE_RUN(testMotion(cloud));
+      TAUTLINE_RUN(testRenumbering(cloud));
+      TAUTLINE_RUN(testScale(cloud));
+      TAUTLINE_RUN(testMirror(cloud));
     }
   }
-  return exitCode();
 }

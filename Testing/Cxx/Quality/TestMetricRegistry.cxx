@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The facts of the registry, checked against the values of the metrics: names, ranges, direction,
 // barrier, differentiability, and the options that are refused.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 
 #include <algorithm>
@@ -239,29 +239,28 @@ void testRefusedOptions()
 }
 }
 
-int TestMetricRegistry(int, char*[])
+TAUTLINE_TEST(TestMetricRegistry)
 {
-  testNames();
-  testConsistency();
-  testRefusedOptions();
+  TAUTLINE_RUN(testNames());
+  TAUTLINE_RUN(testConsistency());
+  TAUTLINE_RUN(testRefusedOptions());
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);
-    testRange(type, false);
+    TAUTLINE_RUN(testRange(type, false));
     if (topology(type).dimension == 2)
     {
       const Context surface("surface");
-      testRange(type, true);
+      TAUTLINE_RUN(testRange(type, true));
     }
     for (const MetricInfo& info : metricRegistry())
     {
       if (info.definedOn(type))
       {
         const Context name(info.name);
-        testBarrier(info, type);
-        testKink(info, type);
+        TAUTLINE_RUN(testBarrier(info, type));
+        TAUTLINE_RUN(testKink(info, type));
       }
     }
   }
-  return exitCode();
 }

@@ -2,7 +2,7 @@
 // A second evaluation of the metrics of whole cells, in plain double precision and as the
 // literature states them: circumcentres, signed sizes by quadrature, angles by arc cosine.
 // TestTargetValues has the metrics of T = A W^-1.
-#include "Check.h"
+#include "Registry.h"
 #include "Matrix.h"
 #include "Meshes.h"
 
@@ -320,17 +320,16 @@ void testType(CellType type, bool surface)
 }
 }
 
-int TestMetricValues(int, char*[])
+TAUTLINE_TEST(TestMetricValues)
 {
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);
-    testType(type, false);
+    TAUTLINE_RUN(testType(type, false));
     if (topology(type).dimension == 2)
     {
       const Context surface("surface");
-      testType(type, true);
+      TAUTLINE_RUN(testType(type, true));
     }
   }
-  return exitCode();
 }

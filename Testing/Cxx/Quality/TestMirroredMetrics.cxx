@@ -3,7 +3,7 @@
 // found by name, but not evaluated; one that is registered here takes the place of a server's.
 // The filters refuse a user's metric that this process does not have.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Quality/Criteria.h"
@@ -96,14 +96,14 @@ void testFacts()
     {"all": {"ideal": 0, "good": 1, "warn": 2, "fail": 3, "worst": 4}}}]})";
   TAUTLINE_CHECK(parseCriteria(criteria).criteria[0].metric == info->metric);
   TAUTLINE_CHECK(listUserMetrics().find("mirrored") == std::string::npos);
-  TAUTLINE_CHECK_THROWS(unregisterMetric("mirrored"), "No metric 'mirrored'");
+  TAUTLINE_CHECK_THROWS(unregisterMetric("mirrored"), wording("no-metric-mirrored"));
   const std::string missing = missingMetric(static_cast<int>(info->metric));
   TAUTLINE_CHECK(missing.find("'" + d.label + "' of a user is not registered in this process") !=
     std::string::npos);
   const MeshData data = movedBlock(CellType::Tetrahedron, 2, 0.1);
   std::vector<double> values(data.numberOfCells());
   TAUTLINE_CHECK_THROWS(
-    evaluateMetric(Mesh(data.view()), info->metric, {}, values.data()), "on a server");
+    evaluateMetric(Mesh(data.view()), info->metric, {}, values.data()), wording("on-a-server"));
 
   // The same again changes nothing; other facts do.
   const std::vector<MetricInfo>& before = metricRegistry();
@@ -147,7 +147,7 @@ void testFilters()
   quality->AddMetricByName("imr");
   quality->AddMetric(elsewhere);
   quality->Update();
-  TAUTLINE_CHECK(messages.has("The metric 1234567890 of a user is not registered in this process"));
+  TAUTLINE_CHECK(messages.has(wording("the-metric-1234567890-of-a-user-is-2")));
   TAUTLINE_CHECK(messages.has("TAUTLINE_METRICS"));
   TAUTLINE_CHECK_EQUAL(
     vtkDataSet::SafeDownCast(quality->GetOutputDataObject(0))->GetNumberOfCells(), 0);
@@ -158,7 +158,7 @@ void testFilters()
   {
     others.clear();
     optimizer->Update();
-    TAUTLINE_CHECK(others.has("The metric 1234567890 of a user is not registered"));
+    TAUTLINE_CHECK(others.has(wording("the-metric-1234567890-of-a-user-is")));
     TAUTLINE_CHECK_EQUAL(
       vtkDataSet::SafeDownCast(optimizer->GetOutputDataObject(0))->GetNumberOfCells(), 0);
   };
@@ -172,16 +172,15 @@ void testFilters()
   optimizer->SetMetric1(0);
   others.clear();
   optimizer->Update();
-  TAUTLINE_CHECK(!others.has("of a user"));
+  TAUTLINE_CHECK(!others.has(wording("of-a-user")));
   TAUTLINE_CHECK_EQUAL(
     vtkDataSet::SafeDownCast(optimizer->GetOutputDataObject(0))->GetNumberOfCells(),
     grid->GetNumberOfCells());
 }
 }
 
-int TestMirroredMetrics(int, char*[])
+TAUTLINE_TEST(TestMirroredMetrics)
 {
-  testFacts();
-  testFilters();
-  return exitCode();
+  TAUTLINE_RUN(testFacts());
+  TAUTLINE_RUN(testFilters());
 }

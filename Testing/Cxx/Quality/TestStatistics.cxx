@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Summaries of a metric against sums done by hand and by brute force.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 
 #include "tautline/Quality/Statistics.h"
@@ -224,7 +224,7 @@ void testHistogram()
   const Histogram none = histogram({}, 3);
   TAUTLINE_CHECK(none.edges.front() == 0 && none.edges.back() == 1);
   TAUTLINE_CHECK((none.counts == std::vector<Index>{ 0, 0, 0 }));
-  TAUTLINE_CHECK_THROWS(histogram({ 1 }, 0), "at least one bin");
+  TAUTLINE_CHECK_THROWS(histogram({ 1 }, 0), wording("at-least-one-bin"));
 
   Random random(20);
   std::vector<double> values;
@@ -266,7 +266,7 @@ void testAcceptableHistogram()
   TAUTLINE_CHECK_EQUAL(flat.below + flat.above, 0);
   const AcceptableHistogram none = acceptableHistogram(imr, 3, {}, 2);
   TAUTLINE_CHECK((none.edges == std::vector<double>{ 1, 2, 3 }));
-  TAUTLINE_CHECK_THROWS(acceptableHistogram(imr, 3, { 1 }, 0), "at least one bin");
+  TAUTLINE_CHECK_THROWS(acceptableHistogram(imr, 3, { 1 }, 0), wording("at-least-one-bin"));
 }
 
 //------------------------------------------------------------------------------
@@ -399,16 +399,15 @@ void testAngles()
 }
 }
 
-int TestStatistics(int, char*[])
+TAUTLINE_TEST(TestStatistics)
 {
-  testMeasured();
-  testWorstValue();
-  testByHand();
-  testRandom();
-  testMagnitudes();
-  testHistogram();
-  testAcceptableHistogram();
-  testWorst();
-  testAngles();
-  return exitCode();
+  TAUTLINE_RUN(testMeasured());
+  TAUTLINE_RUN(testWorstValue());
+  TAUTLINE_RUN(testByHand());
+  TAUTLINE_RUN(testRandom());
+  TAUTLINE_RUN(testMagnitudes());
+  TAUTLINE_RUN(testHistogram());
+  TAUTLINE_RUN(testAcceptableHistogram());
+  TAUTLINE_RUN(testWorst());
+  TAUTLINE_RUN(testAngles());
 }

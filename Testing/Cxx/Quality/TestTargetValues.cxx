@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A second evaluation of the metrics of T = A W^-1, one corner at a time in plain double precision,
 // from the matrix form the literature gives: |T - T^-t|^2 with an inverse, not with invariants.
-#include "Check.h"
+#include "Registry.h"
 #include "Matrix.h"
 #include "Meshes.h"
 
@@ -203,17 +203,16 @@ void testType(CellType type, bool surface)
 }
 }
 
-int TestTargetValues(int, char*[])
+TAUTLINE_TEST(TestTargetValues)
 {
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);
-    testType(type, false);
+    TAUTLINE_RUN(testType(type, false));
     if (topology(type).dimension == 2)
     {
       const Context surface("surface");
-      testType(type, true);
+      TAUTLINE_RUN(testType(type, true));
     }
   }
-  return exitCode();
 }

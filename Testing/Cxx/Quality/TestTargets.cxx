@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Targets: an element that is its target has every target metric's ideal value, and only then.
-#include "Check.h"
+#include "Registry.h"
 #include "Meshes.h"
 
 #include <algorithm>
@@ -264,7 +264,8 @@ void testRefusals()
   std::swap(other.connectivity[4 * 5], other.connectivity[4 * 5 + 1]);
   TAUTLINE_CHECK_THROWS(referenceTargets(mesh, Mesh(other.view())), "Cell 5");
   const MeshData fewer = singleCell(CellType::Quadrilateral, idealCell(CellType::Quadrilateral));
-  TAUTLINE_CHECK_THROWS(referenceTargets(mesh, Mesh(fewer.view())), "4 points and 1 cells");
+  TAUTLINE_CHECK_THROWS(
+    referenceTargets(mesh, Mesh(fewer.view())), wording("4-points-and-1-cells"));
 
   // Inverted and degenerate cells are no targets: reflex on a plane and on a surface, and flat.
   for (double height : { 0.0, 0.3 })
@@ -358,9 +359,9 @@ void testGivenIdeal()
 }
 }
 
-int TestTargets(int, char*[])
+TAUTLINE_TEST(TestTargets)
 {
-  testGivenIdeal();
+  TAUTLINE_RUN(testGivenIdeal());
   for (CellType type : allTypes)
   {
     for (bool surface : { false, true })
@@ -370,11 +371,10 @@ int TestTargets(int, char*[])
         continue;
       }
       const Context context(topology(type).name + std::string(surface ? ", surface" : ""));
-      testReference(type, surface);
-      testSize(type, surface);
-      testTensor(type, surface);
+      TAUTLINE_RUN(testReference(type, surface));
+      TAUTLINE_RUN(testSize(type, surface));
+      TAUTLINE_RUN(testTensor(type, surface));
     }
   }
-  testRefusals();
-  return exitCode();
+  TAUTLINE_RUN(testRefusals());
 }

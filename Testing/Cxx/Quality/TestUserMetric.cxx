@@ -3,7 +3,7 @@
 // automatic differentiation, their gradients; they take part in every objective and are optimized
 // to the same mesh. What registration refuses; numbers, names and lists.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Objectives/ObjectiveSum.h"
 #include "tautline/Optimization/Optimize.h"
@@ -463,7 +463,7 @@ void testWithoutValue()
     data.transform([](const Vec3& p) { return Vec3{ 40 * p[0], p[1], p[2] }; });
     TAUTLINE_CHECK_EQUAL(valuesOf(data, limited)[0], 0.0);
     const Mesh stretched(data.view());
-    TAUTLINE_CHECK_THROWS(optimize(stretched, options), "\"Limited\" has no finite value");
+    TAUTLINE_CHECK_THROWS(optimize(stretched, options), wording("limited-has-no-finite-value"));
     using T = ObjectiveTemplate;
     for (const T form : { T::SumOfSquares, T::Sum, T::PowerMean, T::Maximum })
     {
@@ -494,7 +494,7 @@ void testRegistry(const std::vector<Twin>& pairs)
   TAUTLINE_CHECK(findMetric("user's inverse mean ratio") == info);
   TAUTLINE_CHECK(&metricInfo(pairs[0].user) == info);
   TAUTLINE_CHECK(
-    describeMetric(*info).find("user_imr\tUser's Inverse mean ratio") != std::string::npos);
+    describeMetric(*info).find(wording("user-imr-user-s-inverse-mean-ratio")) != std::string::npos);
   // FNV-1a of the name: state files store it.
   TAUTLINE_CHECK_EQUAL(static_cast<int>(pairs[0].user), 648310309);
 
@@ -504,8 +504,8 @@ void testRegistry(const std::vector<Twin>& pairs)
   TAUTLINE_CHECK(!findMetric("user_imr_slope"));
   TAUTLINE_CHECK_EQUAL(before.size(), count); // whoever held the list still has it
   TAUTLINE_CHECK_EQUAL(metricRegistry().size(), count - 1);
-  TAUTLINE_CHECK_THROWS(unregisterMetric("user_imr_slope"), "No metric 'user_imr_slope'");
-  TAUTLINE_CHECK_THROWS(unregisterMetric("imr"), "No metric 'imr'");
+  TAUTLINE_CHECK_THROWS(unregisterMetric("user_imr_slope"), wording("no-metric-user-imr-slope"));
+  TAUTLINE_CHECK_THROWS(unregisterMetric("imr"), wording("no-metric-imr"));
   const Metric again =
     registerJacobianMetric(copyOf(Metric::InverseMeanRatio, "_slope"), RatioBySlope());
   TAUTLINE_CHECK(again == pairs[1].user);
@@ -517,45 +517,48 @@ void testRefused()
   MetricDescription d = copyOf(Metric::InverseMeanRatio, "_x");
   const MetricDescription good = d;
   d.name = "imr";
-  TAUTLINE_CHECK_THROWS(attempt(d), "there is a metric 'imr'");
+  TAUTLINE_CHECK_THROWS(attempt(d), wording("there-is-a-metric-imr"));
   d.name = "mu_2";
-  TAUTLINE_CHECK_THROWS(attempt(d), "there is a metric 'mu_2' (Shape, barrier)");
+  TAUTLINE_CHECK_THROWS(attempt(d), wording("there-is-a-metric-mu-2-shape"));
   d = good;
   d.label = "Inverse mean ratio";
-  TAUTLINE_CHECK_THROWS(attempt(d), "there is a metric 'Inverse mean ratio'");
+  TAUTLINE_CHECK_THROWS(attempt(d), wording("there-is-a-metric-inverse-mean-ratio"));
   for (const char* name : { "", "My", "1x", "a b", "a\tb" })
   {
     d = good;
     d.name = name;
-    TAUTLINE_CHECK_THROWS(attempt(d), "cannot be the name");
+    TAUTLINE_CHECK_THROWS(attempt(d), wording("cannot-be-the-name"));
   }
   d = good;
   d.formula = "a\tb";
-  TAUTLINE_CHECK_THROWS(attempt(d), "control characters");
+  TAUTLINE_CHECK_THROWS(attempt(d), wording("control-characters"));
   d = good;
   d.cellTypes = 0;
-  TAUTLINE_CHECK_THROWS(attempt(d), "no type of cell");
+  TAUTLINE_CHECK_THROWS(attempt(d), wording("no-type-of-cell"));
   d = good;
   d.full = { 2, 1 };
-  TAUTLINE_CHECK_THROWS(attempt(d), "a range ends before it begins");
+  TAUTLINE_CHECK_THROWS(attempt(d), wording("a-range-ends-before-it-begins"));
   d = good;
   d.direction = Direction::LargerIsBetter;
-  TAUTLINE_CHECK_THROWS(attempt(d), "tends to infinity");
+  TAUTLINE_CHECK_THROWS(attempt(d), wording("tends-to-infinity"));
   TAUTLINE_CHECK_THROWS(
-    registerJacobianMetric(good, NotFinite()), "not finite on a valid triangle");
+    registerJacobianMetric(good, NotFinite()), wording("not-finite-on-a-valid-triangle"));
   d = good;
-  TAUTLINE_CHECK_THROWS(registerJacobianMetric(d, DistanceByTrace()), "depends on the scale");
+  TAUTLINE_CHECK_THROWS(
+    registerJacobianMetric(d, DistanceByTrace()), wording("depends-on-the-scale"));
   d.scaleInvariant = false;
-  TAUTLINE_CHECK_THROWS(registerJacobianMetric(d, DistanceByTrace()), "depends on the rotation");
+  TAUTLINE_CHECK_THROWS(
+    registerJacobianMetric(d, DistanceByTrace()), wording("depends-on-the-rotation"));
   RatioBySlope wrong;
   wrong.fault = 1e-3;
-  TAUTLINE_CHECK_THROWS(registerJacobianMetric(good, wrong), "differ from finite differences");
-  TAUTLINE_CHECK_THROWS(registerMetric(good, nullptr), "has no function");
-  TAUTLINE_CHECK_THROWS(loadMetrics("/nonexistent/metrics.so"), "cannot be loaded");
+  TAUTLINE_CHECK_THROWS(
+    registerJacobianMetric(good, wrong), wording("differ-from-finite-differences"));
+  TAUTLINE_CHECK_THROWS(registerMetric(good, nullptr), wording("has-no-function"));
+  TAUTLINE_CHECK_THROWS(loadMetrics("/nonexistent/metrics.so"), wording("cannot-be-loaded"));
   MetricDescription taken = good;
   taken.name = "imr";
   const MetricRegistration registration([&]() { registerJacobianMetric(taken, Ratio()); });
-  TAUTLINE_CHECK(metricLoadErrors().find("there is a metric 'imr'") != std::string::npos);
+  TAUTLINE_CHECK(metricLoadErrors().find(wording("there-is-a-metric-imr")) != std::string::npos);
   TAUTLINE_CHECK(!findMetric(good.name));
 }
 
@@ -597,28 +600,27 @@ void testElements()
   Objective objective;
   objective.metric = metric;
   const Mesh mesh(data.view());
-  TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), "has no derivatives");
+  TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), wording("has-no-derivatives"));
   std::vector<double> q(data.numberOfCells()), g(3 * data.connectivity.size());
   TAUTLINE_CHECK_THROWS(
-    evaluateMetricGradient(mesh, metric, {}, q.data(), g.data()), "has no derivatives");
+    evaluateMetricGradient(mesh, metric, {}, q.data(), g.data()), wording("has-no-derivatives"));
   OptimizeOptions options;
   options.objectives[0].metric = metric;
-  TAUTLINE_CHECK_THROWS(optimize(mesh, options), "has no derivatives");
+  TAUTLINE_CHECK_THROWS(optimize(mesh, options), wording("has-no-derivatives"));
   unregisterMetric("centre_height");
 }
 }
 
-int TestUserMetric(int, char*[])
+TAUTLINE_TEST(TestUserMetric)
 {
   const std::vector<Twin> pairs = registerCopies();
-  testValues(pairs);
-  testScales(pairs);
-  testDegenerate(pairs);
-  testObjectives(pairs);
-  testOptimize(pairs);
-  testWithoutValue();
-  testRegistry(pairs);
-  testRefused();
-  testElements();
-  return exitCode();
+  TAUTLINE_RUN(testValues(pairs));
+  TAUTLINE_RUN(testScales(pairs));
+  TAUTLINE_RUN(testDegenerate(pairs));
+  TAUTLINE_RUN(testObjectives(pairs));
+  TAUTLINE_RUN(testOptimize(pairs));
+  TAUTLINE_RUN(testWithoutValue());
+  TAUTLINE_RUN(testRegistry(pairs));
+  TAUTLINE_RUN(testRefused());
+  TAUTLINE_RUN(testElements());
 }

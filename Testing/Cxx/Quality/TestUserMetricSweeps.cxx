@@ -3,7 +3,7 @@
 // only, and by |T|^2 and det T where the formula reads no more of T. Both lead sweeps to where the
 // built-in metrics lead.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Quality/UserMetric.h"
@@ -335,11 +335,10 @@ void testTemplates()
 }
 }
 
-int TestUserMetricSweeps(int, char*[])
+TAUTLINE_TEST(TestUserMetricSweeps)
 {
-  testNumbers();
-  testAlong();
-  testSweeps();
-  testTemplates();
-  return exitCode();
+  TAUTLINE_RUN(testNumbers());
+  TAUTLINE_RUN(testAlong());
+  TAUTLINE_RUN(testSweeps());
+  TAUTLINE_RUN(testTemplates());
 }

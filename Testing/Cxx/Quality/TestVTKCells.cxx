@@ -3,7 +3,7 @@
 // every type, linear and of higher order. The wedge is the one to watch: in VTK's linear and
 // quadratic wedges the corners 0 1 2 are counter-clockwise seen from outside, in its Lagrange and
 // Bezier wedges from inside.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "MeshAdapter.h"
@@ -45,7 +45,7 @@ void testSource(int vtkType, bool higher)
   TAUTLINE_CHECK_EQUAL(grid->GetCellType(0), vtkType);
   TAUTLINE_CHECK_EQUAL(mesh.higherOrderCells(), higher ? grid->GetNumberOfCells() : 0);
   TAUTLINE_CHECK_EQUAL(
-    adapter.notice().find("measured on their corners") != std::string::npos, higher);
+    adapter.notice().find(wording("measured-on-their-corners")) != std::string::npos, higher);
   const std::vector<signed char> validity = validityOf(mesh);
   const auto valid = std::count(validity.begin(), validity.end(), Valid);
   TAUTLINE_CHECK_EQUAL(valid, grid->GetNumberOfCells());
@@ -77,19 +77,18 @@ void testIdealCells(CellType type)
 }
 }
 
-int TestVTKCells(int, char*[])
+TAUTLINE_TEST(TestVTKCells)
 {
   for (CellType type : allTypes)
   {
-    testIdealCells(type);
+    TAUTLINE_RUN(testIdealCells(type));
   }
   for (int type : linearTypes)
   {
-    testSource(type, false);
+    TAUTLINE_RUN(testSource(type, false));
   }
   for (int type : higherTypes)
   {
-    testSource(type, true);
+    TAUTLINE_RUN(testSource(type, true));
   }
-  return exitCode();
 }

@@ -8,7 +8,7 @@
 // not walked round); condition and shape of wedges (there against another corner); shape of
 // pyramids (there of heights); normalized inradius of tetrahedra; all that is relative to an
 // average size.
-#include "Check.h"
+#include "Registry.h"
 #include "VerdictCompatibility.h"
 #include "VtkMeshes.h"
 
@@ -194,7 +194,7 @@ void testAffineHexahedra()
 }
 }
 
-int TestVerdict(int, char*[])
+TAUTLINE_TEST(TestVerdict)
 {
   for (const Comparison& c : comparisons)
   {
@@ -203,6 +203,5 @@ int TestVerdict(int, char*[])
       compare(c);
     }
   }
-  testAffineHexahedra();
-  return exitCode();
+  TAUTLINE_RUN(testAffineHexahedra());
 }

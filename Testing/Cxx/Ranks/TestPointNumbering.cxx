@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes spread over MPI ranks: numbering, sums, boundaries, and linear systems whose solution does
 // not depend on the number of ranks. Runs on however many ranks it is started on.
-#include "Check.h"
+#include "Registry.h"
 #include "Systems.h"
 
 #include "tautline/Elliptic/ElementContributions.h"
@@ -422,7 +422,7 @@ void testTogether(MPI_Comm comm)
     ids[3] = last ? ids[4] : ids[3];
     TAUTLINE_CHECK_THROWS(PointNumbering(&comm, part.numberOfPoints(), ids.data()), "");
     TAUTLINE_CHECK_THROWS(
-      PointNumbering(&comm, part.numberOfPoints(), nullptr), "Generate Global Ids");
+      PointNumbering(&comm, part.numberOfPoints(), nullptr), wording("generate-global-ids"));
   }
   std::vector<unsigned char> used(part.ids.size());
   for (std::size_t p = 0; p < used.size(); ++p)
@@ -499,7 +499,7 @@ void testEmptyRank(MPI_Comm comm)
 }
 }
 
-int TestPointNumbering(int, char*[])
+TAUTLINE_TEST(TestPointNumbering)
 {
   MPI_Init(nullptr, nullptr);
   MPI_Comm comm = MPI_COMM_WORLD;
@@ -517,13 +517,12 @@ int TestPointNumbering(int, char*[])
     TAUTLINE_CHECK(estimateCondition(system, {}).converged);
   }
   MPI_Barrier(comm);
-  testNumbering(comm, false);
-  testNumbering(comm, true);
-  testBoundary(comm);
-  testSolutions(comm);
-  testConditions(comm);
-  testTogether(comm);
-  testEmptyRank(comm);
+  TAUTLINE_RUN(testNumbering(comm, false));
+  TAUTLINE_RUN(testNumbering(comm, true));
+  TAUTLINE_RUN(testBoundary(comm));
+  TAUTLINE_RUN(testSolutions(comm));
+  TAUTLINE_RUN(testConditions(comm));
+  TAUTLINE_RUN(testTogether(comm));
+  TAUTLINE_RUN(testEmptyRank(comm));
   MPI_Finalize();
-  return exitCode();
 }

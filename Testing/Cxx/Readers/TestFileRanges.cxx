@@ -2,6 +2,7 @@
 // Ranks that read ranges of a file have the same parts as ranks that read all of it; what ranges
 // cannot read, and every error, is noticed by all ranks.
 
+#include "Registry.h"
 #include "RangeChecks.h"
 #include "tautline/Core/Interruption.h"
 
@@ -353,14 +354,13 @@ void testInterruption()
 }
 }
 
-int TestFileRanges(int, char* argv[])
+TAUTLINE_TEST(TestFileRanges)
 {
   data = argv[1];
   output = argv[2];
-  testTetGen();
-  testMedit();
-  testGmsh();
-  testDifferences();
-  testInterruption();
-  return exitCode();
+  TAUTLINE_RUN(testTetGen());
+  TAUTLINE_RUN(testMedit());
+  TAUTLINE_RUN(testGmsh());
+  TAUTLINE_RUN(testDifferences());
+  TAUTLINE_RUN(testInterruption());
 }

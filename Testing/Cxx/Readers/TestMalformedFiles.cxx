@@ -2,6 +2,7 @@
 // Malformed files: the message names file, line and problem. Sets with files of two writes are
 // refused. (Mutations of samples: TestFuzzTargets.)
 
+#include "Registry.h"
 #include "MeshFileChecks.h"
 
 using namespace tautline;
@@ -28,115 +29,110 @@ void expect(const std::string& extension, const std::string& text, const std::st
 void testTetGenMessages()
 {
   const std::string good = "4 3 0 1\n1 0 0 0 1\n2 1 0 0 1\n3 0 1 0 1\n4 0 0 1 1\n";
-  expect("node", "", "bad.node:1: no header");
-  expect(
-    "node", "4 3 0 1\n1 0 0 0 1\n2 1 0 0 1\n", "bad.node:1: number of vertices is 4, more than");
+  expect("node", "", wording("bad-node-1-no-header"));
+  expect("node", "4 3 0 1\n1 0 0 0 1\n2 1 0 0 1\n", wording("bad-node-1-number-of-vertices-is-2"));
   expect("node", "4 3 0 0\n1 0 0 0.00\n2 1 0 0.00\n3 1 0 0.0000000\n",
-    "bad.node:5: the file ends before vertex 4");
-  expect("node", "2 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 1\n",
-    "bad.node:4: the file continues after the last vertex");
+    wording("bad-node-5-the-file-ends-before"));
   expect(
-    "node", "2 3 0 0\n1 0 nan 0\n2 1 0 0\n", "bad.node:2: coordinate is not a finite number: nan");
-  expect("node", "2 3 0 0\n1 0 0 1e999\n2 1 0 0\n",
-    "bad.node:2: coordinate is not a finite number: 1e999");
-  expect("node", "2 3 0 0\n1 0 0\n2 1 0 0 0\n",
-    "bad.node:2: expected a number (coordinate), the line ends");
-  expect("node", "2 3 0 0\n1 0 0 0,5\n2 1 0 0\n",
-    "bad.node:2: expected a number (coordinate), found '0,5'");
+    "node", "2 3 0 0\n1 0 0 0\n2 1 0 0\n3 1 1 1\n", wording("bad-node-4-the-file-continues-after"));
+  expect("node", "2 3 0 0\n1 0 nan 0\n2 1 0 0\n", wording("bad-node-2-coordinate-is-not-a-2"));
+  expect("node", "2 3 0 0\n1 0 0 1e999\n2 1 0 0\n", wording("bad-node-2-coordinate-is-not-a"));
   expect(
-    "node", "2 3 0 0\n1 0 0 0 9\n2 1 0 0\n", "bad.node:2: the line has more than it should: '9'");
-  expect("node", "2 3 0 0\n1 0 0 0\n5 1 0 0\n", "bad.node:3: expected vertex 2, found number 5");
-  expect("node", "-2 3 0 0\n", "bad.node:1: number of vertices is -2");
-  expect("node", "9000000000000000000 3 0 0\n1 0 0 0\n", "more than the rest of the file can hold");
-  expect("node", "99999999999999999999 3 0 0\n", "expected a whole number (number of vertices)");
-  expect("node", "2 4 0 0\n", "bad.node:1: dimension is 4, from 2 to 3 are allowed");
+    "node", "2 3 0 0\n1 0 0\n2 1 0 0 0\n", wording("bad-node-2-expected-a-number-coordinate-2"));
+  expect(
+    "node", "2 3 0 0\n1 0 0 0,5\n2 1 0 0\n", wording("bad-node-2-expected-a-number-coordinate"));
+  expect("node", "2 3 0 0\n1 0 0 0 9\n2 1 0 0\n", wording("bad-node-2-the-line-has-more"));
+  expect("node", "2 3 0 0\n1 0 0 0\n5 1 0 0\n", wording("bad-node-3-expected-vertex-2-found"));
+  expect("node", "-2 3 0 0\n", wording("bad-node-1-number-of-vertices-is"));
+  expect("node", "9000000000000000000 3 0 0\n1 0 0 0\n", wording("more-than-the-rest-of-the-file"));
+  expect("node", "99999999999999999999 3 0 0\n",
+    wording("expected-a-whole-number-number-of-vertices-2"));
+  expect("node", "2 4 0 0\n", wording("bad-node-1-dimension-is-4-from"));
   expect("node",
     std::string("\x7f"
                 "ELF\x02\x01\x00",
       7),
-    "expected a whole number (number of vertices), found '\\x7fELF");
+    wording("expected-a-whole-number-number-of-vertices"));
   std::remove((output + "/bad.node").c_str());
-  expect("ele", "1 4 0\n1 1 2 3 4\n", "bad.node: cannot be opened (the vertices of");
+  expect("ele", "1 4 0\n1 1 2 3 4\n", wording("bad-node-cannot-be-opened-the-vertices"));
   writeText(output + "/bad.node", good);
-  expect("ele", "1 4 0\n1 1 2 3 5\n", "bad.ele:2: vertex is 5, from 1 to 4 are allowed");
-  expect("ele", "1 4 0\n1 1 2 3 -4\n", "bad.ele:2: vertex is -4");
-  expect("ele", "1 5 0\n1 1 2 3 4 4\n", "bad.ele:1: elements with 5 nodes in 3D");
-  expect("ele", "2 4 0\n1 1 2 3 4\n2 1 2 3  \n    ",
-    "bad.ele:3: expected a whole number (vertex), the line ends");
+  expect("ele", "1 4 0\n1 1 2 3 5\n", wording("bad-ele-2-vertex-is-5-from"));
+  expect("ele", "1 4 0\n1 1 2 3 -4\n", wording("bad-ele-2-vertex-is-4"));
+  expect("ele", "1 5 0\n1 1 2 3 4 4\n", wording("bad-ele-1-elements-with-5-nodes"));
+  expect("ele", "2 4 0\n1 1 2 3 4\n2 1 2 3  \n    ", wording("bad-ele-3-expected-a-whole-number"));
   std::remove((output + "/bad.ele").c_str());
-  expect(
-    "face", "1 1\n1 1 2         \n", "bad.face:2: expected a whole number (vertex), the line ends");
+  expect("face", "1 1\n1 1 2         \n", wording("bad-face-2-expected-a-whole-number"));
   std::remove((output + "/bad.face").c_str());
-  expect("smesh", good + "1 0\n4 1 2 3\n", "the file ends inside a polygon");
-  expect("smesh", good + "1 0\n0\n", "number of corners is 0");
-  expect("poly", good + "1 0\n1 0\n99999999 1 2\n", "number of corners is 99999999, more than");
+  expect("smesh", good + "1 0\n4 1 2 3\n", wording("the-file-ends-inside-a-polygon"));
+  expect("smesh", good + "1 0\n0\n", wording("number-of-corners-is-0"));
+  expect(
+    "poly", good + "1 0\n1 0\n99999999 1 2\n", wording("number-of-corners-is-99999999-more-than"));
   std::remove((output + "/bad.node").c_str());
-  expect("poly", "0 3 0 0\n1 0\n1\n3 1 2 3\n0\n", "bad.node: cannot be opened");
-  TAUTLINE_CHECK(complaint(output).find("is expected as the file's ending") != std::string::npos);
+  expect("poly", "0 3 0 0\n1 0\n1\n3 1 2 3\n0\n", wording("bad-node-cannot-be-opened"));
+  TAUTLINE_CHECK(
+    complaint(output).find(wording("is-expected-as-the-file-s-ending")) != std::string::npos);
 }
 
 void testOtherMessages()
 {
   const std::string mesh = "MeshVersionFormatted 2\nDimension 2\nVertices 3\n0 0 1\n1 0 1\n0 1 1\n";
-  expect("mesh", mesh, "bad.mesh:7: the file ends without the keyword End");
-  expect("mesh", mesh + "Triangles\n1\n1 2 4 0\nEnd\n",
-    "bad.mesh:9: vertex is 4, from 1 to 3 are allowed");
-  expect("mesh", mesh + "Triangles\n-1\nEnd\n", "bad.mesh:8: number of Triangles is negative: -1");
-  expect("mesh", mesh + "Triangles\n77777777777\nEnd\n", "more than the rest of the file can hold");
-  expect("mesh", mesh + "Corners\n1\n4\nEnd\n", "Corner: number 4 is out of range");
-  expect("mesh", mesh + "1 1 1\nEnd\n", "bad.mesh:7: expected the name of a section, found '1'");
-  expect("mesh", "solid stl\n", "bad.mesh:1: expected MeshVersionFormatted");
-  expect("mesh", "MFEM mesh v1.0\n\ndimension\n2\n", "bad.mesh:1: this is a mesh of MFEM");
+  expect("mesh", mesh, wording("bad-mesh-7-the-file-ends-without"));
+  expect("mesh", mesh + "Triangles\n1\n1 2 4 0\nEnd\n", wording("bad-mesh-9-vertex-is-4-from"));
+  expect("mesh", mesh + "Triangles\n-1\nEnd\n", wording("bad-mesh-8-number-of-triangles-is"));
+  expect("mesh", mesh + "Triangles\n77777777777\nEnd\n", wording("more-than-the-rest-of-the-file"));
+  expect("mesh", mesh + "Corners\n1\n4\nEnd\n", wording("corner-number-4-is-out-of-range"));
+  expect("mesh", mesh + "1 1 1\nEnd\n", wording("bad-mesh-7-expected-the-name-of"));
+  expect("mesh", "solid stl\n", wording("bad-mesh-1-expected-meshversionformatted"));
+  expect("mesh", "MFEM mesh v1.0\n\ndimension\n2\n", wording("bad-mesh-1-this-is-a-mesh"));
   writeText(output + "/bad.mesh", mesh + "End\n");
   expect("sol", "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n2\n1 1\n1\n2\nEnd\n",
-    "SolAtVertices has 2 values, the mesh has 3");
+    wording("solatvertices-has-2-values-the-mesh-has"));
   expect("sol", "MeshVersionFormatted 2\nDimension 2\nSolAtVertices\n3\n1 4\n1\n2\n3\nEnd\n",
-    "bad.sol:5: type of a field is 4");
+    wording("bad-sol-5-type-of-a-field"));
   std::remove((output + "/bad.sol").c_str());
 
   const std::string format = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
-  expect("msh", format, "the file ends without $Nodes");
+  expect("msh", format, wording("the-file-ends-without-nodes"));
   expect(
-    "msh", "$MeshFormat\n3 0 8\n$EndMeshFormat\n", "version 3.00 of the format cannot be read");
+    "msh", "$MeshFormat\n3 0 8\n$EndMeshFormat\n", wording("version-3-00-of-the-format-cannot"));
   const std::string old = "$NOD\n2\n1 0 0 0\n2 1 0 0\n$ENDNOD\n$ELM\n1\n1 1 0 0 ";
-  expect("msh", "$NOD\n2\n1 0 0 0\n2 1 0 0\n$EndNOD\n", "bad.msh:5: expected $ENDNOD");
-  expect("msh", old + "3 1 2 2\n$ENDELM\n", "bad.msh:8: an element of type 1 with 3 nodes");
-  expect("msh", old + "2 1 3\n$ENDELM\n", "bad.msh:8: an element uses node 3");
-  expect("msh", old + "2 1\n$ENDELM\n", "bad.msh:8: expected a whole number (node)");
+  expect("msh", "$NOD\n2\n1 0 0 0\n2 1 0 0\n$EndNOD\n", wording("bad-msh-5-expected-endnod"));
+  expect("msh", old + "3 1 2 2\n$ENDELM\n", wording("bad-msh-8-an-element-of-type"));
+  expect("msh", old + "2 1 3\n$ENDELM\n", wording("bad-msh-8-an-element-uses-node"));
+  expect("msh", old + "2 1\n$ENDELM\n", wording("bad-msh-8-expected-a-whole-number"));
   expect("msh", "$MeshFormat\n4 0 8\n$EndMeshFormat\n$Nodes\n1 2\n1 2 0 1\n1 0 0 0\n$EndNodes\n",
-    "the blocks have 1 nodes, the header of $Nodes announces 2");
-  expect("msh", format + "$PhysicalNames\n1\n7 5 \"a\"\n", "bad.msh:6: dimension is 7");
+    wording("the-blocks-have-1-nodes-the-header"));
+  expect("msh", format + "$PhysicalNames\n1\n7 5 \"a\"\n", wording("bad-msh-6-dimension-is-7"));
   expect("msh", format + "$Nodes\n1 2 1 2\n2 1 0 1\n1\n0 0 0\n$EndNodes\n",
-    "the blocks have 1 nodes, the header of $Nodes announces 2");
+    wording("the-blocks-have-1-nodes-the-header"));
   expect("msh", format + "$Nodes\n1 2 1 2\n2 1 0 2\n1\n1\n0 0 0\n0 0 0\n$EndNodes\n",
-    "node number 1 is given twice");
+    wording("node-number-1-is-given-twice"));
   expect("msh",
     format +
       "$Nodes\n1 1 1 1\n2 1 0 1\n1\n0 0 0\n$EndNodes\n$Elements\n1 1 1 1\n1 1 1 1\n1 1 "
       "2\n$EndElements\n",
-    "bad.msh:12: an element uses node 2, which is not in $Nodes");
+    wording("bad-msh-12-an-element-uses-node"));
   expect("msh",
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$Elements\n1\n1 94 0 "
     "1\n$EndElements\n",
-    "bad.msh:10: an element of type 94");
+    wording("bad-msh-10-an-element-of-type"));
   expect("msh",
     "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n1\n1 0 0 0\n$EndNodes\n$ElementData\n1\n\"a\"\n"
     "0\n3\n0\n1\n0\n$EndElementData\n$Elements\n1\n1 15 0 1\n$EndElements\n",
-    "bad.msh:8: $ElementData comes before $Elements: move it behind that section");
-  expect("msh", "$MeshFormat\n2.2 1 8\n\1", "the file ends before the byte order");
-  expect("msh", "1 2\n", "this is no .msh file");
-  expect("msh", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n1 2 9 0\n",
-    "bad.msh:5: vertex is 9, from 1 to 3 are allowed");
+    wording("bad-msh-8-elementdata-comes-before-elements"));
+  expect("msh", "$MeshFormat\n2.2 1 8\n\1", wording("the-file-ends-before-the-byte-order"));
+  expect("msh", "1 2\n", wording("this-is-no-msh-file"));
+  expect("msh", "3 1 0\n0 0 0\n1 0 0\n0 1 0\n1 2 9 0\n", wording("bad-msh-5-vertex-is-9-from"));
 
-  expect("off", "PLY\n", "expected OFF, COFF, NOFF or CNOFF, found 'PLY'");
-  expect("off", "OFF BINARY\n", "binary OFF files cannot be read");
-  expect("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
-    "bad.off:6: vertex is 3, from 0 to 2 are allowed");
+  expect("off", "PLY\n", wording("expected-off-coff-noff-or-cnoff-found"));
+  expect("off", "OFF BINARY\n", wording("binary-off-files-cannot-be-read"));
   expect(
-    "off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "bad.off:7: the file ends before face 1");
-  expect("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 300 0 0\n", "a colour is 300");
+    "off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", wording("bad-off-6-vertex-is-3-from"));
+  expect(
+    "off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", wording("bad-off-7-the-file-ends-before"));
+  expect("off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 300 0 0\n", wording("a-colour-is-300"));
   expect("off", "OFF\n3 1000000000 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
-    "more than the rest of the file can hold");
+    wording("more-than-the-rest-of-the-file"));
 }
 
 /// CRLF, a byte order mark, comments and blank lines change nothing.
@@ -188,22 +184,21 @@ void testMixedSets()
       const std::string message = complaint(mixed + endings[0]);
       TAUTLINE_CHECK(message.find("does not belong to " + mixed) != std::string::npos);
       // Without its mark, as other programs write it, the file is taken.
-      writeText(mixed + ending, whole.substr(0, whole.rfind("# Tautline set")));
+      writeText(mixed + ending, whole.substr(0, whole.rfind(wording("tautline-set"))));
       TAUTLINE_CHECK_EQUAL(complaint(mixed + endings[0]), std::string());
     }
   }
 }
 }
 
-int TestMalformedFiles(int, char* argv[])
+TAUTLINE_TEST(TestMalformedFiles)
 {
   data = argv[1];
   output = std::string(argv[2]) + "/malformed";
   const std::string makeFolder = "mkdir -p '" + output + "'";
   TAUTLINE_CHECK(std::system(makeFolder.c_str()) == 0);
-  testTetGenMessages();
-  testOtherMessages();
-  testHarmlessForms();
-  testMixedSets();
-  return exitCode();
+  TAUTLINE_RUN(testTetGenMessages());
+  TAUTLINE_RUN(testOtherMessages());
+  TAUTLINE_RUN(testHarmlessForms());
+  TAUTLINE_RUN(testMixedSets());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts that processes keep of a file make up the file, with the ghost cells around them.
 
+#include "Registry.h"
 #include "MeshFileChecks.h"
 #include "MeshPart.h"
 
@@ -225,7 +226,7 @@ void testReader(const std::string& name, vtkIdType cells)
 }
 }
 
-int TestMeshPart(int, char* argv[])
+TAUTLINE_TEST(TestMeshPart)
 {
   const std::string data = argv[1];
   for (const char* name : { "/cube.1.ele", "/zoo.mesh", "/wedges.msh", "/cylinder.msh",
@@ -239,13 +240,12 @@ int TestMeshPart(int, char* argv[])
       for (const int layers : { 0, 1, 2 })
       {
         const Context division(std::to_string(parts) + " parts, " + std::to_string(layers));
-        checkParts(whole, parts, layers);
+        TAUTLINE_RUN(checkParts(whole, parts, layers));
       }
     }
   }
-  testCompact();
-  checkParts(MeshFile(), 3, 1);
-  testReader<vtkGmshReader, vtkUnstructuredGrid>(data + "/cylinder.msh", 487);
-  testReader<vtkOffReader, vtkPolyData>(data + "/house.off", 7);
-  return exitCode();
+  TAUTLINE_RUN(testCompact());
+  TAUTLINE_RUN(checkParts(MeshFile(), 3, 1));
+  TAUTLINE_RUN(testReader<vtkGmshReader, vtkUnstructuredGrid>(data + "/cylinder.msh", 487));
+  TAUTLINE_RUN(testReader<vtkOffReader, vtkPolyData>(data + "/house.off", 7));
 }

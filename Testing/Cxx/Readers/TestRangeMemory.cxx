@@ -3,6 +3,7 @@
 // no header takes more than its lines have, numbers of nodes are divided evenly, and parts do not
 // depend on how much is sent or read at once.
 
+#include "Registry.h"
 #include "RangeChecks.h"
 #include "SharedTags.h"
 
@@ -93,7 +94,7 @@ void testFailures()
           catch (const Error& error)
           {
             TAUTLINE_CHECK(
-              std::string(error.what()).find("too little memory") != std::string::npos);
+              std::string(error.what()).find(wording("too-little-memory")) != std::string::npos);
             ++errors;
           }
           largeBeforeFailure = NeverFails;
@@ -238,14 +239,13 @@ void testRounds()
 }
 }
 
-int TestRangeMemory(int, char* argv[])
+TAUTLINE_TEST(TestRangeMemory)
 {
   data = argv[1];
   output = argv[2];
-  testWhole();
-  testTags();
-  testColumns();
-  testRounds();
-  testFailures();
-  return exitCode();
+  TAUTLINE_RUN(testWhole());
+  TAUTLINE_RUN(testTags());
+  TAUTLINE_RUN(testColumns());
+  TAUTLINE_RUN(testRounds());
+  TAUTLINE_RUN(testFailures());
 }

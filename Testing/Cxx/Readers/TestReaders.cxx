@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is in the sample files arrives, with the documented array names.
 
+#include "Registry.h"
 #include "MeshFileChecks.h"
 
 #include "tautline/Mesh/Mesh.h"
@@ -409,7 +410,7 @@ void testReaderClasses()
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfPoints() == 0);
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 0);
   TAUTLINE_CHECK(
-    errors->GetErrorMessage().find("none.node: cannot be opened") != std::string::npos);
+    errors->GetErrorMessage().find(wording("none-node-cannot-be-opened")) != std::string::npos);
   reader->SetFileName((data + "/cube.1.ele").c_str());
   reader->Update();
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 171);
@@ -428,22 +429,21 @@ void testReaderClasses()
 }
 }
 
-int TestReaders(int, char* argv[])
+TAUTLINE_TEST(TestReaders)
 {
   data = argv[1];
   output = argv[2];
-  testTetGen();
-  testComplexes();
-  testMedit();
-  testGmsh();
-  testOldGmsh();
-  testHighOrder();
-  testValidity();
-  testFreeFemAndOff();
+  TAUTLINE_RUN(testTetGen());
+  TAUTLINE_RUN(testComplexes());
+  TAUTLINE_RUN(testMedit());
+  TAUTLINE_RUN(testGmsh());
+  TAUTLINE_RUN(testOldGmsh());
+  TAUTLINE_RUN(testHighOrder());
+  TAUTLINE_RUN(testValidity());
+  TAUTLINE_RUN(testFreeFemAndOff());
   vtkNew<vtkGmshReader> gmsh;
-  testOrderOfMiddleNodes(gmsh, "/wedges.msh", 27);
+  TAUTLINE_RUN(testOrderOfMiddleNodes(gmsh, "/wedges.msh", 27));
   vtkNew<vtkTetGenReader> tetgen;
-  testOrderOfMiddleNodes(tetgen, "/quadratic.1.ele", 27);
-  testReaderClasses();
-  return exitCode();
+  TAUTLINE_RUN(testOrderOfMiddleNodes(tetgen, "/quadratic.1.ele", 27));
+  TAUTLINE_RUN(testReaderClasses());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Improve Mesh: the kernel's result as a data set, data of points and cells, tables, refusals.
+#include "Registry.h"
 #include "Reconnecting.h"
 #include "VtkMeshes.h"
 
@@ -216,7 +217,7 @@ void testFixed()
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "all");
   filter->Update();
   TAUTLINE_CHECK(dataOf(meshOf(filter)).points == data.points);
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "it has a fixed point (fix fewer points)"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("it-has-a-fixed-point-fix-fewer")));
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "None");
   filter->Update();
   TAUTLINE_CHECK(dataOf(meshOf(filter)).points != data.points);
@@ -252,8 +253,9 @@ void testRefusals()
     TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 0);
     TAUTLINE_CHECK(std::string(filter->GetSummary()).empty());
   };
-  refused(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), "8 hexahedra: Improve Mesh takes");
-  refused(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), "run Tetrahedralize first");
+  refused(
+    toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), wording("8-hexahedra-improve-mesh-takes"));
+  refused(toGrid(blockMesh(CellType::Hexahedron, 2, 2, 2)), wording("run-tetrahedralize-first-2"));
   MeshData mixed = blockMesh(CellType::Triangle, 2, 2, 0);
   mixed.addCell(CellType::Quadrilateral, { 0, 1, 4, 3 });
   const char* triangulate =
@@ -262,14 +264,14 @@ void testRefusals()
   refused(toPolyData(mixed), triangulate);
   vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 3);
-  refused(image, "run Tetrahedralize first");
+  refused(image, wording("run-tetrahedralize-first-2"));
 
   MeshData inverted = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   inverted.setPoint(13, { 3, 3, 3 });
-  refused(toGrid(inverted), "run Untangle Mesh first");
+  refused(toGrid(inverted), wording("run-untangle-mesh-first"));
   MeshData broken = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   broken.points[0] = std::numeric_limits<double>::quiet_NaN();
-  refused(toGrid(broken), "NaN or infinite");
+  refused(toGrid(broken), wording("nan-or-infinite"));
 
   const auto ghosts = toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2));
   vtkNew<vtkUnsignedCharArray> flags;
@@ -278,7 +280,7 @@ void testRefusals()
   flags->Fill(0);
   flags->SetValue(3, vtkDataSetAttributes::DUPLICATECELL);
   ghosts->GetCellData()->AddArray(flags);
-  refused(ghosts, "1 ghost or hidden cells");
+  refused(ghosts, wording("1-ghost-or-hidden-cells"));
 
   const auto regions = withArrays(blockMesh(CellType::Tetrahedron, 2, 2, 2));
   filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "absent");
@@ -289,12 +291,12 @@ void testRefusals()
   holes->Fill(std::numeric_limits<double>::quiet_NaN());
   regions->GetCellData()->AddArray(holes);
   filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "holes");
-  refused(regions, "is NaN in cell 0");
+  refused(regions, wording("is-nan-in-cell-0"));
   filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "None");
 
   messages.clear();
   filter->SetTargetAngle(61);
-  TAUTLINE_CHECK(messages.has("TargetAngle is 61"));
+  TAUTLINE_CHECK(messages.has(wording("targetangle-is-61")));
 }
 
 /// Triangles beside the tetrahedra are left out with a warning; ids are those of the input.
@@ -315,9 +317,10 @@ void testSurfaceCells()
   filter->Update();
   plain->SetInputData(toGrid(data));
   plain->Update();
-  TAUTLINE_CHECK(messages.has("1 triangles beside the tetrahedra are left out"));
-  TAUTLINE_CHECK(messages.has("that triangles mark are kept"));
-  TAUTLINE_CHECK(!contains(filter->GetSummary(), "that triangles mark, and")); // of the boundary
+  TAUTLINE_CHECK(messages.has(wording("1-triangles-beside-the-tetrahedra-are-left")));
+  TAUTLINE_CHECK(messages.has(wording("that-triangles-mark-are-kept")));
+  TAUTLINE_CHECK(
+    !contains(filter->GetSummary(), wording("that-triangles-mark-and"))); // of the boundary
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), meshOf(plain)->GetNumberOfCells());
   for (Index i = 0; i < meshOf(filter)->GetNumberOfCells(); ++i)
   {
@@ -374,7 +377,7 @@ void testMarkedFacet()
       ++lost;
       std::string summary;
       TAUTLINE_CHECK(improved(&facet, &summary).count(facet) == 1);
-      TAUTLINE_CHECK(contains(summary, "that triangles mark, and that are kept: 1."));
+      TAUTLINE_CHECK(contains(summary, wording("that-triangles-mark-and-that-are-kept")));
     }
   }
   TAUTLINE_CHECK(lost > 5);
@@ -403,11 +406,11 @@ void testSeams()
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK(filter->GetSmallestAngleAfter() > filter->GetSmallestAngleBefore());
   TAUTLINE_CHECK(meshOf(filter)->GetNumberOfPoints() < 2 * data.numberOfPoints());
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "one point in place of each group"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("one-point-in-place-of-each-group")));
   filter->MergeCoincidentPointsOff();
   filter->Update();
   TAUTLINE_CHECK(dataOf(meshOf(filter)).points == pieces.points);
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "treated as boundary"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("treated-as-boundary")));
 }
 
 /// Blocks one by one; empty data; single precision; a mirrored mesh.
@@ -418,7 +421,7 @@ void testInputs()
   vtkNew<vtkUnstructuredGrid> empty;
   filter->SetInputData(empty);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The input has no cells"));
+  TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), 0);
 
@@ -443,10 +446,10 @@ void testInputs()
   TAUTLINE_CHECK_EQUAL(
     filter->GetElementsAfter(), first->GetNumberOfCells() + third->GetNumberOfCells());
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "In block 3: "));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("in-block-3")));
   blocks->SetBlock(1, toGrid(blockMesh(CellType::Hexahedron, 1, 1, 1)));
   filter->Update();
-  TAUTLINE_CHECK(messages.has("In block 2: 1 hexahedra"));
+  TAUTLINE_CHECK(messages.has(wording("in-block-2-1-hexahedra")));
 
   // The mirror image, cells not renumbered: reversed throughout.
   data.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
@@ -454,7 +457,7 @@ void testInputs()
   filter->SetInputData(withArrays(data));
   filter->Update();
   TAUTLINE_CHECK(messages.empty());
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "as if its cells were flipped"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("as-if-its-cells-were-flipped")));
   const MeshData mirrored = dataOf(meshOf(filter));
   TAUTLINE_CHECK_RELATIVE(volumeOf(mirrored), volumeOf(data), 1e-12);
   for (Index i = 0; i < mirrored.numberOfCells(); ++i)
@@ -484,28 +487,27 @@ void testStops()
   };
   filter->Update();
   check();
-  TAUTLINE_CHECK(contains(filter->GetReason(), "Stopped on request"));
+  TAUTLINE_CHECK(contains(filter->GetReason(), wording("stopped-on-request-2")));
   filter->RemoveObserver(observer);
   filter->SetAbortExecute(0);
   filter->SetTargetAngle(60); // not to be reached
   filter->SetTimeLimit(0.001);
   filter->Update();
   check();
-  TAUTLINE_CHECK(contains(filter->GetReason(), "time limit"));
+  TAUTLINE_CHECK(contains(filter->GetReason(), wording("time-limit")));
 }
 }
 
 //------------------------------------------------------------------------------
-int TestMeshImprover(int, char*[])
+TAUTLINE_TEST(TestMeshImprover)
 {
-  testKernel();
-  testData();
-  testFixed();
-  testRefusals();
-  testSurfaceCells();
-  testMarkedFacet();
-  testSeams();
-  testInputs();
-  testStops();
-  return exitCode();
+  TAUTLINE_RUN(testKernel());
+  TAUTLINE_RUN(testData());
+  TAUTLINE_RUN(testFixed());
+  TAUTLINE_RUN(testRefusals());
+  TAUTLINE_RUN(testSurfaceCells());
+  TAUTLINE_RUN(testMarkedFacet());
+  TAUTLINE_RUN(testSeams());
+  TAUTLINE_RUN(testInputs());
+  TAUTLINE_RUN(testStops());
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reconnection of tetrahedra that are spread over ranks.
+#include "Registry.h"
 #include "Reconnecting.h"
 #include "ThreadRanks.h"
 
@@ -449,17 +450,16 @@ void testStops()
   MeshData twice = data;
   const auto last = twice.connectivity.end() - 4;
   twice.addCell(CellType::Tetrahedron, std::vector<Index>(last, last + 4));
-  refused(twice, nothing, "three or more");
+  refused(twice, nothing, wording("three-or-more"));
 }
 }
 
-int TestReconnectOnRanks(int, char*[])
+TAUTLINE_TEST(TestReconnectOnRanks)
 {
-  testRounds();
-  testSeams();
-  testKept();
-  testHeldQuality();
-  testBounds();
-  testStops();
-  return exitCode();
+  TAUTLINE_RUN(testRounds());
+  TAUTLINE_RUN(testSeams());
+  TAUTLINE_RUN(testKept());
+  TAUTLINE_RUN(testHeldQuality());
+  TAUTLINE_RUN(testBounds());
+  TAUTLINE_RUN(testStops());
 }

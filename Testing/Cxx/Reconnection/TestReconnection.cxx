@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity(): what is kept, what improves, where the output follows from the input.
 
+#include "Registry.h"
 #include "Reconnecting.h"
 
 #include "tautline/Optimization/Optimize.h"
@@ -581,18 +582,19 @@ void testSizes()
 
   all.size = ReconnectionSize::Metrics;
   tensors[3] = 2.0 * entry;
-  TAUTLINE_CHECK_THROWS(reconnect(data, all), "1 metric tensors are not positive definite");
+  TAUTLINE_CHECK_THROWS(
+    reconnect(data, all), wording("1-metric-tensors-are-not-positive-definite"));
   all.size = ReconnectionSize::Lengths;
   all.sizes = lengths.data();
   lengths[4] = 0.0;
-  TAUTLINE_CHECK_THROWS(reconnect(data, all), "1 target lengths of edges are not positive");
+  TAUTLINE_CHECK_THROWS(reconnect(data, all), wording("1-target-lengths-of-edges-are-not"));
   all.sizes = nullptr;
-  TAUTLINE_CHECK_THROWS(reconnect(data, all), "are missing");
+  TAUTLINE_CHECK_THROWS(reconnect(data, all), wording("are-missing"));
   all.size = ReconnectionSize::Length;
   all.edgeLength = 0.0;
-  TAUTLINE_CHECK_THROWS(reconnect(data, all), "must be above 0");
+  TAUTLINE_CHECK_THROWS(reconnect(data, all), wording("must-be-above-0"));
   all.edgeLength = all.edgeFactor = 1.0;
-  TAUTLINE_CHECK_THROWS(reconnect(data, all), "must be above 1");
+  TAUTLINE_CHECK_THROWS(reconnect(data, all), wording("must-be-above-1"));
 }
 
 /// With the worst held, the mean becomes about that of Best shape alone on the same cells.
@@ -680,21 +682,20 @@ void testOverlaps()
 }
 }
 
-int TestReconnection(int, char*[])
+TAUTLINE_TEST(TestReconnection)
 {
-  testPresets();
-  testSwapOnly();
-  testTargets();
-  testCount();
-  testScales();
-  testRegions();
-  testDividedBoundary();
-  testFlat();
-  testLimits();
-  testObstacles();
-  testBlocks();
-  testSizes();
-  testMean();
-  testOverlaps();
-  return exitCode();
+  TAUTLINE_RUN(testPresets());
+  TAUTLINE_RUN(testSwapOnly());
+  TAUTLINE_RUN(testTargets());
+  TAUTLINE_RUN(testCount());
+  TAUTLINE_RUN(testScales());
+  TAUTLINE_RUN(testRegions());
+  TAUTLINE_RUN(testDividedBoundary());
+  TAUTLINE_RUN(testFlat());
+  TAUTLINE_RUN(testLimits());
+  TAUTLINE_RUN(testObstacles());
+  TAUTLINE_RUN(testBlocks());
+  TAUTLINE_RUN(testSizes());
+  TAUTLINE_RUN(testMean());
+  TAUTLINE_RUN(testOverlaps());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What improveConnectivity() improves (objectives), what the boundary allows, and memory.
 
+#include "Registry.h"
 #include "Reconnecting.h"
 
 #include "tautline/Core/Memory.h"
@@ -175,8 +176,8 @@ void testMemory()
     catch (const MemoryError& error)
     {
       const std::string text = error.what();
-      code = text.find("reconnection of this mesh takes about") != std::string::npos &&
-          text.find("take a smaller mesh") != std::string::npos
+      code = text.find(wording("reconnection-of-this-mesh-takes-about")) != std::string::npos &&
+          text.find(wording("take-a-smaller-mesh")) != std::string::npos
         ? 0
         : 2;
     }
@@ -246,13 +247,12 @@ void testPostponed()
 }
 }
 
-int TestReconnectionBounds(int, char*[])
+TAUTLINE_TEST(TestReconnectionBounds)
 {
-  testFacetQuality();
-  testObjectives();
-  testBounds();
-  testRecords();
-  testMemory();
-  testPostponed();
-  return exitCode();
+  TAUTLINE_RUN(testFacetQuality());
+  TAUTLINE_RUN(testObjectives());
+  TAUTLINE_RUN(testBounds());
+  TAUTLINE_RUN(testRecords());
+  TAUTLINE_RUN(testMemory());
+  TAUTLINE_RUN(testPostponed());
 }

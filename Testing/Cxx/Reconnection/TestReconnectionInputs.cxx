@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity() with input it refuses, and with input at the limits of what it takes.
 
+#include "Registry.h"
 #include "Reconnecting.h"
 
 #include <limits>
@@ -14,18 +15,19 @@ void testRefusals()
   const ReconnectionOptions defaults;
   MeshData mixed = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   mixed.addCell(CellType::Hexahedron, idealCell(CellType::Hexahedron));
-  TAUTLINE_CHECK_THROWS(reconnect(mixed, defaults), "1 cells are not tetrahedra");
-  TAUTLINE_CHECK_THROWS(
-    reconnect(blockMesh(CellType::Triangle, 2, 2, 0), defaults), "8 cells are not tetrahedra");
+  TAUTLINE_CHECK_THROWS(reconnect(mixed, defaults), wording("1-cells-are-not-tetrahedra"));
+  TAUTLINE_CHECK_THROWS(reconnect(blockMesh(CellType::Triangle, 2, 2, 0), defaults),
+    wording("8-cells-are-not-tetrahedra"));
   MeshData line = blockMesh(CellType::Tetrahedron, 1, 1, 1);
   constexpr int vtkLine = 3;
   line.addCell(vtkLine, { 0, 1 });
-  TAUTLINE_CHECK_THROWS(reconnect(line, defaults), "1 cells are not tetrahedra");
+  TAUTLINE_CHECK_THROWS(reconnect(line, defaults), wording("1-cells-are-not-tetrahedra"));
 
   MeshData inverted = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   std::swap(inverted.connectivity[4], inverted.connectivity[5]);
-  TAUTLINE_CHECK_THROWS(reconnect(inverted, defaults), "1 inverted or degenerate tetrahedra");
-  TAUTLINE_CHECK_THROWS(reconnect(inverted, defaults), "Untangle Mesh");
+  TAUTLINE_CHECK_THROWS(
+    reconnect(inverted, defaults), wording("1-inverted-or-degenerate-tetrahedra"));
+  TAUTLINE_CHECK_THROWS(reconnect(inverted, defaults), wording("untangle-mesh"));
   MeshData flat = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   flat.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 2, 2 });
   TAUTLINE_CHECK_THROWS(reconnect(flat, defaults), "degenerate");
@@ -35,20 +37,20 @@ void testRefusals()
   {
     MeshData data = blockMesh(CellType::Tetrahedron, 2, 2, 2);
     data.points[7] = value;
-    TAUTLINE_CHECK_THROWS(reconnect(data, defaults), "NaN or infinite");
+    TAUTLINE_CHECK_THROWS(reconnect(data, defaults), wording("nan-or-infinite"));
   }
 
   MeshData twice = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   twice.addCell(CellType::Tetrahedron,
     std::vector<Index>(twice.connectivity.begin(), twice.connectivity.begin() + 4));
-  TAUTLINE_CHECK_THROWS(reconnect(twice, defaults), "three or more");
+  TAUTLINE_CHECK_THROWS(reconnect(twice, defaults), wording("three-or-more"));
   MeshData alone = singleCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron));
   alone.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 2, 3 });
-  TAUTLINE_CHECK_THROWS(reconnect(alone, defaults), "same side");
+  TAUTLINE_CHECK_THROWS(reconnect(alone, defaults), wording("same-side"));
   MeshData overlapping = singleCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron));
   overlapping.addPoint({ 0.4, 0.3, 0.7 });
   overlapping.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 2, 4 });
-  TAUTLINE_CHECK_THROWS(reconnect(overlapping, defaults), "same side");
+  TAUTLINE_CHECK_THROWS(reconnect(overlapping, defaults), wording("same-side"));
 }
 
 void testOptions()
@@ -281,7 +283,7 @@ void testMarkedFacets()
       options.boundary = ReconnectionBoundary::Surface;
       TAUTLINE_CHECK_THROWS(reconnect(data, options), "marked");
       options.markedFacets = { { 0, 1, data.numberOfPoints() } };
-      TAUTLINE_CHECK_THROWS(reconnect(data, options), "does not have");
+      TAUTLINE_CHECK_THROWS(reconnect(data, options), wording("does-not-have"));
     }
   }
 }
@@ -360,16 +362,15 @@ void testMirrored()
 }
 }
 
-int TestReconnectionInputs(int, char*[])
+TAUTLINE_TEST(TestReconnectionInputs)
 {
-  testRefusals();
-  testOptions();
-  testSmall();
-  testNonManifold();
-  testRegionsAtPoint();
-  testMarkedFacets();
-  testThinPlate();
-  testDuplicatePoints();
-  testMirrored();
-  return exitCode();
+  TAUTLINE_RUN(testRefusals());
+  TAUTLINE_RUN(testOptions());
+  TAUTLINE_RUN(testSmall());
+  TAUTLINE_RUN(testNonManifold());
+  TAUTLINE_RUN(testRegionsAtPoint());
+  TAUTLINE_RUN(testMarkedFacets());
+  TAUTLINE_RUN(testThinPlate());
+  TAUTLINE_RUN(testDuplicatePoints());
+  TAUTLINE_RUN(testMirrored());
 }

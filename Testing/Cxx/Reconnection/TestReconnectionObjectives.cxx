@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity() for the worst values of a metric, and for the sum over all tetrahedra.
 
+#include "Registry.h"
 #include "Reconnecting.h"
 
 #include <cmath>
@@ -37,12 +38,13 @@ void testEveryMetric()
     if (!info.in3D || !info.definedOn(CellType::Tetrahedron))
     {
       TAUTLINE_CHECK_THROWS(
-        reconnect(data, metricOptions(info.metric)), "is not defined on tetrahedra");
+        reconnect(data, metricOptions(info.metric)), wording("is-not-defined-on-tetrahedra"));
       continue;
     }
     if (info.direction == Direction::Neutral || !info.rotationInvariant)
     {
-      TAUTLINE_CHECK_THROWS(reconnect(data, metricOptions(info.metric)), "choose another metric");
+      TAUTLINE_CHECK_THROWS(
+        reconnect(data, metricOptions(info.metric)), wording("choose-another-metric"));
       continue;
     }
     // Of these every valid tetrahedron has the value 0.
@@ -131,10 +133,9 @@ void testSum()
 }
 }
 
-int TestReconnectionObjectives(int, char*[])
+TAUTLINE_TEST(TestReconnectionObjectives)
 {
-  testEveryMetric();
-  testMetric();
-  testSum();
-  return exitCode();
+  TAUTLINE_RUN(testEveryMetric());
+  TAUTLINE_RUN(testMetric());
+  TAUTLINE_RUN(testSum());
 }

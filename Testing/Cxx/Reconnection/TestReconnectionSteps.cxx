@@ -2,7 +2,7 @@
 // 200,000 accepted operations on changing meshes, adjacency, orientation, area and volume checked
 // after each.
 
-#include "Check.h"
+#include "Registry.h"
 #include "ReconnectionSteps.h"
 
 #include "tautline/Core/Random.h"
@@ -39,11 +39,10 @@ void testOperations(const char* name, const Change& change)
 }
 }
 
-int TestReconnectionSteps(int, char*[])
+TAUTLINE_TEST(TestReconnectionSteps)
 {
-  testOperations("triangles", changeTriangles);
-  testOperations("tetrahedra", changeTetrahedra);
-  testOperations("sliding boundary", changeSliding);
-  testOperations("boundary on the surface", changeSurface);
-  return exitCode();
+  TAUTLINE_RUN(testOperations("triangles", changeTriangles));
+  TAUTLINE_RUN(testOperations("tetrahedra", changeTetrahedra));
+  TAUTLINE_RUN(testOperations("sliding boundary", changeSliding));
+  TAUTLINE_RUN(testOperations("boundary on the surface", changeSurface));
 }

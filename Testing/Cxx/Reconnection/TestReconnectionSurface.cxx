@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity() with a boundary that stays within a distance of that of the input.
 
+#include "Registry.h"
 #include "Reconnecting.h"
 
 #include <cmath>
@@ -256,19 +257,18 @@ void testOptions()
   const MeshData ball = roundMesh(3);
   ReconnectionOptions options = surfaceOptions();
   options.surfaceDistance = -1.0;
-  TAUTLINE_CHECK_THROWS(reconnect(ball, options), "surface distance must be 0 to 1");
+  TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("surface-distance-must-be-0-to-1"));
   options = surfaceOptions();
   options.featureAngle = 181.0;
-  TAUTLINE_CHECK_THROWS(reconnect(ball, options), "feature angle must be 0 to 180");
+  TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("feature-angle-must-be-0-to-180"));
 }
 }
 
-int TestReconnectionSurface(int, char*[])
+TAUTLINE_TEST(TestReconnectionSurface)
 {
-  testBall();
-  testCylinder();
-  testKept();
-  testThreads();
-  testOptions();
-  return exitCode();
+  TAUTLINE_RUN(testBall());
+  TAUTLINE_RUN(testCylinder());
+  TAUTLINE_RUN(testKept());
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testOptions());
 }

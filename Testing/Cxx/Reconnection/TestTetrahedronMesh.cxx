@@ -2,6 +2,7 @@
 // The changing tetrahedral mesh and its operations: small known cases, brute force, and thousands
 // of random operations with all invariants checked after each.
 
+#include "Registry.h"
 #include "Reconnecting.h"
 
 #include "tautline/Reconnection/CavityOperations.h"
@@ -439,13 +440,12 @@ void testRandomOperations(int wanted)
 }
 }
 
-int TestTetrahedronMesh(int, char*[])
+TAUTLINE_TEST(TestTetrahedronMesh)
 {
-  testOrientation();
-  testQuality();
-  testSmoothing();
-  testEdgeRemoval();
-  testFaceRemoval();
-  testRandomOperations(4000);
-  return exitCode();
+  TAUTLINE_RUN(testOrientation());
+  TAUTLINE_RUN(testQuality());
+  TAUTLINE_RUN(testSmoothing());
+  TAUTLINE_RUN(testEdgeRemoval());
+  TAUTLINE_RUN(testFaceRemoval());
+  TAUTLINE_RUN(testRandomOperations(4000));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveTriangles() of planar meshes: known optima, invariances, what is kept.
 
+#include "Registry.h"
 #include "Triangulating.h"
 
 #include <chrono>
@@ -495,19 +496,18 @@ void testLimits()
 }
 }
 
-int TestTriangleReconnection(int, char*[])
+TAUTLINE_TEST(TestTriangleReconnection)
 {
-  testDelaunay();
-  testPolygon();
-  testHexagon();
-  testPresets();
-  testInvariance();
-  testRegions();
-  testFlat();
-  testMean();
-  testCount();
-  testKept();
-  testForced();
-  testLimits();
-  return exitCode();
+  TAUTLINE_RUN(testDelaunay());
+  TAUTLINE_RUN(testPolygon());
+  TAUTLINE_RUN(testHexagon());
+  TAUTLINE_RUN(testPresets());
+  TAUTLINE_RUN(testInvariance());
+  TAUTLINE_RUN(testRegions());
+  TAUTLINE_RUN(testFlat());
+  TAUTLINE_RUN(testMean());
+  TAUTLINE_RUN(testCount());
+  TAUTLINE_RUN(testKept());
+  TAUTLINE_RUN(testForced());
+  TAUTLINE_RUN(testLimits());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveTriangles() of surfaces in space, and input that is hard to take.
 
+#include "Registry.h"
 #include "Triangulating.h"
 
 using namespace tautline;
@@ -378,14 +379,14 @@ void testRefusals()
 {
   const TriangleOptions defaults = triangleOptions(Preset::Aggressive);
   MeshData quads = blockMesh(CellType::Quadrilateral, 2, 2, 0);
-  TAUTLINE_CHECK_THROWS(reconnect(quads, defaults), "4 cells are not triangles");
+  TAUTLINE_CHECK_THROWS(reconnect(quads, defaults), wording("4-cells-are-not-triangles"));
   TAUTLINE_CHECK_THROWS(reconnect(quads, defaults), "Triangulate");
   MeshData inverted = blockMesh(CellType::Triangle, 2, 2, 0);
   inverted.setPoint(4, { 5, 1, 0 });
-  TAUTLINE_CHECK_THROWS(reconnect(inverted, defaults), "Untangle Mesh");
+  TAUTLINE_CHECK_THROWS(reconnect(inverted, defaults), wording("untangle-mesh"));
   MeshData broken = blockMesh(CellType::Triangle, 2, 2, 0);
   broken.points[0] = std::numeric_limits<double>::quiet_NaN();
-  TAUTLINE_CHECK_THROWS(reconnect(broken, defaults), "NaN or infinite");
+  TAUTLINE_CHECK_THROWS(reconnect(broken, defaults), wording("nan-or-infinite"));
   // Points that coincide within a cell, and the same triangle twice.
   MeshData twice = blockMesh(CellType::Triangle, 2, 2, 0);
   twice.setPoint(4, twice.point(1));
@@ -395,7 +396,7 @@ void testRefusals()
   TAUTLINE_CHECK_THROWS(reconnect(doubled, defaults), "overlapping");
   MeshData folded = cubeSurface(CellType::Triangle, 2);
   folded.setPoint(folded.connectivity[0], folded.point(folded.connectivity[1]));
-  TAUTLINE_CHECK_THROWS(reconnect(folded, defaults), "degenerate triangles: run Clean");
+  TAUTLINE_CHECK_THROWS(reconnect(folded, defaults), wording("degenerate-triangles-run-clean"));
   const auto refuses = [](auto change, const char* text)
   {
     TriangleOptions options;
@@ -443,16 +444,15 @@ void testScales()
 }
 }
 
-int TestTriangleSurfaces(int, char*[])
+TAUTLINE_TEST(TestTriangleSurfaces)
 {
-  testSphere();
-  testMean();
-  testCube();
-  testCylinder();
-  testFold();
-  testNonManifold();
-  testSmall();
-  testRefusals();
-  testScales();
-  return exitCode();
+  TAUTLINE_RUN(testSphere());
+  TAUTLINE_RUN(testMean());
+  TAUTLINE_RUN(testCube());
+  TAUTLINE_RUN(testCylinder());
+  TAUTLINE_RUN(testFold());
+  TAUTLINE_RUN(testNonManifold());
+  TAUTLINE_RUN(testSmall());
+  TAUTLINE_RUN(testRefusals());
+  TAUTLINE_RUN(testScales());
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveTriangles(): target lengths of edges, and overlaps for conservative transfer.
 
+#include "Registry.h"
 #include "Triangulating.h"
 
 #include <cmath>
@@ -126,7 +127,7 @@ void testMetrics()
   lengths[4] = 0.0;
   options.size = ReconnectionSize::Lengths;
   options.sizes = lengths.data();
-  TAUTLINE_CHECK_THROWS(reconnect(data, options), "1 target lengths of edges are not positive");
+  TAUTLINE_CHECK_THROWS(reconnect(data, options), wording("1-target-lengths-of-edges-are-not"));
 }
 
 /// Rows sum to 1; original cells are those that overlap most.
@@ -255,11 +256,10 @@ void testSurfaceOverlaps()
 }
 }
 
-int TestTriangleTransfer(int, char*[])
+TAUTLINE_TEST(TestTriangleTransfer)
 {
-  testSizes();
-  testMetrics();
-  testPlanarOverlaps();
-  testSurfaceOverlaps();
-  return exitCode();
+  TAUTLINE_RUN(testSizes());
+  TAUTLINE_RUN(testMetrics());
+  TAUTLINE_RUN(testPlanarOverlaps());
+  TAUTLINE_RUN(testSurfaceOverlaps());
 }

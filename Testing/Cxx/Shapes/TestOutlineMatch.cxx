@@ -2,7 +2,7 @@
 // Outlines: the same energy whatever the size, direction and mirroring; exact by comparison with a
 // program without bounds; a shape is nearest to itself; errors.
 
-#include "Check.h"
+#include "Registry.h"
 #include "Shapes.h"
 
 #include "tautline/Shapes/OutlineMatch.h"
@@ -142,24 +142,23 @@ void testErrors()
   const OutlineModel model = prepareOutline(shape, options);
   OutlineOptions wrong = options;
   wrong.spacing = std::nan("");
-  TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), "spacing from 0.01");
+  TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), wording("spacing-from-0-01"));
   wrong = options;
   wrong.stretch = 1.0;
-  TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), "stretch above 1");
+  TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), wording("stretch-above-1"));
   wrong = options;
   wrong.locations = 20;
-  TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), "locations or more");
+  TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), wording("locations-or-more"));
   wrong.locations = 80;
-  TAUTLINE_CHECK_THROWS(matchOutlines(model, model, wrong), "prepared with");
-  TAUTLINE_CHECK_THROWS(prepareOutline(Silhouette(), options), "no area");
+  TAUTLINE_CHECK_THROWS(matchOutlines(model, model, wrong), wording("prepared-with"));
+  TAUTLINE_CHECK_THROWS(prepareOutline(Silhouette(), options), wording("no-area"));
 }
 }
 
-int TestOutlineMatch(int, char*[])
+TAUTLINE_TEST(TestOutlineMatch)
 {
-  testInvariance();
-  testExact();
-  testTerms();
-  testErrors();
-  return exitCode();
+  TAUTLINE_RUN(testInvariance());
+  TAUTLINE_RUN(testExact());
+  TAUTLINE_RUN(testTerms());
+  TAUTLINE_RUN(testErrors());
 }

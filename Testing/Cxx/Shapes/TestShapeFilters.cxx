@@ -2,7 +2,7 @@
 // The filters of the module Shapes: the documented arrays and tables, images of all kinds, errors,
 // the reader.
 
-#include "Check.h"
+#include "Registry.h"
 #include "Shapes.h"
 
 #include "vtkCellData.h"
@@ -228,18 +228,19 @@ void testMatcher()
     fromMesh->SetTimeLimit(limit);
   }
   TAUTLINE_CHECK(!fromMesh->GetExact() && mesh->GetNumberOfCells() == before->GetNumberOfCells());
-  TAUTLINE_CHECK(std::string(fromMesh->GetSummary()).find("best so far") != std::string::npos);
+  TAUTLINE_CHECK(
+    std::string(fromMesh->GetSummary()).find(wording("best-so-far")) != std::string::npos);
   // Wrong input is named.
   vtkNew<vtkShapeMatcher> wrong;
   wrong->SetInputDataObject(0, source);
   wrong->SetTargetData(target);
   wrong->SetGridSize(1, 1);
-  TAUTLINE_CHECK(errorOf(wrong).find("too small") != std::string::npos);
+  TAUTLINE_CHECK(errorOf(wrong).find(wording("too-small")) != std::string::npos);
   vtkNew<vtkShapeMatcher> weights;
   weights->SetInputDataObject(0, source);
   weights->SetTargetData(target);
   weights->SetDistortionWeight(std::nan(""));
-  TAUTLINE_CHECK(errorOf(weights).find("distortion weight") != std::string::npos);
+  TAUTLINE_CHECK(errorOf(weights).find(wording("distortion-weight")) != std::string::npos);
   vtkNew<vtkUnstructuredGrid> loose;
   loose->DeepCopy(before);
   loose->GetPoints()->InsertNextPoint(0, 0, 3);
@@ -247,7 +248,7 @@ void testMatcher()
   vtkNew<vtkShapeMatcher> stray;
   stray->SetInputDataObject(0, loose);
   stray->SetTargetData(target);
-  TAUTLINE_CHECK(errorOf(stray).find("points inside") != std::string::npos);
+  TAUTLINE_CHECK(errorOf(stray).find(wording("points-inside")) != std::string::npos);
 }
 
 void writeImage(const std::filesystem::path& file, const Picture& picture)
@@ -374,23 +375,22 @@ void testRetrieval(const std::string& output)
     TAUTLINE_CHECK(errorOf(bad).find(part) != std::string::npos);
   };
   refused("", "empty");
-  refused("name,class\na,b\n", "bad.csv:1: no column 'file'");
-  refused("file,class\nnone.png,b\n", "bad.csv:2: there is no file 'none.png'");
-  refused("file,class\nblob0.png\n", "bad.csv:2: 1 fields");
+  refused("name,class\na,b\n", wording("bad-csv-1-no-column-file"));
+  refused("file,class\nnone.png,b\n", wording("bad-csv-2-there-is-no-file"));
+  refused("file,class\nblob0.png\n", wording("bad-csv-2-1-fields"));
   std::ofstream(folder / "images" / "text.png") << "no picture";
   refused("file,class\ntext.png,b\n", "text.png");
   vtkNew<vtkSilhouetteSetReader> missing;
   missing->SetFileName("nowhere.csv");
-  TAUTLINE_CHECK(errorOf(missing).find("no such file") != std::string::npos);
+  TAUTLINE_CHECK(errorOf(missing).find(wording("no-such-file")) != std::string::npos);
 }
 }
 
-int TestShapeFilters(int, char* argv[])
+TAUTLINE_TEST(TestShapeFilters)
 {
-  testMesher();
-  testCellPixels();
-  testMesherErrors();
-  testMatcher();
-  testRetrieval(argv[2]);
-  return exitCode();
+  TAUTLINE_RUN(testMesher());
+  TAUTLINE_RUN(testCellPixels());
+  TAUTLINE_RUN(testMesherErrors());
+  TAUTLINE_RUN(testMatcher());
+  TAUTLINE_RUN(testRetrieval(argv[2]));
 }

@@ -2,7 +2,7 @@
 // The energy's terms, the exact search against brute force and against the plain loop, invariances,
 // reliability.
 
-#include "Check.h"
+#include "Registry.h"
 #include "Shapes.h"
 
 #include "tautline/Shapes/ShapeMatch.h"
@@ -355,10 +355,10 @@ void testRefused()
   const Silhouette shape = traceSilhouette(disc(60, 30, 30, 20).view());
   LocationOptions one;
   one.columns = one.rows = 1;
-  TAUTLINE_CHECK_THROWS(ShapeTarget(shape, one), "too small");
+  TAUTLINE_CHECK_THROWS(ShapeTarget(shape, one), wording("too-small"));
   one.kind = Locations::Contour;
   one.contour = 2;
-  TAUTLINE_CHECK_THROWS(ShapeTarget(shape, one), "At least 3");
+  TAUTLINE_CHECK_THROWS(ShapeTarget(shape, one), wording("at-least-3-2"));
   const ShapeSource source = makeShapeSource(shape, 20.0);
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const ShapeTarget target(shape, {}, {});
@@ -366,13 +366,13 @@ void testRefused()
   {
     MatchOptions options;
     options.energy.deformation = bad;
-    TAUTLINE_CHECK_THROWS(matchShape(source, target, options), "deformation weight a");
+    TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("deformation-weight-a"));
     options = {};
     options.energy.distortion = bad;
-    TAUTLINE_CHECK_THROWS(matchShape(source, target, options), "distortion weight b");
+    TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("distortion-weight-b"));
     options = {};
     options.centreTolerance = bad;
-    TAUTLINE_CHECK_THROWS(matchShape(source, target, options), "centre tolerance");
+    TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("centre-tolerance"));
     ShapeEnergy energy;
     energy.lambda = bad;
     TAUTLINE_CHECK_THROWS(ShapeTarget(shape, {}, energy), "lambda");
@@ -382,11 +382,11 @@ void testRefused()
   }
   MatchOptions options;
   options.energy.lambda = 0.2;
-  TAUTLINE_CHECK_THROWS(matchShape(source, target, options), "prepared for another");
+  TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("prepared-for-another"));
   options = {};
   options.scales = 2;
-  TAUTLINE_CHECK_THROWS(matchShape(source, target, options), "odd number");
-  TAUTLINE_CHECK_THROWS(matchShape(ShapeSource(), target, {}), "no triangles");
+  TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("odd-number"));
+  TAUTLINE_CHECK_THROWS(matchShape(ShapeSource(), target, {}), wording("no-triangles"));
   LocationOptions huge;
   huge.columns = huge.rows = 300;
   TAUTLINE_CHECK_THROWS(ShapeTarget(shape, huge), "4 GiB");
@@ -421,17 +421,16 @@ void testOddTargets()
 }
 }
 
-int TestShapeMatch(int, char*[])
+TAUTLINE_TEST(TestShapeMatch)
 {
-  testTerms();
-  testEdgeCost();
-  testBruteForce();
-  testDescriptorWeight();
-  testPlainLoop();
-  testInvariance();
-  testCentreRule();
-  testThreadsAndStops();
-  testRefused();
-  testOddTargets();
-  return exitCode();
+  TAUTLINE_RUN(testTerms());
+  TAUTLINE_RUN(testEdgeCost());
+  TAUTLINE_RUN(testBruteForce());
+  TAUTLINE_RUN(testDescriptorWeight());
+  TAUTLINE_RUN(testPlainLoop());
+  TAUTLINE_RUN(testInvariance());
+  TAUTLINE_RUN(testCentreRule());
+  TAUTLINE_RUN(testThreadsAndStops());
+  TAUTLINE_RUN(testRefused());
+  TAUTLINE_RUN(testOddTargets());
 }

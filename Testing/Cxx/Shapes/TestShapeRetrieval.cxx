@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rankings and rates counted by hand; families of shapes are distinguished; threads, stops, errors.
 
-#include "Check.h"
+#include "Registry.h"
 #include "Shapes.h"
 #include "ThreadRanks.h"
 
@@ -81,23 +81,24 @@ void testFamilies()
   options.match.timeLimit = 0;
 
   options.outline.spacing = -1.0;
-  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), "Shape 0: Outlines need");
+  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("shape-0-outlines-need"));
   options = RetrievalOptions();
   options.locations.kind = Locations::Contour;
   options.spacing = -1.0;
-  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), "Shape 0: The spacing");
+  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("shape-0-the-spacing"));
   options.spacing = 15.0;
   options.match.energy.distortion = std::nan("");
-  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), "distortion weight");
+  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("distortion-weight"));
   options = RetrievalOptions::highest();
   options.complexity = 0.0;
-  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), "complexity must be above 0");
+  TAUTLINE_CHECK_THROWS(
+    retrieveShapes(shapes, labels, options), wording("complexity-must-be-above-0"));
   options.complexity = 0.3;
   options.shortlist = -1;
-  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), "at least 0");
-  TAUTLINE_CHECK_THROWS(rerank({ 0, 1, 1, 0 }, 2, 0), "at least 1 neighbour");
-  TAUTLINE_CHECK_THROWS(retrieveShapes({ shapes[0] }, { 0 }, {}), "At least 2");
-  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, { 0 }, {}), "label per shape");
+  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("at-least-0"));
+  TAUTLINE_CHECK_THROWS(rerank({ 0, 1, 1, 0 }, 2, 0), wording("at-least-1-neighbour"));
+  TAUTLINE_CHECK_THROWS(retrieveShapes({ shapes[0] }, { 0 }, {}), wording("at-least-2"));
+  TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, { 0 }, {}), wording("label-per-shape"));
 }
 
 /// Directions and lengths of the limbs of five animals.
@@ -279,15 +280,14 @@ void testRanks()
   runOn(1, [](RetrievalOptions& options, Shapes&) { options.match.timeLimit = 1e-9; });
   TAUTLINE_CHECK(stops == std::vector<MatchStop>(3, MatchStop::TimeLimit));
   TAUTLINE_CHECK_THROWS(runOn(1, [](RetrievalOptions&, Shapes& here) { here[3].outline.clear(); }),
-    "In process 1: Shape 3: ");
+    wording("in-process-1-shape-3"));
 }
 }
 
-int TestShapeRetrieval(int, char*[])
+TAUTLINE_TEST(TestShapeRetrieval)
 {
-  testCounting();
-  testFamilies();
-  testArticulation();
-  testRanks();
-  return exitCode();
+  TAUTLINE_RUN(testCounting());
+  TAUTLINE_RUN(testFamilies());
+  TAUTLINE_RUN(testArticulation());
+  TAUTLINE_RUN(testRanks());
 }

@@ -2,7 +2,7 @@
 // From images to outlines and polygons: known areas, sub-pixel places, what is ignored and what is
 // refused.
 
-#include "Check.h"
+#include "Registry.h"
 #include "Shapes.h"
 
 #include <limits>
@@ -120,38 +120,38 @@ void testExtremes()
   const ShapeSource large = makeShapeSource(traceSilhouette(huge.view()), 100.0);
   TAUTLINE_CHECK(large.mesh.points.size() > 60 && large.mesh.points.size() < 90);
   Picture single = paint(1, 1, [](double, double) { return 1.0; });
-  TAUTLINE_CHECK_THROWS(traceSilhouette(single.view()), "one value");
+  TAUTLINE_CHECK_THROWS(traceSilhouette(single.view()), wording("one-value"));
 }
 
 void testRefused()
 {
   TAUTLINE_CHECK_THROWS(traceSilhouette(ImageView{}), "empty");
   Picture white = paint(10, 10, [](double, double) { return 1.0; });
-  TAUTLINE_CHECK_THROWS(traceSilhouette(white.view()), "one value");
+  TAUTLINE_CHECK_THROWS(traceSilhouette(white.view()), wording("one-value"));
   Picture picture = disc(40, 20, 20, 10);
-  TAUTLINE_CHECK_THROWS(traceSilhouette(picture.view(), { 300.0, Foreground::Bright }), "No pixel");
   TAUTLINE_CHECK_THROWS(
-    traceSilhouette(picture.view(), { 300.0, Foreground::Dark }), "Every pixel");
+    traceSilhouette(picture.view(), { 300.0, Foreground::Bright }), wording("no-pixel"));
+  TAUTLINE_CHECK_THROWS(
+    traceSilhouette(picture.view(), { 300.0, Foreground::Dark }), wording("every-pixel"));
   TAUTLINE_CHECK_THROWS(traceSilhouette(picture.view(),
                           { std::numeric_limits<double>::infinity(), Foreground::Bright }),
-    "not finite");
+    wording("not-finite"));
   const Silhouette shape = traceSilhouette(picture.view());
   for (double spacing : { 0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity() })
   {
     TAUTLINE_CHECK_THROWS(approximateOutline(shape.outline, spacing), "spacing");
   }
-  TAUTLINE_CHECK_THROWS(approximateOutline({ { 0, 0 }, { 1, 0 } }, 1.0), "no area");
+  TAUTLINE_CHECK_THROWS(approximateOutline({ { 0, 0 }, { 1, 0 } }, 1.0), wording("no-area"));
   picture.at(3, 3) = std::nanf("");
-  TAUTLINE_CHECK_THROWS(traceSilhouette(picture.view()), "not finite");
+  TAUTLINE_CHECK_THROWS(traceSilhouette(picture.view()), wording("not-finite"));
 }
 }
 
-int TestSilhouette(int, char*[])
+TAUTLINE_TEST(TestSilhouette)
 {
-  testDisc();
-  testSubPixel();
-  testPolarityAndComponents();
-  testExtremes();
-  testRefused();
-  return exitCode();
+  TAUTLINE_RUN(testDisc());
+  TAUTLINE_RUN(testSubPixel());
+  TAUTLINE_RUN(testPolarityAndComponents());
+  TAUTLINE_RUN(testExtremes());
+  TAUTLINE_RUN(testRefused());
 }

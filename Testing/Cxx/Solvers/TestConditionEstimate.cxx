@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Extreme eigenvalues and condition numbers of A and of P^-1 A: known values, dense eigenvalues,
 // bounds that hold, limits and matrices that have no condition number.
-#include "Check.h"
+#include "Registry.h"
 #include "Systems.h"
 
 #include "tautline/Elliptic/ElementContributions.h"
@@ -401,7 +401,7 @@ void testTrouble()
     TAUTLINE_CHECK(singular.largest > 0.0);
     const ConditionEstimate indefinite = estimateCondition(systemOf(shifted), options);
     TAUTLINE_CHECK_EQUAL(indefinite.condition, 0.0);
-    TAUTLINE_CHECK(indefinite.message.find("not positive definite") != std::string::npos);
+    TAUTLINE_CHECK(indefinite.message.find(wording("not-positive-definite")) != std::string::npos);
     const double by = preconditioner == Preconditioner::Jacobi ? 3.0 : 1.0;
     TAUTLINE_CHECK_RELATIVE(indefinite.smallest, (laplacianEigenvalue(n, 1, 1) - 1.0) / by, 1e-6);
     TAUTLINE_CHECK_RELATIVE(indefinite.largest, (laplacianEigenvalue(n, n, n) - 1.0) / by, 1e-6);
@@ -411,13 +411,14 @@ void testTrouble()
   ConditionOptions options;
   const SparseMatrix deep = laplacian(n, 1.0, -2.3);
   options.preconditioner = Preconditioner::ILU;
-  TAUTLINE_CHECK(estimateCondition(systemOf(deep), options).message.find("not positive definite") !=
+  TAUTLINE_CHECK(
+    estimateCondition(systemOf(deep), options).message.find(wording("not-positive-definite")) !=
     std::string::npos);
   const SparseMatrix a = laplacian(40);
   options.preconditioner = Preconditioner::SSOR;
   options.petscOptions = "-pc_sor_local_forward";
-  TAUTLINE_CHECK(
-    estimateCondition(systemOf(a), options).message.find("not symmetric") != std::string::npos);
+  TAUTLINE_CHECK(estimateCondition(systemOf(a), options).message.find(wording("not-symmetric")) !=
+    std::string::npos);
   SparseMatrix hole = laplacian(n);
   for (Index k = hole.offsets[30]; k < hole.offsets[31]; ++k)
   {
@@ -451,18 +452,18 @@ void testTrouble()
     limited.progress = {};
     limited.maximumSeconds = 1e-6;
     const ConditionEstimate late = estimateCondition(systemOf(large), limited);
-    TAUTLINE_CHECK(late.message.find("time limit") != std::string::npos);
+    TAUTLINE_CHECK(late.message.find(wording("time-limit")) != std::string::npos);
     TAUTLINE_CHECK(!late.converged);
     limited.maximumSeconds = 0.0;
     limited.progress = [](double) -> bool { throw std::runtime_error("from progress"); };
-    TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(large), limited), "from progress");
+    TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(large), limited), wording("from-progress"));
   }
   options = {};
   options.preconditioner = Preconditioner::Jacobi;
   options.petscOptions = "-pc_jacobi_type diagonal"; // by Lanczos
   options.maximumIterations = 10;
   const ConditionEstimate few = estimateCondition(systemOf(a), options);
-  TAUTLINE_CHECK(!few.converged && few.message.find("Not converged") != std::string::npos);
+  TAUTLINE_CHECK(!few.converged && few.message.find(wording("not-converged")) != std::string::npos);
   TAUTLINE_CHECK(few.smallest >= laplacianEigenvalue(40, 1, 1) / 4 && few.smallestError > 1e-3);
 
   options = {};
@@ -475,17 +476,16 @@ void testTrouble()
   unsymmetric.symmetric = false;
   TAUTLINE_CHECK_THROWS(estimateCondition(unsymmetric, {}), "symmetric");
   const SparseMatrix none;
-  TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(none), {}), "no unknowns");
+  TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(none), {}), wording("no-unknowns"));
 }
 }
 
-int TestConditionEstimate(int, char*[])
+TAUTLINE_TEST(TestConditionEstimate)
 {
-  testKnownValues();
+  TAUTLINE_RUN(testKnownValues());
   const SparseMatrix a = laplacian(14);
-  testDense(systemOf(a), 1e-6);
-  testFormulas();
-  testEquations();
-  testTrouble();
-  return exitCode();
+  TAUTLINE_RUN(testDense(systemOf(a), 1e-6));
+  TAUTLINE_RUN(testFormulas());
+  TAUTLINE_RUN(testEquations());
+  TAUTLINE_RUN(testTrouble());
 }

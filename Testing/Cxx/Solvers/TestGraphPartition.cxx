@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // PT-Scotch divides the graph of the cells: parts of about equal size with a short border.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "tautline/Solvers/GraphPartition.h"
 
 #include <map>
@@ -55,12 +55,12 @@ void testParts(CellType type, int parts)
 }
 
 //------------------------------------------------------------------------------
-int TestGraphPartition(int, char*[])
+TAUTLINE_TEST(TestGraphPartition)
 {
-  testParts(CellType::Quadrilateral, 2);
-  testParts(CellType::Triangle, 2);
-  testParts(CellType::Tetrahedron, 7);
-  testParts(CellType::Hexahedron, 4);
+  TAUTLINE_RUN(testParts(CellType::Quadrilateral, 2));
+  TAUTLINE_RUN(testParts(CellType::Triangle, 2));
+  TAUTLINE_RUN(testParts(CellType::Tetrahedron, 7));
+  TAUTLINE_RUN(testParts(CellType::Hexahedron, 4));
   const MeshData data = blockMesh(CellType::Quadrilateral, 2, 2, 0);
   const Mesh mesh(data.view());
   TAUTLINE_CHECK(partitionGraph(mesh, 1) == std::vector<int>(4, 0));
@@ -73,8 +73,8 @@ int TestGraphPartition(int, char*[])
     }
     catch (const Error& error)
     {
-      TAUTLINE_CHECK(std::string(error.what()).find("A mesh of 4 cells") != std::string::npos);
+      TAUTLINE_CHECK(
+        std::string(error.what()).find(wording("a-mesh-of-4-cells")) != std::string::npos);
     }
   }
-  return exitCode();
 }

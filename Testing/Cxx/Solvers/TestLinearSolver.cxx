@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Linear systems through PETSc: every method with every preconditioner against a direct solve, why
 // a solve fails, options and their databases, limits, reuse, and whatever is refused.
-#include "Check.h"
+#include "Registry.h"
 #include "Systems.h"
 
 #include "tautline/Elliptic/EllipticSystem.h"
@@ -281,7 +281,7 @@ void testOptions()
   { TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), text); };
   SolverOptions wrong;
   wrong.omega = 2.0;
-  refuse(wrong, "between 0 and 2");
+  refuse(wrong, wording("between-0-and-2"));
   wrong = {};
   wrong.relativeTolerance = -1.0;
   refuse(wrong, "tolerance");
@@ -334,7 +334,7 @@ void testControls()
   TAUTLINE_CHECK_EQUAL(stopped.solution.iterations, 7);
   TAUTLINE_CHECK(relativeResidual(a, stopped.x, b) < 2.0);
   options.observer = [](int, double) -> bool { throw std::runtime_error("from the observer"); };
-  TAUTLINE_CHECK_THROWS(solved(systemOf(a), options, b), "from the observer");
+  TAUTLINE_CHECK_THROWS(solved(systemOf(a), options, b), wording("from-the-observer"));
   options.observer = [](int, double)
   {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -599,17 +599,17 @@ void testFastMultigrid()
 void testRefused()
 {
   const SparseMatrix none;
-  TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(none), {}), "no unknowns");
-  TAUTLINE_CHECK_THROWS(LinearSolver(LinearSystem(), {}), "no unknowns");
+  TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(none), {}), wording("no-unknowns"));
+  TAUTLINE_CHECK_THROWS(LinearSolver(LinearSystem(), {}), wording("no-unknowns"));
   SparseMatrix a = laplacian(5);
   a.values[17] = std::numeric_limits<double>::quiet_NaN();
-  TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(a), {}), "not finite");
+  TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(a), {}), wording("not-finite"));
   a = laplacian(5);
   LinearSystem blocks = systemOf(a);
   blocks.blockSize = 3;
-  TAUTLINE_CHECK_THROWS(LinearSolver(blocks, {}), "block size 3");
+  TAUTLINE_CHECK_THROWS(LinearSolver(blocks, {}), wording("block-size-3"));
   a.values.pop_back();
-  TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(a), {}), "not complete");
+  TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(a), {}), wording("not-complete"));
 
   // One unknown.
   SparseMatrix one;
@@ -635,18 +635,17 @@ void testRefused()
 }
 }
 
-int TestLinearSolver(int, char*[])
+TAUTLINE_TEST(TestLinearSolver)
 {
-  testAllPairs();
-  testOtherMatrices();
-  testSingular();
-  testOptions();
-  testControls();
-  testStranger();
-  testTogether();
-  testUnchanged();
-  testRigidBodyModes();
-  testFastMultigrid();
-  testRefused();
-  return exitCode();
+  TAUTLINE_RUN(testAllPairs());
+  TAUTLINE_RUN(testOtherMatrices());
+  TAUTLINE_RUN(testSingular());
+  TAUTLINE_RUN(testOptions());
+  TAUTLINE_RUN(testControls());
+  TAUTLINE_RUN(testStranger());
+  TAUTLINE_RUN(testTogether());
+  TAUTLINE_RUN(testUnchanged());
+  TAUTLINE_RUN(testRigidBodyModes());
+  TAUTLINE_RUN(testFastMultigrid());
+  TAUTLINE_RUN(testRefused());
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Linear solvers as guests of a program that uses PETSc itself: it initializes PETSc first, with
 // arguments, options and an error handler, ends it while solvers exist, and ends MPI.
-#include "Check.h"
+#include "Registry.h"
 #include "Sanitized.h"
 #include "Systems.h"
 
@@ -48,7 +48,7 @@ PetscErrorCode hostsHandler(
 }
 }
 
-int TestPetscGuest(int, char*[])
+TAUTLINE_TEST(TestPetscGuest)
 {
   MPI_Init(nullptr, nullptr);
   char name[] = "host", option[] = "-ksp_type", value[] = "gmres", other[] = "-pc_type",
@@ -62,10 +62,10 @@ int TestPetscGuest(int, char*[])
   KSPCreate(PETSC_COMM_WORLD, &before);
 
   const std::vector<double> x = solved();
-  checkCondition();
+  TAUTLINE_RUN(checkCondition());
   SolverOptions wrong;
   wrong.petscOptions = "-ksp_type none of these";
-  TAUTLINE_CHECK_THROWS(LinearSolver(theSystem(), wrong), "none of these");
+  TAUTLINE_CHECK_THROWS(LinearSolver(theSystem(), wrong), wording("none-of-these"));
   TAUTLINE_CHECK_EQUAL(errors, 0);
 
   // The host's solvers keep their options.
@@ -95,10 +95,10 @@ int TestPetscGuest(int, char*[])
   PetscPopErrorHandler();
   PetscFinalize();
   std::vector<double> y(x.size());
-  TAUTLINE_CHECK_THROWS(old->solve(x.data(), y.data()), "shut down PETSc");
+  TAUTLINE_CHECK_THROWS(old->solve(x.data(), y.data()), wording("shut-down-petsc"));
   TAUTLINE_CHECK(solved() == x);
-  checkCondition();
-  TAUTLINE_CHECK_THROWS(old->setUp(), "shut down PETSc");
+  TAUTLINE_RUN(checkCondition());
+  TAUTLINE_CHECK_THROWS(old->setUp(), wording("shut-down-petsc"));
   old.reset();
   TAUTLINE_CHECK(solved() == x);
 
@@ -109,8 +109,7 @@ int TestPetscGuest(int, char*[])
     last = std::make_unique<LinearSolver>(theSystem(), SolverOptions());
   }
   MPI_Finalize();
-  TAUTLINE_CHECK_THROWS(solved(), "MPI has been shut down");
-  TAUTLINE_CHECK_THROWS(estimateCondition(theSystem(), {}), "MPI has been shut down");
+  TAUTLINE_CHECK_THROWS(solved(), wording("mpi-has-been-shut-down"));
+  TAUTLINE_CHECK_THROWS(estimateCondition(theSystem(), {}), wording("mpi-has-been-shut-down"));
   last.reset();
-  return exitCode();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // PETSc options given as text: what is permitted, what is refused before PETSc sees it, files that
 // nothing reads or writes, and every method and preconditioner that this PETSc has.
-#include "Check.h"
+#include "Registry.h"
 #include "Systems.h"
 
 #include "tautline/Solvers/ConditionEstimate.h"
@@ -89,12 +89,12 @@ void testRefused()
     const Context context(option);
     const std::string error = errorOf(option, a);
     TAUTLINE_CHECK(contains(error, option.substr(0, option.find(' '))));
-    TAUTLINE_CHECK(contains(error, "not permitted"));
+    TAUTLINE_CHECK(contains(error, wording("not-permitted")));
     TAUTLINE_CHECK(contains(error, "-ksp_..."));
     // The condition estimate reads the same options.
     ConditionOptions condition;
     condition.petscOptions = option;
-    TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(a), condition), "not permitted");
+    TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(a), condition), wording("not-permitted"));
   }
   TAUTLINE_CHECK(!exists(file));
 
@@ -112,10 +112,10 @@ void testRefused()
     const Context context(option);
     const std::string error = errorOf(option, a);
     TAUTLINE_CHECK(contains(error, option.substr(0, option.find(' '))));
-    TAUTLINE_CHECK(contains(error, "possible is"));
+    TAUTLINE_CHECK(contains(error, wording("possible-is")));
   }
   TAUTLINE_CHECK(contains(errorOf("-pc_type python", a), "jacobi"));
-  TAUTLINE_CHECK(contains(errorOf("-ksp_rtoll 1e-3", a), "Did you mean -ksp_rtol"));
+  TAUTLINE_CHECK(contains(errorOf("-ksp_rtoll 1e-3", a), wording("did-you-mean-ksp-rtol")));
   TAUTLINE_CHECK(contains(errorOf("-ksp_gmres_rstart 5", a), "-ksp_gmres_restart"));
   TAUTLINE_CHECK(contains(errorOf("-pc_sor_nonsense_at_all 1", a), "-pc_sor_omega"));
 
@@ -202,7 +202,7 @@ Outcome attempt(
   catch (const Error& error)
   {
     TAUTLINE_CHECK(contains(error.what(), of));
-    return contains(error.what(), "possible is") ? Outcome::Refused : Outcome::Failed;
+    return contains(error.what(), wording("possible-is")) ? Outcome::Refused : Outcome::Failed;
   }
   for (const double value : x)
   {
@@ -335,8 +335,8 @@ void testFieldSplit()
   system.blockSize = 2;
   TAUTLINE_CHECK(attempt(system, text, {}, "-pc_type") == Outcome::Solved);
   const std::string error = errorOf("-pc_type fieldsplit", a);
-  TAUTLINE_CHECK(contains(error, "one unknown per point"));
-  TAUTLINE_CHECK(contains(error, "-pc_type fieldsplit"));
+  TAUTLINE_CHECK(contains(error, wording("one-unknown-per-point")));
+  TAUTLINE_CHECK(contains(error, wording("pc-type-fieldsplit")));
   for (const char* refused : { "-fieldsplit_0_pc_view ascii:x", "-fieldsplit_0_pc_type python",
          "-pc_fieldsplit_block_size 3", "-pc_fieldsplit_type schur" })
   {
@@ -362,7 +362,7 @@ void testFalseConvergence()
     LinearSolver solver(systemOf(a), options);
     const LinearSolution solution = solver.solve(b.data(), x.data());
     // Without a norm, the limit of iterations is all that ends the method.
-    const bool limited = contains(text, "norm_type none");
+    const bool limited = contains(text, wording("norm-type-none"));
     TAUTLINE_CHECK(
       solution.reason == (limited ? SolveReason::IterationLimit : SolveReason::FalseConvergence));
     TAUTLINE_CHECK(limited || contains(solution.message, "residual"));
@@ -431,15 +431,14 @@ void testResidualsOfFailures()
 }
 }
 
-int TestPetscOptions(int argc, char* argv[])
+TAUTLINE_TEST(TestPetscOptions)
 {
-  directory = argc > 2 ? argv[2] : ".";
-  testSurroundings(); // before PETSc is initialized
-  testRefused();
-  testEveryType();
-  testFieldSplit();
-  testWording();
-  testFalseConvergence();
-  testResidualsOfFailures();
-  return exitCode();
+  directory = argv[2];
+  TAUTLINE_RUN(testSurroundings()); // before PETSc is initialized
+  TAUTLINE_RUN(testRefused());
+  TAUTLINE_RUN(testEveryType());
+  TAUTLINE_RUN(testFieldSplit());
+  TAUTLINE_RUN(testWording());
+  TAUTLINE_RUN(testFalseConvergence());
+  TAUTLINE_RUN(testResidualsOfFailures());
 }

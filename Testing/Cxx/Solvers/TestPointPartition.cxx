@@ -2,7 +2,7 @@
 // PT-Scotch divides the points of a mesh on MPI ranks: about as much work for each, short borders,
 // and owners that the ranks agree about.
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
 #include "ThreadRanks.h"
@@ -130,12 +130,12 @@ void testLimits(RankGroup& group, Communicator communicator)
   }
   const std::vector<int> wrong(part.data.numberOfPoints(), group.size());
   piece.owners = wrong.data();
-  TAUTLINE_CHECK_THROWS(DistributedMesh(group, piece), "shall be owned by rank");
+  TAUTLINE_CHECK_THROWS(DistributedMesh(group, piece), wording("shall-be-owned-by-rank"));
 }
 }
 
 //------------------------------------------------------------------------------
-int TestPointPartition(int argc, char* argv[])
+TAUTLINE_TEST(TestPointPartition)
 {
   vtkNew<vtkMPIController> controller;
   controller->Initialize(&argc, &argv);
@@ -145,13 +145,12 @@ int TestPointPartition(int argc, char* argv[])
     const Communicator communicator = Processes().communicator();
     for (const Cut cut : { Cut::FirstOnly, Cut::Slabs, Cut::Random })
     {
-      testDivision(*group, communicator, CellType::Tetrahedron, cut);
-      testDivision(*group, communicator, CellType::Quadrilateral, cut);
+      TAUTLINE_RUN(testDivision(*group, communicator, CellType::Tetrahedron, cut));
+      TAUTLINE_RUN(testDivision(*group, communicator, CellType::Quadrilateral, cut));
     }
-    testDivision(*group, communicator, CellType::Hexahedron, Cut::Random);
-    testLimits(*group, communicator);
+    TAUTLINE_RUN(testDivision(*group, communicator, CellType::Hexahedron, Cut::Random));
+    TAUTLINE_RUN(testLimits(*group, communicator));
   }
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
-  return exitCode();
 }

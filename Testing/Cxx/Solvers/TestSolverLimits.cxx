@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Time limits and cancelling of work that cannot be interrupted: the watchdog itself, and set-ups
 // and factorizations that are given up. The process ends while one is still running.
-#include "Check.h"
+#include "Registry.h"
 #include "Systems.h"
 
 #include "tautline/Core/Stopwatch.h"
@@ -76,7 +76,8 @@ void testWatchdog()
 
   // Exceptions, of the work and of a call, which the work may catch.
   TAUTLINE_CHECK_THROWS(
-    runWatched([](WatchedWork&) { throw std::runtime_error("of the work"); }, {}), "of the work");
+    runWatched([](WatchedWork&) { throw std::runtime_error("of the work"); }, {}),
+    wording("of-the-work"));
   bool caught = false;
   runWatched(
     [&caught](WatchedWork& work)
@@ -162,7 +163,7 @@ void testWatchdog()
   // What the cancelling function throws ends the waiting.
   TAUTLINE_CHECK_THROWS(runWatched([](WatchedWork&) { sleepFor(0.4); },
                           { 0.0, []() -> bool { throw std::runtime_error("of the user"); } }),
-    "of the user");
+    wording("of-the-user"));
 
   // Several threads at once.
   std::atomic<int> sum{ 0 };
@@ -263,7 +264,8 @@ void testSetUps()
     }
     catch (const Error& error)
     {
-      TAUTLINE_CHECK(std::string(error.what()).find("still occupies") != std::string::npos);
+      TAUTLINE_CHECK(
+        std::string(error.what()).find(wording("still-occupies")) != std::string::npos);
     }
     TAUTLINE_CHECK(time.seconds() < 3.0);
   }
@@ -288,7 +290,7 @@ void testCondition()
   const ConditionEstimate estimate = estimateCondition(systemOf(a), options);
   TAUTLINE_CHECK(!estimate.converged);
   TAUTLINE_CHECK(time.seconds() < 3.0);
-  TAUTLINE_CHECK(estimate.message.find("time limit") != std::string::npos);
+  TAUTLINE_CHECK(estimate.message.find(wording("time-limit")) != std::string::npos);
   checkSolves();
   int calls = 0;
   options.maximumSeconds = 0.0;
@@ -359,12 +361,11 @@ void leaveRunning()
 }
 }
 
-int TestSolverLimits(int, char*[])
+TAUTLINE_TEST(TestSolverLimits)
 {
-  testWatchdog();
-  testSame();
-  testSetUps();
-  testCondition();
+  TAUTLINE_RUN(testWatchdog());
+  TAUTLINE_RUN(testSame());
+  TAUTLINE_RUN(testSetUps());
+  TAUTLINE_RUN(testCondition());
   leaveRunning();
-  return exitCode();
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Untangle Mesh: valid, or a report of which elements remain, where and why.
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Perturbation/Perturb.h"
@@ -74,7 +74,7 @@ void testValid()
     TAUTLINE_CHECK_EQUAL(filter->GetInvertedBefore(), invalidOf(data));
     TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
     TAUTLINE_CHECK_EQUAL(filter->GetImpossible(), 0);
-    TAUTLINE_CHECK(contains(filter->GetSummary(), "All elements are valid; "));
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("all-elements-are-valid")));
     TAUTLINE_CHECK(messages.empty());
     vtkTable* history = filter->GetHistory();
     TAUTLINE_CHECK_EQUAL(history->GetNumberOfRows(), Index(expected.history.size()));
@@ -96,7 +96,7 @@ void testValid()
     filter->SetInputData(toGrid(valid));
     filter->Update();
     TAUTLINE_CHECK(withPointsOf(valid, meshOf(filter)).points == valid.points);
-    TAUTLINE_CHECK(contains(filter->GetSummary(), "All elements are valid; 0 were not."));
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("all-elements-are-valid-0-were-not")));
   }
 }
 
@@ -131,8 +131,8 @@ void testImpossible()
       validity[i] == Valid ? 0 : int(Obstacle::FixedElement));
   }
   TAUTLINE_CHECK(contains(filter->GetSummary(), "Element " + std::to_string(first) + " at ("));
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "all its points are fixed"));
-  TAUTLINE_CHECK(messages.has("because of fixed points"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("all-its-points-are-fixed")));
+  TAUTLINE_CHECK(messages.has(wording("because-of-fixed-points")));
 
   // Freed but for the one point, the others cannot follow: or they can, and all is valid.
   all->Fill(0);
@@ -169,14 +169,14 @@ void testInputs()
   vtkNew<vtkUnstructuredGrid> empty;
   filter->SetInputData(empty);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The input has no cells"));
+  TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), 0);
   vtkNew<vtkImageData> image;
   image->SetDimensions(3, 3, 3);
   filter->SetInputData(image);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("Image Data to Point Set"));
+  TAUTLINE_CHECK(messages.has(wording("image-data-to-point-set")));
   messages.clear();
 
   // More than half of the elements are inverted: tangled, not reversed, as the boundary shows.
@@ -203,9 +203,9 @@ void testInputs()
   broken.points[0] = std::numeric_limits<double>::quiet_NaN();
   filter->SetInputData(toGrid(broken));
   filter->Update();
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "2 elements are not valid"));
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "NaN or infinite"));
-  TAUTLINE_CHECK(messages.has("2 elements are not valid"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("2-elements-are-not-valid")));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("nan-or-infinite")));
+  TAUTLINE_CHECK(messages.has(wording("2-elements-are-not-valid")));
   TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Obstacle", 0), 4);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
 
@@ -223,7 +223,7 @@ void testInputs()
     TAUTLINE_CHECK_EQUAL(block->GetPoints()->GetDataType(), i == 0 ? VTK_FLOAT : VTK_DOUBLE);
   }
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
-  TAUTLINE_CHECK(contains(filter->GetSummary(), "In block 2: All elements are valid"));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("in-block-2-all-elements-are-valid")));
 }
 
 /// A part, then all of the inner points anywhere: valid, or each element left has its reason.
@@ -290,7 +290,7 @@ void testStops()
   messages.clear();
   filter->SetTimeLimit(1e-9);
   filter->Update();
-  TAUTLINE_CHECK(messages.has("The time limit of 1e-09 s is reached"));
+  TAUTLINE_CHECK(messages.has(wording("the-time-limit-of-1e-09-s")));
   filter->SetTimeLimit(0);
   std::vector<double> first;
   for (int threads : { 1, 2, 4 })
@@ -306,12 +306,11 @@ void testStops()
 }
 
 //------------------------------------------------------------------------------
-int TestMeshUntangler(int, char*[])
+TAUTLINE_TEST(TestMeshUntangler)
 {
-  testValid();
-  testImpossible();
-  testInputs();
-  testRandom();
-  testStops();
-  return exitCode();
+  TAUTLINE_RUN(testValid());
+  TAUTLINE_RUN(testImpossible());
+  TAUTLINE_RUN(testInputs());
+  TAUTLINE_RUN(testRandom());
+  TAUTLINE_RUN(testStops());
 }

@@ -5,7 +5,7 @@
  */
 
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 
 #include "tautline/Perturbation/Perturb.h"
 #include "tautline/Quality/Metrics.h"
@@ -145,10 +145,9 @@ void testLimits()
 }
 }
 
-int TestSimultaneous(int, char*[])
+TAUTLINE_TEST(TestSimultaneous)
 {
-  testHexagon();
-  testTangledMeshes();
-  testLimits();
-  return exitCode();
+  TAUTLINE_RUN(testHexagon());
+  TAUTLINE_RUN(testTangledMeshes());
+  TAUTLINE_RUN(testLimits());
 }

@@ -6,7 +6,7 @@
  */
 
 #include "Blocks.h"
-#include "Check.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 
 #include "tautline/Core/Interruption.h"
@@ -29,7 +29,6 @@ using namespace tautline;
 
 namespace
 {
-constexpr int Skipped = 77; // exit code, see CMakeLists.txt
 
 bool isFlat(CellType type)
 {
@@ -653,40 +652,24 @@ void testLinearPrograms()
 }
 }
 
-int TestUntangle(int argc, char* argv[])
+TAUTLINE_TEST(TestUntangle)
 {
-  if (argc > 3 && argv[3] == std::string("files"))
-  {
-    // Meshes that are not part of the repository.
-    const char* data = std::getenv("TAUTLINE_TEST_DATA");
-    const std::string directory = std::string(data ? data : "") + "/tangled";
-    if (!data || !std::filesystem::is_directory(directory))
-    {
-      std::cout << (data ? "There is no " + directory : "TAUTLINE_TEST_DATA is not set.") << "\n";
-      return Skipped;
-    }
-    testFiles(directory);
-    return exitCode();
-  }
-  const auto timed = [](const char* name, auto&& test)
-  {
-    const auto start = std::chrono::steady_clock::now();
-    test();
-    std::cout << name << ": "
-              << std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()
-              << " s\n";
-  };
-  timed("linear programs", testLinearPrograms);
-  timed("cell types", testCellTypes);
-  timed("newly invalid", testNewlyInvalid);
-  timed("turned holes", testTurnedHoles);
-  timed("locality", testLocality);
-  timed("frames", testFrames);
-  timed("threads", testThreads);
-  timed("obstacles", testObstacles);
-  timed("degenerate", testDegenerate);
-  timed("limits", testLimits);
-  timed("limit within a sweep", testTimeLimitWithinSweep);
-  timed("surface", testSurface);
-  return exitCode();
+  TAUTLINE_RUN(testLinearPrograms());
+  TAUTLINE_RUN(testCellTypes());
+  TAUTLINE_RUN(testNewlyInvalid());
+  TAUTLINE_RUN(testTurnedHoles());
+  TAUTLINE_RUN(testLocality());
+  TAUTLINE_RUN(testFrames());
+  TAUTLINE_RUN(testThreads());
+  TAUTLINE_RUN(testObstacles());
+  TAUTLINE_RUN(testDegenerate());
+  TAUTLINE_RUN(testLimits());
+  TAUTLINE_RUN(testTimeLimitWithinSweep());
+  TAUTLINE_RUN(testSurface());
+}
+
+// Meshes that are not part of the repository.
+TAUTLINE_TEST(TestUntangleFiles)
+{
+  testFiles(externalData("tangled"));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Untangling on ranks: what fails on one rank only is an error on all of them, and none waits.
+#include "Registry.h"
 #include "Optimization/OptimizingOnRanks.h"
 #include "tautline/Core/Memory.h"
 
@@ -140,17 +141,16 @@ void testMemory()
       tooFew);
   for (const std::string& message : messages)
   {
-    TAUTLINE_CHECK(message.find("choose the Effort Local") != std::string::npos);
+    TAUTLINE_CHECK(message.find(wording("choose-the-effort-local")) != std::string::npos);
   }
 }
 }
 
 //------------------------------------------------------------------------------
-int TestUntangleOnRanks(int, char*[])
+TAUTLINE_TEST(TestUntangleOnRanks)
 {
-  testFailures();
-  testNotFinite();
-  testBrokenLater();
-  testMemory();
-  return exitCode();
+  TAUTLINE_RUN(testFailures());
+  TAUTLINE_RUN(testNotFinite());
+  TAUTLINE_RUN(testBrokenLater());
+  TAUTLINE_RUN(testMemory());
 }
