@@ -19,7 +19,8 @@ from ._files import check_input, check_target, file_name, require_memory
 from ._formats import FORMATS, Format
 from ._groups import Groups, with_groups
 from ._interrupts import Progress, updating
-from ._legacy import check_counts, check_references, scan_legacy
+from ._grid_checks import check_grid, writable
+from ._legacy import check_counts, scan_legacy
 from ._mesh import from_arrays
 from ._meshio import MESHIO_FORMATS, PACKAGE, from_meshio, installed, is_meshio, meshio_of, read_meshio, write_meshio
 from ._surfaces import check_surface
@@ -101,6 +102,14 @@ def read(
     >>> mesh = tautline.read("part.msh", lower_cells=True)
     """
     name = file_name(file)
+    mesh = _read(name, options)
+    for leaf in leaves(mesh):
+        check_grid(leaf, name)
+    return mesh
+
+
+def _read(name: str, options: dict[str, Any]) -> vtkDataObject:
+    """Read a file with the reader of its format, which may return cells and arrays that do not fit each other."""
     ending = Path(name).suffix.lower()
     time = options.pop("time", None)
     if ending not in FORMATS or not FORMATS[ending].reader:
@@ -115,7 +124,7 @@ def read(
         reader.SetLowerCells(options.get("lower_cells", False))
         reader.SetFileName(name)
         for text in dict.fromkeys(run(reader).warnings):
-            warnings.warn(text, stacklevel=4)  # the caller of read()
+            warnings.warn(text, stacklevel=5)  # the caller of read()
         return reader.GetOutput()
     return _read_vtk(name, form)
 
@@ -143,8 +152,6 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
             raise Error("\n".join(dict.fromkeys([f"{name}: {text}", *captured()]))) from None
         if found := captured():
             raise Error("\n".join([f"{name}: the file is truncated or damaged:", *found[:_MOST_MESSAGES]]))
-    for leaf in leaves(mesh):
-        check_references(name, leaf)
     return mesh
 
 
@@ -206,9 +213,13 @@ def write(
     form = check_output(name)
     if form is None:
         _check_options(name, ending, options, None)
-        return write_meshio(as_data_set(mesh), name, groups)
+        one = as_data_set(mesh)
+        check_grid(one)
+        return write_meshio(one, name, groups)
     _check_options(name, ending, options, "binary" if form.own else None)
     data = as_mesh(mesh) if groups is None else with_groups(as_mesh(mesh), groups)
+    for leaf in leaves(data):
+        check_grid(leaf)
     if not _holds(form, data):
         able = [key for key, other in FORMATS.items() if other.writer and not other.own and _holds(other, data)]
         raise Error(f"{name}: '{ending}' cannot hold a {data.GetClassName()}; {' '.join(able)} can")
@@ -297,8 +308,6 @@ def _read_vtk(name: str, form: Format) -> vtkDataObject:
         raise Error(f"{name}: holds no mesh ({mesh.GetClassName() if mesh else 'nothing'})")
     if legacy:
         check_counts(name, mesh, announced)
-    for leaf in leaves(mesh):
-        check_references(name, leaf)
     if Path(name).suffix.lower() in _IN_PIECES:
         _remove_ghosts(mesh)
     return mesh
@@ -321,7 +330,7 @@ def _write_own(data: vtkDataSet, name: str, form: Format, binary: bool) -> list[
         writer.SetBinary(binary)
     elif binary:
         raise Error(f"{name}: '{Path(name).suffix}' is always text")
-    writer.SetInputData(data)
+    writer.SetInputData(writable(data))
     writer.SetFileName(name)
     messages = watch(writer)
     with updating(writer):

@@ -11,12 +11,10 @@ import mmap
 import re
 from os import SEEK_END
 
-import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataObject, vtkPointSet, vtkPolyData, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPointSet
 
-from ._arrays import cell_types
 from ._errors import Error
+from ._grid_checks import POLY_LISTS, cell_lists
 
 _HEADER = re.compile(rb"\s*# vtk DataFile Version (\d+)\.\d+[^\n]*\n[^\n]*\n\s*(ASCII|BINARY)\b[^\n]*\n?", re.I)
 _WORD = re.compile(rb"\S+")
@@ -33,7 +31,7 @@ _TEXTS = ("string", "utf8_string")
 _LENGTH_BYTES = (8, 4, 2, 1)
 _BITS_IN_BYTE = 8
 _CHUNK = 1 << 20
-_CELLS = ("cells", "vertices", "lines", "polygons", "triangle_strips")
+_CELLS = ("cells", *POLY_LISTS)
 _FACTS = {"dimensions": 3, "origin": 3, "spacing": 3, "aspect_ratio": 3, "extent": 6}  # numbers
 _TUPLES = {"vectors": 3, "normals": 3, "tensors": 9, "tensors6": 6, "global_ids": 1, "pedigree_ids": 1, "edge_flags": 1}
 _MESHES = ("unstructured_grid", "polydata", "structured_grid", "rectilinear_grid", "structured_points")
@@ -55,38 +53,11 @@ def scan_legacy(name: str) -> dict[str, int]:
 def check_counts(name: str, mesh: vtkDataObject, announced: dict[str, int]) -> None:
     """Raise Error if a mesh has other numbers of points and cells than its file."""
     if isinstance(mesh, vtkPointSet):
-        found = {section: cells.GetNumberOfCells() for section, cells in _lists(mesh).items()}
+        found = {section: cells.GetNumberOfCells() for section, cells in cell_lists(mesh).items()}
         found["points"] = mesh.GetNumberOfPoints()
         for section, count in announced.items():
             if found.get(section, 0) != count:
                 raise Error(f"{name}: {section.upper()} announces {count}, but {found.get(section, 0)} could be read")
-
-
-def check_references(name: str, mesh: vtkDataObject) -> None:
-    """Raise Error if a cell of a mesh that was read has a point that does not exist."""
-    for section, cells in _lists(mesh).items():
-        points, title = mesh.GetNumberOfPoints(), section.upper()
-        ids = vtk_to_numpy(cells.GetConnectivityArray())
-        if ids.size and (ids.min() < 0 or ids.max() >= points):
-            raise Error(f"{name}: {title} has the points {ids.min()} to {ids.max()}; there are {points} points")
-        offsets = vtk_to_numpy(cells.GetOffsetsArray())
-        if offsets.size and (offsets[0] != 0 or offsets[-1] != ids.size or (np.diff(offsets) < 0).any()):
-            raise Error(f"{name}: the offsets of {title} are not in order, or not as many as points")
-    if isinstance(mesh, vtkUnstructuredGrid) and mesh.GetCells():
-        types = cell_types(mesh)
-        count = types.GetNumberOfTuples() if types else 0
-        if count != mesh.GetCells().GetNumberOfCells():
-            raise Error(f"{name}: there are {count} types of {mesh.GetCells().GetNumberOfCells()} cells")
-
-
-def _lists(mesh: vtkDataObject) -> dict[str, vtkCellArray]:
-    """The lists of cells by the name of their section."""
-    if isinstance(mesh, vtkUnstructuredGrid):
-        return {"cells": mesh.GetCells()} if mesh.GetCells() else {}
-    if isinstance(mesh, vtkPolyData):
-        lists = (mesh.GetVerts(), mesh.GetLines(), mesh.GetPolys(), mesh.GetStrips())
-        return dict(zip(_CELLS[1:], lists))
-    return {}
 
 
 class _Scanner:

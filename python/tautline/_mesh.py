@@ -21,6 +21,7 @@ from vtkmodules.vtkCommonDataModel import (
 
 from ._arrays import Array
 from ._errors import Error, checked
+from ._grid_checks import check_block
 
 _CELLS = {  # name: VTK's cell type, number of points
     "triangle": (VTK_TRIANGLE, 3),
@@ -102,12 +103,4 @@ def _block(name: str | None, array: Any, flat: bool, points: int) -> tuple[int, 
     if full not in _CELLS:
         raise Error(f"there are no cells '{name}'; there are {', '.join(_CELLS)}")
     kind, size = _CELLS[full]
-    if cells.size == 0:
-        return kind, np.zeros((0, size), np.int64)
-    if cells.ndim != 2 or cells.shape[1] != size:
-        raise Error(f"cells '{full}' have the shape {cells.shape}; m x {size} is expected")
-    if not np.issubdtype(cells.dtype, np.integer):
-        raise Error(f"cells '{full}' are of type {cells.dtype}; whole numbers are expected")
-    if cells.min() < 0 or cells.max() >= points:
-        raise Error(f"cells '{full}' use the points {cells.min()} to {cells.max()}; there are 0 to {points - 1}")
-    return kind, cells.astype(np.int64)
+    return kind, check_block(full, cells, size, points)

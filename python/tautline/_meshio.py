@@ -17,6 +17,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkUnstructu
 
 from ._arrays import Array
 from ._errors import Error
+from ._grid_checks import check_block, check_grid
 from ._groups import Groups, element_sets, families, masks, members_of, with_groups
 
 #: VTK's number and the number of points of meshio's cells, in the same order of points but for _ORDERS.
@@ -141,12 +142,10 @@ def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
         if block.type not in _CELLS:
             raise Error(f"cells {block.type!r} of meshio are not supported; there are {', '.join(_CELLS)}")
         number, size = _CELLS[block.type]
-        used = np.asarray(block.data)
-        if used.size and (used.min() < 0 or used.max() >= len(xyz)):
-            raise Error(f"cells use the points {used.min()} to {used.max()}; there are 0 to {len(xyz) - 1}")
-        types.append(np.full(len(block.data), number, np.uint8))
-        sizes.append(np.full(len(block.data), size, np.int64))
-        ids.append(_ordered(block.type, np.asarray(block.data, np.int64)).ravel())
+        cells = check_block(block.type, _as_array(block.type, block.data), size, len(xyz))
+        types.append(np.full(len(cells), number, np.uint8))
+        sizes.append(np.full(len(cells), size, np.int64))
+        ids.append(_ordered(block.type, cells).ravel())
     grid = vtkUnstructuredGrid()
     points = vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(xyz), deep=True))
@@ -165,7 +164,15 @@ def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
     if names := getattr(mesh, "cell_tags", None):  # of MED
         for name, values in members_of(np.concatenate(mesh.cell_data["cell_tags"]), names).items():
             _add(grid.GetCellData(), name, values)
+    check_grid(grid)
     return grid
+
+
+def _as_array(kind: str, cells: Any) -> Array:
+    try:
+        return np.asarray(cells)
+    except ValueError as error:  # rows of different lengths
+        raise Error(f"cells {kind!r} of meshio are no array: {error}") from None
 
 
 def _ordered(name: str, cells: Array) -> Array:

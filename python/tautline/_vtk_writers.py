@@ -19,6 +19,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkCompositeDataSet,
     vtkDataObject,
     vtkDataObjectTree,
+    vtkDataSet,
     vtkMultiBlockDataSet,
     vtkMultiPieceDataSet,
 )
@@ -26,6 +27,7 @@ from vtkmodules.vtkCommonDataModel import (
 from ._errors import Error, watch
 from ._files import check_target, locked, replace_bytes, require_memory, sync_folder, temporary_name
 from ._formats import FORMATS, Format
+from ._grid_checks import writable
 from ._interrupts import updating
 from ._vtk import CLASSES
 
@@ -107,7 +109,7 @@ def _content(data: vtkDataObject, name: str, form: Format) -> bytes:
     writer = form.make_writer()
     for binary in ("SetFileTypeToBinary", "SetDataModeToBinary"):  # not appended data, see _io.py
         getattr(writer, binary, int)()
-    writer.SetInputData(data)
+    writer.SetInputData(writable(data) if isinstance(data, vtkDataSet) else data)
     messages = watch(writer)
     require_memory(_MEMORY_OF_WRITERS * data.GetActualMemorySize(), f"writing {name}")
     content, written = _through_memory(writer)
