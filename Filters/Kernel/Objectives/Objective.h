@@ -32,7 +32,8 @@
  * nothing at all. A cell with a coordinate that is not finite has q = 0: at fault for barriers,
  * reciprocals and metrics of a user, no contribution to other templates but that of q = 0.
  *
- * Cells the metric is not defined on are left out.
+ * The sum is over the elements: the cells of the mesh's own dimension on which the metric is
+ * defined. Facets and edges listed beside them are left out.
  */
 #ifndef tautline_Objective_h
 #define tautline_Objective_h

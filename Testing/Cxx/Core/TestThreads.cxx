@@ -3,6 +3,7 @@
 // cells gives, with the gradient that finite differences give.
 #include "Registry.h"
 #include "Blocks.h"
+#include "tautline/Mesh/MeshElements.h"
 
 #include <algorithm>
 #include <numeric>
@@ -113,15 +114,16 @@ void testEvaluation(const Mesh& mesh)
 }
 
 //------------------------------------------------------------------------------
-/// Sum of sign(q) |q|^p over the cells and its gradient, by hand.
-double bruteSum(const MeshData& data, const Gradients& g, double p, std::vector<double>& gradient)
+/// Sum of sign(q) |q|^p over the elements and its gradient, by hand.
+double bruteSum(const MeshData& data, const Mesh& mesh, const Gradients& g, double p,
+  std::vector<double>& gradient)
 {
   gradient.assign(data.points.size(), 0.0);
   double sum = 0;
   for (Index cell = 0; cell < data.numberOfCells(); ++cell)
   {
     const double q = g.values[cell];
-    if (q == 0)
+    if (q == 0 || !isElement(mesh, static_cast<CellType>(data.types[cell])))
     {
       continue;
     }
@@ -162,7 +164,7 @@ void testSums(const MeshData& data, const std::vector<Metric>& metrics)
     {
       const Context name("power " + std::to_string(power));
       std::vector<double> expectedGradient;
-      const double expected = bruteSum(data, cells, power, expectedGradient);
+      const double expected = bruteSum(data, mesh, cells, power, expectedGradient);
       double size = 0; // of the terms, which may cancel
       for (double q : cells.values)
       {
@@ -286,6 +288,6 @@ TAUTLINE_TEST(TestThreads)
   TAUTLINE_RUN(testSums(shuffled(perturbedBlock(CellType::Tetrahedron, manyCubes, 0.15), 27),
     { Metric::InverseMeanRatio }));
   TAUTLINE_RUN(testDifferences());
-  TAUTLINE_RUN(testNonFinite());
+  TAUTLINE_RUN_SLOW(testNonFinite());
   TAUTLINE_RUN(testExtremeVertex());
 }

@@ -4,6 +4,7 @@
 #include "Blocks.h"
 #include "Registry.h"
 
+#include "tautline/Mesh/MeshElements.h"
 #include "tautline/Objectives/ObjectiveSum.h"
 
 #include <limits>
@@ -74,7 +75,7 @@ bool applies(const MetricInfo& info, ObjectiveTemplate objectiveTemplate, const 
   {
     const bool oriented = info.rotationInvariant || topology(block.type).dimension == 3 ||
       mesh.dimension() == Dimension::Planar;
-    defined |= info.definedOn(block.type) && oriented;
+    defined |= isElement(mesh, block.type) && info.definedOn(block.type) && oriented;
   }
   const bool larger = info.direction == Direction::LargerIsBetter;
   const bool smaller = info.direction == Direction::SmallerIsBetter;
@@ -104,7 +105,8 @@ std::vector<char> definedCells(const MetricInfo& info, const Mesh& mesh)
       mesh.dimension() == Dimension::Planar;
     for (Index i = 0; i < block.count; ++i)
     {
-      defined[block.cell(i)] = info.definedOn(block.type) && oriented;
+      defined[block.cell(i)] =
+        isElement(mesh, block.type) && info.definedOn(block.type) && oriented;
     }
   }
   return defined;
