@@ -4,8 +4,32 @@
 #include "Processes.h"
 #include "tautline/Solvers/GraphPartition.h"
 
+#include <vtksys/DynamicLoader.hxx>
+
 namespace tautline
 {
+namespace
+{
+/**
+ * @brief partitionPoints() of the library TautlineSolvers, which is loaded here and not before: it
+ * brings PETSc, and is the only thing of it that filters without a linear system need. Throws
+ * NotDivided where the library is not installed.
+ */
+PartitionPoints loadPartitionPoints()
+{
+  using Loader = vtksys::DynamicLoader;
+  const Loader::LibraryHandle library = Loader::OpenLibrary(TAUTLINE_SOLVERS_LIBRARY);
+  const Loader::SymbolPointer found =
+    library ? Loader::GetSymbolAddress(library, partitionPointsSymbol) : nullptr;
+  if (!found)
+  {
+    throw NotDivided(std::string("The library " TAUTLINE_SOLVERS_LIBRARY " cannot be loaded: ") +
+      Loader::LastError());
+  }
+  return reinterpret_cast<PartitionPoints (*)()>(found)();
+}
+}
+
 //------------------------------------------------------------------------------
 std::vector<int> ownersByGraph(
   RankGroup& group, const MeshPiece& piece, Redistribution& how, std::string& why)
@@ -22,7 +46,7 @@ std::vector<int> ownersByGraph(
   std::vector<int> ofLocal = mesh.owners();
   try
   {
-    ofLocal = partitionPoints(mesh, processes.communicator());
+    ofLocal = loadPartitionPoints()(mesh, processes.communicator());
   }
   catch (const NotDivided& error) // on all processes: the owners of the k-d tree stay
   {

@@ -262,3 +262,9 @@ std::vector<int> partitionPoints(const DistributedMesh& mesh, Communicator commu
   return { owners.begin(), owners.end() };
 }
 }
+
+extern "C" TAUTLINE_SOLVERS_EXPORT tautline::PartitionPoints tautlinePartitionPoints();
+tautline::PartitionPoints tautlinePartitionPoints()
+{
+  return tautline::partitionPoints;
+}

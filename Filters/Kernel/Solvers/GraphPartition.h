@@ -53,5 +53,10 @@ TAUTLINE_SOLVERS_EXPORT std::vector<int> partitionGraph(const Mesh& mesh, int pa
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<int> partitionPoints(
   const DistributedMesh& mesh, Communicator communicator);
+
+/// The type of partitionPoints(), and the C function that returns it, for those who load this
+/// library at run time.
+using PartitionPoints = std::vector<int> (*)(const DistributedMesh&, Communicator);
+constexpr const char* partitionPointsSymbol = "tautlinePartitionPoints";
 }
 #endif
