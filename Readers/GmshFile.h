@@ -19,10 +19,14 @@
 #include "MeshFile.h"
 #include "TextCursor.h"
 
+#include <limits>
 #include <unordered_map>
 
 namespace tautline
 {
+/// Of the numbers and counts in a file.
+constexpr Index LargestGmshNumber = std::numeric_limits<Index>::max();
+
 class FileRanges;
 struct MeshShare;
 

@@ -8,7 +8,6 @@ namespace tautline
 {
 namespace
 {
-constexpr Index Largest = std::numeric_limits<Index>::max();
 
 /// Moves behind the line that ends a section.
 void expectEnd(TextCursor& cursor, const std::string& section)
@@ -355,7 +354,7 @@ MeshArray makeGmshData(GmshInput& input, const GmshDataHeader& header, Index tup
 Index readGmshDataNumber(GmshInput& input)
 {
   return input.binary ? input.cursor.binary<std::int32_t>("a node or element number")
-                      : input.integer("node or element number", 0, Largest);
+                      : input.integer("node or element number", 0, LargestGmshNumber);
 }
 
 //------------------------------------------------------------------------------
@@ -402,7 +401,7 @@ double GmshInput::coordinate(const char* what)
 //------------------------------------------------------------------------------
 Index readGmshCount2(GmshInput& input, const char* what)
 {
-  const Index count = input.integer(what, 0, Largest);
+  const Index count = input.integer(what, 0, LargestGmshNumber);
   finishLine(input.cursor);
   return count;
 }
@@ -416,7 +415,7 @@ void readGmshNodeRecords2(GmshInput& input, Index count, std::vector<Index>& tag
   for (std::size_t i = 0; i < tags.size(); ++i)
   {
     tags[i] = input.binary ? cursor.binary<std::int32_t>("a node number")
-                           : input.integer("node number", 0, Largest);
+                           : input.integer("node number", 0, LargestGmshNumber);
     for (std::size_t c = 0; c < 3; ++c)
     {
       input.mesh.points[3 * i + c] = input.coordinate("coordinate");
@@ -501,7 +500,7 @@ void readGmshElements2(GmshInput& input)
 void readGmshElements1(GmshInput& input)
 {
   TextCursor& cursor = input.cursor;
-  const Index count = input.integer("number of elements", 0, Largest);
+  const Index count = input.integer("number of elements", 0, LargestGmshNumber);
   finishLine(cursor);
   cursor.expectRoom(count, 12, "number of elements");
   input.reserveElements(static_cast<std::size_t>(count));

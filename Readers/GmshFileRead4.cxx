@@ -9,17 +9,16 @@ namespace
 {
 /// From this version on, blocks begin with the dimension and list all numbers before the points.
 constexpr double NewBlocks = 4.1;
-constexpr Index Largest = std::numeric_limits<Index>::max();
 
 /// An unsigned number of 8 bytes, or text.
 Index readSize(GmshInput& input, const char* what)
 {
   if (!input.binary)
   {
-    return input.integer(what, 0, Largest);
+    return input.integer(what, 0, LargestGmshNumber);
   }
   const auto value = input.cursor.binary<std::uint64_t>(what);
-  if (value > static_cast<std::uint64_t>(Largest))
+  if (value > static_cast<std::uint64_t>(LargestGmshNumber))
   {
     input.cursor.fail(std::string(what) + " is too large");
   }

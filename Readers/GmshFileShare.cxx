@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "FileRanges.h"
 #include "GmshFile.h"
+#include "MeshPart.h"
 #include "PartExchange.h"
 #include "SharedTags.h"
 
@@ -14,11 +15,6 @@ namespace
 {
 constexpr char NoComment = '\0';
 constexpr Index MostBetween = 4096; // bytes of blank lines between sections, and of keywords
-
-std::size_t at(Index i)
-{
-  return static_cast<std::size_t>(i);
-}
 
 /// A section: its name, and the bytes between the lines that begin and end it.
 struct Section

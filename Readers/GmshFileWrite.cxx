@@ -15,7 +15,7 @@ namespace tautline
 namespace
 {
 /// A geometric entity: cells of one dimension with one physical tag.
-struct Entity
+struct WrittenEntity
 {
   int dimension = 0;
   Index tag = 1;
@@ -26,7 +26,7 @@ struct Entity
 /// The entities of a mesh and that of each cell.
 struct Entities
 {
-  std::vector<Entity> list; ///< by dimension, then tag
+  std::vector<WrittenEntity> list; ///< by dimension, then tag
   std::vector<std::size_t> ofCell;
 };
 
@@ -44,7 +44,7 @@ Index wholeValue(const MeshArray* array, std::size_t i, Index otherwise)
     : otherwise;
 }
 
-void extend(Entity& entity, const MeshFile& mesh, std::size_t cell)
+void extend(WrittenEntity& entity, const MeshFile& mesh, std::size_t cell)
 {
   for (Index i = mesh.offsets[cell]; i < mesh.offsets[cell + 1]; ++i)
   {
@@ -170,12 +170,12 @@ void writeEntities(TextOutput& out, const Entities& entities, bool binary)
   for (int dimension = 0; dimension < 4; ++dimension)
   {
     record.size(static_cast<std::size_t>(std::count_if(entities.list.begin(), entities.list.end(),
-      [dimension](const Entity& e) { return e.dimension == dimension; })));
+      [dimension](const WrittenEntity& e) { return e.dimension == dimension; })));
   }
   record.endLine();
   for (int dimension = 0; dimension < 4; ++dimension)
   {
-    for (const Entity& entity : entities.list)
+    for (const WrittenEntity& entity : entities.list)
     {
       if (entity.dimension != dimension)
       {
@@ -201,7 +201,7 @@ void writeEntities(TextOutput& out, const Entities& entities, bool binary)
   out << (binary ? "\n" : "") << "$EndEntities\n";
 }
 
-void writeNodes(TextOutput& out, const MeshFile& mesh, const Entity& entity, bool binary)
+void writeNodes(TextOutput& out, const MeshFile& mesh, const WrittenEntity& entity, bool binary)
 {
   Record record(out, binary);
   const auto count = static_cast<std::size_t>(mesh.numberOfPoints());
@@ -250,7 +250,7 @@ void writeElements(TextOutput& out, const MeshFile& mesh, const Entities& entiti
   std::size_t cell = 0;
   for (const std::size_t end : ends)
   {
-    const Entity& entity = entities.list[entities.ofCell[cell]];
+    const WrittenEntity& entity = entities.list[entities.ofCell[cell]];
     const GmshCell& gmsh = *gmshCellByType(mesh.cellTypes[cell]);
     record.tag(entity.dimension).tag(entity.tag).tag(gmsh.code).size(end - cell).endLine();
     std::array<int, 32> place{}; // of VTK's node in Gmsh's order
@@ -313,7 +313,7 @@ std::vector<std::string> writeGmsh(const MeshFile& mesh, const std::string& name
   refuseUnknown(mesh, name);
   const Entities entities = findEntities(mesh);
   const auto largest = std::max_element(entities.list.begin(), entities.list.end(),
-    [](const Entity& a, const Entity& b) { return a.dimension < b.dimension; });
+    [](const WrittenEntity& a, const WrittenEntity& b) { return a.dimension < b.dimension; });
   TextOutput out(name);
   out << "$MeshFormat\n4.1 " << (binary ? 1 : 0) << " 8\n";
   if (binary)

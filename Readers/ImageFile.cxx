@@ -15,18 +15,18 @@ namespace tautline
 {
 namespace
 {
-using Bytes = std::string_view;
+using ImageBytes = std::string_view;
 
-constexpr Bytes PngStart("\x89PNG\r\n\x1a\n", 8);
+constexpr ImageBytes PngStart("\x89PNG\r\n\x1a\n", 8);
 constexpr std::size_t LongestStart = 8;
 
-ImageFormat formatOf(Bytes start)
+ImageFormat formatOf(ImageBytes start)
 {
-  const auto begins = [start](Bytes with) { return start.substr(0, with.size()) == with; };
-  return begins(PngStart)                                          ? ImageFormat::Png
-    : begins("\xff\xd8\xff")                                       ? ImageFormat::Jpeg
-    : begins(Bytes("II\x2a\0", 4)) || begins(Bytes("MM\0\x2a", 4)) ? ImageFormat::Tiff
-    : begins("BM")                                                 ? ImageFormat::Bmp
+  const auto begins = [start](ImageBytes with) { return start.substr(0, with.size()) == with; };
+  return begins(PngStart)                                                    ? ImageFormat::Png
+    : begins("\xff\xd8\xff")                                                 ? ImageFormat::Jpeg
+    : begins(ImageBytes("II\x2a\0", 4)) || begins(ImageBytes("MM\0\x2a", 4)) ? ImageFormat::Tiff
+    : begins("BM")                                                           ? ImageFormat::Bmp
     : (begins("P5") || begins("P6")) && start.size() > 2 &&
       (std::isspace(static_cast<unsigned char>(start[2])) || start[2] == '#')
     ? ImageFormat::Pnm
@@ -50,7 +50,7 @@ public:
   [[noreturn]] void failTruncated() const { this->fail("the file is truncated"); }
 
   std::size_t size() const { return this->Content.size(); }
-  Bytes part(std::size_t at, std::size_t count) const
+  ImageBytes part(std::size_t at, std::size_t count) const
   {
     this->expect(at, count);
     return this->Content.substr(at, count);
@@ -67,7 +67,7 @@ public:
   /// An unsigned number of 1, 2 or 4 bytes.
   std::size_t number(std::size_t at, std::size_t count, bool bigEndian) const
   {
-    const Bytes bytes = this->part(at, count);
+    const ImageBytes bytes = this->part(at, count);
     std::size_t value = 0;
     for (std::size_t i = 0; i < count; ++i)
     {
@@ -84,16 +84,16 @@ public:
         "; from 1 to " + std::to_string(MaxPixels) + " pixels are allowed");
     }
   }
-  std::size_t rfind(Bytes text) const { return this->Content.rfind(text); }
+  std::size_t rfind(ImageBytes text) const { return this->Content.rfind(text); }
   char at(std::size_t place) const { return this->part(place, 1)[0]; }
 
 private:
   const FileContent& File;
-  Bytes Content;
+  ImageBytes Content;
 };
 
 /// The check sum of PNG chunks (ISO 3309).
-std::uint32_t checkSum(Bytes bytes)
+std::uint32_t checkSum(ImageBytes bytes)
 {
   static const auto table = []
   {
@@ -125,12 +125,12 @@ ImageHeader checkPng(const Image& image)
   for (std::size_t at = PngStart.size();;)
   {
     const std::size_t length = image.number(at, 4, true);
-    const Bytes named = image.part(at + 4, length + 4);
+    const ImageBytes named = image.part(at + 4, length + 4);
     if (image.number(at + 8 + length, 4, true) != checkSum(named))
     {
       image.fail("the check sum of a chunk is wrong: the file is damaged");
     }
-    const Bytes name = named.substr(0, 4);
+    const ImageBytes name = named.substr(0, 4);
     if ((name == "IHDR") != (header.width == 0) || (name == "IHDR" && length != 13))
     {
       image.fail("its header is damaged");
@@ -197,7 +197,7 @@ ImageHeader checkJpeg(const Image& image)
         image.fail("its header is damaged");
       }
       const std::size_t end = image.rfind("\xff\xd9");
-      if (end == Bytes::npos || end < at)
+      if (end == ImageBytes::npos || end < at)
       {
         image.failTruncated();
       }
@@ -437,7 +437,7 @@ ImageFormat findImageFormat(const std::string& name)
   }
   char start[LongestStart];
   const std::size_t size = std::fread(start, 1, sizeof(start), file.get());
-  return formatOf(Bytes(start, size));
+  return formatOf(ImageBytes(start, size));
 }
 
 //------------------------------------------------------------------------------

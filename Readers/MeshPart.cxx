@@ -12,11 +12,6 @@ namespace
 /// A cell and its centre along an axis; cells at the same place are ordered by their numbers.
 using PlacedCell = std::pair<double, Index>;
 
-std::size_t at(Index i)
-{
-  return static_cast<std::size_t>(i);
-}
-
 /// The mean of a cell's nodes along an axis.
 double centre(const MeshFile& mesh, Index cell, int axis)
 {

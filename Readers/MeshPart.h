@@ -17,6 +17,12 @@
 
 namespace tautline
 {
+/// An index of a vector.
+inline std::size_t at(Index i)
+{
+  return static_cast<std::size_t>(i);
+}
+
 /// Number of a point in the file, from 0 (int64, in the arrays of the points).
 constexpr const char* PartPointIds = "GlobalPointIds";
 /// Number of a cell in the file, from 0 (int64, in the arrays of the cells).

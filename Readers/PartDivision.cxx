@@ -15,11 +15,6 @@ namespace
 __extension__ typedef unsigned __int128 Key; // a place along an axis, then the number of a cell
 constexpr int numberBits = 64;
 
-std::size_t at(Index i)
-{
-  return static_cast<std::size_t>(i);
-}
-
 /// A double as a number in the same order; both zeros are one.
 std::uint64_t ordered(double value)
 {

@@ -13,11 +13,6 @@ namespace tautline
 {
 namespace
 {
-std::size_t at(Index i)
-{
-  return static_cast<std::size_t>(i);
-}
-
 /// A set of numbers from 0 to a limit: a bit each, and the sum of those before per 64 of them.
 class NumberSet
 {

@@ -8,14 +8,6 @@
 
 namespace tautline
 {
-namespace
-{
-std::size_t at(Index i)
-{
-  return static_cast<std::size_t>(i);
-}
-}
-
 //------------------------------------------------------------------------------
 SharedTags::SharedTags(const FileRanges& ranges, const std::vector<Index>& tags)
   : Ranges(ranges)

@@ -18,8 +18,8 @@ namespace tetgen
 {
 namespace
 {
-constexpr Index Largest = std::numeric_limits<int>::max();
-constexpr Index Smallest = std::numeric_limits<int>::min();
+constexpr Index LargestMarker = std::numeric_limits<int>::max();
+constexpr Index SmallestMarker = std::numeric_limits<int>::min();
 }
 
 NodeHeader readNodeHeader(TextCursor& cursor)
@@ -156,7 +156,8 @@ void readNodeRecords(TextCursor& cursor, const FileContent& file, const NodeList
     readAttributes(cursor, mesh.pointArrays, i);
     if (header.markers)
     {
-      marker[static_cast<std::size_t>(i)] = cursor.integer("boundary marker", Smallest, Largest);
+      marker[static_cast<std::size_t>(i)] =
+        cursor.integer("boundary marker", SmallestMarker, LargestMarker);
     }
     cursor.expectLineEnd();
   }
@@ -342,7 +343,8 @@ void readBoundaryRecords(TextCursor& cursor, const BoundaryHeader& header, const
     readCorners(cursor, nodes, places, size, connectivity.data() + i * size);
     if (header.markers)
     {
-      values[static_cast<std::size_t>(i)] = cursor.integer("boundary marker", Smallest, Largest);
+      values[static_cast<std::size_t>(i)] =
+        cursor.integer("boundary marker", SmallestMarker, LargestMarker);
     }
     cursor.skipRestOfLine();
   }
@@ -514,8 +516,9 @@ struct FacetReader
 
   Index marker(bool present)
   {
-    return present && !cursor.lineIsOver() ? cursor.integer("boundary marker", Smallest, Largest)
-                                           : 0;
+    return present && !cursor.lineIsOver()
+      ? cursor.integer("boundary marker", SmallestMarker, LargestMarker)
+      : 0;
   }
   void segments(Index count, bool marked)
   {
@@ -533,7 +536,7 @@ struct FacetReader
     for (Index i = 0; i < count; ++i)
     {
       nextLine(cursor, "facet");
-      readPolygon(cursor, nodes, cursor.integer("number of corners", 1, Largest), mesh);
+      readPolygon(cursor, nodes, cursor.integer("number of corners", 1, LargestMarker), mesh);
       markers.push_back(marker(marked));
       cursor.expectLineEnd();
     }
@@ -543,14 +546,15 @@ struct FacetReader
     for (Index i = 0; i < count; ++i)
     {
       nextLine(cursor, "facet");
-      const Index polygons = cursor.integer("number of polygons", 0, Largest);
-      const Index holes = cursor.lineIsOver() ? 0 : cursor.integer("number of holes", 0, Largest);
+      const Index polygons = cursor.integer("number of polygons", 0, LargestMarker);
+      const Index holes =
+        cursor.lineIsOver() ? 0 : cursor.integer("number of holes", 0, LargestMarker);
       const Index value = marker(marked);
       cursor.expectLineEnd();
       for (Index j = 0; j < polygons; ++j)
       {
         nextLine(cursor, "polygon");
-        readPolygon(cursor, nodes, cursor.integer("number of corners", 1, Largest), mesh);
+        readPolygon(cursor, nodes, cursor.integer("number of corners", 1, LargestMarker), mesh);
         cursor.expectLineEnd();
         markers.push_back(value);
         facets.push_back(i);

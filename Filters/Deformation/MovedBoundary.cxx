@@ -23,11 +23,6 @@ namespace tautline
 {
 namespace
 {
-std::string text(Index n)
-{
-  return std::to_string(n);
-}
-
 Index count(const PointFlags& flags)
 {
   return static_cast<Index>(flags.size()) - std::count(flags.begin(), flags.end(), 0);
@@ -73,8 +68,8 @@ PointFlags pointsOfParts(const PartChoice& choice)
   {
     if (number < 1 || number > parts.parts)
     {
-      throw Error("There is no boundary part " + text(number) + ": there are parts 1 to " +
-        text(parts.parts) + ", the largest first.");
+      throw Error("There is no boundary part " + std::to_string(number) +
+        ": there are parts 1 to " + std::to_string(parts.parts) + ", the largest first.");
     }
     chosen[number] = 1;
   }
@@ -106,7 +101,7 @@ void requireShapes(Index shapeless)
 {
   if (shapeless > 0)
   {
-    throw Error("The mesh has " + text(shapeless) +
+    throw Error("The mesh has " + std::to_string(shapeless) +
       " polygons, polyhedra or other cells that cannot be warped: run Tetrahedralize first, "
       "which cuts all cells into triangles or tetrahedra.");
   }
@@ -129,16 +124,16 @@ void requireElements(const MovableMesh& mesh)
   }
   if (mesh.mesh().nonFinitePoints() > 0)
   {
-    throw Error(text(mesh.mesh().nonFinitePoints()) +
+    throw Error(std::to_string(mesh.mesh().nonFinitePoints()) +
       " points have a coordinate that is NaN or infinite: repair them or leave them out "
       "(Threshold).");
   }
   requireShapes(shapeless);
   if (inverted > 0)
   {
-    throw Error(text(inverted) +
+    throw Error(std::to_string(inverted) +
       " elements are inverted or degenerate before anything moves, the first is element " +
-      text(first) + ": run Untangle Mesh first.");
+      std::to_string(first) + ": run Untangle Mesh first.");
   }
 }
 
@@ -194,7 +189,7 @@ void requireMoved(Index moved, Index chosen)
 {
   if (moved == 0)
   {
-    throw Error("Of the " + text(chosen) +
+    throw Error("Of the " + std::to_string(chosen) +
       " points chosen to move none is on the boundary: choose others, or other values.");
   }
 }
@@ -270,7 +265,7 @@ std::vector<double> displacementsOf(vtkDataArray* array, const PointFlags& flags
   const int components = array->GetNumberOfComponents();
   if (components != 2 && components != 3)
   {
-    throw Error(name + " has " + text(components) +
+    throw Error(name + " has " + std::to_string(components) +
       " components per point: a displacement has 3 (or 2, in the plane).");
   }
   std::vector<double> result(3 * flags.size(), 0.0);
@@ -290,9 +285,9 @@ std::vector<double> displacementsOf(vtkDataArray* array, const PointFlags& flags
   }
   if (wrong > 0)
   {
-    throw Error(name + " is NaN or infinite at " + text(wrong) + " of " + text(count(flags)) +
-      " points of the boundary, the first is point " + text(first) +
-      ": give each of them a displacement, 0 where it stays.");
+    throw Error(name + " is NaN or infinite at " + std::to_string(wrong) + " of " +
+      std::to_string(count(flags)) + " points of the boundary, the first is point " +
+      std::to_string(first) + ": give each of them a displacement, 0 where it stays.");
   }
   return result;
 }
@@ -308,7 +303,8 @@ std::vector<double> tensorsOf(vtkDataArray* array)
   const int components = array->GetNumberOfComponents();
   if (components != 1 && components != 3 && components != 6 && components != 9)
   {
-    throw Error(std::string("The array '") + array->GetName() + "' has " + text(components) +
+    throw Error(std::string("The array '") + array->GetName() + "' has " +
+      std::to_string(components) +
       " components per cell: coefficients have 1 (isotropic), 3 (alpha, beta, gamma), 6 (xx yy zz "
       "xy yz "
       "xz) or 9.");
@@ -370,7 +366,7 @@ void requireTensor(const double* tensor, Index cell, const char* where)
 {
   if (!isPositiveSemidefinite(tensor))
   {
-    throw Error("The coefficients of cell " + text(cell) + " of the " + where +
+    throw Error("The coefficients of cell " + std::to_string(cell) + " of the " + where +
       " are not finite or not positive semidefinite: correct the array, or choose other "
       "Coefficients.");
   }

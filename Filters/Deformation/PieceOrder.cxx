@@ -22,7 +22,7 @@ namespace tautline
 {
 namespace
 {
-constexpr Index None = -1;
+constexpr Index NoPlace = -1;
 
 using Edge = std::array<Index, 2>;
 
@@ -141,7 +141,7 @@ std::vector<Index> positionsOf(
   RankGroup& group, const std::vector<Index>& ids, const PointFlags& chosen, Index& count)
 {
   const int processes = group.size();
-  Index highest = None;
+  Index highest = NoPlace;
   for (const Index id : ids)
   {
     highest = std::max(highest, id);
@@ -198,7 +198,7 @@ std::vector<Index> positionsOf(
         {
           const auto at = std::lower_bound(known.begin(), known.end(), one.id);
           const bool has = at != known.end() && *at == one.id;
-          answers.back().push_back(has ? before + (at - known.begin()) : None);
+          answers.back().push_back(has ? before + (at - known.begin()) : NoPlace);
         }
       }
     });
@@ -210,7 +210,7 @@ std::vector<Index> positionsOf(
       std::vector<std::size_t> next(processes, 0); // answers come in the order of the questions
       for (const Index id : ids)
       {
-        positions.push_back(id < 0 ? None : answered[id / width][next[id / width]++]);
+        positions.push_back(id < 0 ? NoPlace : answered[id / width][next[id / width]++]);
       }
     });
   return positions;

@@ -33,14 +33,9 @@ using Flags = std::vector<unsigned char>;
 constexpr const char* OriginalIds = "vtkOriginalPointIds"; // as vtkDataSetSurfaceFilter names them
 constexpr Index None = -1;
 
-Index count(const Flags& flags)
+Index countMarked(const Flags& flags)
 {
   return static_cast<Index>(flags.size()) - std::count(flags.begin(), flags.end(), 0);
-}
-
-std::string text(Index n)
-{
-  return std::to_string(n);
 }
 
 /// "(0.5, 0, 1)"
@@ -129,7 +124,7 @@ public:
       }
       if (requested == Correspondence::SameBoundary && ids.empty())
       {
-        throw otherBoundary(points, count(*this->Request.projected));
+        throw otherBoundary(points, countMarked(*this->Request.projected));
       }
       return ids;
     }
@@ -201,7 +196,7 @@ private:
   std::vector<Index> byOrder()
   {
     const Flags& moved = *this->Request.projected;
-    if (count(moved) != this->target().numberOfPoints)
+    if (countMarked(moved) != this->target().numberOfPoints)
     {
       return {};
     }
@@ -268,8 +263,8 @@ private:
     }
     bool ordered =
       requested == Correspondence::SameMesh || requested == Correspondence::SameBoundary;
-    ordered =
-      ordered || points == this->View.numberOfPoints || points == count(*this->Request.projected);
+    ordered = ordered || points == this->View.numberOfPoints ||
+      points == countMarked(*this->Request.projected);
     if (!ordered) // a skin only if it is needed
     {
       const auto surface = skinOf(this->Request.mesh);
@@ -346,15 +341,15 @@ void project(const TargetRequest& request, TargetPlaces& places)
   places.given = *request.projected;
   Projection found = projected(surfaceOf(request.target, ofVolume), view.points, places.given);
   places.displacement = std::move(found.displacement);
-  places.how = describeProjection(count(places.given), found.farthest);
+  places.how = describeProjection(countMarked(places.given), found.farthest);
 }
 }
 
 //------------------------------------------------------------------------------
 Error otherMesh(Index points, Index ofMesh)
 {
-  return Error("The target has " + text(points) + " points and the mesh has " + text(ofMesh) +
-    ": it is not the same mesh. Choose another Correspondence.");
+  return Error("The target has " + std::to_string(points) + " points and the mesh has " +
+    std::to_string(ofMesh) + ": it is not the same mesh. Choose another Correspondence.");
 }
 
 Error otherCells()
@@ -366,7 +361,8 @@ Error otherCells()
 
 Error otherBoundary(Index points, Index moving)
 {
-  return Error("The target has " + text(points) + " points, of the mesh " + text(moving) +
+  return Error("The target has " + std::to_string(points) + " points, of the mesh " +
+    std::to_string(moving) +
     " points move, and its cells are not those of the boundary in the same order: choose another "
     "Correspondence, or what moves.");
 }
@@ -381,7 +377,7 @@ Error noNumbers(const std::string& array)
 
 Error noOrder(Index points)
 {
-  return Error("The target's " + text(points) +
+  return Error("The target's " + std::to_string(points) +
     " points would correspond to those of the mesh by their order, which is not known: mesh and "
     "target are on several processes with other pieces of each, without an order of global ids of "
     "both. " +
@@ -481,14 +477,15 @@ Projection projected(
 //------------------------------------------------------------------------------
 std::string describeProjection(Index points, double farthest)
 {
-  return "by projection: " + text(points) +
+  return "by projection: " + std::to_string(points) +
     " points to the closest point of the target, the farthest of them " + std::to_string(farthest) +
     " away";
 }
 
 std::string describeMatched(Index given, Index matched)
 {
-  return ": " + text(given) + " of " + text(matched) + " points of the boundary";
+  return ": " + std::to_string(given) + " of " + std::to_string(matched) +
+    " points of the boundary";
 }
 
 //------------------------------------------------------------------------------
@@ -496,7 +493,7 @@ void requireFiniteTarget(Index wrong)
 {
   if (wrong > 0)
   {
-    throw Error("The target has " + text(wrong) +
+    throw Error("The target has " + std::to_string(wrong) +
       " points of the boundary with coordinates that are NaN or infinite: repair them, or leave "
       "them out "
       "(Correspondence: Point ids).");
@@ -507,7 +504,8 @@ void requireKnownIds(Index unknown, const std::string& array, bool ofMesh)
 {
   if (unknown > 0)
   {
-    throw Error("The target's array '" + array + "' has " + text(unknown) + " values that are no " +
+    throw Error("The target's array '" + array + "' has " + std::to_string(unknown) +
+      " values that are no " +
       (ofMesh ? "values of the mesh's array of that name" : "point of the mesh") +
       ": choose another array, or None.");
   }
@@ -551,7 +549,7 @@ TargetPlaces placesOf(const TargetRequest& request)
   requireFiniteTarget(wrong);
   if (!ids.empty())
   {
-    places.how += describeMatched(count(places.given), count(*request.matched));
+    places.how += describeMatched(countMarked(places.given), countMarked(*request.matched));
   }
   return places;
 }

@@ -17,8 +17,8 @@ namespace tautline
 {
 namespace
 {
-constexpr int TensorSize = 6;
-constexpr std::array<const char*, TensorSize> TensorComponents = { "XX", "YY", "ZZ", "XY", "YZ",
+constexpr int StressSize = 6;
+constexpr std::array<const char*, StressSize> TensorComponents = { "XX", "YY", "ZZ", "XY", "YZ",
   "XZ" };
 }
 
@@ -30,7 +30,7 @@ Index addArray(vtkDataSet* output, bool ofCells, const std::string& name,
   array->SetName(name.c_str());
   array->SetNumberOfComponents(components);
   array->SetNumberOfTuples(static_cast<vtkIdType>(values.size()) / components);
-  for (int k = 0; components == TensorSize && k < TensorSize; ++k)
+  for (int k = 0; components == StressSize && k < StressSize; ++k)
   {
     array->SetComponentName(k, TensorComponents[k]);
   }
@@ -56,9 +56,9 @@ Index addArray(vtkDataSet* output, bool ofCells, const std::string& name,
 //------------------------------------------------------------------------------
 void addStress(vtkDataSet* output, const std::vector<double>& stresses)
 {
-  addArray(output, true, "Stress", stresses, TensorSize);
+  addArray(output, true, "Stress", stresses, StressSize);
   std::vector<double> mises;
-  for (std::size_t i = 0; i + TensorSize <= stresses.size(); i += TensorSize)
+  for (std::size_t i = 0; i + StressSize <= stresses.size(); i += StressSize)
   {
     const double* s = stresses.data() + i;
     const auto square = [](double x) { return x * x; };

@@ -29,7 +29,7 @@ namespace
 {
 using Pipeline = vtkStreamingDemandDrivenPipeline;
 
-constexpr int MeshPort = 0, HistoryPort = 1, SectionsPort = 2, NumberOfPorts = 3;
+constexpr int SolutionPort = 0, HistoryPort = 1, SectionsPort = 2, SolverPorts = 3;
 constexpr int NumberOfInputs = 2;
 constexpr int InitialArray = 5, VelocityArray = 6;
 constexpr double ReportInterval = 0.05; // of progress, in seconds
@@ -94,7 +94,7 @@ std::string summaryOf(const tautline::TimeSeries& series, double time, int steps
 //------------------------------------------------------------------------------
 vtkEllipticSolver::vtkEllipticSolver()
 {
-  this->SetNumberOfOutputPorts(NumberOfPorts);
+  this->SetNumberOfOutputPorts(SolverPorts);
 }
 
 //------------------------------------------------------------------------------
@@ -166,9 +166,9 @@ int vtkEllipticSolver::RequestInformation(
 {
   const bool usable = std::isfinite(this->TimeStep) && this->TimeStep > 0;
   const bool ours = this->TimeScheme != STATIONARY && usable;
-  const bool theirs = inputVector[MeshPort]->GetNumberOfInformationObjects() > 0 &&
-    inputVector[MeshPort]->GetInformationObject(0)->Has(Pipeline::TIME_STEPS());
-  for (int port = 0; port < NumberOfPorts; ++port)
+  const bool theirs = inputVector[SolutionPort]->GetNumberOfInformationObjects() > 0 &&
+    inputVector[SolutionPort]->GetInformationObject(0)->Has(Pipeline::TIME_STEPS());
+  for (int port = 0; port < SolverPorts; ++port)
   {
     vtkInformation* info = outputVector->GetInformationObject(port);
     if (!ours)
@@ -218,8 +218,8 @@ int vtkEllipticSolver::RequestData(
   return this->Attempt(outputVector, "switch Sections off",
     [&]
     {
-      tautline::cutVolumes(vtkDataObject::GetData(outputVector, MeshPort), tautline::Processes(),
-        vtkPolyData::GetData(outputVector, SectionsPort));
+      tautline::cutVolumes(vtkDataObject::GetData(outputVector, SolutionPort),
+        tautline::Processes(), vtkPolyData::GetData(outputVector, SectionsPort));
     });
 }
 
@@ -246,7 +246,7 @@ int vtkEllipticSolver::SolveOrShow(
     this->Series.clear();
     this->ForgetSystems();
   }
-  vtkInformation* info = outputVector->GetInformationObject(MeshPort);
+  vtkInformation* info = outputVector->GetInformationObject(SolutionPort);
   this->RequestedTime = info->Has(Pipeline::UPDATE_TIME_STEP())
     ? info->Get(Pipeline::UPDATE_TIME_STEP())
     : this->NumberOfTimeSteps * this->TimeStep;
@@ -258,7 +258,7 @@ int vtkEllipticSolver::SolveOrShow(
     return 0;
   }
   this->SeriesTime.Modified();
-  vtkDataObject::GetData(outputVector, MeshPort)
+  vtkDataObject::GetData(outputVector, SolutionPort)
     ->GetInformation()
     ->Set(vtkDataObject::DATA_TIME_STEP(), this->RequestedTime);
   return 1;

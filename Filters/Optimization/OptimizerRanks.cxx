@@ -28,8 +28,8 @@
 
 namespace
 {
-constexpr int SelectionPort = 2, GeometryPort = 3; // input
-constexpr const char* FilterName = "Optimize Mesh";
+constexpr int SelectionOfPiece = 2, GeometryOfPiece = 3; // input ports
+constexpr const char* NameOnRanks = "Optimize Mesh";
 
 /// Whether an array of the input is chosen; also one that is missing, which others report.
 bool isChosen(const tautline::OptimizerSettings& settings, int index, vtkDataSet* input)
@@ -350,7 +350,7 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
   this->InputsChanged = onAny(this->InputsChanged);
   // What needs the whole mesh is not divided first.
   tautline::OptimizerSettings settings = this->GetSettings();
-  settings.geometry = vtkDataObject::GetData(inputs[GeometryPort]);
+  settings.geometry = vtkDataObject::GetData(inputs[GeometryOfPiece]);
   vtkDataObject* data = vtkDataObject::GetData(inputs[MeshPort]);
   auto* input = vtkDataSet::SafeDownCast(data);
   const bool features = onAny(isChosen(settings, tautline::KindArray, input) ||
@@ -393,7 +393,7 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   this->Runs.clear();
   vtkDataSet* input = nullptr;
   tautline::OptimizerSettings settings = this->GetSettings();
-  settings.geometry = vtkDataObject::GetData(inputVector[GeometryPort]);
+  settings.geometry = vtkDataObject::GetData(inputVector[GeometryOfPiece]);
   tautline::OptimizeOptions& options = settings.options;
   group->together(
     [&]
@@ -413,8 +413,8 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   output->ShallowCopy(input);
   ElementOptions elements;
   setObjectives(settings, *group, input, mesh, elements, options);
-  const PointOptions points =
-    pointOptions(settings, *group, input, vtkSelection::GetData(inputVector[SelectionPort]), mesh);
+  const PointOptions points = pointOptions(
+    settings, *group, input, vtkSelection::GetData(inputVector[SelectionOfPiece]), mesh);
   options.fixed = points.fixed.data();
   options.limits = points.limits.empty() ? nullptr : points.limits.data();
   if (!points.shape.planes.empty())
@@ -426,7 +426,7 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   options.observer = [&](const tautline::IterationState& state)
   {
     const tautline::IterationRecord& record = state.record;
-    this->ShowIteration(FilterName, record.iteration,
+    this->ShowIteration(NameOnRanks, record.iteration,
       { { "objective", record.objective },
         { "worst", record.worst.empty() ? vtkMath::Nan() : record.worst.front() } });
     return this->Proceed(std::max(state.progress, tautline::openEnded(record.iteration)));

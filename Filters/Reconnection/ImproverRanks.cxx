@@ -22,7 +22,7 @@
 
 namespace
 {
-constexpr int FixedArray = 0, RegionArray = 1;
+constexpr int FixedArrayOfPiece = 0, RegionArrayOfPiece = 1;
 constexpr int VolumeDimension = 3;
 }
 
@@ -136,11 +136,11 @@ void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkData
       if (input->GetNumberOfPoints() > 0)
       {
         mesh->fix(tautline::chosenArray(
-                    this, FixedArray, input, "of fixed points", tautline::ArrayOf::Points),
+                    this, FixedArrayOfPiece, input, "of fixed points", tautline::ArrayOf::Points),
           false);
         mesh->fixSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
-        regions =
-          tautline::chosenArray(this, RegionArray, input, "of regions", tautline::ArrayOf::Cells);
+        regions = tautline::chosenArray(
+          this, RegionArrayOfPiece, input, "of regions", tautline::ArrayOf::Cells);
       }
     });
   tautline::ReconnectablePiece piece = tautline::takePiece(group, *mesh, input, regions);

@@ -2,6 +2,7 @@
 #include "Interruption.h"
 
 #include "LoopInterruption.h"
+#include "Stopwatch.h"
 
 #include <atomic>
 #include <chrono>
@@ -90,14 +91,6 @@ thread_local State state;
 /// Of measurePolls(), for all threads.
 std::atomic<bool> Measuring{ false };
 std::atomic<double> LongestUnpolled{ 0.0 };
-
-double threadSeconds()
-{
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  constexpr double nano = 1e-9;
-  return static_cast<double>(time.tv_sec) + nano * static_cast<double>(time.tv_nsec);
-}
 
 /// Begins to measure at the begin of the outermost scope, and after what is no poll.
 void beginUnpolled()

@@ -5,6 +5,7 @@
 #include "LoopInterruption.h"
 #include "LoopProgress.h"
 #include "MachineLoad.h"
+#include "Stopwatch.h"
 
 #include <pthread.h>
 #include <tbb/global_control.h>
@@ -65,15 +66,6 @@ using Clock = std::chrono::steady_clock;
 double seconds(Clock::duration duration)
 {
   return std::chrono::duration<double>(duration).count();
-}
-
-/// What the calling thread has computed for; on a busy machine less than the time that passed.
-double threadSeconds()
-{
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  constexpr double nano = 1e-9;
-  return static_cast<double>(time.tv_sec) + nano * static_cast<double>(time.tv_nsec);
 }
 
 /// Whether so many threads of all processes have work that each gets half a core at most.

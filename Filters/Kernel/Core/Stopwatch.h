@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Stopwatch.h
- * @brief Wall time since a start, for time limits and records. Internal: not installed.
+ * @brief Wall time since a start, for time limits and records; CPU time of a thread. Internal: not
+ * installed.
  */
 #ifndef tautline_Stopwatch_h
 #define tautline_Stopwatch_h
 
 #include <chrono>
+#include <ctime>
 
 namespace tautline
 {
@@ -27,5 +29,14 @@ private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point Start = Clock::now();
 };
+
+/// CPU time of the calling thread.
+inline double threadSeconds()
+{
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  constexpr double nano = 1e-9;
+  return static_cast<double>(time.tv_sec) + nano * static_cast<double>(time.tv_nsec);
+}
 }
 #endif

@@ -20,6 +20,7 @@ namespace tautline
 using Index = std::int64_t;
 
 constexpr double Pi = 3.14159265358979323846;
+constexpr double DegreesPerRadian = 180 / Pi;
 
 /// A point or vector of the plane, x y.
 using Vec2 = std::array<double, 2>;

@@ -12,7 +12,7 @@ constexpr double LargestPower = 20.0;
 /// Squared distance below which points are at one place: beyond, the largest power is far from
 /// overflow.
 constexpr double Coincident = 1e-28;
-constexpr std::size_t LeafSize = 16;
+constexpr std::size_t InverseDistanceLeafSize = 16;
 /// A group of points counts as a whole from a distance at which the third term of its expansion,
 /// for points all in one direction, is this part of the first. (The groups lie around their
 /// centres: what is left of it is far less.)
@@ -68,7 +68,7 @@ public:
     : Power(power)
     , Opening(
         std::min(LargestOpening, std::cbrt(ThirdTerm * 6 / (power * (power + 2) * (power + 4)))))
-    , Tree(locals(motion), LeafSize)
+    , Tree(locals(motion), InverseDistanceLeafSize)
   {
     for (const std::size_t i : this->Tree.order())
     {

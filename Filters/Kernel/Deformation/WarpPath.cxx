@@ -63,7 +63,7 @@ std::vector<Index> findPieces(const Mesh& mesh, const WarpParts& parts, std::siz
 }
 
 /// Means and second moments of the points of a component and of their displacements.
-struct Moments
+struct PathMoments
 {
   double count = 0;
   Vector center = Vector::Zero(), shift = Vector::Zero();
@@ -72,10 +72,10 @@ struct Moments
   double moved = 0;               ///< sum of |d|^2
 };
 
-std::vector<Moments> momentsOf(const MeshView& view, const std::vector<Index>& pieceOf,
+std::vector<PathMoments> momentsOf(const MeshView& view, const std::vector<Index>& pieceOf,
   std::size_t pieces, const double* displacement, const WarpRanks& ranks)
 {
-  std::vector<Moments> moments(pieces);
+  std::vector<PathMoments> moments(pieces);
   const auto forEach = [&](const auto& visit)
   {
     for (Index i = 0; i < view.numberOfPoints; ++i)
@@ -88,7 +88,7 @@ std::vector<Moments> momentsOf(const MeshView& view, const std::vector<Index>& p
     }
   };
   forEach(
-    [](Moments& m, const auto& x, const auto& d)
+    [](PathMoments& m, const auto& x, const auto& d)
     {
       m.count += 1;
       m.center += x;
@@ -96,17 +96,17 @@ std::vector<Moments> momentsOf(const MeshView& view, const std::vector<Index>& p
     });
   constexpr std::size_t components = 3;
   addUp(ranks, moments,
-    [](Moments& m) {
+    [](PathMoments& m) {
       return std::array<double*, 3>{ &m.count, m.center.data(), m.shift.data() };
     },
     { 1, components, components });
-  for (Moments& m : moments)
+  for (PathMoments& m : moments)
   {
     m.center /= m.count;
     m.shift /= m.count;
   }
   forEach(
-    [](Moments& m, const auto& x, const auto& d)
+    [](PathMoments& m, const auto& x, const auto& d)
     {
       const Vector a = x - m.center, b = d - m.shift;
       m.points += a * a.transpose();
@@ -114,7 +114,7 @@ std::vector<Moments> momentsOf(const MeshView& view, const std::vector<Index>& p
       m.moved += b.squaredNorm();
     });
   addUp(ranks, moments,
-    [](Moments& m) {
+    [](PathMoments& m) {
       return std::array<double*, 3>{ m.points.data(), m.mixed.data(), &m.moved };
     },
     { components * components, components * components, 1 });
@@ -141,7 +141,7 @@ bool completePlane(const Matrix& axes, bool planarMesh, Matrix& map)
 
 /// The linear part of the affine map that fits a component best (least squares). False where the
 /// points do not determine it, or where it leaves too much of the displacements.
-bool fitMap(const Moments& m, bool planarMesh, Matrix& map)
+bool fitMap(const PathMoments& m, bool planarMesh, Matrix& map)
 {
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(m.points);
   const Matrix axes = eigen.eigenvectors();
@@ -178,7 +178,7 @@ WarpPath::WarpPath(const Mesh& mesh, const WarpParts& parts, const double* displ
   std::size_t pieces = 0;
   this->PieceOf = findPieces(mesh, parts, pieces);
   this->Pieces.resize(pieces);
-  const std::vector<Moments> moments =
+  const std::vector<PathMoments> moments =
     momentsOf(mesh.view(), this->PieceOf, pieces, displacement, parts.ranks());
   for (std::size_t p = 0; p < pieces; ++p)
   {

@@ -26,7 +26,7 @@ constexpr double Independence = 1e-12;
 constexpr double Tie = 1e-9;
 /// So many equal ones are chosen together: the images of a point by the symmetries of a cube.
 constexpr std::size_t MaxTied = 48;
-constexpr std::size_t LeafSize = 32;
+constexpr std::size_t RadialBasisLeafSize = 32;
 /// Number of products from which a choice uses several threads.
 constexpr Index ParallelWork = 200000;
 constexpr Index ProductsPerChunk = 30000; ///< of such a choice
@@ -218,7 +218,7 @@ class Interpolant
 public:
   Interpolant(const GreedyFit& fit, double radius)
     : Radius(radius)
-    , Tree(centers(fit), LeafSize)
+    , Tree(centers(fit), RadialBasisLeafSize)
   {
     const std::vector<Vec3> coefficients = fit.coefficients();
     for (const std::size_t k : this->Tree.order())

@@ -14,7 +14,7 @@ namespace
 {
 using Real = long double; // for signs that double does not resolve
 
-struct Triangle
+struct DelaunayTriangle
 {
   std::array<Index, 3> points;
   std::array<Index, 3> beside; ///< the triangle across the edge opposite a corner, -1 outside
@@ -47,7 +47,7 @@ private:
   bool hasEdge(Index a, Index b, Index& triangle) const;
 
   std::vector<double> X, Y;
-  std::vector<Triangle> Triangles;
+  std::vector<DelaunayTriangle> Triangles;
   std::vector<Index> TriangleOf; ///< one at each point
   Index Count;
   Index Last = 0;
@@ -139,7 +139,7 @@ Index Triangulation::locate(Index p)
   Index t = this->Last;
   for (std::size_t step = 0; step < 4 * this->Triangles.size() + 10; ++step)
   {
-    const Triangle& triangle = this->Triangles[t];
+    const DelaunayTriangle& triangle = this->Triangles[t];
     Index next = -1;
     for (int k = 0; k < 3 && next < 0; ++k)
     {
@@ -179,7 +179,7 @@ void Triangulation::link(Index t, Index other, Index formerly)
 void Triangulation::flip(Index t, int corner)
 {
   const Index u = this->Triangles[t].beside[corner];
-  const Triangle old = this->Triangles[t], other = this->Triangles[u];
+  const DelaunayTriangle old = this->Triangles[t], other = this->Triangles[u];
   const int far =
     static_cast<int>(std::find(other.beside.begin(), other.beside.end(), t) - other.beside.begin());
   const Index p = old.points[corner], a = old.points[(corner + 1) % 3],
@@ -234,7 +234,7 @@ void Triangulation::legalize(std::vector<std::pair<Index, Index>>& open, Index p
 void Triangulation::insert(Index p)
 {
   const Index t = this->locate(p);
-  const Triangle old = this->Triangles[t];
+  const DelaunayTriangle old = this->Triangles[t];
   int edge = -1;
   for (int k = 0; k < 3; ++k)
   {
@@ -267,7 +267,7 @@ void Triangulation::insert(Index p)
   {
     // On the edge a-b of c-a-b and d-b-a: four triangles around p.
     const Index u = old.beside[edge];
-    const Triangle other = this->Triangles[u];
+    const DelaunayTriangle other = this->Triangles[u];
     const int far = static_cast<int>(
       std::find(other.beside.begin(), other.beside.end(), t) - other.beside.begin());
     const Index c = old.points[edge], a = old.points[(edge + 1) % 3],
@@ -339,7 +339,7 @@ void Triangulation::recover(Index a, Index b)
     for (std::size_t step = 0; step <= this->Triangles.size() && !flipped; ++step)
     {
       const Index u = this->Triangles[t].beside[corner];
-      const Triangle& other = this->Triangles[u];
+      const DelaunayTriangle& other = this->Triangles[u];
       const int far = static_cast<int>(
         std::find(other.beside.begin(), other.beside.end(), t) - other.beside.begin());
       const Index p = this->Triangles[t].points[corner], q = other.points[far];
@@ -379,7 +379,7 @@ void Triangulation::recover(Index a, Index b)
 std::vector<std::array<Index, 3>> Triangulation::result() const
 {
   std::vector<std::array<Index, 3>> triangles;
-  for (const Triangle& t : this->Triangles)
+  for (const DelaunayTriangle& t : this->Triangles)
   {
     if (t.points[0] < this->Count && t.points[1] < this->Count && t.points[2] < this->Count)
     {

@@ -5,6 +5,7 @@
 #include "RankSets.h"
 #include "tautline/Core/UnionFind.h"
 
+#include <cmath>
 #include <algorithm>
 #include <array>
 #include <memory>
@@ -14,7 +15,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The directions (normals of faces, or edges) of the facets around one point: two, or too many.
 struct Directions
@@ -144,8 +144,8 @@ void classify(Index i, const Directions& d, bool volume, double cosine, double s
 /// products have a box.
 struct DirectionBox
 {
-  std::array<double, 6> low = { infinity, infinity, infinity, infinity, infinity, infinity };
-  std::array<double, 6> high = { -infinity, -infinity, -infinity, -infinity, -infinity, -infinity };
+  std::array<double, 6> low = { HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL };
+  std::array<double, 6> high = { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
 
   void add(const Vec3& d)
   {
@@ -215,7 +215,7 @@ private:
     Index cells;
   };
   void findFacets(const Mesh& mesh);
-  double smoothCosine() const { return this->Smooth ? this->SmoothCosine : infinity; }
+  double smoothCosine() const { return this->Smooth ? this->SmoothCosine : HUGE_VAL; }
 
   const MeshView& View;
   std::vector<Facet> Facets;

@@ -2,6 +2,7 @@
 #include "DecompositionCounts.h"
 
 #include "DistributedMesh.h"
+#include "TakenCells.h"
 #include "tautline/Core/Interruption.h"
 
 #include <algorithm>
@@ -14,20 +15,15 @@ namespace tautline
 namespace
 {
 /// A copy of a point that a rank has of another one.
-struct Copy
+struct PartCopy
 {
   int receiver;
   Index point;
 
   auto key() const { return std::tie(this->receiver, this->point); }
-  bool operator<(const Copy& other) const { return this->key() < other.key(); }
-  bool operator==(const Copy& other) const { return this->key() == other.key(); }
+  bool operator<(const PartCopy& other) const { return this->key() < other.key(); }
+  bool operator==(const PartCopy& other) const { return this->key() == other.key(); }
 };
-
-bool takesPart(const MeshView& view, Index cell)
-{
-  return cornerType(view.cellTypes[cell]) != CellType::Unsupported;
-}
 
 void check(const MeshView& view, const std::vector<int>& partOfCell, int parts,
   const std::vector<unsigned char>& free)
@@ -77,10 +73,10 @@ std::vector<int> findOwners(
 }
 
 /// The copies that ranks need: of the points of their part and of the cells about their own points.
-std::vector<Copy> findCopies(
+std::vector<PartCopy> findCopies(
   const MeshView& view, const std::vector<int>& partOfCell, const std::vector<int>& owners)
 {
-  std::vector<Copy> copies;
+  std::vector<PartCopy> copies;
   std::vector<int> receivers;
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
@@ -114,12 +110,12 @@ std::vector<Copy> findCopies(
 }
 
 /// Messages and neighbours from the copies.
-void countMessages(const std::vector<Copy>& copies, const std::vector<int>& owners,
+void countMessages(const std::vector<PartCopy>& copies, const std::vector<int>& owners,
   const std::vector<int>& sets, std::vector<PartCounts>& parts)
 {
   std::vector<std::tuple<int, int, int>> messages; // from, to, set
   std::vector<std::pair<int, int>> neighbours;
-  for (const Copy& copy : copies)
+  for (const PartCopy& copy : copies)
   {
     const int owner = owners[copy.point];
     ++parts[copy.receiver].haloPoints;

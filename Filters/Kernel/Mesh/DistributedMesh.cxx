@@ -31,12 +31,6 @@ std::uint64_t spreadBits(std::uint64_t x)
   return (x | (x << 2)) & 0x1249249249249249u;
 }
 
-/// Whether a cell of the view takes part.
-bool takesPart(const MeshView& view, Index cell)
-{
-  return cornerType(view.cellTypes[cell]) != CellType::Unsupported;
-}
-
 struct IdAndPlace
 {
   Index id;

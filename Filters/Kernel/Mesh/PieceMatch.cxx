@@ -22,22 +22,22 @@ constexpr char NoIds[] =
 using Names = std::vector<std::vector<Index>>; ///< one per point of each piece
 
 /// A point of a piece.
-struct PlacedPoint
+struct PiecePoint
 {
   PointKey key;
   Vec3 place;
 };
 
-bool hasLess(const PlacedPoint& a, const PlacedPoint& b)
+bool hasLess(const PiecePoint& a, const PiecePoint& b)
 {
   return a.key < b.key;
 }
 
 /// One point per key, in the order of these. Throws Error if one is at two places.
-std::vector<PlacedPoint> distinctPoints(const std::vector<std::vector<PlacedPoint>>& lists)
+std::vector<PiecePoint> distinctPoints(const std::vector<std::vector<PiecePoint>>& lists)
 {
-  std::vector<PlacedPoint> points;
-  for (const std::vector<PlacedPoint>& list : lists)
+  std::vector<PiecePoint> points;
+  for (const std::vector<PiecePoint>& list : lists)
   {
     points.insert(points.end(), list.begin(), list.end());
   }
@@ -86,7 +86,7 @@ public:
   std::vector<std::vector<double>> run();
 
 private:
-  std::vector<std::vector<PlacedPoint>> listPoints(const std::vector<RankPiece>& pieces) const;
+  std::vector<std::vector<PiecePoint>> listPoints(const std::vector<RankPiece>& pieces) const;
   Names namesOf(const std::vector<RankPiece>& pieces,
     const std::vector<std::vector<NamedPoint>>& answers,
     std::vector<std::vector<double>>* places) const;
@@ -137,10 +137,10 @@ std::string PieceMatch::cellText(std::size_t piece, Index cell) const
 
 //------------------------------------------------------------------------------
 /// The points of pieces, for the rank that each belongs to, in their order.
-std::vector<std::vector<PlacedPoint>> PieceMatch::listPoints(
+std::vector<std::vector<PiecePoint>> PieceMatch::listPoints(
   const std::vector<RankPiece>& pieces) const
 {
-  std::vector<std::vector<PlacedPoint>> sent(this->Ranks);
+  std::vector<std::vector<PiecePoint>> sent(this->Ranks);
   for (const RankPiece& piece : pieces)
   {
     for (Index p = 0; p < piece.mesh->view().numberOfPoints; ++p)
@@ -199,7 +199,7 @@ Names PieceMatch::namesOf(const std::vector<RankPiece>& pieces,
 /// `Other`.
 void PieceMatch::matchPoints()
 {
-  std::vector<std::vector<PlacedPoint>> known, asked;
+  std::vector<std::vector<PiecePoint>> known, asked;
   this->Group.together(
     [&]
     {
@@ -213,15 +213,15 @@ void PieceMatch::matchPoints()
   this->Group.together(
     [&]
     {
-      const std::vector<PlacedPoint> points = distinctPoints(known);
+      const std::vector<PiecePoint> points = distinctPoints(known);
       distinct = static_cast<Index>(points.size());
       distinctAsked = static_cast<Index>(distinctPoints(asked).size());
-      const auto answer = [&](const std::vector<std::vector<PlacedPoint>>& questions,
+      const auto answer = [&](const std::vector<std::vector<PiecePoint>>& questions,
                             std::vector<std::vector<NamedPoint>>& answers)
       {
         for (std::size_t rank = 0; rank < this->Ranks; ++rank)
         {
-          for (const PlacedPoint& question : questions[rank])
+          for (const PiecePoint& question : questions[rank])
           {
             const auto at = std::lower_bound(points.begin(), points.end(), question, hasLess);
             const bool found = at != points.end() && at->key == question.key;

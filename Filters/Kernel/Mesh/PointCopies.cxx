@@ -16,7 +16,6 @@ namespace
 constexpr double nearFraction = 1e-5; ///< of the shortest edge
 /// Places of an id that are compared: more are not copies, but ids that mean nothing.
 constexpr std::size_t mostPlaces = 64;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Copy
 {
@@ -38,8 +37,8 @@ struct Moved
 /// Low x y z and high x y z of the points of a rank; empty at first.
 struct Box
 {
-  std::array<double, 3> low = { infinity, infinity, infinity };
-  std::array<double, 3> high = { -infinity, -infinity, -infinity };
+  std::array<double, 3> low = { HUGE_VAL, HUGE_VAL, HUGE_VAL };
+  std::array<double, 3> high = { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
 
   void add(const double* x)
   {
@@ -182,7 +181,7 @@ std::vector<std::vector<Moved>> findMoved(
 //------------------------------------------------------------------------------
 std::vector<double> shortestEdges(const MeshView& view)
 {
-  std::vector<double> shortest(view.numberOfPoints, infinity);
+  std::vector<double> shortest(view.numberOfPoints, HUGE_VAL);
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     const CellType type = cornerType(view.cellTypes[cell]);

@@ -6,7 +6,7 @@
 #ifndef tautline_TakenCells_h
 #define tautline_TakenCells_h
 
-#include "tautline/Core/Types.h"
+#include "Mesh.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -17,6 +17,12 @@
 
 namespace tautline
 {
+/// Whether a cell of a view takes part.
+inline bool takesPart(const MeshView& view, Index cell)
+{
+  return cornerType(view.cellTypes[cell]) != CellType::Unsupported;
+}
+
 /**
  * @class tautline::TakenCells
  * @brief The cells that came from all ranks, in an order that follows from their points. They stay

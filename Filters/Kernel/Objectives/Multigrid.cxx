@@ -15,17 +15,15 @@
 
 namespace tautline
 {
+using namespace multigrid;
+
 namespace
 {
-constexpr int pairings = 3;            // of rows, from a level to the next
-constexpr Index coarsest = 60;         // rows that are solved by a dense factorization
-constexpr double slowCoarsening = 0.8; // ratio of rows beyond which no coarser level is made
+constexpr Index coarsest = 60; // rows that are solved by a dense factorization
 constexpr int maxLevels = 30;
 constexpr double enough =
   0.25; // reduction by the first step on a coarse level, that needs no second
-constexpr double heldPivot = 1e-10;   // relative, below which a pivot is 0 but for rounding
-constexpr double floatingSum = 1e-10; // of a row, relative to the diagonals near it, likewise
-constexpr int rebuildAfter = 4; // matrices of one pattern, after which rows are aggregated anew
+constexpr double heldPivot = 1e-10; // relative, below which a pivot is 0 but for rounding
 }
 
 //------------------------------------------------------------------------------

@@ -26,6 +26,15 @@
 
 namespace tautline
 {
+/// What the hierarchies of one process and of several ranks have in common.
+namespace multigrid
+{
+constexpr int pairings = 3;            ///< of rows, from a level to the next
+constexpr double slowCoarsening = 0.8; ///< ratio of rows beyond which no coarser level is made
+constexpr double floatingSum = 1e-10;  ///< of a row, relative to the diagonals near it: rounding
+constexpr int rebuildAfter = 4;        ///< matrices of one pattern, after which rows are aggregated
+}
+
 /// A sparse matrix of Size x Size blocks with a symmetric pattern, on arrays of the caller.
 struct BlockMatrixView
 {

@@ -13,13 +13,11 @@
 
 namespace tautline
 {
+using namespace multigrid;
+
 namespace
 {
-constexpr int pairings = 3;            // of rows
-constexpr double slowCoarsening = 0.8; // ratio of rows beyond which there is no coarser level
-constexpr double floatingSum = 1e-10;  // of a row, relative to the diagonals near it: rounding
-constexpr int rebuildAfter = 4;        // matrices, after which rows are aggregated anew
-constexpr double atOnce = 1 << 30;     // bytes that ranks gather; MPI takes twice as many
+constexpr double atOnce = 1 << 30; // bytes that ranks gather; MPI takes twice as many
 
 /// The distinct numbers of a list, ascending; the list becomes their places.
 std::vector<std::int32_t> compress(std::vector<std::int32_t>& list)

@@ -11,7 +11,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Curves and corners correspond if they are nearer than this fraction of an edge.
 constexpr double matchingDistance = 0.5;
 /// Facets (edges) of a patch (curve) that its distance from others is measured at, at most.
@@ -78,7 +77,7 @@ private:
   /// The part in a range whose sum of squared distances from some places is the smallest.
   std::pair<int, double> nearestPart(const std::vector<Vec3>& places, int begin, int end) const
   {
-    std::pair<int, double> best = { -1, infinity };
+    std::pair<int, double> best = { -1, HUGE_VAL };
     const std::size_t step = 1 + places.size() / maxSamples;
     for (int part = begin; part < end; ++part)
     {
@@ -136,7 +135,7 @@ std::vector<int> Matcher::matchCurves()
 {
   std::vector<std::vector<Vec3>> places(this->TheFeatures.curves);
   std::vector<double> length(this->TheFeatures.curves, 0.0);
-  this->ShortestEdge.assign(this->View.numberOfPoints, infinity);
+  this->ShortestEdge.assign(this->View.numberOfPoints, HUGE_VAL);
   for (const Features::Edge& e : this->TheFeatures.edges)
   {
     const Vec3 a = pointOf(this->View, e.first), b = pointOf(this->View, e.second);
@@ -168,7 +167,7 @@ Vec3 Matcher::cornerFor(Index p)
 {
   const Vec3 x = pointOf(this->View, p);
   Vec3 best = x;
-  double best2 = infinity;
+  double best2 = HUGE_VAL;
   for (const Vec3& y : this->Corners)
   {
     const double d2 = dot(y - x, y - x);

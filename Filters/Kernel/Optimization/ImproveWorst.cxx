@@ -9,7 +9,7 @@ namespace tautline
 {
 namespace
 {
-constexpr int maxRounds = 100;
+constexpr int maxWorstRounds = 100;
 /// A round that reduces the worst value by less than this fraction is the last.
 constexpr double worthwhile = 1e-3;
 /// p, one after the other: with the first, elements at 0.8 of the worst value have a thousandth of
@@ -248,7 +248,7 @@ bool improveWorst(WorstSteps& steps, Metric judged, Metric ofMean,
   const double* power = std::begin(powers);
   double pull = 1.0;
   bool lowered = false; // the pull, once, because its cost was too high
-  for (int round = 0; round < maxRounds && !steps.outOfTime(); ++round)
+  for (int round = 0; round < maxWorstRounds && !steps.outOfTime(); ++round)
   {
     if (!steps.sweep(worst, *power, pull))
     {

@@ -10,13 +10,13 @@ namespace tautline
 {
 namespace
 {
-constexpr int maxRounds = 50;
+constexpr int maxSurfaceRounds = 50;
 /// Elements count as the worst up to this factor from the worst value.
 constexpr double amongWorst = 1.05;
 /// Points move within so many layers of elements about the worst ones.
 constexpr int layers = 2;
 /// A round that improves the worst value by less than this fraction of it is the last.
-constexpr double worthwhile = 5e-3;
+constexpr double worthwhileRise = 5e-3;
 
 /// Flags of the valid elements whose values are near the worst one, of those with a point that can
 /// move.
@@ -107,7 +107,8 @@ LeavingResult leaveSurface(const Mesh& mesh, OptimizationProblem& problem,
   double worst = 0;
   std::vector<char> elements = worstElements(problem, judged, movable, worst);
   const bool some = std::any_of(elements.begin(), elements.end(), [](char e) { return e != 0; });
-  for (int round = 0; some && round < maxRounds && !result.outOfTime && !result.stopped; ++round)
+  for (int round = 0; some && round < maxSurfaceRounds && !result.outOfTime && !result.stopped;
+       ++round)
   {
     // Points that have left stay loose, as they are on nothing they could slide on.
     std::vector<unsigned char> near(view.numberOfPoints, 0), held(view.numberOfPoints);
@@ -145,7 +146,7 @@ LeavingResult leaveSurface(const Mesh& mesh, OptimizationProblem& problem,
     const double before = worst;
     problem.restart(points);
     elements = worstElements(problem, judged, movable, worst);
-    if (std::abs(worst - before) < worthwhile * std::abs(before))
+    if (std::abs(worst - before) < worthwhileRise * std::abs(before))
     {
       break;
     }

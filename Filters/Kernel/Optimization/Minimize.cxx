@@ -11,7 +11,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double infinity = std::numeric_limits<double>::infinity();
 using Vector = std::vector<double>;
 
 // Line search.
@@ -29,7 +28,7 @@ constexpr double firstDecrease = 0.1; // of the value, that the first step of al
 
 // Iterations in a row that change the value by rounding only, before there is no progress.
 constexpr int maxStalled = 3;
-constexpr double rounding = 1e-15;
+constexpr double roundingOfSums = 1e-15;
 constexpr int gainWindow = 20; // iterations, see MinimizeOptions::leastGain
 
 // Directions.
@@ -70,7 +69,7 @@ public:
 private:
   struct Trial
   {
-    double t = 0, f = infinity, slope = 0;
+    double t = 0, f = HUGE_VAL, slope = 0;
   };
 
   double dot(const Vector& a, const Vector& b) const
@@ -103,12 +102,12 @@ private:
   double* X;
   Vector G, D;                    ///< gradient and direction
   Vector OldG, TrialX, TrialG, Z; ///< gradient before the last step; work space
-  double F = infinity, Norm = 0, FirstNorm = 0, Slope = 0;
+  double F = HUGE_VAL, Norm = 0, FirstNorm = 0, Slope = 0;
   double Step = 0, StepSlope = 0; ///< of the last step
   double First = 1;               ///< first trial step along D
   double FirstNewton = 1;         ///< first trial step along Newton's direction
   double Shift = 0;               ///< of Newton's system, in units of the preconditioner
-  double Promised = infinity;     ///< by a quadratic model, of the step; 0: not known
+  double Promised = HUGE_VAL;     ///< by a quadratic model, of the step; 0: not known
   double FirstF = 0;
   Vector Values; ///< after each of Newton's iterations
   bool Preconditioned = false;
@@ -126,7 +125,7 @@ void Minimizer::evaluate(Trial& trial)
   ++this->Result.evaluations;
   if (!std::isfinite(trial.f) || !std::isfinite(trial.slope))
   {
-    trial.f = infinity;
+    trial.f = HUGE_VAL;
   }
 }
 
@@ -171,7 +170,7 @@ bool Minimizer::search(double first, double curvature, bool strong)
   Trial lo, hi, best, now;
   lo.f = this->F;
   lo.slope = this->Slope;
-  hi.t = infinity;
+  hi.t = HUGE_VAL;
   now.t = std::min(first, limit);
   bool found = false;
   for (int trial = 0; trial < maxTrials && !found; ++trial)
@@ -194,7 +193,7 @@ bool Minimizer::search(double first, double curvature, bool strong)
       }
       const double secant = now.slope > lo.slope
         ? now.t + (now.t - lo.t) * now.slope / (lo.slope - now.slope)
-        : infinity;
+        : HUGE_VAL;
       const double extended =
         std::min(std::max(secant, extendAtLeast * now.t), extendAtMost * now.t);
       lo = now;
@@ -205,7 +204,7 @@ bool Minimizer::search(double first, double curvature, bool strong)
       found = true;
       break;
     }
-    if (hi.t < infinity)
+    if (hi.t < HUGE_VAL)
     {
       if (hi.t - lo.t <= bracketEnd * hi.t)
       {
@@ -399,7 +398,7 @@ double Minimizer::solveNewton(double shift)
       d[i] = -this->Z[i];
       md[i] = -r[i];
     });
-  this->Promised = infinity;
+  this->Promised = HUGE_VAL;
   bool complete = false;
   const int maxInner = static_cast<int>(std::min<Index>(2 * this->TotalSize, maxInnerIterations));
   for (int i = 1; i <= maxInner && !complete; ++i)
@@ -411,7 +410,7 @@ double Minimizer::solveNewton(double shift)
     {
       const double flat = std::max(shift, -unshifted / dmd);
       return std::isfinite(flat) && dmd > 0 ? std::max(smallestShift, shiftGrowth * flat)
-                                            : infinity;
+                                            : HUGE_VAL;
     }
     const double a = rz / curvature, decrease = 0.5 * a * rz;
     this->Algebra.each(
@@ -449,7 +448,7 @@ double Minimizer::solveNewton(double shift)
         md[k] = beta * md[k] - r[k];
       });
   }
-  this->Promised = complete && shift == 0 ? model : infinity;
+  this->Promised = complete && shift == 0 ? model : HUGE_VAL;
   std::swap(this->D, p);
   this->Slope = this->dot(this->G, this->D);
   this->First = 1;
@@ -517,7 +516,7 @@ bool Minimizer::iterate()
   }
   if (method == Optimizer::NewtonConjugateGradient && this->Fresh)
   {
-    this->Promised = infinity; // not by Newton's model
+    this->Promised = HUGE_VAL; // not by Newton's model
   }
   if (moved && method == Optimizer::LimitedMemoryBFGS)
   {
@@ -532,7 +531,7 @@ bool Minimizer::iterate()
 bool Minimizer::isNear()
 {
   const double little =
-    std::max(this->Options.decrement * std::abs(this->F), rounding * std::abs(this->FirstF));
+    std::max(this->Options.decrement * std::abs(this->F), roundingOfSums * std::abs(this->FirstF));
   if (this->Options.decrement == 0 || this->Options.method == Optimizer::NewtonConjugateGradient)
   {
     return true;
@@ -568,7 +567,7 @@ MinimizeResult Minimizer::run()
 {
   this->F = this->Function.valueAndGradient(this->X, this->G.data());
   ++this->Result.evaluations;
-  this->Result.value = std::isnan(this->F) ? infinity : this->F;
+  this->Result.value = std::isnan(this->F) ? HUGE_VAL : this->F;
   if (this->TotalSize == 0 || !std::isfinite(this->F))
   {
     this->Result.reason =
@@ -602,7 +601,7 @@ MinimizeResult Minimizer::run()
         std::min(std::max(1, refreshGrowth * this->Result.iterations), this->Options.refresh);
     }
     const double before = this->F;
-    this->Promised = infinity;
+    this->Promised = HUGE_VAL;
     const bool moved = this->iterate();
     this->Norm = std::sqrt(this->dot(this->G, this->G));
     this->Result.gradientNorm = this->Norm;
@@ -613,7 +612,7 @@ MinimizeResult Minimizer::run()
       return this->Result;
     }
     ++this->Result.iterations;
-    stalled = before - this->F <= rounding * std::abs(this->F) ? stalled + 1 : 0;
+    stalled = before - this->F <= roundingOfSums * std::abs(this->F) ? stalled + 1 : 0;
     if (this->Options.observer &&
       !this->Options.observer(this->Result.iterations, this->F, this->Norm, this->X))
     {

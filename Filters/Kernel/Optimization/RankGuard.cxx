@@ -13,9 +13,8 @@ namespace tautline
 {
 namespace
 {
-constexpr double infinity = std::numeric_limits<double>::infinity();
 /// Values of the same element differ by so much, relatively, with the order of its operations.
-constexpr double rounding = 1e-9;
+constexpr double roundingOfRanks = 1e-9;
 
 /// What an element of value q adds to an objective.
 double termOf(const Objective& objective, double q)
@@ -65,7 +64,7 @@ void RankGuard::requireValues(const Elements& start) const
       const MeshView& view = this->TheMesh.view();
       for (Index cell = 0; cell < view.numberOfCells; ++cell)
       {
-        if (start.validity[cell] == Valid && start.values[cell] == infinity)
+        if (start.validity[cell] == Valid && start.values[cell] == HUGE_VAL)
         {
           // The numbers of cells are those of a part: where it is does not depend on the ranks.
           std::ostringstream place;
@@ -80,19 +79,19 @@ void RankGuard::requireValues(const Elements& start) const
 //------------------------------------------------------------------------------
 bool RankGuard::isWorse(double value) const
 {
-  return this->HoldsWorst && !(value <= this->Worst + rounding * std::abs(this->Worst));
+  return this->HoldsWorst && !(value <= this->Worst + roundingOfRanks * std::abs(this->Worst));
 }
 
 //------------------------------------------------------------------------------
 RankGuard::Elements RankGuard::measure(const std::vector<double>& points) const
 {
   Elements found;
-  found.worst = -infinity;
+  found.worst = -HUGE_VAL;
   this->TheMesh.group().together(
     [&]
     {
       const Index cells = this->TheMesh.view().numberOfCells;
-      found.values.assign(cells, -infinity);
+      found.values.assign(cells, -HUGE_VAL);
       found.validity.assign(cells, Valid);
       if (cells == 0)
       {
@@ -134,7 +133,7 @@ void addObjectiveOnRanks(const DistributedMesh& mesh, const Objective& objective
 {
   RankGroup& group = mesh.group();
   std::vector<double> terms, values;
-  double worst = -infinity;
+  double worst = -HUGE_VAL;
   const MetricInfo& info = metricInfo(objective.metric);
   const bool larger = info.direction == Direction::LargerIsBetter;
   group.together(
@@ -161,7 +160,7 @@ void addObjectiveOnRanks(const DistributedMesh& mesh, const Objective& objective
           if (weight > 0)
           {
             const bool undefined = fault || !std::isfinite(q[cell]);
-            terms.push_back(undefined ? infinity : weight * termOf(objective, q[cell]));
+            terms.push_back(undefined ? HUGE_VAL : weight * termOf(objective, q[cell]));
           }
           if (validity[cell] == Valid)
           {
@@ -172,7 +171,7 @@ void addObjectiveOnRanks(const DistributedMesh& mesh, const Objective& objective
       }
     });
   const double sum = group.orderlessSum(terms);
-  record.objectives.push_back(std::isnan(sum) ? infinity : sum);
+  record.objectives.push_back(std::isnan(sum) ? HUGE_VAL : sum);
   const Index count = group.sum(static_cast<Index>(values.size()));
   const double total = group.orderlessSum(values);
   worst = group.maximum(worst);

@@ -12,7 +12,7 @@ namespace
 /// Of the distance: what is nearer counts as so far, which is found faster.
 constexpr double near = 0.1;
 /// Places in a leaf of their tree, at most.
-constexpr std::size_t leafSize = 8;
+constexpr std::size_t facetsPerLeaf = 8;
 /// Of the distance: a step that leaves the planes of facets by less slides in them. Thousands of
 /// such steps do not add up to what counts.
 constexpr double inPlane = 1e-9;
@@ -80,7 +80,7 @@ SurfaceLimit::SurfaceLimit(const Mesh& mesh, const std::vector<SurfaceFacet>& fa
   if (bothWays && !this->Facets.empty())
   {
     this->Places = surface.samples(divisions);
-    this->Tree = std::make_unique<PointTree>(this->Places, leafSize);
+    this->Tree = std::make_unique<PointTree>(this->Places, facetsPerLeaf);
   }
 }
 

@@ -11,7 +11,7 @@ namespace tautline
 namespace
 {
 /// Steps on a surface with a limit are tried as they are, then with a half, a quarter, ...
-constexpr int maxTrials = 3;
+constexpr int maxProjections = 3;
 
 /// A unit vector at a right angle to n, and the third.
 void tangentsOf(const Vec3& n, Vec3* tangents)
@@ -193,7 +193,7 @@ bool VertexOptimizer<Dim>::placeOnSurface(
   {
     start[c] = this->Options.start[VertexStride * static_cast<std::size_t>(v) + c];
   }
-  const int trials = limits.empty() && !bounded ? 1 : maxTrials;
+  const int trials = limits.empty() && !bounded ? 1 : maxProjections;
   bool placed = false;
   for (int trial = 0; trial < trials && !placed; ++trial, step = 0.5 * step)
   {

@@ -11,10 +11,10 @@ namespace tautline
 namespace
 {
 constexpr double third = 1.0 / 3.0, sixth = 1.0 / 6.0;
-using Barycentric = std::array<double, 3>;
-constexpr Barycentric threePoints[3] = { { 4 * sixth, sixth, sixth }, { sixth, 4 * sixth, sixth },
-  { sixth, sixth, 4 * sixth } };
-constexpr Barycentric centroid[1] = { { third, third, third } };
+using PrintedBarycentric = std::array<double, 3>;
+constexpr PrintedBarycentric threePoints[3] = { { 4 * sixth, sixth, sixth },
+  { sixth, 4 * sixth, sixth }, { sixth, sixth, 4 * sixth } };
+constexpr PrintedBarycentric printedCentroid[1] = { { third, third, third } };
 
 int outerPoints(RuleSet rules)
 {
@@ -39,7 +39,7 @@ int innerPoints(RuleSet rules, PeridynamicBasis basis)
 struct InnerPoints
 {
   std::vector<double> x, y, squares, weights, values;
-  std::vector<Barycentric> at;        ///< in the triangle
+  std::vector<PrintedBarycentric> at; ///< in the triangle
   std::vector<std::int32_t> triangle; ///< of the point, local
   void clear()
   {
@@ -49,7 +49,7 @@ struct InnerPoints
     this->at.clear();
     this->triangle.clear();
   }
-  void add(double px, double py, double weight, const Barycentric& b, std::int32_t t)
+  void add(double px, double py, double weight, const PrintedBarycentric& b, std::int32_t t)
   {
     this->x.push_back(px);
     this->y.push_back(py);
@@ -79,7 +79,7 @@ public:
     const PlanarTriangles& mesh = this->Work.triangles;
     for (int o = 0; o < this->Outer; ++o)
     {
-      const Barycentric& at = this->Outer == 1 ? centroid[0] : threePoints[o];
+      const PrintedBarycentric& at = this->Outer == 1 ? printedCentroid[0] : threePoints[o];
       Vec2 x = {};
       for (int k = 0; k < 3; ++k)
       {
@@ -145,7 +145,7 @@ private:
         continue;
       }
       const auto local = static_cast<std::int32_t>(i);
-      const Barycentric all[3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
+      const PrintedBarycentric all[3] = { { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } };
       const double area = this->Work.triangles.areas[near[i]];
       if (inside == 3)
       {
@@ -174,14 +174,14 @@ private:
   }
 
   /// The rule on a part of a triangle.
-  void addRule(std::int32_t local, const Barycentric& a, const Barycentric& b, const Barycentric& c,
-    double area)
+  void addRule(std::int32_t local, const PrintedBarycentric& a, const PrintedBarycentric& b,
+    const PrintedBarycentric& c, double area)
   {
     const auto& ids = this->Corners[local];
     for (int q = 0; q < this->Inner; ++q)
     {
-      const Barycentric& w = this->Inner == 1 ? centroid[0] : threePoints[q];
-      const Barycentric at = { w[0] * a[0] + w[1] * b[0] + w[2] * c[0],
+      const PrintedBarycentric& w = this->Inner == 1 ? printedCentroid[0] : threePoints[q];
+      const PrintedBarycentric at = { w[0] * a[0] + w[1] * b[0] + w[2] * c[0],
         w[0] * a[1] + w[1] * b[1] + w[2] * c[1], w[0] * a[2] + w[1] * b[2] + w[2] * c[2] };
       const double x =
         at[0] * this->Px[ids[0]] + at[1] * this->Px[ids[1]] + at[2] * this->Px[ids[2]];
@@ -201,7 +201,7 @@ private:
       ++first;
     }
     const int a = first, b = (first + 1) % 3, c = (first + 2) % 3;
-    Barycentric atA = {}, atB = {}, onAC = {}, other = {};
+    PrintedBarycentric atA = {}, atB = {}, onAC = {}, other = {};
     atA[a] = 1.0;
     atB[b] = 1.0;
     const double t = this->exit(local, a, c);
@@ -236,7 +236,7 @@ private:
     return (-beta + std::sqrt(std::max(0.0, beta * beta - alpha * gamma))) / alpha;
   }
 
-  void addScalar(Index t, const Barycentric& at, double weight,
+  void addScalar(Index t, const PrintedBarycentric& at, double weight,
     const std::vector<std::int32_t>& near, RowSums& sums)
   {
     const FunctionSpace& space = this->Work.space;
@@ -283,7 +283,7 @@ private:
     }
   }
 
-  void addElastic(Index t, const Barycentric& at, double weight, Vec2,
+  void addElastic(Index t, const PrintedBarycentric& at, double weight, Vec2,
     const std::vector<std::int32_t>& near, RowSums& sums)
   {
     const FunctionSpace& space = this->Work.space;

@@ -18,7 +18,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double degreesPerRadian = 57.29577951308232;
 
 /// One cell, the argument of a metric function.
 struct Cell
@@ -319,7 +318,7 @@ double equiangleSkew(const Cell& cell, Gradient g)
     {
       const int at = nodes[c], next = nodes[(c + 1) % count], last = nodes[(c + count - 1) % count];
       const double a =
-        degreesPerRadian * angleBetween(p[next] - p[at], p[last] - p[at], nullptr, nullptr);
+        DegreesPerRadian * angleBetween(p[next] - p[at], p[last] - p[at], nullptr, nullptr);
       const double perDegree = a > equal ? 1 / (180.0 - equal) : -1 / equal;
       if (perDegree * (a - equal) > worst)
       {
@@ -336,7 +335,7 @@ double equiangleSkew(const Cell& cell, Gradient g)
     Vec3 da, db;
     angleBetween(
       p[worstNodes[1]] - p[worstNodes[0]], p[worstNodes[2]] - p[worstNodes[0]], &da, &db);
-    const double factor = slope * degreesPerRadian;
+    const double factor = slope * DegreesPerRadian;
     g[worstNodes[1]] += factor * da;
     g[worstNodes[2]] += factor * db;
     g[worstNodes[0]] -= factor * (da + db);

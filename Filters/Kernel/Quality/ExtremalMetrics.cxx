@@ -14,7 +14,6 @@ namespace tautline
 {
 namespace
 {
-constexpr double degreesPerRadian = 57.29577951308232;
 constexpr int allNodes[MaxFaceNodes] = { 0, 1, 2, 3 };
 
 void keep(Mask lanes, const Packet* from, Packet* to)
@@ -227,7 +226,7 @@ Packet angleOf(Packet sine, Packet cosine)
   for (int l = 0; l < PacketWidth; ++l)
   {
     angle[l] =
-      sine[l] == 0 && cosine[l] == 0 ? 0.0 : degreesPerRadian * std::atan2(sine[l], cosine[l]);
+      sine[l] == 0 && cosine[l] == 0 ? 0.0 : DegreesPerRadian * std::atan2(sine[l], cosine[l]);
   }
   return angle;
 }
@@ -320,7 +319,7 @@ void extremalDihedral(const BatchContext& context, Batch& batch)
   {
     clearGradient(t.nodes, batch);
     Packet da[3], db[3], byNormal[MaxFaces][3] = {};
-    best.derivatives(broadcast(degreesPerRadian), da, db);
+    best.derivatives(broadcast(DegreesPerRadian), da, db);
     for (int e = 0; e < t.edges; ++e)
     {
       const Mask here = at == static_cast<double>(e);
@@ -373,7 +372,7 @@ void extremalCorner(const BatchContext& context, Batch& batch)
   {
     clearGradient(t.nodes, batch);
     Packet da[3], db[3];
-    best.derivatives(degreesPerRadian * turn, da, db);
+    best.derivatives(DegreesPerRadian * turn, da, db);
     for (int corner = 0; corner < t.corners; ++corner)
     {
       const auto& nodes = t.cornerNodes[corner];

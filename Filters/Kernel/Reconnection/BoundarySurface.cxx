@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BoundarySurface.h"
 
+#include "Constants.h"
+
 #include "tautline/Core/Interruption.h"
 #include "tautline/Mesh/Features.h"
 
@@ -10,8 +12,6 @@ namespace tautline
 {
 namespace
 {
-/// Rounding in the distance from a flat patch, relative to the diagonal.
-constexpr double LeastDistance = 1e-12;
 
 double diagonalOf(const std::vector<std::array<Vec3, 3>>& pieces)
 {

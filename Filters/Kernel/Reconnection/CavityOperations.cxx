@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CavityOperations.h"
 
+#include "Constants.h"
+
 namespace tautline
 {
-namespace
-{
-/// Two qualities that differ by less are the same: rounding must not decide.
-constexpr double SameQuality = 1e-9;
-}
-
 void CavityOperations::addCounts(const OperationCounts& counts)
 {
   this->Counts.edgeRemovals += counts.edgeRemovals;

@@ -2,6 +2,8 @@
 // Motion of a vertex that improves the mean of the inverse mean ratios around.
 #include "CavityOperations.h"
 
+#include "Constants.h"
+
 #include <Eigen/Dense>
 
 #include <limits>
@@ -13,10 +15,6 @@ namespace
 /// The inverse mean ratio is S / (12 (d / 2)^(2/3)), with the sum S of the squared edges and six
 /// times the volume d.
 constexpr double RatioFactor = 12.0;
-/// Halvings of a step that is too long.
-constexpr int Halvings = 6;
-/// A decrease that is kept, relative to the sum.
-constexpr double LeastDecrease = 1e-7;
 /// What an operation has to decrease the sum by, where the sum is the objective.
 constexpr double LeastSumDecrease = 1e-3;
 

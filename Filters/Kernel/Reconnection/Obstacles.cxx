@@ -9,7 +9,7 @@ namespace tautline
 namespace
 {
 /// A tetrahedron this close to its bound is at it: the bounds of facets are about as accurate.
-constexpr double AtBound = 2e-3;
+constexpr double NearBound = 2e-3;
 
 /// Where the points of the walls are, and what all walls force.
 struct Walls
@@ -112,11 +112,11 @@ void findObstacles(const TetrahedronMesh& mesh, const Schedule& schedule,
     if (quality < target)
     {
       bound = boundOf(mesh, schedule, t, smoothing);
-      obstacle = bound <= quality * (1.0 + AtBound) ? Obstacle::Facets
-        : any(fixedPoints)                          ? Obstacle::FixedPoints
-        : any(walls.atInterface)                    ? Obstacle::Interface
-        : any(walls.atSurface)                      ? Obstacle::Surface
-                                                    : Obstacle::Limit;
+      obstacle = bound <= quality * (1.0 + NearBound) ? Obstacle::Facets
+        : any(fixedPoints)                            ? Obstacle::FixedPoints
+        : any(walls.atInterface)                      ? Obstacle::Interface
+        : any(walls.atSurface)                        ? Obstacle::Surface
+                                                      : Obstacle::Limit;
     }
     result.obstacles.push_back(static_cast<signed char>(obstacle));
     result.qualities.push_back(quality);

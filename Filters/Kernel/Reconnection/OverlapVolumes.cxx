@@ -2,6 +2,8 @@
 // Volumes that tetrahedra of the output share with those of the input.
 #include "ReconnectionOutput.h"
 
+#include "Constants.h"
+
 #include "tautline/Core/Parallel.h"
 
 #include <unordered_set>
@@ -12,8 +14,6 @@ namespace
 {
 using Corners = std::array<Vec3, 4>;
 
-/// A smaller part of the volume of a tetrahedron is rounding.
-constexpr double RoundingFraction = 1e-12;
 constexpr Index TetrahedraPerChunk = 1024;
 
 double volumeOf(const Corners& x)

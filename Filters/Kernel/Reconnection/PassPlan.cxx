@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PassPlan.h"
 
+#include "Constants.h"
+
 #include <cmath>
 
 namespace tautline
@@ -22,13 +24,7 @@ constexpr int Repairs = 4;
 /// It ends after so many tetrahedra tried in vain, and one more of so many of the mesh: these take
 /// some milliseconds each.
 constexpr Index MaxFailures = 100, TetrahedraPerFailure = 10000;
-/// Angle of the preset RemoveSlivers; that of the others is the default of the options.
-constexpr double SliverAngle = 15.0;
 
-double radians(double degrees)
-{
-  return degrees * (Pi / 180.0);
-}
 }
 
 //------------------------------------------------------------------------------

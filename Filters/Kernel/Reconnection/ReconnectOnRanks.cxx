@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ReconnectOnRanks.h"
 
+#include "Constants.h"
 #include "RankParts.h"
 #include "tautline/Core/Stopwatch.h"
 
@@ -12,7 +13,7 @@ namespace tautline
 {
 namespace
 {
-constexpr int Corners = 4;
+constexpr int CornersOfCell = 4;
 /// Cells with a point at a seam, and so many rings around these, are near it; about the same in
 /// lengths of their edges.
 constexpr int Reach = 2;
@@ -25,8 +26,6 @@ constexpr double FirstShare = 0.25;
 constexpr double LargestGrowth = 4.0;
 /// So many places of a rank decide where planes are not to be.
 constexpr std::size_t MostPlaces = 2000;
-/// A cell this close to the bound of its quality is at it.
-constexpr double AtBound = 1e-3;
 
 /// The least of the values of all ranks.
 double minimum(RankGroup& group, double value)
@@ -108,15 +107,15 @@ void RankRounds::take(const RankTetrahedra& mesh)
   this->Group.together(
     [&]
     {
-      const std::size_t cells = mesh.tetrahedra.size() / Corners;
+      const std::size_t cells = mesh.tetrahedra.size() / CornersOfCell;
       std::vector<char> used(mesh.numbers.size(), 0);
       this->Part.cells.resize(cells);
       for (std::size_t c = 0; c < cells; ++c)
       {
         PartCell& cell = this->Part.cells[c];
-        for (int k = 0; k < Corners; ++k)
+        for (int k = 0; k < CornersOfCell; ++k)
         {
-          const Index p = mesh.tetrahedra[Corners * c + k];
+          const Index p = mesh.tetrahedra[CornersOfCell * c + k];
           cell.points[k] = mesh.numbers[p];
           used[p] = 1;
         }
@@ -172,7 +171,7 @@ LocalMesh RankRounds::localMesh(const PartSurroundings& around, int round) const
     const bool own = cells == &this->Part.cells;
     for (const PartCell& cell : *cells)
     {
-      std::array<Index, Corners> v;
+      std::array<Index, CornersOfCell> v;
       std::transform(cell.points.begin(), cell.points.end(), v.begin(),
         [&](Index number) { return places(number); });
       const bool onAllSeams =
@@ -200,11 +199,11 @@ LocalMesh RankRounds::localMesh(const PartSurroundings& around, int round) const
   for (int ring = 0; ring < Reach; ++ring)
   {
     const std::vector<unsigned char> inner = local.nearSeam;
-    for (auto v = local.connectivity.begin(); v != local.connectivity.end(); v += Corners)
+    for (auto v = local.connectivity.begin(); v != local.connectivity.end(); v += CornersOfCell)
     {
-      if (std::any_of(v, v + Corners, [&](Index p) { return inner[p] != 0; }))
+      if (std::any_of(v, v + CornersOfCell, [&](Index p) { return inner[p] != 0; }))
       {
-        std::for_each(v, v + Corners, [&](Index p) { local.nearSeam[p] = 1; });
+        std::for_each(v, v + CornersOfCell, [&](Index p) { local.nearSeam[p] = 1; });
       }
     }
   }
@@ -359,9 +358,9 @@ void RankRounds::addShares(const LocalMesh& local, const ReconnectionResult& res
     {
       continue; // no cell of this rank has it
     }
-    for (int k = 0; k < Corners; ++k)
+    for (int k = 0; k < CornersOfCell; ++k)
     {
-      const Index corner = local.points[local.connectivity[Corners * place.cell + k]].number;
+      const Index corner = local.points[local.connectivity[CornersOfCell * place.cell + k]].number;
       if (corner < this->FirstInserted)
       {
         added.push_back({ number, corner, place.weights[k] });
@@ -405,9 +404,9 @@ void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& re
     {
       for (std::size_t c = 0; c < result.originalCells.size(); ++c)
       {
-        for (int k = 0; k < Corners && result.originalCells[c] < own; ++k)
+        for (int k = 0; k < CornersOfCell && result.originalCells[c] < own; ++k)
         {
-          used[result.tetrahedra[Corners * c + k]] = 1;
+          used[result.tetrahedra[CornersOfCell * c + k]] = 1;
         }
       }
       for (std::size_t p = 0; p < used.size(); ++p)
@@ -466,9 +465,9 @@ void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& re
           continue;
         }
         PartCell cell = part.cells[result.originalCells[c]];
-        for (int k = 0; k < Corners; ++k)
+        for (int k = 0; k < CornersOfCell; ++k)
         {
-          cell.points[k] = numbers[result.tetrahedra[Corners * c + k]];
+          cell.points[k] = numbers[result.tetrahedra[CornersOfCell * c + k]];
         }
         cell.quality = result.qualities[c];
         cell.bound = result.bounds[c];
@@ -524,7 +523,7 @@ std::vector<Ball> RankRounds::placesToKeep() const
       continue;
     }
     double longest = 0.0;
-    for (int i = 0; i < Corners; ++i)
+    for (int i = 0; i < CornersOfCell; ++i)
     {
       const Vec3& x = points[places(cell.points[i])].x;
       for (int j = 0; j < i; ++j)

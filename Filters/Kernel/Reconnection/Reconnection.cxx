@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reconnection.h"
 
+#include "Constants.h"
 #include "BoundaryFreedom.h"
 #include "MeshBlocks.h"
 #include "Obstacles.h"
@@ -34,21 +35,9 @@ constexpr int StartRings = 1;
 constexpr double BlockFraction = 0.1;
 /// Progress when all blocks are done.
 constexpr double BlockProgress = 0.9;
-/// Sweeps for the mean end when one decreases the sum by less than this part, or after so many.
-constexpr double LeastMeanDecrease = 2e-5;
-constexpr int MaxMeanSweeps = 60;
-/// Points between two calls of the observer in these.
-constexpr PointId MeanInterval = 256;
-/// Wall time between two calls of the observer during a pass.
-constexpr double ObserverSeconds = 0.1;
 
 /// So much one of the sine and the mean ratio counts where the other is the objective.
 constexpr double IgnoredWeight = 1e3;
-
-double radians(double degrees)
-{
-  return degrees * (Pi / 180.0);
-}
 
 QualityWeights weightsOf(ReconnectionObjective objective, const MetricQuality* metric)
 {

@@ -18,7 +18,7 @@ constexpr double BlockBytesPerTetrahedron = 110.0;
 constexpr double LargestTargetAngle = 60.0, LargestFlatAngle = 1.0;
 constexpr double LargestFeatureAngle = 180.0, LargestSurfaceAngle = 90.0;
 
-void checkCells(const Mesh& mesh)
+void requireTetrahedra(const Mesh& mesh)
 {
   const MeshView& view = mesh.view();
   Index others = view.numberOfCells;
@@ -103,7 +103,7 @@ void checkReconnectionOptions(const ReconnectionOptions& options)
 
 ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& options)
 {
-  checkCells(mesh);
+  requireTetrahedra(mesh);
   const MeshView& view = mesh.view();
   const bool inBlocks = view.numberOfCells >= 2 * options.blockSize;
   requireMemory((BytesPerTetrahedron + (inBlocks ? BlockBytesPerTetrahedron : 0.0)) *

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Schedule.h"
 
+#include "Constants.h"
 #include "FacetBound.h"
 
 namespace tautline
@@ -9,8 +10,6 @@ namespace
 {
 /// Operations are tried so many times between two calls of `proceed`.
 constexpr Index ProceedInterval = 64;
-/// A tetrahedron this close to its bound is at it.
-constexpr double AtBound = 1e-3;
 }
 
 double Schedule::bound(TetId t) const

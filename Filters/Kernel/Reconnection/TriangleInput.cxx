@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleInput.h"
 
+#include "Constants.h"
 #include "ReconnectionInput.h"
 #include "tautline/Core/Memory.h"
 
@@ -12,10 +13,8 @@ namespace
 {
 /// Of mesh, surface, workspace and result.
 constexpr double BytesPerTriangle = 500.0;
-/// Rounding in the distance from a flat patch, in scaled coordinates.
-constexpr double LeastDistance = 1e-12;
 
-void checkCells(const Mesh& mesh)
+void requireTriangles(const Mesh& mesh)
 {
   const MeshView& view = mesh.view();
   Index others = view.numberOfCells;
@@ -150,7 +149,7 @@ Vec3 TriangleInput::leave(const Mesh& mesh, const Vec3& x) const
 
 TriangleInput convertTriangles(const Mesh& mesh, const TriangleOptions& options)
 {
-  checkCells(mesh);
+  requireTriangles(mesh);
   const MeshView& view = mesh.view();
   requireMemory(BytesPerTriangle * static_cast<double>(view.numberOfCells),
     "reconnection of this mesh", "take a smaller mesh");
@@ -261,8 +260,6 @@ std::vector<PointFreedom> findFreedoms(
 //------------------------------------------------------------------------------
 namespace
 {
-/// A triangle this close to its bound is at it.
-constexpr double AtBound = 1e-3;
 constexpr double RegularSine = 0.8660254037844386; // sin 60 degrees
 
 /// The smallest angle between two walls of triangle t at vertex k; 60 degrees or more: none.

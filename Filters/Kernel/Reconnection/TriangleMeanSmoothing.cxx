@@ -2,16 +2,14 @@
 // Motion of a vertex that improves the mean of the inverse mean ratios of the triangles around.
 #include "TriangleOperations.h"
 
+#include "Constants.h"
+
 #include <limits>
 
 namespace tautline
 {
 namespace
 {
-/// Halvings of a step that is too long.
-constexpr int Halvings = 6;
-/// A decrease that is kept, relative to the sum.
-constexpr double LeastDecrease = 1e-7;
 
 /// The sum of S / d over triangles, with the sum S of the squared edges and twice the area d, as a
 /// function of the vertex in its tangent plane: gradient and matrix of second derivatives.

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleOperations.h"
 
+#include "Constants.h"
+
 #include <limits>
 
 namespace tautline
 {
 namespace
 {
-/// Two qualities that differ by less are the same: rounding must not decide.
-constexpr double SameQuality = 1e-9;
 /// Rounds of flips, and of flips and motions, after an insertion or a contraction.
 constexpr int FlipRounds = 4, TidyRounds = 3;
 constexpr int TidySteps = 2;

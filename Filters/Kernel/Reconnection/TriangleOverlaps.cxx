@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Areas that triangles of the output share with those of the input.
 #include "ReconnectionOutput.h"
+#include "Constants.h"
 #include "TriangleInput.h"
 
 #include "tautline/Core/Parallel.h"
@@ -11,8 +12,6 @@ namespace tautline
 {
 namespace
 {
-/// A smaller part of the area of a triangle is rounding.
-constexpr double RoundingFraction = 1e-12;
 constexpr Index TrianglesPerChunk = 1024;
 
 /// A triangle in the plane of another one.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleReconnection.h"
 
+#include "Constants.h"
 #include "TriangleInput.h"
 #include "TriangleOperations.h"
 #include "tautline/Core/Interruption.h"
@@ -13,24 +14,16 @@ namespace tautline
 namespace
 {
 /// Qualities of the first passes: the worst triangles first, also of the whole mesh.
-constexpr double FirstTargets[] = { 0.3, 0.5 };
+constexpr double FirstTriangleTargets[] = { 0.3, 0.5 };
 /// The last pass is repeated, at most so often, as long as the worst quality gains so much by it.
-constexpr int Repetitions = 4;
-constexpr double RepetitionGain = 1e-3;
+constexpr int TrianglePasses = 4;
+constexpr double TrianglePassGain = 1e-3;
 /// What a motion has to gain at first, and in the last pass.
 constexpr double FirstGain = 1e-3, FineGain = 1e-4;
 /// Steps of a point, each time.
-constexpr int Steps = 3;
-/// Sweeps for the mean end when one decreases the sum by less than this part, or after so many.
-constexpr double LeastMeanDecrease = 2e-5;
-constexpr int MaxMeanSweeps = 60;
-/// Points between two looks at the clock in these.
-constexpr VertexId MeanInterval = 256;
-/// Angle of the preset RemoveSlivers; that of the others is the default of the options.
-constexpr double SliverAngle = 15.0;
-/// Wall time between two calls of the observer during a pass, and attempts between two checks.
-constexpr double ObserverSeconds = 0.1;
-constexpr Index ProceedInterval = 32;
+constexpr int StepsOfPoint = 3;
+/// Attempts between two checks of the clock.
+constexpr Index AttemptsBetweenChecks = 32;
 
 double sineOf(double degrees)
 {
@@ -85,7 +78,7 @@ std::vector<TrianglePass> planPasses(const TriangleOptions& options)
     passes.push_back(pass);
   }
   pass.smooth = options.smooth;
-  for (double first : FirstTargets)
+  for (double first : FirstTriangleTargets)
   {
     if (first < target)
     {
@@ -227,7 +220,7 @@ bool TriangleRun::improve(TriId t, const TrianglePass& pass)
   const Corners v = this->Mesh.triangle(t).vertices;
   for (int i = 0; pass.smooth && i < 3; ++i)
   {
-    if (this->Operations.smooth(v[i], Steps))
+    if (this->Operations.smooth(v[i], StepsOfPoint))
     {
       moved = true;
       this->pushChanged(pass.target);
@@ -289,7 +282,7 @@ bool TriangleRun::runPass(const TrianglePass& pass)
     {
       continue;
     }
-    if (++this->Attempts % ProceedInterval == 0 && !this->proceed())
+    if (++this->Attempts % AttemptsBetweenChecks == 0 && !this->proceed())
     {
       return false;
     }
@@ -370,14 +363,16 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
       break;
     }
     stopped = !this->runPass(passes[i]);
-    const double progress = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
+    const double progress =
+      static_cast<double>(i + 1) / static_cast<double>(planned + TrianglePasses);
     if (!this->record(static_cast<int>(i) + 1, progress) && !stopped)
     {
       stopped = true;
       this->Result.reason = StopReason::Aborted;
     }
     const double gain = this->Result.history.back().worstQuality - before.worstQuality;
-    if (i + 1 == passes.size() && gain > RepetitionGain && passes.size() < planned + Repetitions)
+    if (i + 1 == passes.size() && gain > TrianglePassGain &&
+      passes.size() < planned + TrianglePasses)
     {
       passes.push_back(passes[i]);
     }

@@ -16,7 +16,7 @@ constexpr int Exchanges = 60;
 constexpr double Balanced = 1e-7;
 /// The weight of the square of the step times the square of the shortest edge: at first, and how
 /// it changes after a step that failed or did not.
-constexpr double FirstWeight = 3.0, Harder = 4.0, Softer = 0.5;
+constexpr double FirstStepWeight = 3.0, Harder = 4.0, Softer = 0.5;
 constexpr int Trials = 5;
 
 double signedArea2(const Vec3& c, const Vec3& normal)
@@ -134,7 +134,7 @@ double TriangleStar::maximize(
   {
     length2 = std::min(length2, dot(b - a, b - a));
   }
-  double weight = FirstWeight;
+  double weight = FirstStepWeight;
   for (int accepted = 0; accepted < steps && length2 > 0.0; ++accepted)
   {
     this->linearize(p, directions);

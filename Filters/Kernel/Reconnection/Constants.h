@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file Constants.h
+ * @brief What the reconnection of tetrahedra and that of triangles have in common. Internal: not
+ * installed.
+ */
+#ifndef tautline_ReconnectionConstants_h
+#define tautline_ReconnectionConstants_h
+
+#include "tautline/Core/Types.h"
+
+namespace tautline
+{
+inline double radians(double degrees)
+{
+  return degrees * (Pi / 180.0);
+}
+
+/// A cell this close to the bound of its quality is at it.
+constexpr double AtBound = 1e-3;
+/// Two qualities that differ by less are the same: rounding must not decide.
+constexpr double SameQuality = 1e-9;
+/// A smaller part of the volume of a tetrahedron, or of the area of a triangle, is rounding.
+constexpr double RoundingFraction = 1e-12;
+/// Rounding in the distance from a flat patch, relative to the diagonal.
+constexpr double LeastDistance = 1e-12;
+/// Angle of the preset RemoveSlivers; that of the others is the default of the options.
+constexpr double SliverAngle = 15.0;
+/// Wall time between two calls of the observer during a pass.
+constexpr double ObserverSeconds = 0.1;
+
+/// Sweeps for the mean end when one decreases the sum by less than this part, or after this many.
+constexpr double LeastMeanDecrease = 2e-5;
+constexpr int MaxMeanSweeps = 60;
+/// Points between two calls of the observer in these.
+constexpr int MeanInterval = 256;
+/// Halvings of a step that is too long.
+constexpr int Halvings = 6;
+/// A decrease that is kept, relative to the sum.
+constexpr double LeastDecrease = 1e-7;
+}
+#endif
