@@ -22,8 +22,13 @@ from vtkmodules.vtkCommonDataModel import (
     vtkUnstructuredGrid,
 )
 from vtkmodules.vtkFiltersCore import vtkAppendFilter, vtkThreshold
-from vtkmodules.vtkFiltersExtraction import vtkExtractCells, vtkExtractGeometry
+from vtkmodules.vtkFiltersExtraction import vtkExtractGeometry
 from vtkmodules.vtkFiltersGeneral import vtkClipDataSet
+
+try:
+    from vtkmodules.vtkFiltersCore import vtkExtractCells
+except ImportError:  # before VTK 9.2
+    from vtkmodules.vtkFiltersExtraction import vtkExtractCells
 
 FOLDER = OUT / "grids"
 FOLDER.mkdir(parents=True, exist_ok=True)

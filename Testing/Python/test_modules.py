@@ -22,6 +22,7 @@ FLOORS = (
     ("_classes", "_interrupts", "_names"),
     ("_errors",),
     ("_arrays", "_files", "_formats", "_tables"),
+    ("_grid_checks",),
     ("_arguments", "_groups", "_legacy", "_mesh", "_pictures", "_surfaces", "_vtk_readers", "_vtk_writers"),
     ("_meshio",),
     ("_io", "_results"),

@@ -175,9 +175,10 @@ class _Scanner:
         if word == "children":
             self.children += self._count()
         elif word == "child":
-            self._rest_of_line()
+            missing = self._rest_of_line().split()[:1] == ["-1"]  # a block that is null
             self.children, self.open = self.children - 1, self.open + 1
-            self._header()
+            if not missing:
+                self._header()
         else:
             self.open -= 1
 

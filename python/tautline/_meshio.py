@@ -13,7 +13,7 @@ from typing import Any, Callable, cast
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPointSet, vtkUnstructuredGrid
 
 from ._arrays import Array
 from ._errors import Error
@@ -142,10 +142,10 @@ def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
         if block.type not in _CELLS:
             raise Error(f"cells {block.type!r} of meshio are not supported; there are {', '.join(_CELLS)}")
         number, size = _CELLS[block.type]
-        cells = check_block(block.type, _as_array(block.type, block.data), size, len(xyz))
-        types.append(np.full(len(cells), number, np.uint8))
-        sizes.append(np.full(len(cells), size, np.int64))
-        ids.append(_ordered(block.type, cells).ravel())
+        rows = check_block(block.type, _as_array(block.type, block.data), size, len(xyz))
+        types.append(np.full(len(rows), number, np.uint8))
+        sizes.append(np.full(len(rows), size, np.int64))
+        ids.append(_ordered(block.type, rows).ravel())
     grid = vtkUnstructuredGrid()
     points = vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(xyz), deep=True))
@@ -208,7 +208,7 @@ def meshio_of(data: vtkDataSet) -> Any:
     except ImportError:
         raise Error(f"{PACKAGE} is not installed") from None
     count = data.GetNumberOfPoints()
-    if hasattr(data, "GetPoints") and data.GetPoints():
+    if isinstance(data, vtkPointSet) and data.GetPoints():
         xyz = np.array(vtk_to_numpy(data.GetPoints().GetData()))
     else:
         xyz = np.array([data.GetPoint(i) for i in range(count)]).reshape(count, 3)
@@ -228,7 +228,7 @@ def meshio_of(data: vtkDataSet) -> Any:
         xyz,
         [(name, _ordered(name, np.array(cells))) for name, cells in blocks],
         point_data=_arrays(data.GetPointData()),
-        cell_data={name: np.split(values, bounds) for name, values in _arrays(data.GetCellData()).items()},
+        cell_data={name: np.split(values, bounds) for name, values in _arrays(data.GetCellData()).items() if blocks},
     )
 
 
