@@ -63,6 +63,12 @@ inline PartChoice& partChoice()
   return choice;
 }
 
+/** Whether slow parts run, for those who choose a number of random cases by it. */
+inline bool slowParts()
+{
+  return partChoice().slow;
+}
+
 enum class Pace
 {
   Fast,

@@ -8,11 +8,22 @@ namespace tautline
 {
 const std::vector<FuzzTarget>& fuzzTargets()
 {
-  static const std::vector<FuzzTarget> targets = { { "tetgen", fuzzTetGen }, { "medit", fuzzMedit },
-    { "gmsh", fuzzGmsh }, { "off", fuzzOff }, { "image", fuzzImage },
-    { "imagelist", fuzzImageList }, { "silhouette", fuzzSilhouette }, { "quality", fuzzQuality },
-    { "mesh", fuzzMesh }, { "move", fuzzMove }, { "reconnection", fuzzReconnection },
-    { "petscoptions", fuzzPetscOptions } };
+  static const std::vector<FuzzTarget> targets = {
+    { "tetgen", fuzzTetGen },
+    { "medit", fuzzMedit },
+    { "gmsh", fuzzGmsh },
+    { "off", fuzzOff },
+    { "quality", fuzzQuality },
+    { "mesh", fuzzMesh },
+    { "move", fuzzMove },
+    { "reconnection", fuzzReconnection },
+#ifndef TAUTLINE_KERNEL_TARGETS // these need the filters or PETSc
+    { "image", fuzzImage },
+    { "imagelist", fuzzImageList },
+    { "silhouette", fuzzSilhouette },
+    { "petscoptions", fuzzPetscOptions },
+#endif
+  };
   return targets;
 }
 

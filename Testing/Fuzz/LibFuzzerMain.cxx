@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The driver of libFuzzer: TAUTLINE_FUZZ_TARGET names the target; the arguments are libFuzzer's.
+// The driver of libFuzzer: TAUTLINE_FUZZ_TARGET names the target, or is "list" to print their
+// names; the arguments are libFuzzer's.
 
 #include "FuzzTargets.h"
 
@@ -8,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 namespace
 {
@@ -17,6 +19,14 @@ const tautline::FuzzTarget* target = nullptr;
 extern "C" int LLVMFuzzerInitialize(int*, char***)
 {
   const char* name = std::getenv("TAUTLINE_FUZZ_TARGET");
+  if (name && std::strcmp(name, "list") == 0)
+  {
+    for (const tautline::FuzzTarget& known : tautline::fuzzTargets())
+    {
+      std::puts(known.name);
+    }
+    std::exit(EXIT_SUCCESS);
+  }
   target = tautline::findFuzzTarget(name ? name : "");
   if (!target)
   {

@@ -72,7 +72,7 @@ void mutate(std::string& bytes, std::mt19937& random)
 
 //------------------------------------------------------------------------------
 long runTarget(const FuzzTarget& target, const std::vector<std::string>& corpus, double seconds,
-  unsigned seed, const std::string& input)
+  unsigned seed, const std::string& input, long most)
 {
   long runs = 0;
   const auto run = [&](const std::string& bytes)
@@ -88,7 +88,7 @@ long runTarget(const FuzzTarget& target, const std::vector<std::string>& corpus,
   constexpr std::size_t LongestInput = 1 << 16;
   std::mt19937 random(seed);
   const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  while (!corpus.empty() && std::chrono::steady_clock::now() < end)
+  while (!corpus.empty() && (most < 0 || runs < most) && std::chrono::steady_clock::now() < end)
   {
     std::string bytes = corpus[random() % corpus.size()];
     for (auto times = 1 + random() % 4; times > 0; --times)

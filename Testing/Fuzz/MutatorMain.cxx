@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The driver without libFuzzer: TautlineFuzzer TARGET CORPUS SECONDS SEED INPUT. The file INPUT has
-// the bytes that failed.
+// The driver without libFuzzer: TautlineFuzzer TARGET CORPUS SECONDS SEED INPUT RUNS. The file INPUT
+// has the bytes that failed; -1 RUNS are any number. TautlineFuzzer list prints the targets.
 
 #include "Mutator.h"
 
@@ -11,17 +11,25 @@
 
 int main(int argc, char* argv[])
 {
-  const tautline::FuzzTarget* target = argc == 6 ? tautline::findFuzzTarget(argv[1]) : nullptr;
+  if (argc == 2 && std::string(argv[1]) == "list")
+  {
+    for (const tautline::FuzzTarget& known : tautline::fuzzTargets())
+    {
+      std::cout << known.name << "\n";
+    }
+    return EXIT_SUCCESS;
+  }
+  const tautline::FuzzTarget* target = argc == 7 ? tautline::findFuzzTarget(argv[1]) : nullptr;
   if (!target)
   {
-    std::cerr << "usage: " << argv[0] << " TARGET CORPUS SECONDS SEED INPUT\n";
+    std::cerr << "usage: " << argv[0] << " TARGET CORPUS SECONDS SEED INPUT RUNS\n";
     return EXIT_FAILURE;
   }
   vtkObject::GlobalWarningDisplayOff();
   try
   {
     const long runs = tautline::runTarget(*target, tautline::readCorpus(argv[2]),
-      std::atof(argv[3]), static_cast<unsigned>(std::atoi(argv[4])), argv[5]);
+      std::atof(argv[3]), static_cast<unsigned>(std::atoi(argv[4])), argv[5], std::atol(argv[6]));
     std::cout << runs << " runs\n";
   }
   catch (const std::exception& error)

@@ -1,15 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# fuzz.sh BUILD SECONDS [SEED [RUNS]]: runs every fuzz target for so many seconds, two at a time, and fails on any finding.
+# fuzz.sh FUZZER BUILD SECONDS [SEED [RUNS]]: runs every target of a fuzzer for this many seconds, two at a time, and fails
+# on any finding.
 # SEED: that of the random numbers, so that a run can be repeated; 0, the default: another one each time.
 # RUNS: the largest number of inputs of a target, the corpus among them; -1, the default: any number.
 # New inputs that reach new code are kept in BUILD/corpus; an input that fails is saved in BUILD/findings. To keep
 # one as a regression test, mend the cause and copy it to Testing/Fuzz/Corpus/TARGET.
 set -euo pipefail
-build="$1" seconds="$2" seed="${3:-0}" runs="${4:--1}"
+fuzzer="$1" build="$2" seconds="$3" seed="${4:-0}" runs="${5:--1}"
 top="$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")" && pwd -P)"
-fuzzer="$build/bin/TautlineFuzzer"
-targets=("$top"/Corpus/*/)
+mapfile -t targets < <(TAUTLINE_FUZZ_TARGET=list "$fuzzer" list)
 parallel=2
 # Memory and time of one input: far above what any input of the corpus needs.
 memory=2048 longest=20
@@ -21,6 +21,7 @@ trap 'rm -rf "$work"' EXIT
 mkdir -p "$build/findings"
 
 # libFuzzer prints its help to stderr; the seeded mutator has no such option. (No pipe to grep -q: it ends too early.)
+((${#targets[@]} > 0)) || { echo "fuzz: $fuzzer lists no targets" >&2; exit 1; }
 help="$(TAUTLINE_FUZZ_TARGET=off "$fuzzer" -help=1 2>&1 || true)"
 libfuzzer=0
 [[ $help != *max_total_time* ]] || libfuzzer=1
@@ -36,7 +37,7 @@ fuzz() {
       -timeout="$longest" -rss_limit_mb="$memory" -max_len=16384 -print_final_stats=1 \
       -artifact_prefix="$build/findings/$target-" "$build/corpus/$target" "$top/Corpus/$target"
   else
-    "$fuzzer" "$target" "$top/Corpus/$target" "$seconds" "$((seed > 0 ? seed : RANDOM))" "$build/findings/$target-input"
+    "$fuzzer" "$target" "$top/Corpus/$target" "$seconds" "$((seed > 0 ? seed : RANDOM))" "$build/findings/$target-input" "$runs"
     rm -f "$build/findings/$target-input"
   fi
 }
@@ -54,8 +55,7 @@ finish() { # the oldest of the running ones
   fi
 }
 running=()
-for folder in "${targets[@]}"; do
-  target="$(basename "$folder")"
+for target in "${targets[@]}"; do
   fuzz "$target" >"$work/$target.log" 2>&1 &
   running+=("$target:$!")
   ((${#running[@]} < parallel)) || finish

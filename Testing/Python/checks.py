@@ -14,6 +14,7 @@ from wording import wording  # noqa: F401, for those that import from here
 
 DATA, OUT = Path(os.environ["TAUTLINE_DATA_DIR"]), Path(os.environ["TAUTLINE_TEST_DIR"])
 SKIPPED = 77  # exit code, SKIP_RETURN_CODE of ctest
+SLOW = os.environ.get("TAUTLINE_SLOW_TESTS") == "1"  # ./run test --all
 
 
 def refused(text: str, function, *arguments, **options) -> None:
@@ -68,11 +69,11 @@ def run_tests(module: dict) -> None:
 
     Where the environment variable TAUTLINE_TEST_PART is set, the tests whose names contain it.
     """
-    part, all_of_them = os.environ.get("TAUTLINE_TEST_PART", ""), os.environ.get("TAUTLINE_SLOW_TESTS") == "1"
+    part = os.environ.get("TAUTLINE_TEST_PART", "")
     for name, test in list(module.items()):
         if not name.startswith("test_") or test is test_data or part not in name:
             continue
-        if getattr(test, "slow", False) and not part and not all_of_them:
+        if getattr(test, "slow", False) and not part and not SLOW:
             print(f"{name} left out: slow", flush=True)
             continue
         began = time.monotonic()

@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 
 import tautline as tl
-from checks import DATA, OUT, refused, shell, square, wording
+from checks import DATA, OUT, SLOW, refused, shell, square, wording
 from vtkmodules.vtkCommonDataModel import (
     vtkMultiBlockDataSet,
     vtkPolyData,
@@ -22,7 +22,7 @@ from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOLegacy import vtkGenericDataObjectWriter
 
 FOLDER = OUT / "damaged"
-CUTS = 120  # of each file
+CUTS = 120 if SLOW else 40  # of each file
 VERSIONS = (42, 51)  # that VTK writes
 HEAD = "# vtk DataFile Version {}\ntitle\nASCII\nDATASET UNSTRUCTURED_GRID\n"
 POINTS = "POINTS 4 double\n0 0 0 1 0 0 0 1 0 1 1 0\n"

@@ -160,7 +160,7 @@ def test_refused():
     refused(wording("16-finite-numbers"), tl.warp, PLATE, transform=[1, 2, 3])
     refused(wording("no-boundary-part-7"), tl.warp, PLATE, transform={"rotate": 30}, moved=7)
     refused(wording("run-untangle-mesh-first"), tl.warp, DATA / "bracket-tangled.vtu", transform={"rotate": 30})
-    refused(wording("nan-or-infinite-at-179-of-179"), tl.warp, PLATE, np.full((tl.read(PLATE).GetNumberOfPoints(), 3), np.nan))
+    refused(wording("nan-or-infinite-at-179"), tl.warp, PLATE, np.full((tl.read(PLATE).GetNumberOfPoints(), 3), np.nan))
     refused(wording("regions-are"), tl.warp, PLATE, transform={"rotate": 1}, regions="region")
     refused("mirrors", tl.warp, PLATE, transform=np.diag([-1.0, 1, 1, 1]))
 

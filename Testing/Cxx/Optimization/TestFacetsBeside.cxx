@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boundary facets, edges and vertices listed beside the elements of a mesh, in any order, as the files
-// of most programs have them: every preset and optimizer moves the points as if they were not there.
+// Boundary facets, edges and vertices listed beside the elements of a mesh, in any order, as the
+// files of most programs have them: every preset and optimizer moves the points as if they were not
+// there.
 #include "Optimizing.h"
 #include "Registry.h"
 #include "VtkMeshes.h"

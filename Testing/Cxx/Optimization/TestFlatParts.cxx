@@ -279,5 +279,5 @@ TAUTLINE_TEST(TestFlatParts)
   TAUTLINE_RUN(testWorstMetrics());
   TAUTLINE_RUN(testSlantedPlanes());
   TAUTLINE_RUN(testDirections());
-  TAUTLINE_RUN(testSurface());
+  TAUTLINE_RUN_SLOW(testSurface());
 }

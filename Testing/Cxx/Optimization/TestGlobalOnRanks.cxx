@@ -319,7 +319,7 @@ TAUTLINE_TEST(TestGlobalOnRanks)
   TAUTLINE_RUN(testSlantedPlanes());
   TAUTLINE_RUN(testObjectives());
   TAUTLINE_RUN(testTangled());
-  TAUTLINE_RUN(testStiff());
+  TAUTLINE_RUN_SLOW(testStiff());
   TAUTLINE_RUN(testMemory());
-  TAUTLINE_RUN(testLarge());
+  TAUTLINE_RUN_SLOW(testLarge());
 }

@@ -214,10 +214,11 @@ TAUTLINE_TEST(TestGuardsOnRanks)
   };
   for (const Case& test : cases)
   {
-    TAUTLINE_RUN(testGuard(test, Remedy::Improve));
-    TAUTLINE_RUN(testGuard(test, Remedy::PutBack));
+    const Pace pace = &test == cases ? Pace::Fast : Pace::Slow;
+    TAUTLINE_RUN_PART(pace, testGuard(test, Remedy::Improve));
+    TAUTLINE_RUN_PART(pace, testGuard(test, Remedy::PutBack));
   }
   // Converged, all points would have to go back.
-  TAUTLINE_RUN(testGuard(
+  TAUTLINE_RUN_SLOW(testGuard(
     { CellType::Hexahedron, 0.25, Metric::Size, Metric::EdgeRatio, many, 4 }, Remedy::Improve));
 }

@@ -345,8 +345,8 @@ void testConverged()
 TAUTLINE_TEST(TestInterfaces)
 {
   TAUTLINE_RUN(testSense());
-  TAUTLINE_RUN(testShapes());
-  TAUTLINE_RUN(testFineBall());
+  TAUTLINE_RUN_SLOW(testShapes());
+  TAUTLINE_RUN_SLOW(testFineBall());
   TAUTLINE_RUN(testTolerance());
   TAUTLINE_RUN(testHeldWorst());
   TAUTLINE_RUN(testConverged());

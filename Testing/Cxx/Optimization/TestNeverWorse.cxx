@@ -21,7 +21,8 @@ enum class Motion
 };
 constexpr int motions = 4;
 constexpr int presets = 7;
-constexpr int meshes = 2000;
+constexpr int meshes = 2000; // a fifth of them in the fast run; 5 divides no number of choices
+constexpr int stride = 5;
 
 struct Totals
 {
@@ -114,14 +115,15 @@ void testOne(int number, Totals& totals)
 TAUTLINE_TEST(TestNeverWorse)
 {
   Totals totals;
-  for (int i = 0; i < meshes; ++i)
+  const int step = slowParts() ? 1 : stride, count = meshes / step;
+  for (int i = 0; i < meshes; i += step)
   {
-    TAUTLINE_RUN(testOne(i, totals));
+    testOne(i, totals);
   }
   std::printf("%d valid meshes, %d of them better; %d tangled; %d refused; points restored in %d\n",
     totals.valid, totals.better, totals.tangled, totals.refused, totals.restored);
-  TAUTLINE_CHECK(totals.valid > meshes / 4);
-  TAUTLINE_CHECK(totals.tangled > meshes / 4);
+  TAUTLINE_CHECK(totals.valid > count / 4);
+  TAUTLINE_CHECK(totals.tangled > count / 4);
   TAUTLINE_CHECK(totals.better > 3 * totals.valid / 4);
-  TAUTLINE_CHECK(totals.refused < meshes / 5);
+  TAUTLINE_CHECK(totals.refused < count / 5);
 }

@@ -374,7 +374,7 @@ TAUTLINE_TEST(TestOptimizeFeatures)
   TAUTLINE_RUN(testCube());
   TAUTLINE_RUN(testCylinder());
   TAUTLINE_RUN(testSphere());
-  TAUTLINE_RUN(testEllipsoid());
+  TAUTLINE_RUN_SLOW(testEllipsoid());
   TAUTLINE_RUN(testTorus());
   TAUTLINE_RUN(testVolume());
   TAUTLINE_RUN(testGeometry());

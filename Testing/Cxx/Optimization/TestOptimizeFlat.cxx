@@ -230,8 +230,8 @@ void testBarelyPlanar()
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestOptimizeFlat)
 {
-  TAUTLINE_RUN(testNewton());
-  TAUTLINE_RUN(testObjectives());
+  TAUTLINE_RUN_SLOW(testNewton());
+  TAUTLINE_RUN_SLOW(testObjectives());
   TAUTLINE_RUN(testConvergence());
   TAUTLINE_RUN(testReduction());
   TAUTLINE_RUN(testFirstRow());

@@ -555,7 +555,7 @@ TAUTLINE_TEST(TestSurfaceLimit)
   TAUTLINE_RUN(testCracks());
   TAUTLINE_RUN(testLimit());
   TAUTLINE_RUN(testFilter());
-  TAUTLINE_RUN(testLeaving());
+  TAUTLINE_RUN_SLOW(testLeaving());
   TAUTLINE_RUN(testOtherMeshes());
   TAUTLINE_RUN(testStopping());
 }

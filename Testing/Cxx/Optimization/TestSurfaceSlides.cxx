@@ -176,8 +176,15 @@ TAUTLINE_TEST(TestSurfaceSlides)
   {
     for (const CellType type : { CellType::Triangle, CellType::Quadrilateral })
     {
-      TAUTLINE_RUN(testStretched(surface, type, true));
-      TAUTLINE_RUN(testStretched(surface, type, false));
+      if (type == CellType::Triangle)
+      {
+        TAUTLINE_RUN(testStretched(surface, type, true));
+      }
+      else
+      {
+        TAUTLINE_RUN_SLOW(testStretched(surface, type, true));
+      }
+      TAUTLINE_RUN_SLOW(testStretched(surface, type, false));
       TAUTLINE_RUN(testFlat(surface, type));
     }
   }

@@ -463,9 +463,9 @@ TAUTLINE_TEST(TestPeridynamicSolve)
   TAUTLINE_RUN(testEnergies());
   TAUTLINE_RUN(testShortWaves());
   TAUTLINE_RUN(testOperators());
-  TAUTLINE_RUN(testSolutions());
+  TAUTLINE_RUN_SLOW(testSolutions());
   TAUTLINE_RUN(testTables());
   TAUTLINE_RUN(testSmallHorizons());
-  TAUTLINE_RUN(testNearlyIncompressible());
+  TAUTLINE_RUN_SLOW(testNearlyIncompressible());
   TAUTLINE_RUN(testRefusals());
 }

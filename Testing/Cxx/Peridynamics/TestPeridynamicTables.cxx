@@ -163,8 +163,8 @@ void testConvergence()
 TAUTLINE_TEST(TestPeridynamicTables)
 {
   TAUTLINE_RUN(testDissertation());
-  TAUTLINE_RUN(testExact());
+  TAUTLINE_RUN_SLOW(testExact());
   TAUTLINE_RUN(testLiteral());
-  TAUTLINE_RUN(testTolerance());
+  TAUTLINE_RUN_SLOW(testTolerance());
   TAUTLINE_RUN(testConvergence());
 }

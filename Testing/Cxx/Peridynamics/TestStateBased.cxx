@@ -658,10 +658,10 @@ void testRefusals()
 TAUTLINE_TEST(TestStateBased)
 {
   TAUTLINE_RUN(testLameRatio());
-  TAUTLINE_RUN(testPatch());
+  TAUTLINE_RUN_SLOW(testPatch());
   TAUTLINE_RUN(testReduction());
   TAUTLINE_RUN(testEnergy());
-  TAUTLINE_RUN(testLocalLimit());
+  TAUTLINE_RUN_SLOW(testLocalLimit());
   TAUTLINE_RUN(testMatrix());
   TAUTLINE_RUN(testSolutions());
   TAUTLINE_RUN(testCuts());

@@ -18,6 +18,7 @@ constexpr int cellsPerMesh = 500;
 /// Of each cell type: 6 x 6 x 20 x 500 = 360,000 cells, under the sanitizers 36,000.
 constexpr int meshesPerKind = TAUTLINE_ADDRESS_SANITIZER ? 2 : 20;
 constexpr int malformedViews = 3000;
+constexpr int fraction = 5; // of these in the fast run
 
 enum Kind
 {
@@ -240,14 +241,14 @@ TAUTLINE_TEST(TestFuzz)
     const Context context(topology(type).name);
     for (int kind = 0; kind < NumberOfKinds; ++kind)
     {
-      for (int round = 0; round < meshesPerKind; ++round)
+      for (int round = 0; round < meshesPerKind / (slowParts() ? 1 : fraction); ++round)
       {
         const Context name("kind " + std::to_string(kind) + ", round " + std::to_string(round));
         fuzzMetrics(type, static_cast<Kind>(kind), round, random);
       }
     }
   }
-  for (int i = 0; i < malformedViews; ++i)
+  for (int i = 0; i < malformedViews / (slowParts() ? 1 : fraction); ++i)
   {
     fuzzConnectivity(random);
     fuzzViews(random);

@@ -49,8 +49,8 @@ void testNames()
   {
     TAUTLINE_CHECK(findMetric(none) == nullptr);
   }
-  TAUTLINE_CHECK_THROWS(metricInfo(static_cast<Metric>(39)), "no metric number 39");
-  TAUTLINE_CHECK_THROWS(metricInfo(static_cast<Metric>(-1)), "no metric number -1");
+  TAUTLINE_CHECK_THROWS(metricInfo(static_cast<Metric>(39)), wording("no-metric-number-39"));
+  TAUTLINE_CHECK_THROWS(metricInfo(static_cast<Metric>(-1)), wording("no-metric-number-1"));
   // The numbers of the literature, in both dimensions.
   const char* literature[][2] = { { "mu_2", "mu_303" }, { "mu_4", "mu_360" }, { "mu_7", "mu_321" },
     { "mu_55", "mu_315" }, { "mu_56", "mu_316" }, { "mu_77", "mu_318" }, { "mu_211", "mu_311" } };
@@ -222,20 +222,24 @@ void testRefusedOptions()
   for (double bad : { 0.5, -1.0, std::nan("") })
   {
     options.power = bad;
-    TAUTLINE_CHECK_THROWS(valuesOf(mesh, Metric::MeanRatio, options), "at least 1");
+    TAUTLINE_CHECK_THROWS(valuesOf(mesh, Metric::MeanRatio, options), wording("at-least-1"));
   }
   options.combination = Combination::Mean; // then the power does not matter
   TAUTLINE_CHECK_NEAR(valuesOf(mesh, Metric::MeanRatio, options)[0], 1, 1e-14);
   for (double bad : { 0.0, -1.0, std::nan("") })
   {
     options.parameters.epsilon = bad;
-    TAUTLINE_CHECK_THROWS(valuesOf(mesh, Metric::SizeUntangle, options), "epsilon positive");
+    TAUTLINE_CHECK_THROWS(
+      valuesOf(mesh, Metric::SizeUntangle, options), wording("epsilon-positive"));
   }
   options.parameters = {};
   options.parameters.beta = HUGE_VAL;
-  TAUTLINE_CHECK_THROWS(valuesOf(mesh, Metric::UntangleBeta, options), "Beta must be finite");
-  TAUTLINE_CHECK_THROWS(MetricSum(mesh, Metric::MeanRatio, {}, HUGE_VAL), "must be finite");
-  TAUTLINE_CHECK_THROWS(MetricSum(mesh, Metric::UntangleBeta, options, 1), "Beta must be finite");
+  TAUTLINE_CHECK_THROWS(
+    valuesOf(mesh, Metric::UntangleBeta, options), wording("beta-must-be-finite"));
+  TAUTLINE_CHECK_THROWS(
+    MetricSum(mesh, Metric::MeanRatio, {}, HUGE_VAL), wording("must-be-finite"));
+  TAUTLINE_CHECK_THROWS(
+    MetricSum(mesh, Metric::UntangleBeta, options, 1), wording("beta-must-be-finite"));
 }
 }
 

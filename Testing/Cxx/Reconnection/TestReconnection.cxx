@@ -694,7 +694,7 @@ TAUTLINE_TEST(TestReconnection)
   TAUTLINE_RUN(testFlat());
   TAUTLINE_RUN(testLimits());
   TAUTLINE_RUN(testObstacles());
-  TAUTLINE_RUN(testBlocks());
+  TAUTLINE_RUN_SLOW(testBlocks());
   TAUTLINE_RUN(testSizes());
   TAUTLINE_RUN(testMean());
   TAUTLINE_RUN(testOverlaps());

@@ -454,5 +454,5 @@ TAUTLINE_TEST(TestTriangleSurfaces)
   TAUTLINE_RUN(testNonManifold());
   TAUTLINE_RUN(testSmall());
   TAUTLINE_RUN(testRefusals());
-  TAUTLINE_RUN(testScales());
+  TAUTLINE_RUN_SLOW(testScales());
 }

@@ -258,7 +258,7 @@ void testSurfaceOverlaps()
 
 TAUTLINE_TEST(TestTriangleTransfer)
 {
-  TAUTLINE_RUN(testSizes());
+  TAUTLINE_RUN_SLOW(testSizes());
   TAUTLINE_RUN(testMetrics());
   TAUTLINE_RUN(testPlanarOverlaps());
   TAUTLINE_RUN(testSurfaceOverlaps());

@@ -365,7 +365,7 @@ TAUTLINE_TEST(TestSolverLimits)
 {
   TAUTLINE_RUN(testWatchdog());
   TAUTLINE_RUN(testSame());
-  TAUTLINE_RUN(testSetUps());
+  TAUTLINE_RUN_SLOW(testSetUps());
   TAUTLINE_RUN(testCondition());
   leaveRunning();
 }
