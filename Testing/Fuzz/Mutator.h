@@ -19,8 +19,8 @@ std::vector<std::string> readCorpus(const std::string& folder);
 void mutate(std::string& bytes, std::mt19937& random);
 
 /**
- * @brief Runs every input of the corpus and then, for this many seconds or up to `most` runs, mutations
- * of 1 to 4 changes.
+ * @brief Runs every input of the corpus and then, for this many seconds or up to `most` runs,
+ * mutations of 1 to 4 changes.
  *
  * Before a target runs, its input is written to `input`, so that it is there after a crash.
  * @return the number of runs. Passes on what the target throws.

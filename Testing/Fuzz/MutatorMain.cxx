@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The driver without libFuzzer: TautlineFuzzer TARGET CORPUS SECONDS SEED INPUT RUNS. The file INPUT
-// has the bytes that failed; -1 RUNS are any number. TautlineFuzzer list prints the targets.
+// The driver without libFuzzer: TautlineFuzzer TARGET CORPUS SECONDS SEED INPUT RUNS. The file
+// INPUT has the bytes that failed; -1 RUNS are any number. TautlineFuzzer list prints the targets.
 
 #include "Mutator.h"
 
