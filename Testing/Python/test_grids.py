@@ -104,6 +104,10 @@ def test_meshio():
     mesh = meshio.Mesh(np.zeros((4, 3)), [])
     mesh.cells = [ragged]
     refused("triangle", tl.quality, mesh)
+    # The first triangle of meshio's wedge faces inwards, that of VTK outwards.
+    prism = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (0, 1, 1)]
+    ids = tl.quality(meshio.Mesh(np.array(prism, float), [("wedge", np.arange(6)[None])])).mesh.GetCell(0).GetPointIds()
+    assert [ids.GetId(i) for i in range(6)] == [0, 2, 1, 3, 5, 4]
     corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1)]
     card = "".join
     file = FOLDER / "continued.bdf"
