@@ -4,27 +4,26 @@
 #include "Processes.h"
 #include "tautline/Solvers/GraphPartition.h"
 
-#include <vtksys/DynamicLoader.hxx>
+#include <dlfcn.h>
 
 namespace tautline
 {
 namespace
 {
 /**
- * @brief partitionPoints() of the library TautlineSolvers, which is loaded here and not before: it
- * brings PETSc, and is the only thing of it that filters without a linear system need. Throws
- * NotDivided where the library is not installed.
+ * @brief partitionPoints() of the library TautlineSolvers, which is loaded here and not before: the
+ * filters without a linear system need nothing else of it, and it brings PETSc. Throws NotDivided
+ * where the library is not installed.
  */
 PartitionPoints loadPartitionPoints()
 {
-  using Loader = vtksys::DynamicLoader;
-  const Loader::LibraryHandle library = Loader::OpenLibrary(TAUTLINE_SOLVERS_LIBRARY);
-  const Loader::SymbolPointer found =
-    library ? Loader::GetSymbolAddress(library, partitionPointsSymbol) : nullptr;
+  // Called here, so that the run path of this library is searched; a loader of VTK has another.
+  void* const library = dlopen(TAUTLINE_SOLVERS_LIBRARY, RTLD_NOW | RTLD_LOCAL);
+  void* const found = library ? dlsym(library, partitionPointsSymbol) : nullptr;
   if (!found)
   {
-    throw NotDivided(std::string("The library " TAUTLINE_SOLVERS_LIBRARY " cannot be loaded: ") +
-      Loader::LastError());
+    throw NotDivided(
+      std::string("The library " TAUTLINE_SOLVERS_LIBRARY " cannot be loaded: ") + dlerror());
   }
   return reinterpret_cast<PartitionPoints (*)()>(found)();
 }
