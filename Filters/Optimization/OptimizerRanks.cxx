@@ -28,9 +28,6 @@
 
 namespace
 {
-constexpr int SelectionOfPiece = 2, GeometryOfPiece = 3; // input ports
-constexpr const char* NameOnRanks = "Optimize Mesh";
-
 /// Whether an array of the input is chosen; also one that is missing, which others report.
 bool isChosen(const tautline::OptimizerSettings& settings, int index, vtkDataSet* input)
 {
@@ -350,7 +347,7 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
   this->InputsChanged = onAny(this->InputsChanged);
   // What needs the whole mesh is not divided first.
   tautline::OptimizerSettings settings = this->GetSettings();
-  settings.geometry = vtkDataObject::GetData(inputs[GeometryOfPiece]);
+  settings.geometry = vtkDataObject::GetData(inputs[tautline::OptimizerPorts::Geometry]);
   vtkDataObject* data = vtkDataObject::GetData(inputs[MeshPort]);
   auto* input = vtkDataSet::SafeDownCast(data);
   const bool features = onAny(isChosen(settings, tautline::KindArray, input) ||
@@ -393,7 +390,7 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   this->Runs.clear();
   vtkDataSet* input = nullptr;
   tautline::OptimizerSettings settings = this->GetSettings();
-  settings.geometry = vtkDataObject::GetData(inputVector[GeometryOfPiece]);
+  settings.geometry = vtkDataObject::GetData(inputVector[tautline::OptimizerPorts::Geometry]);
   tautline::OptimizeOptions& options = settings.options;
   group->together(
     [&]
@@ -413,8 +410,8 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   output->ShallowCopy(input);
   ElementOptions elements;
   setObjectives(settings, *group, input, mesh, elements, options);
-  const PointOptions points = pointOptions(
-    settings, *group, input, vtkSelection::GetData(inputVector[SelectionOfPiece]), mesh);
+  const PointOptions points = pointOptions(settings, *group, input,
+    vtkSelection::GetData(inputVector[tautline::OptimizerPorts::Selection]), mesh);
   options.fixed = points.fixed.data();
   options.limits = points.limits.empty() ? nullptr : points.limits.data();
   if (!points.shape.planes.empty())
@@ -426,7 +423,7 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   options.observer = [&](const tautline::IterationState& state)
   {
     const tautline::IterationRecord& record = state.record;
-    this->ShowIteration(NameOnRanks, record.iteration,
+    this->ShowIteration(tautline::OptimizerName, record.iteration,
       { { "objective", record.objective },
         { "worst", record.worst.empty() ? vtkMath::Nan() : record.worst.front() } });
     return this->Proceed(std::max(state.progress, tautline::openEnded(record.iteration)));

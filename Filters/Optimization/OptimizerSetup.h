@@ -25,6 +25,14 @@ class vtkDataObject;
 
 namespace tautline
 {
+/// In the menu.
+constexpr const char* OptimizerName = "Optimize Mesh";
+/// Input ports besides the mesh.
+namespace OptimizerPorts
+{
+constexpr int Reference = 1, Selection = 2, Geometry = 3;
+}
+
 /// An objective of CUSTOM.
 struct ObjectiveRow
 {

@@ -27,15 +27,10 @@ namespace
 {
 enum Ports
 {
-  ReferencePort = 1, // input
-  SelectionPort = 2, // input
-  GeometryPort = 3,  // input
   StatisticsPort = 2,
   NumberOfInputPorts = 4,
   NumberOfPorts = 3
 };
-
-constexpr const char* FilterName = "Optimize Mesh"; // in the menu
 
 // More time steps than this are of no use to an animation.
 constexpr int MaximumTimeSteps = 1000;
@@ -44,7 +39,7 @@ constexpr int MaximumTimeSteps = 1000;
 //------------------------------------------------------------------------------
 vtkMeshOptimizer::vtkMeshOptimizer()
 {
-  this->DeclarePorts(NumberOfInputPorts, NumberOfPorts, { SelectionPort });
+  this->DeclarePorts(NumberOfInputPorts, NumberOfPorts, { tautline::OptimizerPorts::Selection });
 }
 
 //------------------------------------------------------------------------------
@@ -416,18 +411,19 @@ int vtkMeshOptimizer::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
-  vtkDataObject* reference = vtkDataObject::GetData(inputVector[ReferencePort]);
+  vtkDataObject* reference =
+    vtkDataObject::GetData(inputVector[tautline::OptimizerPorts::Reference]);
   vtkInformation* info = outputVector->GetInformationObject(MeshPort);
   const double time = this->Animation && info->Has(Pipeline::UPDATE_TIME_STEP())
     ? info->Get(Pipeline::UPDATE_TIME_STEP())
     : vtkMath::Nan();
-  vtkDataObject* geometry = vtkDataObject::GetData(inputVector[GeometryPort]);
+  vtkDataObject* geometry = vtkDataObject::GetData(inputVector[tautline::OptimizerPorts::Geometry]);
   const bool done = this->HasRun();
   if (!done)
   {
     this->Runs.clear();
   }
-  this->SetProgressText(FilterName);
+  this->SetProgressText(tautline::OptimizerName);
   tautline::TableRows history, statistics;
   const int succeeded =
     this->Attempt(outputVector, "optimize the mesh in parts, or reduce Animation Memory",
@@ -441,8 +437,8 @@ int vtkMeshOptimizer::RequestData(
         }
         tautline::OptimizerSettings settings = this->GetSettings();
         settings.geometry = geometry;
-        this->ForEachBlock(inputVector, outputVector, reference, SelectionPort,
-          this->Boundary != FIXED,
+        this->ForEachBlock(inputVector, outputVector, reference,
+          tautline::OptimizerPorts::Selection, this->Boundary != FIXED,
           [&](const tautline::InputBlock& block)
           {
             while (this->Runs.size() <= static_cast<std::size_t>(block.number))
@@ -508,7 +504,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
         run.keep(state, coordinates, this->AnimationMemory / this->GetNumberOfBlocks());
       }
       const tautline::IterationRecord& record = state.record;
-      this->ShowIteration(FilterName, record.iteration,
+      this->ShowIteration(tautline::OptimizerName, record.iteration,
         { { "objective", record.objective },
           { "worst", record.worst.empty() ? vtkMath::Nan() : record.worst.front() } });
       return this->ProceedInBlock(

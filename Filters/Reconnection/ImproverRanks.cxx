@@ -22,7 +22,6 @@
 
 namespace
 {
-constexpr int FixedArrayOfPiece = 0, RegionArrayOfPiece = 1;
 constexpr int VolumeDimension = 3;
 }
 
@@ -135,12 +134,12 @@ void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkData
     {
       if (input->GetNumberOfPoints() > 0)
       {
-        mesh->fix(tautline::chosenArray(
-                    this, FixedArrayOfPiece, input, "of fixed points", tautline::ArrayOf::Points),
+        mesh->fix(tautline::chosenArray(this, tautline::ImproverArrays::Fixed, input,
+                    "of fixed points", tautline::ArrayOf::Points),
           false);
         mesh->fixSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
         regions = tautline::chosenArray(
-          this, RegionArrayOfPiece, input, "of regions", tautline::ArrayOf::Cells);
+          this, tautline::ImproverArrays::Region, input, "of regions", tautline::ArrayOf::Cells);
       }
     });
   tautline::ReconnectablePiece piece = tautline::takePiece(group, *mesh, input, regions);

@@ -14,6 +14,12 @@
 
 namespace tautline
 {
+/// The input arrays of Improve Mesh.
+namespace ImproverArrays
+{
+constexpr int Fixed = 0, Region = 1, Size = 2;
+}
+
 class TableRows;
 
 /// An element that is still below the target. Sent between processes as bytes.

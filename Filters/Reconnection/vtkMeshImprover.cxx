@@ -31,7 +31,6 @@ vtkStandardNewMacro(vtkMeshImprover);
 namespace
 {
 constexpr int NumberOfInputPorts = 2, NumberOfOutputPorts = 3;
-constexpr int FixedArray = 0, RegionArray = 1, SizeArray = 2;
 constexpr const char* FilterName = "Improve Mesh"; // in the menu
 }
 
@@ -254,8 +253,8 @@ std::vector<double> vtkMeshImprover::SetSize(
   {
     return sizes;
   }
-  vtkDataArray* array =
-    tautline::chosenArray(this, SizeArray, input, "of target lengths", tautline::ArrayOf::Points);
+  vtkDataArray* array = tautline::chosenArray(
+    this, tautline::ImproverArrays::Size, input, "of target lengths", tautline::ArrayOf::Points);
   const int components = array ? array->GetNumberOfComponents() : 0;
   if (components != 1 && components != 6 && components != 9)
   {
@@ -280,15 +279,15 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
   tautline::TableRows& history, tautline::TableRows& remaining)
 {
   tautline::ReconnectableMesh mesh(block.input, this->MergeCoincidentPoints, this->Threads);
-  mesh.fixPoints(tautline::chosenArray(
-    this, FixedArray, block.input, "of fixed points", tautline::ArrayOf::Points));
+  mesh.fixPoints(tautline::chosenArray(this, tautline::ImproverArrays::Fixed, block.input,
+    "of fixed points", tautline::ArrayOf::Points));
   if (block.selected)
   {
     mesh.fixPoints(block.selected->GetPointData()->GetArray(tautline::SelectedArray));
     mesh.fixCells(block.selected->GetCellData()->GetArray(tautline::SelectedArray));
   }
-  mesh.setRegions(
-    tautline::chosenArray(this, RegionArray, block.input, "of regions", tautline::ArrayOf::Cells));
+  mesh.setRegions(tautline::chosenArray(
+    this, tautline::ImproverArrays::Region, block.input, "of regions", tautline::ArrayOf::Cells));
 
   double targetAngle = 0.0;
   const bool triangles = mesh.isTriangles();

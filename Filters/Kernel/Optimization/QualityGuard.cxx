@@ -14,16 +14,6 @@ namespace tautline
 {
 namespace
 {
-/// Values of the same element differ by so much, relatively, with the order of its operations.
-constexpr double rounding = 1e-9;
-
-std::vector<signed char> validityOf(const Mesh& mesh, int threads)
-{
-  std::vector<signed char> validity(mesh.view().numberOfCells);
-  mesh.classifyCells(validity.data(), threads);
-  return validity;
-}
-
 /**
  * @brief Calls visit(found, cell, validity, value) for each element of the mesh's dimension, with
  * one object for the elements of a chunk; value is null where the metric is not defined.
@@ -64,6 +54,13 @@ struct Extremes
   Index undefined = std::numeric_limits<Index>::max(); ///< the first valid cell without a value
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
 };
+}
+
+std::vector<signed char> cellValidity(const Mesh& mesh, int threads)
+{
+  std::vector<signed char> validity(mesh.view().numberOfCells);
+  mesh.classifyCells(validity.data(), threads);
+  return validity;
 }
 
 //------------------------------------------------------------------------------
@@ -153,7 +150,7 @@ QualityGuard::QualityGuard(
 }
 
 QualityGuard::QualityGuard(const Mesh& input, const OptimizeOptions& options)
-  : QualityGuard(input, validityOf(input, options.threads), options)
+  : QualityGuard(input, cellValidity(input, options.threads), options)
 {
 }
 
@@ -164,7 +161,7 @@ bool QualityGuard::worse(double value) const
   {
     return false;
   }
-  const double margin = rounding * std::abs(this->Worst);
+  const double margin = guardRounding * std::abs(this->Worst);
   return this->Larger ? value < this->Worst - margin : !(value <= this->Worst + margin);
 }
 
@@ -198,7 +195,7 @@ QualityGuard::State QualityGuard::check(OptimizationProblem& problem) const
 {
   problem.store();
   State state;
-  state.validity = validityOf(problem.moving(), this->Judged.evaluation.threads);
+  state.validity = cellValidity(problem.moving(), this->Judged.evaluation.threads);
   state.violated = this->violatedAt(problem.moving(), state.validity, state.values);
   return state;
 }
@@ -220,7 +217,7 @@ Index QualityGuard::restore(OptimizationProblem& problem, const double* to) cons
     const Mesh& mesh = problem.moving();
     std::vector<double> values;
     const std::vector<char> flags =
-      this->offenders(mesh, validityOf(mesh, this->Judged.evaluation.threads), values);
+      this->offenders(mesh, cellValidity(mesh, this->Judged.evaluation.threads), values);
     for (Index cell = 0; cell < static_cast<Index>(flags.size()); ++cell)
     {
       const bool back = flags[cell] || round >= maxRounds;

@@ -18,6 +18,12 @@ namespace tautline
  */
 TAUTLINE_KERNEL_EXPORT Metric worstMetric(const Mesh& mesh, const OptimizeOptions& options);
 
+/// Values of one element differ by this much, relatively, with the order of its operations.
+constexpr double guardRounding = 1e-9;
+
+/// What Mesh::classifyCells() gives, per cell.
+std::vector<signed char> cellValidity(const Mesh& mesh, int threads);
+
 /// The sum of the squares of the values, which does not depend on the number of threads.
 double sumOfSquares(const std::vector<double>& values, int threads);
 

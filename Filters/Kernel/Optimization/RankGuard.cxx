@@ -13,9 +13,6 @@ namespace tautline
 {
 namespace
 {
-/// Values of the same element differ by so much, relatively, with the order of its operations.
-constexpr double roundingOfRanks = 1e-9;
-
 /// What an element of value q adds to an objective.
 double termOf(const Objective& objective, double q)
 {
@@ -79,7 +76,7 @@ void RankGuard::requireValues(const Elements& start) const
 //------------------------------------------------------------------------------
 bool RankGuard::isWorse(double value) const
 {
-  return this->HoldsWorst && !(value <= this->Worst + roundingOfRanks * std::abs(this->Worst));
+  return this->HoldsWorst && !(value <= this->Worst + guardRounding * std::abs(this->Worst));
 }
 
 //------------------------------------------------------------------------------

@@ -14,13 +14,6 @@ namespace tautline
 {
 namespace
 {
-std::vector<signed char> validityOfRounded(const Mesh& mesh, int threads)
-{
-  std::vector<signed char> validity(mesh.view().numberOfCells);
-  mesh.classifyCells(validity.data(), threads);
-  return validity;
-}
-
 /// What the values of an objective's metric are on a mesh.
 struct Values
 {
@@ -102,9 +95,9 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
   {
     Mesh moved = mesh.at(result.points.data());
     moved.setSpace(mesh.space());
-    there = validityOfRounded(moved, threads);
+    there = cellValidity(moved, threads);
   }
-  found.elements.validity = validityOfRounded(rounded, threads);
+  found.elements.validity = cellValidity(rounded, threads);
   const std::vector<signed char>& now = found.elements.validity;
   for (std::size_t cell = 0; cell < now.size(); ++cell)
   {
@@ -170,9 +163,9 @@ RoundedResult measureRoundedOnRanks(const DistributedMesh& mesh, bool mirrored,
       { return movedMesh(mesh, mirrored, points, options.threads); };
       input = std::make_unique<Mesh>(at(mesh.points()));
       moved = std::make_unique<Mesh>(at(rounded));
-      before = validityOfRounded(*input, options.threads);
-      after = validityOfRounded(*moved, options.threads);
-      const std::vector<signed char> there = validityOfRounded(at(result.points), options.threads);
+      before = cellValidity(*input, options.threads);
+      after = cellValidity(*moved, options.threads);
+      const std::vector<signed char> there = cellValidity(at(result.points), options.threads);
       for (std::size_t cell = 0; cell < after.size(); ++cell)
       {
         const bool owned = mesh.ownedCells()[cell] != 0;

@@ -24,7 +24,7 @@ constexpr double SameQuality = 1e-9;
 constexpr double RoundingFraction = 1e-12;
 /// Rounding in the distance from a flat patch, relative to the diagonal.
 constexpr double LeastDistance = 1e-12;
-/// Angle of the preset RemoveSlivers; that of the others is the default of the options.
+/// Angle of the preset RemoveSlivers; the other presets use the default of the options.
 constexpr double SliverAngle = 15.0;
 /// Wall time between two calls of the observer during a pass.
 constexpr double ObserverSeconds = 0.1;
