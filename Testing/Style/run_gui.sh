@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: BSD-3-Clause
-# The command line of ./run gui: ParaView must not take a file for the name of a plugin, which is what
+# The command line of ./run: ParaView must not take a file for the name of a plugin, which is what
 # it does with a file after --plugins; and its welcome does not cover the mesh, without a change of the user's settings.
 # ParaView, CMake and the packages are replaced by stand-ins.
 # usage: run_gui.sh TOP
@@ -41,3 +41,33 @@ done
 [[ -f $top/Plugin/open_sample.py && -f $top/Data/bracket-tangled.vtu ]]
 grep -q '^GeneralSettings.ShowWelcomeDialog=false$' "$scratch/welcome" ||
   { echo "run gui: the welcome of ParaView is shown" >&2; exit 1; }
+
+# The help of a command does nothing else.
+for command in demo build test sanitize gui doctor env docs package clean; do
+  rm -rf "$scratch/build"
+  told="$("$top/run" "$command" --help)"
+  [[ $told == "  $command"* && $told != *$'\n'"  "[a-z]* && ! -e $scratch/build ]] ||
+    { echo "run $command --help: '$told'" >&2; exit 1; }
+done
+# A tree that was configured by hand is not configured again; one that ./run made with other options is, and that is told.
+printf '#!/bin/sh\necho "$@" >>"%s/calls"\n' "$scratch" >"$scratch/cmake"
+mkdir -p "$scratch/build"
+touch "$scratch/build/build.ninja" "$scratch/calls"
+told="$("$top/run" build 2>&1)"
+if [[ $told != *"its options are kept"* ]] || grep -q -e '-S' "$scratch/calls"; then
+  echo "run build in a tree configured by hand: '$told'" >&2
+  exit 1
+fi
+printf '%s -DOTHER=ON' "$top" >"$scratch/build/run-options"
+told="$("$top/run" build 2>&1)"
+if [[ $told != *"made with other options"*"-DOTHER=ON"* ]] || ! grep -q -e '-S' "$scratch/calls"; then
+  echo "run build in a tree with other options: '$told'" >&2
+  exit 1
+fi
+# What is tested: arguments of ctest, and slow tests where they are chosen.
+printf '#!/bin/sh\necho "$@"\n' >"$scratch/ctest"
+chmod +x "$scratch/ctest"
+tested() { "$top/run" test "$@" 2>/dev/null | head -n 1; }
+[[ $(tested) == *"-LE slow"* && $(tested -V) == *"-V -LE slow"* ]] || { echo "run test: $(tested)" >&2; exit 1; }
+[[ $(tested -R TestMesh) == *"-R TestMesh" && $(tested --all) != *slow* ]] ||
+  { echo "run test -R TestMesh: $(tested -R TestMesh)" >&2; exit 1; }
