@@ -152,9 +152,8 @@ def clipped():
 def outside():
     extract = vtkExtractGeometry()
     extract.SetImplicitFunction(beyond())
-    extract.ExtractInsideOff() if clipped().GetNumberOfCells() else extract.ExtractInsideOn()
-    made = after(extract, square(2))
-    return made if not made.GetNumberOfCells() else vtkUnstructuredGrid()
+    extract.ExtractInsideOff()
+    return after(extract, square(2))
 
 
 def below():
@@ -210,6 +209,7 @@ def test_empty():
         for ending in endings:
             print(name, ending, flush=True)
             mesh, target = make(), FOLDER / f"empty{ending}"
+            assert name == "blocks, one missing" or mesh.GetNumberOfCells() == 0, name
             target.unlink(missing_ok=True)
             try:
                 files = tl.write(mesh, target)

@@ -29,7 +29,7 @@ POINTS_OF_TYPE = {
     0: 0, 1: 1, 3: 2, 5: 3, 8: 4, 9: 4, 10: 4, 11: 8, 12: 8, 13: 6, 14: 5, 15: 10, 16: 12, 21: 3, 22: 6, 23: 8, 24: 10,
     25: 20, 26: 15, 27: 13, 28: 9, 29: 27, 30: 6, 31: 12, 32: 18, 33: 24, 34: 7, 35: 4, 37: 19,
 }  # fmt: skip
-#: The least number of points of the other types; Lagrange and Bezier cells of order 1 have those of the linear cell.
+#: The least number of points of the other types; Lagrange and Bezier cells of order 1 have as many as the linear cell.
 _LEAST_POINTS = dict.fromkeys(range(51, 68), 0) | {2: 1, 4: 2, 6: 3, 7: 3, 36: 3, 41: 1, 42: 4} | {
     first + i: least for first in (68, 75) for i, least in enumerate((2, 3, 4, 4, 8, 6, 5))
 }

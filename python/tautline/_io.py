@@ -66,7 +66,9 @@ def as_mesh(mesh: Mesh) -> vtkDataObject:
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
         return from_arrays(*mesh)
     if is_meshio(mesh):
-        return from_meshio(mesh)
+        grid = from_meshio(mesh)
+        check_grid(grid)
+        return grid
     inner = getattr(mesh, "mesh", None)  # of a result
     if isinstance(inner, (vtkDataSet, vtkCompositeDataSet)):
         return inner

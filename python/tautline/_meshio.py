@@ -17,7 +17,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPointSet,
 
 from ._arrays import Array
 from ._errors import Error
-from ._grid_checks import check_block, check_grid
+from ._grid_checks import check_block
 from ._groups import Groups, element_sets, families, masks, members_of, with_groups
 
 #: VTK's number and the number of points of meshio's cells, in the same order of points but for _ORDERS.
@@ -164,7 +164,6 @@ def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
     if names := getattr(mesh, "cell_tags", None):  # of MED
         for name, values in members_of(np.concatenate(mesh.cell_data["cell_tags"]), names).items():
             _add(grid.GetCellData(), name, values)
-    check_grid(grid)
     return grid
 
 
