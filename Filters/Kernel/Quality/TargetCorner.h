@@ -146,9 +146,9 @@ Packet loadMatrix(const Packet (&edge)[N][3], const Packet* normal, Corner<N>& c
   return det;
 }
 
-/// Replaces A by M^(1/2) A.
+/// Replaces A by M^(1/2) A. Not inlined: a program has one copy, instead of one for each metric.
 template <int N>
-void applyTensor(
+__attribute__((noinline)) void applyTensor(
   const BatchContext& context, const Batch& batch, Corner<N>& corner, Packet (&a)[N][N])
 {
   Packet seen[N][N];
@@ -165,6 +165,24 @@ void applyTensor(
   }
   multiply<N>(corner.root, a, seen);
   std::copy(&seen[0][0], &seen[0][0] + N * N, &a[0][0]);
+}
+
+/// W^-1 of the targets. Not inlined, as above.
+template <int N>
+__attribute__((noinline)) void loadTargets(
+  const Targets& targets, const Batch& batch, int sample, Packet (&inverse)[N][N])
+{
+  for (int l = 0; l < PacketWidth; ++l)
+  {
+    const double* w = targets.inverse.data() + 9 * (targets.offsets[batch.cells[l]] + sample);
+    for (int r = 0; r < N; ++r)
+    {
+      for (int c = 0; c < N; ++c)
+      {
+        inverse[r][c][l] = w[3 * r + c];
+      }
+    }
+  }
 }
 
 /// W^-1: a multiple of I where only the size counts, else the target's or the ideal cell's.
@@ -186,17 +204,7 @@ void loadInverse(const BatchContext& context, const Batch& batch, int sample, Co
   }
   else if (const Targets* targets = context.options->targets)
   {
-    for (int l = 0; l < PacketWidth; ++l)
-    {
-      const double* w = targets->inverse.data() + 9 * (targets->offsets[batch.cells[l]] + sample);
-      for (int r = 0; r < N; ++r)
-      {
-        for (int c = 0; c < N; ++c)
-        {
-          corner.inverse[r][c][l] = w[3 * r + c];
-        }
-      }
-    }
+    loadTargets<N>(*targets, batch, sample, corner.inverse);
   }
   else
   {
@@ -242,9 +250,9 @@ Packet perMagnitude(const Packet (&matrix)[N][N])
  * @brief Scales the targets of cells or targets of extreme size: T is of the size it has in the
  * unit of the mesh, or, where only its shape counts, near 1. Not inlined: it is rare.
  */
-template <class M, int N>
-__attribute__((noinline)) void scaleTarget(
-  const BatchContext& context, const Batch& batch, Corner<N>& corner, Packet (&a)[N][N])
+template <int N>
+__attribute__((noinline)) void scaleTarget(const BatchContext& context, const Batch& batch,
+  bool tensor, Corner<N>& corner, Packet (&a)[N][N])
 {
   if (!context.scaleInvariant)
   {
@@ -252,7 +260,7 @@ __attribute__((noinline)) void scaleTarget(
     return;
   }
   scaleMatrices<N>(perMagnitude<N>(corner.inverse), corner.inverse);
-  if (seenByTensor<M>(context))
+  if (tensor)
   {
     const Packet factor = perMagnitude<N>(corner.root);
     scaleMatrices<N>(factor, corner.root);
@@ -321,14 +329,15 @@ void evaluateCorner(const BatchContext& context, const Batch& batch, int sample,
   }
   Packet a[N][N], lengths2;
   const Packet det = loadMatrix<N>(edge, normal, corner, a, lengths2);
-  if (seenByTensor<M>(context))
+  const bool tensor = seenByTensor<M>(context);
+  if (tensor)
   {
     applyTensor<N>(context, batch, corner, a);
   }
   loadInverse<M, N>(context, batch, sample, corner);
   if (batch.scaled || (context.options->targets && context.options->targets->extreme))
   {
-    scaleTarget<M, N>(context, batch, corner, a);
+    scaleTarget<N>(context, batch, tensor, corner, a);
   }
   findInvariants<M, N>(a, corner);
   // Relative to the lengths of the columns.
