@@ -32,7 +32,7 @@ FLOORS = (
     ("Deformation", "Reconnection"),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS, 1) for room in rooms}
-#: The rooms of TautlineSolvers; the others are TautlineKernel.
+#: The rooms of TautlineSolvers; those of the other libraries need no PETSc and no MPI.
 SOLVERS = {"Ranks", "Solvers", "Elliptic", "Peridynamics", "Deformation"}
 PARALLEL = re.compile(r"(petsc|slepc|mpi)", re.IGNORECASE)
 ROOM_INCLUDE = re.compile(r"tautline/(\w+)/(\w+)\.h")

@@ -24,24 +24,24 @@
 namespace tautline
 {
 /// The evaluators of any metric.
-MetricCode metricCode(Metric metric);
+TAUTLINE_KERNEL_EXPORT MetricCode metricCode(Metric metric);
 
 /// Throws Error on a metric that the mesh's dimension does not define, and on options out of range.
 void checkEvaluation(const Mesh& mesh, const MetricInfo& info, const EvaluationOptions& options);
 
 /// Throws Error on a metric that can only be measured.
-void requireDerivatives(const MetricInfo& info);
+TAUTLINE_KERNEL_EXPORT void requireDerivatives(const MetricInfo& info);
 
 /// The evaluator of a metric on a block, or null where the metric is not defined.
-BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& code,
-  const CellBlock& block, bool withGradient);
+TAUTLINE_KERNEL_EXPORT BatchEvaluator evaluatorFor(const Mesh& mesh, Metric metric,
+  const MetricCode& code, const CellBlock& block, bool withGradient);
 
 /// As evaluatorFor(), and null for cells that are not elements: the facets of a volume mesh, which
 /// are measured but are in no sum.
 BatchEvaluator elementEvaluatorFor(const Mesh& mesh, Metric metric, const MetricCode& code,
   const CellBlock& block, bool withGradient);
 
-BatchContext contextFor(
+TAUTLINE_KERNEL_EXPORT BatchContext contextFor(
   const Mesh& mesh, const CellBlock& block, Metric metric, const EvaluationOptions& options);
 
 /// Undoes the mirroring of gather(), removes what is not finite, multiplies by a factor and hands

@@ -7,6 +7,7 @@
 #define tautline_BoundaryFreedom_h
 
 #include "StarSmoothing.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline
 {
@@ -17,7 +18,7 @@ namespace tautline
  * fixed.
  * @param tolerance sine of the largest angle between normals of coplanar walls
  */
-TAUTLINE_KERNEL_EXPORT std::vector<PointFreedom> findFreedoms(
+TAUTLINE_RECONNECTIONKERNEL_EXPORT std::vector<PointFreedom> findFreedoms(
   TetrahedronMesh& mesh, bool slide, double tolerance);
 
 /// Fixes points whose tetrahedra are not one fan, so that moving one would not take all along.

@@ -11,6 +11,7 @@
 #include "ReconnectionResult.h"
 #include "StarSmoothing.h"
 #include "tautline/Optimization/SurfaceProjection.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline
 {
@@ -20,7 +21,7 @@ namespace tautline
  * Points keep to their patch or curve; a facet has the patch that all its points touch, and stays
  * within a distance and an angle of it. Not changed after construction: threads share it.
  */
-class TAUTLINE_KERNEL_EXPORT BoundarySurface
+class TAUTLINE_RECONNECTIONKERNEL_EXPORT BoundarySurface
 {
 public:
   /// @param mesh with the points of `input` and the cells of the mesh it was converted from

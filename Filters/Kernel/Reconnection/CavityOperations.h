@@ -15,6 +15,7 @@
 #include "BoundarySurface.h"
 #include "EdgeMetric.h"
 #include "StarSmoothing.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 #include <memory>
 
@@ -58,7 +59,7 @@ struct OperationRules
   std::shared_ptr<const BoundarySurface> surface;
 };
 
-class TAUTLINE_KERNEL_EXPORT CavityOperations : public OperationRules
+class TAUTLINE_RECONNECTIONKERNEL_EXPORT CavityOperations : public OperationRules
 {
 public:
   explicit CavityOperations(TetrahedronMesh& mesh)

@@ -8,6 +8,7 @@
 #define tautline_FacetBound_h
 
 #include "StarSmoothing.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline
 {
@@ -15,14 +16,15 @@ namespace tautline
  * @brief The largest (mean ratio)^(3/2) of a tetrahedron on a triangle: its fourth point is over
  * the centroid, at the height sqrt(2/9 S) of the sum S of the squared edges.
  */
-TAUTLINE_KERNEL_EXPORT double facetMeanRatio(const Vec3& a, const Vec3& b, const Vec3& c);
+TAUTLINE_RECONNECTIONKERNEL_EXPORT double facetMeanRatio(
+  const Vec3& a, const Vec3& b, const Vec3& c);
 
 /**
  * @brief The largest quality of a tetrahedron on a triangle, over all places of the fourth point,
  * to about a thousandth. With the mean ratio alone it is facetMeanRatio().
  * @param smoothing workspace
  */
-TAUTLINE_KERNEL_EXPORT double facetQuality(const Vec3& a, const Vec3& b, const Vec3& c,
+TAUTLINE_RECONNECTIONKERNEL_EXPORT double facetQuality(const Vec3& a, const Vec3& b, const Vec3& c,
   const QualityWeights& weights, StarSmoothing& smoothing);
 }
 #endif

@@ -8,6 +8,7 @@
 #define tautline_MetricQuality_h
 
 #include "tautline/Quality/Batch.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline
 {
@@ -20,7 +21,7 @@ namespace tautline
  *
  * Threads share it.
  */
-class TAUTLINE_KERNEL_EXPORT MetricQuality
+class TAUTLINE_RECONNECTIONKERNEL_EXPORT MetricQuality
 {
 public:
   /**

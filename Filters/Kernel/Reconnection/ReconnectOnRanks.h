@@ -22,6 +22,7 @@
 
 #include "Reconnection.h"
 #include "tautline/Core/RankGroup.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 #include <string>
 #include <vector>
@@ -80,10 +81,10 @@ struct RankReconnection
  * called on all ranks, and returns false on any to stop.
  * @param rounds the largest number of rounds, at least 1
  */
-TAUTLINE_KERNEL_EXPORT RankReconnection improveOnRanks(
+TAUTLINE_RECONNECTIONKERNEL_EXPORT RankReconnection improveOnRanks(
   RankGroup& group, RankTetrahedra mesh, const ReconnectionOptions& options, int rounds);
 
 /// Why a mesh has to be on one rank with these options: "a metric as objective"; "" if it has not.
-TAUTLINE_KERNEL_EXPORT std::string needsOneRank(const ReconnectionOptions& options);
+TAUTLINE_RECONNECTIONKERNEL_EXPORT std::string needsOneRank(const ReconnectionOptions& options);
 }
 #endif

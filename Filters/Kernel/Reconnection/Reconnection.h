@@ -29,6 +29,7 @@
 #include "ReconnectionOptions.h"
 #include "ReconnectionResult.h"
 #include "tautline/Mesh/Mesh.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline
 {
@@ -44,7 +45,7 @@ namespace tautline
  * manifold are kept.
  * @param mesh oriented consistently (see Mesh::setMirrored()); not changed
  */
-TAUTLINE_KERNEL_EXPORT ReconnectionResult improveConnectivity(
+TAUTLINE_RECONNECTIONKERNEL_EXPORT ReconnectionResult improveConnectivity(
   const Mesh& mesh, const ReconnectionOptions& options);
 }
 #endif

@@ -8,6 +8,7 @@
 
 #include "tautline/Core/Iteration.h"
 #include "tautline/Quality/Metrics.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 #include <vector>
 
@@ -198,6 +199,7 @@ struct ReconnectionOptions
 };
 
 /// Sets the operations and the target of a preset; the rest stays.
-TAUTLINE_KERNEL_EXPORT void applyPreset(ReconnectionPreset preset, ReconnectionOptions& options);
+TAUTLINE_RECONNECTIONKERNEL_EXPORT void applyPreset(
+  ReconnectionPreset preset, ReconnectionOptions& options);
 }
 #endif

@@ -8,6 +8,7 @@
 #define tautline_StarSmoothing_h
 
 #include "TetrahedronMesh.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 #include <functional>
 
@@ -49,7 +50,7 @@ struct PointFreedom
  * proximal bundle steps: the sines and mean ratios near the smallest value are linearized, and the
  * step maximizes the smallest of the linear functions less a multiple of its square.
  */
-class TAUTLINE_KERNEL_EXPORT StarSmoothing
+class TAUTLINE_RECONNECTIONKERNEL_EXPORT StarSmoothing
 {
 public:
   /// Of larger stars vertices stay where they are.

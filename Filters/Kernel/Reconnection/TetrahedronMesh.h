@@ -13,6 +13,7 @@
 #define tautline_TetrahedronMesh_h
 
 #include "TetrahedronQuality.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 #include <cstdint>
 #include <vector>
@@ -104,7 +105,7 @@ struct TetrahedronArrays
   std::vector<TriangleVertices> kept; ///< see TetrahedronMesh::keepFaces()
 };
 
-class TAUTLINE_KERNEL_EXPORT TetrahedronMesh
+class TAUTLINE_RECONNECTIONKERNEL_EXPORT TetrahedronMesh
 {
 public:
   /**

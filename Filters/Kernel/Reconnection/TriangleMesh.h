@@ -22,6 +22,7 @@
 #define tautline_TriangleMesh_h
 
 #include "TriangleQuality.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 #include <cstdint>
 #include <string>
@@ -49,7 +50,7 @@ struct Triangle
   double quality = 0;
 };
 
-class TAUTLINE_KERNEL_EXPORT TriangleMesh
+class TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleMesh
 {
 public:
   /**

@@ -15,10 +15,11 @@
 #include "TriangleInput.h"
 #include "TriangleMesh.h"
 #include "TriangleStar.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline
 {
-class TAUTLINE_KERNEL_EXPORT TriangleOperations
+class TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleOperations
 {
 public:
   /// How many were accepted.

@@ -7,6 +7,7 @@
 #define tautline_TriangleOptions_h
 
 #include "ReconnectionOptions.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 #include <vector>
 
@@ -30,6 +31,7 @@ struct TriangleOptions : ReconnectionOptions
 };
 
 /// Sets the operations and the target of a preset for triangles; the rest stays.
-TAUTLINE_KERNEL_EXPORT void applyPreset(ReconnectionPreset preset, TriangleOptions& options);
+TAUTLINE_RECONNECTIONKERNEL_EXPORT void applyPreset(
+  ReconnectionPreset preset, TriangleOptions& options);
 }
 #endif

@@ -30,6 +30,7 @@
 #include "ReconnectionResult.h"
 #include "TriangleOptions.h"
 #include "tautline/Mesh/Mesh.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline
 {
@@ -46,7 +47,7 @@ namespace tautline
  * more triangles, or two on the same side. Such edges of surfaces are kept.
  * @param mesh see Mesh::setMirrored() for planar meshes that are reversed; not changed
  */
-TAUTLINE_KERNEL_EXPORT ReconnectionResult improveTriangles(
+TAUTLINE_RECONNECTIONKERNEL_EXPORT ReconnectionResult improveTriangles(
   const Mesh& mesh, const TriangleOptions& options);
 }
 #endif

@@ -8,6 +8,7 @@
 #define tautline_TriangleStar_h
 
 #include "TriangleQuality.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 #include <functional>
 #include <vector>
@@ -19,7 +20,7 @@ namespace tautline
  * by proximal bundle steps: the sines near the smallest one are linearized, and the step maximizes
  * the smallest of the linear functions less a multiple of its square.
  */
-class TAUTLINE_KERNEL_EXPORT TriangleStar
+class TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleStar
 {
 public:
   /// Steps are taken in the plane of two orthonormal directions, or along the first one only.

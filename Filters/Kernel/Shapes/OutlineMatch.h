@@ -12,6 +12,7 @@
 #define tautline_OutlineMatch_h
 
 #include "OutlineModel.h"
+#include "tautline/ShapesKernelExport.h"
 
 #include <memory>
 #include <memory_resource>
@@ -47,11 +48,11 @@ struct OutlineMatch
  * @param memory of outlineMemory(), for many matches one after the other; null, the default: of its
  * own, which takes about twice the time of a match
  */
-TAUTLINE_KERNEL_EXPORT OutlineMatch matchOutlines(const OutlineModel& source,
+TAUTLINE_SHAPESKERNEL_EXPORT OutlineMatch matchOutlines(const OutlineModel& source,
   const OutlineModel& target, const OutlineOptions& options,
   std::pmr::memory_resource* memory = nullptr);
 
 /// Some megabytes that are used again by the next match. For one thread at a time.
-TAUTLINE_KERNEL_EXPORT std::unique_ptr<std::pmr::memory_resource> outlineMemory();
+TAUTLINE_SHAPESKERNEL_EXPORT std::unique_ptr<std::pmr::memory_resource> outlineMemory();
 }
 #endif

@@ -8,6 +8,7 @@
 #define tautline_OutlineModel_h
 
 #include "Silhouette.h"
+#include "tautline/ShapesKernelExport.h"
 
 #include <vector>
 
@@ -73,10 +74,10 @@ constexpr Index DescriptorSamples = 3;
  *
  * Throws Error on options out of range and on an outline without area.
  */
-TAUTLINE_KERNEL_EXPORT OutlineModel prepareOutline(
+TAUTLINE_SHAPESKERNEL_EXPORT OutlineModel prepareOutline(
   const Silhouette& shape, const OutlineOptions& options);
 
 /// A distance of signatures, for shortlists: a sum of |differences|, at no cost. Symmetric.
-TAUTLINE_KERNEL_EXPORT double signatureDistance(const OutlineModel& a, const OutlineModel& b);
+TAUTLINE_SHAPESKERNEL_EXPORT double signatureDistance(const OutlineModel& a, const OutlineModel& b);
 }
 #endif

@@ -30,6 +30,7 @@
 #define tautline_ShapeMatch_h
 
 #include "ShapeModel.h"
+#include "tautline/ShapesKernelExport.h"
 
 namespace tautline
 {
@@ -41,11 +42,11 @@ namespace tautline
  *
  * Throws Error on options out of range or not finite, and if the tables would take more than 4 GiB.
  */
-TAUTLINE_KERNEL_EXPORT ShapeMatch matchShape(
+TAUTLINE_SHAPESKERNEL_EXPORT ShapeMatch matchShape(
   const ShapeSource& source, const ShapeTarget& target, const MatchOptions& options);
 
 /// Evaluates a placement; `points` are one per vertex of the source.
-TAUTLINE_KERNEL_EXPORT ShapeMatch evaluatePlacement(const ShapeSource& source,
+TAUTLINE_SHAPESKERNEL_EXPORT ShapeMatch evaluatePlacement(const ShapeSource& source,
   const ShapeTarget& target, const ShapeEnergy& energy, const std::vector<Vec2>& points);
 }
 #endif

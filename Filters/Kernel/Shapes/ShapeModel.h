@@ -7,6 +7,7 @@
 #define tautline_ShapeModel_h
 
 #include "Silhouette.h"
+#include "tautline/ShapesKernelExport.h"
 
 #include <functional>
 #include <memory>
@@ -69,17 +70,17 @@ struct ShapeSource
 };
 
 /// The triangulated polygon of a silhouette. Throws Error on a spacing that is not above 0.
-TAUTLINE_KERNEL_EXPORT ShapeSource makeShapeSource(const Silhouette& shape, double spacing);
+TAUTLINE_SHAPESKERNEL_EXPORT ShapeSource makeShapeSource(const Silhouette& shape, double spacing);
 
 /// A polygon as the shape to match; centre and d_max are those of its area and vertices.
-TAUTLINE_KERNEL_EXPORT ShapeSource makeShapeSource(std::vector<Vec2> polygon);
+TAUTLINE_SHAPESKERNEL_EXPORT ShapeSource makeShapeSource(std::vector<Vec2> polygon);
 
 /**
  * @brief A source turned counter-clockwise, or mirrored at the y axis and then turned. A mirrored
  * polygon runs through its vertices backwards, so that it stays counter-clockwise.
  * @param angle in radians
  */
-TAUTLINE_KERNEL_EXPORT ShapeSource transformSource(
+TAUTLINE_SHAPESKERNEL_EXPORT ShapeSource transformSource(
   const ShapeSource& source, double angle, bool mirrored);
 
 /// Where vertices may go.
@@ -102,7 +103,7 @@ struct LocationOptions
 
 /// The target: an image, its outline, and the locations. Precomputed once, shared by any number of
 /// matches.
-class TAUTLINE_KERNEL_EXPORT ShapeTarget
+class TAUTLINE_SHAPESKERNEL_EXPORT ShapeTarget
 {
 public:
   /**
@@ -182,7 +183,7 @@ constexpr float MinLength = 1e-6f;
  * values.
  * @param delta d_max of the source over d_max of the target
  */
-TAUTLINE_KERNEL_EXPORT TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source,
+TAUTLINE_SHAPESKERNEL_EXPORT TriangleEnergy triangleEnergy(const std::array<Vec2, 3>& source,
   const std::array<Vec2, 3>& target, double delta, const ShapeEnergy& energy);
 
 /// Why a search ended.

@@ -15,6 +15,7 @@
 #include "ShapeMatch.h"
 
 #include "tautline/Core/RankGroup.h"
+#include "tautline/ShapesKernelExport.h"
 
 namespace tautline
 {
@@ -50,10 +51,10 @@ struct RetrievalOptions
   /// The dissertation's setting: spacing 25, 30 x 30 grid, a = 4 b, theta = d_max / 3.
   static RetrievalOptions dissertation() { return {}; }
   /// The same with Felzenszwalb's energy and without the centre of mass.
-  TAUTLINE_KERNEL_EXPORT static RetrievalOptions felzenszwalb();
+  TAUTLINE_SHAPESKERNEL_EXPORT static RetrievalOptions felzenszwalb();
   /// The setting with the highest recognition rate, and the fastest: outlines, both directions. The
   /// help page explains how it was chosen.
-  TAUTLINE_KERNEL_EXPORT static RetrievalOptions highest();
+  TAUTLINE_SHAPESKERNEL_EXPORT static RetrievalOptions highest();
 };
 
 /// How many of the best matches are of the query's class.
@@ -91,7 +92,7 @@ struct Retrieval
  * Throws Error on less than 2 shapes, on another number of labels, and on options out of range;
  * errors with a shape name its number.
  */
-TAUTLINE_KERNEL_EXPORT Retrieval retrieveShapes(const std::vector<Silhouette>& shapes,
+TAUTLINE_SHAPESKERNEL_EXPORT Retrieval retrieveShapes(const std::vector<Silhouette>& shapes,
   const std::vector<Index>& labels, const RetrievalOptions& options);
 
 /**
@@ -102,13 +103,13 @@ TAUTLINE_KERNEL_EXPORT Retrieval retrieveShapes(const std::vector<Silhouette>& s
  * seconds.
  * @param shapes, labels, options the same on all ranks, but for threads, time limit and progress
  */
-TAUTLINE_KERNEL_EXPORT Retrieval retrieveShapes(RankGroup& group,
+TAUTLINE_SHAPESKERNEL_EXPORT Retrieval retrieveShapes(RankGroup& group,
   const std::vector<Silhouette>& shapes, const std::vector<Index>& labels,
   const RetrievalOptions& options);
 
 /// The shapes that the first rank has, on all ranks. Collective. @param own of the first rank;
 /// those of others do not count
-TAUTLINE_KERNEL_EXPORT std::vector<Silhouette> shapesOfFirst(
+TAUTLINE_SHAPESKERNEL_EXPORT std::vector<Silhouette> shapesOfFirst(
   RankGroup& group, const std::vector<Silhouette>& own);
 
 /**
@@ -120,16 +121,16 @@ TAUTLINE_KERNEL_EXPORT std::vector<Silhouette> shapesOfFirst(
  * @param distances symmetric, row after row; -1 where not computed: no affinity
  * @param neighbours per shape, at least 1; itself is one of them
  */
-TAUTLINE_KERNEL_EXPORT std::vector<double> rerank(
+TAUTLINE_SHAPESKERNEL_EXPORT std::vector<double> rerank(
   const std::vector<double>& distances, Index count, Index neighbours);
 
 /// The others in order of a row of distances; equal ones in their order, those not computed (-1)
 /// last.
-TAUTLINE_KERNEL_EXPORT std::vector<Index> rankShapes(
+TAUTLINE_SHAPESKERNEL_EXPORT std::vector<Index> rankShapes(
   const std::vector<double>& distances, Index count);
 
 /// Counts hits of a ranking of `count` shapes.
-TAUTLINE_KERNEL_EXPORT Recognition recognize(
+TAUTLINE_SHAPESKERNEL_EXPORT Recognition recognize(
   const std::vector<Index>& ranking, const std::vector<Index>& labels, Index best);
 }
 #endif

@@ -13,6 +13,7 @@
 #define tautline_Silhouette_h
 
 #include "tautline/Geometry/Polygon.h"
+#include "tautline/ShapesKernelExport.h"
 
 namespace tautline
 {
@@ -72,7 +73,7 @@ struct Silhouette
  * Throws Error on an empty image, on values that are not finite, on an image of one value, and if
  * nothing is on the foreground's side of the threshold or no background is left.
  */
-TAUTLINE_KERNEL_EXPORT Silhouette traceSilhouette(
+TAUTLINE_SHAPESKERNEL_EXPORT Silhouette traceSilhouette(
   const ImageView& image, const SilhouetteOptions& options = {});
 
 /**
@@ -88,11 +89,11 @@ TAUTLINE_KERNEL_EXPORT Silhouette traceSilhouette(
  * @param spacing the ideal distance, above 0; the dissertation's is 25 pixels
  * Throws Error on a spacing that is not above 0 and finite, and on an outline without area.
  */
-TAUTLINE_KERNEL_EXPORT std::vector<Vec2> approximateOutline(
+TAUTLINE_SHAPESKERNEL_EXPORT std::vector<Vec2> approximateOutline(
   const std::vector<Vec2>& outline, double spacing);
 
 /// Points at equal distances along a closed outline, beginning at its first point.
-TAUTLINE_KERNEL_EXPORT std::vector<Vec2> resampleOutline(
+TAUTLINE_SHAPESKERNEL_EXPORT std::vector<Vec2> resampleOutline(
   const std::vector<Vec2>& outline, Index count);
 }
 #endif
