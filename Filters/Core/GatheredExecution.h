@@ -71,25 +71,27 @@ private:
   bool Writes;
 };
 
-/// How a filter is executed.
+/// How the processes of a parallel server execute a filter.
 struct GatheredRules
 {
-  GatheredResult result = GatheredResult::SameMesh;
+  GatheredResult result = GatheredResult::None;
   int base = 0; ///< the input port whose mesh the output has, with the arrays of its pieces
   /// Exchanges what the properties of the filter return; may be empty.
   std::function<void(ResultStream&)> exchange;
   /// What the other processes do while the first one executes, in step with it, by a RankGroup that
   /// was made before; empty: they wait.
   std::function<void()> assist;
+  /// Whether the partitions of a partitioned or multipiece data set are one mesh on one process, as
+  /// they are on several; not with None.
+  bool joinsPartitions = true;
+  /// Whether all processes execute the filter at once, so that an invalid input of one of them is
+  /// an error on all.
+  bool onAll = true;
 };
 
-/**
- * @brief Whether to execute a filter by executeGathered(): there are several processes, and each
- * calls the filter once; or a mesh of an input is in partitions. Not within it.
- * @param joinsPartitions whether partitions are one mesh on one process, too
- */
-TAUTLINECORE_EXPORT bool isGathered(
-  vtkAlgorithm* algorithm, GatheredResult result, bool joinsPartitions);
+/// Whether to execute a filter by executeGathered(): there are several processes, and each calls
+/// the filter once; or a mesh of an input is in partitions. Not within it.
+TAUTLINECORE_EXPORT bool isGathered(vtkAlgorithm* algorithm, const GatheredRules& rules);
 
 /**
  * @brief Executes REQUEST_DATA of a filter for all processes. Collective.
@@ -120,21 +122,10 @@ TAUTLINECORE_EXPORT void emptyOutput(vtkInformation* info);
  * @brief ProcessRequest() of a filter that does not derive from vtkTautlineAlgorithm:
  * processInScope(), on several processes within executeGathered() after the inputs are checked.
  * @param work the ProcessRequest() of the superclass
- * @param takesPieces whether, instead, each process takes its piece of the mesh in this execution:
- * work() is then called on all of them at once. Collective, with the same answer everywhere. Empty:
- * no.
  */
 TAUTLINECORE_EXPORT int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits,
   GatheredResult result, const InputRules& rules, vtkInformation* request,
-  vtkInformationVector** inputs, vtkInformationVector* outputs, const std::function<int()>& work,
-  const std::function<bool()>& takesPieces = {});
+  vtkInformationVector** inputs, vtkInformationVector* outputs, const std::function<int()>& work);
 
-/**
- * @brief Takes the pieces of a mesh: the answer for processGathered(). What fails, on all
- * processes, is left to the execution to report.
- * @param error gets the message, or ""
- * @return whether they are taken, or there is an error
- */
-TAUTLINECORE_EXPORT bool takeOrFail(std::string& error, const std::function<bool()>& take);
 }
 #endif

@@ -5,7 +5,6 @@
 
 #include "MeshGroups.h"
 #include "Processes.h"
-#include "tautline/Core/Memory.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCompositeDataSet.h"
@@ -33,10 +32,10 @@ bool takesPartitions(vtkAlgorithm* algorithm)
 }
 
 //------------------------------------------------------------------------------
-bool isGathered(vtkAlgorithm* algorithm, GatheredResult result, bool joinsPartitions)
+bool isGathered(vtkAlgorithm* algorithm, const GatheredRules& rules)
 {
-  if (result == GatheredResult::None || algorithm->GetNumberOfInputPorts() == 0 ||
-    !(severalProcesses() || (joinsPartitions && takesPartitions(algorithm))))
+  if (rules.result == GatheredResult::None || algorithm->GetNumberOfInputPorts() == 0 ||
+    !(severalProcesses() || (rules.joinsPartitions && takesPartitions(algorithm))))
   {
     return false;
   }
@@ -52,12 +51,13 @@ bool isGathered(vtkAlgorithm* algorithm, GatheredResult result, bool joinsPartit
 //------------------------------------------------------------------------------
 int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits, GatheredResult result,
   const InputRules& rules, vtkInformation* request, vtkInformationVector** inputs,
-  vtkInformationVector* outputs, const std::function<int()>& work,
-  const std::function<bool()>& takesPieces)
+  vtkInformationVector* outputs, const std::function<int()>& work)
 {
   const auto execute = [&] { return processInScope(algorithm, limits, request, outputs, work); };
-  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) ||
-    !isGathered(algorithm, result, false))
+  GatheredRules gathered;
+  gathered.result = result;
+  gathered.joinsPartitions = false;
+  if (!request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) || !isGathered(algorithm, gathered))
   {
     return execute();
   }
@@ -70,9 +70,7 @@ int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits, Gath
   problem = firstProblem(problem);
   if (problem.empty())
   {
-    return takesPieces && takesPieces() ? execute()
-                                        : executeGathered(algorithm, request, inputs, outputs,
-                                            { result, 0, nullptr, nullptr }, execute);
+    return executeGathered(algorithm, request, inputs, outputs, gathered, execute);
   }
   vtkErrorWithObjectMacro(algorithm, << problem);
   for (int port = 0; port < outputs->GetNumberOfInformationObjects(); ++port)
@@ -80,20 +78,5 @@ int processGathered(vtkAlgorithm* algorithm, const ExecutionLimits& limits, Gath
     emptyOutput(outputs->GetInformationObject(port));
   }
   return 0;
-}
-
-//------------------------------------------------------------------------------
-bool takeOrFail(std::string& error, const std::function<bool()>& take)
-{
-  error.clear();
-  try
-  {
-    return take();
-  }
-  catch (const std::exception& problem)
-  {
-    error = errorText(problem, "divide the mesh");
-    return true;
-  }
 }
 }

@@ -160,6 +160,31 @@ void MovableMesh::fixCorners(const BoundaryShape& shape)
 }
 
 //------------------------------------------------------------------------------
+namespace
+{
+std::string boundaryIsFixed(Index used, Index onBoundary)
+{
+  return onBoundary == used ? "Every point is on the boundary of the mesh, which is fixed"
+                            : std::to_string(onBoundary) + " of the " + std::to_string(used) +
+      " points are on the boundary of the mesh, which is fixed, and the others are fixed by an "
+      "array, a selection or cells that stay";
+}
+}
+
+std::string noneIsFree(Index used, Index onBoundary, bool slides, const std::string& boundaryRemedy)
+{
+  if (onBoundary > 0)
+  {
+    return boundaryIsFixed(used, onBoundary) + ": " + boundaryRemedy + ", or refine the mesh.";
+  }
+  return slides
+    ? "Every point is fixed, by an array or a selection or because it is on the boundary and "
+      "cannot slide: " +
+      boundaryRemedy + ", or fix fewer points."
+    : "Every point is fixed by an array or a selection: fix fewer points.";
+}
+
+//------------------------------------------------------------------------------
 std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
 {
   const Mesh& mesh = this->mesh();
@@ -181,17 +206,9 @@ std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
   }
   if (onBoundary == 0)
   {
-    return this->SlidingFixed
-      ? "Every point is fixed, by an array or a selection or because it is on the boundary and "
-        "cannot slide: " +
-        boundaryRemedy + ", or fix fewer points."
-      : "Every point is fixed by an array or a selection: fix fewer points.";
+    return noneIsFree(used, onBoundary, this->SlidingFixed, boundaryRemedy);
   }
-  std::string text = onBoundary == used
-    ? "Every point is on the boundary of the mesh, which is fixed"
-    : std::to_string(onBoundary) + " of the " + std::to_string(used) +
-      " points are on the boundary of the mesh, which is fixed, and the others are fixed by an "
-      "array, a selection or cells that stay";
+  const std::string text = boundaryIsFixed(used, onBoundary);
   // Pieces whose points are not merged are the usual cause.
   const Index coincident = this->MergePoints ? 0 : findCoincidentPoints(mesh).merged;
   Index first = 0;
@@ -210,7 +227,7 @@ std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
       ", so that neighbouring elements are not connected: run Clean to Grid with a tolerance "
       "first.";
   }
-  return text + ": " + boundaryRemedy + ", or refine the mesh.";
+  return noneIsFree(used, onBoundary, this->SlidingFixed, boundaryRemedy);
 }
 
 //------------------------------------------------------------------------------

@@ -23,6 +23,15 @@ namespace tautline
 struct BoundaryShape;
 
 /**
+ * @brief Why no point of a mesh is free, and what to do about it.
+ * @param used how many points the elements have @param onBoundary those of a boundary that is fixed
+ * @param slides whether points of the boundary slide, and all that may not are fixed
+ * @param boundaryRemedy how to free the boundary in the filter: "choose another Boundary"
+ */
+std::string noneIsFree(
+  Index used, Index onBoundary, bool slides, const std::string& boundaryRemedy);
+
+/**
  * @class tautline::MovableMesh
  * @brief A data set whose points can move. Its orientation is made consistent, see
  * MeshAdapter::orient().

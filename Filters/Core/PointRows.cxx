@@ -191,40 +191,32 @@ vtkSmartPointer<vtkPointData> pointRows(RankGroup& group, vtkPointData* data,
   const std::vector<std::vector<Index>> asked = Directory(group, numbers).find(wanted);
   const std::vector<std::vector<Index>> questions = group.exchangeItems(asked);
   std::vector<Bytes> answers(group.size());
-  group.together(
-    [&]
+  std::vector<vtkIdType> order(numbers.size());
+  std::iota(order.begin(), order.end(), vtkIdType(0));
+  std::stable_sort(
+    order.begin(), order.end(), [&](vtkIdType a, vtkIdType b) { return numbers[a] < numbers[b]; });
+  for (std::size_t r = 0; r < questions.size(); ++r)
+  {
+    std::vector<vtkIdType> points;
+    for (const Index number : questions[r])
     {
-      std::vector<vtkIdType> order(numbers.size());
-      std::iota(order.begin(), order.end(), vtkIdType(0));
-      std::stable_sort(order.begin(), order.end(),
-        [&](vtkIdType a, vtkIdType b) { return numbers[a] < numbers[b]; });
-      for (std::size_t r = 0; r < questions.size(); ++r)
-      {
-        std::vector<vtkIdType> points;
-        for (const Index number : questions[r])
-        {
-          points.push_back(*std::lower_bound(order.begin(), order.end(), number,
-            [&](vtkIdType a, Index value) { return numbers[a] < value; }));
-        }
-        answers[r] = points.empty() ? Bytes() : packRows(data, points);
-      }
-    });
+      points.push_back(*std::lower_bound(order.begin(), order.end(), number,
+        [&](vtkIdType a, Index value) { return numbers[a] < value; }));
+    }
+    answers[r] = points.empty() ? Bytes() : packRows(data, points);
+  }
   const std::vector<Bytes> received = group.exchange(answers);
   auto rows = vtkSmartPointer<vtkPointData>::New();
-  group.together(
-    [&]
-    {
-      rows->ShallowCopy(data); // for the order and the attributes
-      const std::vector<vtkIdType> none(wanted.size(), -1);
-      for (int i = 0; i < rows->GetNumberOfArrays(); ++i)
-      {
-        rows->AddArray(rowsOf(data->GetAbstractArray(i), none)); // in place of that of its name
-      }
-      for (std::size_t r = 0; r < received.size(); ++r)
-      {
-        takeRows(received[r], asked[r], wanted, rows);
-      }
-    });
+  rows->ShallowCopy(data); // for the order and the attributes
+  const std::vector<vtkIdType> none(wanted.size(), -1);
+  for (int i = 0; i < rows->GetNumberOfArrays(); ++i)
+  {
+    rows->AddArray(rowsOf(data->GetAbstractArray(i), none)); // in place of that of its name
+  }
+  for (std::size_t r = 0; r < received.size(); ++r)
+  {
+    takeRows(received[r], asked[r], wanted, rows);
+  }
   return rows;
 }
 }

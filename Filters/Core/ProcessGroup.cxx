@@ -6,6 +6,7 @@
 #include "vtkMultiProcessController.h"
 
 #if VTK_MODULE_ENABLE_VTK_ParallelMPI
+#include "vtkMPI.h"
 #include "vtkMPICommunicator.h"
 #endif
 
@@ -30,8 +31,10 @@ public:
 
   int rank() const override { return this->Controller->GetLocalProcessId(); }
   int size() const override { return this->Controller->GetNumberOfProcesses(); }
+  Communicator communicator() const override { return this->Mpi->GetMPIComm()->GetHandle(); }
 
-  void start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override
+protected:
+  void sendAll(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override
   {
     this->Requests.clear();
     for (RankMessage& message : received)
@@ -46,10 +49,6 @@ public:
         [&](const char* part, int length, vtkMPICommunicator::Request& request)
         { this->Mpi->NoBlockSend(part, length, message.rank, Tag, request); });
     }
-  }
-
-  void finish() override
-  {
     // (vtkMPICommunicator::WaitAll() waits for copies of the requests.)
     for (vtkMPICommunicator::Request& request : this->Requests)
     {
@@ -58,7 +57,7 @@ public:
     this->Requests.clear();
   }
 
-  std::vector<Bytes> allGather(const Bytes& own) override
+  std::vector<Bytes> gatherAll(const Bytes& own) override
   {
     const auto mine = static_cast<vtkIdType>(own.size());
     std::vector<vtkIdType> lengths(this->size()), offsets(this->size(), 0);
@@ -81,6 +80,14 @@ public:
       all.emplace_back(begin, begin + lengths[r]);
     }
     return all;
+  }
+
+  bool anyOfAll(bool flag) override
+  {
+    const int own = flag;
+    int any = 0;
+    this->Controller->AllReduce(&own, &any, 1, vtkCommunicator::MAX_OP);
+    return any != 0;
   }
 
 private:
@@ -109,16 +116,20 @@ private:
 //------------------------------------------------------------------------------
 std::unique_ptr<RankGroup> makeProcessGroup()
 {
-  const Processes processes; // throws without MPI
-#if VTK_MODULE_ENABLE_VTK_ParallelMPI
-  if (processes.count() > 1)
+  vtkMultiProcessController* controller = severalProcesses();
+  if (!controller)
   {
-    vtkMultiProcessController* controller = vtkMultiProcessController::GetGlobalController();
-    return std::make_unique<ProcessGroup>(
-      controller, vtkMPICommunicator::SafeDownCast(controller->GetCommunicator()));
+    return std::make_unique<SingleRank>();
+  }
+#if VTK_MODULE_ENABLE_VTK_ParallelMPI
+  auto* mpi = vtkMPICommunicator::SafeDownCast(controller->GetCommunicator());
+  if (mpi && mpi->GetMPIComm())
+  {
+    return std::make_unique<ProcessGroup>(controller, mpi);
   }
 #endif
-  return std::make_unique<SingleRank>();
+  throw Error("There are " + std::to_string(controller->GetNumberOfProcesses()) +
+    " processes which cannot work together: they need MPI, and a VTK built with it.");
 }
 
 //------------------------------------------------------------------------------

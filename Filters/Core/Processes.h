@@ -22,44 +22,6 @@ class vtkMultiProcessController;
 namespace tautline
 {
 /**
- * @class tautline::Processes
- * @brief The processes of VTK's global controller; one if there is none. All methods except the
- * first three are collective.
- */
-class TAUTLINECORE_EXPORT Processes
-{
-public:
-  /// Throws Error if there are several processes that do not communicate by MPI, or if VTK is built
-  /// without it.
-  Processes();
-
-  int rank() const { return this->Rank; }
-  int count() const { return this->Count; }
-  /// Of MPI; null with one process. Valid as long as the controller.
-  Communicator communicator() const { return this->Comm; }
-
-  Index sum(Index value) const;
-  Index maximum(Index value) const;
-  double sum(double value) const;
-  /// True if it is on every process.
-  bool everywhere(bool value) const;
-  /// The values of all processes, one after the other.
-  std::vector<double> gather(const std::vector<double>& values) const;
-
-  /**
-   * @brief Does work that does not communicate, or that throws on all processes if on any. What it
-   * throws on any process is thrown on all, as Error, so that no process waits for one that has
-   * failed.
-   */
-  void together(const std::function<void()>& work) const;
-
-private:
-  vtkMultiProcessController* Controller = nullptr;
-  int Rank = 0, Count = 1;
-  Communicator Comm = nullptr;
-};
-
-/**
  * @class tautline::OneProcess
  * @brief As long as one exists, this process counts as the only one: nothing here communicates, and
  * executions end at their limits. For work that one process does for all, which wait for it.

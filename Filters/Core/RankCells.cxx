@@ -89,23 +89,18 @@ std::vector<double> RankMesh::ofCells(const std::vector<double>& ofPiece, int co
   }
   const MeshView& view = mesh.view();
   std::vector<double> result(components * view.numberOfCells);
-  this->Group.together(
-    [&]
+  const std::vector<Index> order = orderOf(keys, values, components);
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const CellKey key = keyOf(view, cell, [&](Index p) { return mesh.numbers()[p]; });
+    const auto at = std::lower_bound(order.begin(), order.end(), key,
+      [&](Index row, const CellKey& wanted) { return keys[row] < wanted; });
+    if (at == order.end() || keys[*at] != key)
     {
-      const std::vector<Index> order = orderOf(keys, values, components);
-      for (Index cell = 0; cell < view.numberOfCells; ++cell)
-      {
-        const CellKey key = keyOf(view, cell, [&](Index p) { return mesh.numbers()[p]; });
-        const auto at = std::lower_bound(order.begin(), order.end(), key,
-          [&](Index row, const CellKey& wanted) { return keys[row] < wanted; });
-        if (at == order.end() || keys[*at] != key)
-        {
-          throw Error("A cell has no value on any process: all pieces need the array.");
-        }
-        std::copy_n(
-          values.data() + components * *at, components, result.data() + components * cell);
-      }
-    });
+      throw Error("A cell has no value on any process: all pieces need the array.");
+    }
+    std::copy_n(values.data() + components * *at, components, result.data() + components * cell);
+  }
   return result;
 }
 }

@@ -2,6 +2,7 @@
 #include "RankMesh.h"
 
 #include "Blocks.h"
+#include "MovableMesh.h"
 #include "PointMerge.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
@@ -78,15 +79,15 @@ std::unique_ptr<RankMesh> takePieces(std::unique_ptr<RankGroup>& group, vtkDataO
   }
   try
   {
-    mesh = std::make_unique<RankMesh>(*group, piece, threads, mergePoints, redistribution);
-  }
-  catch (const OppositeOrders&)
-  {
-    return gather(oppositeOrders);
+    mesh = RankMesh::make(*group, piece, threads, mergePoints, redistribution);
   }
   catch (const Error& error) // the same on all processes; one process may refuse it, too
   {
     return gather(std::string("its pieces could not be joined. ") + error.what());
+  }
+  if (!mesh)
+  {
+    return gather(oppositeOrders);
   }
   if (mesh->mesh().globalCells() == 0)
   {
@@ -131,6 +132,25 @@ vtkDataSet* requirePiece(vtkDataObject* input)
 }
 
 //------------------------------------------------------------------------------
+std::unique_ptr<RankMesh> RankMesh::make(
+  RankGroup& group, vtkDataSet* input, int threads, bool mergePoints, Redistribution redistribution)
+{
+  std::unique_ptr<RankMesh> mesh;
+  group.together(
+    [&]
+    {
+      try
+      {
+        mesh = std::make_unique<RankMesh>(group, input, threads, mergePoints, redistribution);
+      }
+      catch (const OppositeOrders&) // on all processes
+      {
+      }
+    });
+  return mesh;
+}
+
+//------------------------------------------------------------------------------
 RankMesh::RankMesh(
   RankGroup& group, vtkDataSet* input, int threads, bool mergePoints, Redistribution redistribution)
   : Group(group)
@@ -142,85 +162,77 @@ RankMesh::RankMesh(
   Elements elements;
   bool copies = false;
   std::vector<Index> ids;
-  group.together(
-    [&]
-    {
-      if (!this->Input && input->GetNumberOfPoints() > 0)
-      {
-        throw Error(std::string("The points of ") + input->GetClassName() +
-          " are implicit and cannot move: run Image Data to Point Set or Rectilinear Data to Point "
-          "Set first, which give them coordinates.");
-      }
-      this->Adapter = std::make_unique<MeshAdapter>(input, threads);
-      if (this->Adapter->mesh().higherOrderCells() > 0)
-      {
-        throw Error("The mesh has " + std::to_string(this->Adapter->mesh().higherOrderCells()) +
-          " cells of quadratic or higher order, whose midpoints would stay behind: run Tessellate "
-          "first.");
-      }
-      for (Index cell = 0; cell < this->piece().numberOfCells; ++cell)
-      {
-        this->Dimension = std::max(this->Dimension, dimensionOf(this->piece().cellTypes[cell]));
-      }
-    });
+  if (!this->Input && input->GetNumberOfPoints() > 0)
+  {
+    throw Error(std::string("The points of ") + input->GetClassName() +
+      " are implicit and cannot move: run Image Data to Point Set or Rectilinear Data to Point "
+      "Set first, which give them coordinates.");
+  }
+  this->Adapter = std::make_unique<MeshAdapter>(input, threads);
+  if (this->Adapter->mesh().higherOrderCells() > 0)
+  {
+    throw Error("The mesh has " + std::to_string(this->Adapter->mesh().higherOrderCells()) +
+      " cells of quadratic or higher order, whose midpoints would stay behind: run Tessellate "
+      "first.");
+  }
+  for (Index cell = 0; cell < this->piece().numberOfCells; ++cell)
+  {
+    this->Dimension = std::max(this->Dimension, dimensionOf(this->piece().cellTypes[cell]));
+  }
   this->Dimension = static_cast<int>(group.maximum(static_cast<Index>(this->Dimension)));
-  group.together(
-    [&]
+  const MeshView& view = this->piece();
+  this->Held.assign(view.numberOfPoints, 0);
+  this->Marked.assign(view.numberOfPoints, 0);
+  this->Skip.assign(view.numberOfCells, 0);
+  // As a rule all cells are elements, and need not be copied.
+  copies = this->Dimension == 0 ||
+    std::any_of(view.cellTypes, view.cellTypes + view.numberOfCells,
+      [this](unsigned char type) { return dimensionOf(type) != this->Dimension; });
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const bool ghost = this->Adapter->ghostCells() && this->Adapter->ghostCells()[cell];
+    const auto begin = view.connectivity + view.offsets[cell],
+               end = view.connectivity + view.offsets[cell + 1];
+    const int dimension = dimensionOf(view.cellTypes[cell]);
+    this->Skip[cell] = ghost || dimension < this->Dimension;
+    if (copies && dimension == this->Dimension && dimension > 0)
     {
-      const MeshView& view = this->piece();
-      this->Held.assign(view.numberOfPoints, 0);
-      this->Marked.assign(view.numberOfPoints, 0);
-      this->Skip.assign(view.numberOfCells, 0);
-      // As a rule all cells are elements, and need not be copied.
-      copies = this->Dimension == 0 ||
-        std::any_of(view.cellTypes, view.cellTypes + view.numberOfCells,
-          [this](unsigned char type) { return dimensionOf(type) != this->Dimension; });
-      for (Index cell = 0; cell < view.numberOfCells; ++cell)
-      {
-        const bool ghost = this->Adapter->ghostCells() && this->Adapter->ghostCells()[cell];
-        const auto begin = view.connectivity + view.offsets[cell],
-                   end = view.connectivity + view.offsets[cell + 1];
-        const int dimension = dimensionOf(view.cellTypes[cell]);
-        this->Skip[cell] = ghost || dimension < this->Dimension;
-        if (copies && dimension == this->Dimension && dimension > 0)
-        {
-          elements.types.push_back(view.cellTypes[cell]);
-          elements.ghosts.push_back(ghost);
-          elements.connectivity.insert(elements.connectivity.end(), begin, end);
-          elements.offsets.push_back(static_cast<Index>(elements.connectivity.size()));
-        }
-        for (auto p = begin; dimension < this->Dimension && p != end; ++p)
-        {
-          this->Held[*p] = 1;
-        }
-      }
-      vtkDataArray* given = input->GetPointData()->GetGlobalIds();
-      ids = idsOf(given);
-      for (Index p = 0; !mergePoints && !given && p < view.numberOfPoints; ++p)
-      {
-        ids.push_back(p);
-      }
-      if (!mergePoints && !given && group.size() > 1 && view.numberOfPoints > 0)
-      {
-        throw Error("With Merge Coincident Points off, points of different processes are one by "
-                    "their global ids, and there are none: run Generate Global Ids first.");
-      }
-    });
+      elements.types.push_back(view.cellTypes[cell]);
+      elements.ghosts.push_back(ghost);
+      elements.connectivity.insert(elements.connectivity.end(), begin, end);
+      elements.offsets.push_back(static_cast<Index>(elements.connectivity.size()));
+    }
+    for (auto p = begin; dimension < this->Dimension && p != end; ++p)
+    {
+      this->Held[*p] = 1;
+    }
+  }
+  vtkDataArray* given = input->GetPointData()->GetGlobalIds();
+  ids = idsOf(given);
+  for (Index p = 0; !mergePoints && !given && p < view.numberOfPoints; ++p)
+  {
+    ids.push_back(p);
+  }
+  if (!mergePoints && !given && group.size() > 1 && view.numberOfPoints > 0)
+  {
+    throw Error("With Merge Coincident Points off, points of different processes are one by "
+                "their global ids, and there are none: run Generate Global Ids first.");
+  }
   const bool unnamed = static_cast<Index>(ids.size()) < this->piece().numberOfPoints;
   this->Copies = tautline::joinCopies(group, this->piece(), unnamed ? nullptr : ids.data());
   ids = mergePoints ? std::vector<Index>() : std::move(ids);
-  MeshView view = this->piece();
-  view.points = this->joinedPoints();
+  MeshView joined = view;
+  joined.points = this->joinedPoints();
   const unsigned char* ghosts = this->Adapter->ghostCells();
   if (copies)
   {
-    view.numberOfCells = static_cast<Index>(elements.types.size());
-    view.cellTypes = elements.types.data();
-    view.offsets = elements.offsets.data();
-    view.connectivity = elements.connectivity.data();
+    joined.numberOfCells = static_cast<Index>(elements.types.size());
+    joined.cellTypes = elements.types.data();
+    joined.offsets = elements.offsets.data();
+    joined.connectivity = elements.connectivity.data();
     ghosts = elements.ghosts.data();
   }
-  this->divide({ view, mergePoints ? nullptr : ids.data(), ghosts });
+  this->divide({ joined, mergePoints ? nullptr : ids.data(), ghosts });
   this->checkOrder();
 }
 
@@ -256,23 +268,18 @@ void RankMesh::checkOrder()
   std::vector<unsigned char> copies;
   std::vector<RankPiece> pieces;
   std::vector<const signed char*> validities;
-  this->Group.together(
-    [&]
+  if (view.numberOfCells > 0)
+  {
+    mesh = std::make_unique<Mesh>(view, this->Threads);
+    validity.resize(view.numberOfCells);
+    mesh->classifyCells(validity.data(), this->Threads);
+    for (const unsigned char owned : this->TheMesh->ownedCells())
     {
-      if (view.numberOfCells == 0)
-      {
-        return;
-      }
-      mesh = std::make_unique<Mesh>(view, this->Threads);
-      validity.resize(view.numberOfCells);
-      mesh->classifyCells(validity.data(), this->Threads);
-      for (const unsigned char owned : this->TheMesh->ownedCells())
-      {
-        copies.push_back(!owned);
-      }
-      pieces.push_back({ mesh.get(), copies.data(), this->TheMesh->numbers().data() });
-      validities.push_back(validity.data());
-    });
+      copies.push_back(!owned);
+    }
+    pieces.push_back({ mesh.get(), copies.data(), this->TheMesh->numbers().data() });
+    validities.push_back(validity.data());
+  }
   const Orientation found = orientationOnRanks(this->Group, pieces, validities);
   // As on one process: a mesh with more inverted elements than others is not reversed by that.
   this->Mirrored = found.state == Orientation::Reversed;
@@ -347,6 +354,20 @@ std::vector<unsigned char> RankMesh::fixed(bool boundary)
 }
 
 //------------------------------------------------------------------------------
+std::string RankMesh::whyNoneIsFree(
+  bool boundaryFixed, bool slides, const std::string& boundaryRemedy) const
+{
+  const DistributedMesh& mesh = *this->TheMesh;
+  const std::vector<unsigned char> on = rankBoundary(mesh);
+  Index onBoundary = 0;
+  for (Index p = 0; p < mesh.localPoints(); ++p)
+  {
+    onBoundary += boundaryFixed && on[p] && mesh.owned(p);
+  }
+  return noneIsFree(mesh.globalPoints(), this->Group.sum(onBoundary), slides, boundaryRemedy);
+}
+
+//------------------------------------------------------------------------------
 std::vector<unsigned char> RankMesh::anyOf(const std::vector<unsigned char>& ofPiece) const
 {
   const DistributedMesh& mesh = *this->TheMesh;
@@ -375,23 +396,19 @@ std::vector<double> RankMesh::leastOf(const std::vector<double>& ofPiece, double
   };
   std::vector<std::vector<Value>> sent(this->Group.size());
   std::vector<double> values;
-  this->Group.together(
-    [&]
+  values.assign(mesh.localPoints(), none);
+  for (std::size_t p = 0; p < ofPiece.size(); ++p)
+  {
+    const Index local = mesh.localOfPiece()[p];
+    if (local >= 0 && mesh.owned(local))
     {
-      values.assign(mesh.localPoints(), none);
-      for (std::size_t p = 0; p < ofPiece.size(); ++p)
-      {
-        const Index local = mesh.localOfPiece()[p];
-        if (local >= 0 && mesh.owned(local))
-        {
-          values[local] = std::min(values[local], ofPiece[p]);
-        }
-        else if (local >= 0)
-        {
-          sent[mesh.owners()[local]].push_back({ mesh.numbers()[local], ofPiece[p] });
-        }
-      }
-    });
+      values[local] = std::min(values[local], ofPiece[p]);
+    }
+    else if (local >= 0)
+    {
+      sent[mesh.owners()[local]].push_back({ mesh.numbers()[local], ofPiece[p] });
+    }
+  }
   for (const auto& list : this->Group.exchangeItems(sent))
   {
     for (const Value& value : list)

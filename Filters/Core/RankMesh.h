@@ -77,9 +77,14 @@ TAUTLINECORE_EXPORT std::string gatheredSentence(const std::string& why);
 class TAUTLINECORE_EXPORT RankMesh
 {
 public:
+  /// As the constructor; what one process throws is thrown on all. Null, on all processes, if
+  /// neighbouring cells list their points in opposite orders.
+  static std::unique_ptr<RankMesh> make(RankGroup& group, vtkDataSet* input, int threads,
+    bool mergePoints, Redistribution redistribution = Redistribution::None);
+
   /**
-   * @brief Throws Error on all processes if a piece is malformed, has no explicit points or
-   * quadratic cells, and OppositeOrders if neighbouring cells list their points so.
+   * @brief Throws Error if a piece is malformed, has no explicit points or quadratic cells, and
+   * OppositeOrders, on all processes, if neighbouring cells list their points so.
    */
   RankMesh(RankGroup& group, vtkDataSet* input, int threads, bool mergePoints,
     Redistribution redistribution = Redistribution::None);
@@ -111,6 +116,11 @@ public:
   void fix(vtkDataArray* array, bool ofCells);
   /// Marks what a selection holds of the piece; null: nothing. Not collective, as fix().
   void fixSelected(vtkDataObject* input, vtkSelection* selection);
+  /// As MovableMesh::whyNoneIsFree(), of a mesh whose points are all fixed. @param slides whether
+  /// points of the boundary may slide
+  std::string whyNoneIsFree(
+    bool boundaryFixed, bool slides, const std::string& boundaryRemedy) const;
+
   /// Per local point: marked on any process, or held.
   std::vector<unsigned char> fixed(bool boundary);
   /// Flags per point of the piece as those of the local points: set on any process.

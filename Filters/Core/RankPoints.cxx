@@ -68,7 +68,7 @@ bool RankMesh::isSingle() const
 std::vector<double> RankMesh::rounded(const std::vector<double>& local) const
 {
   std::vector<double> points;
-  this->Group.together([&] { points = toSingle(local); });
+  points = toSingle(local);
   return points;
 }
 
@@ -77,20 +77,16 @@ std::string RankMesh::move(vtkPointSet* output, const std::vector<double>& local
 {
   vtkPoints* like = this->Input ? this->Input->GetPoints() : nullptr;
   Index lost = 0;
-  this->Group.together(
-    [&]
+  if (like && like->GetDataType() == VTK_FLOAT)
+  {
+    const std::vector<double> points = this->ofPiece(local);
+    const auto before = this->validityAt(points), after = this->validityAt(toSingle(points));
+    const unsigned char* ghosts = this->Adapter->ghostCells();
+    for (std::size_t cell = 0; cell < after.size(); ++cell)
     {
-      if (like && like->GetDataType() == VTK_FLOAT)
-      {
-        const std::vector<double> points = this->ofPiece(local);
-        const auto before = this->validityAt(points), after = this->validityAt(toSingle(points));
-        const unsigned char* ghosts = this->Adapter->ghostCells();
-        for (std::size_t cell = 0; cell < after.size(); ++cell)
-        {
-          lost += !(ghosts && ghosts[cell]) && before[cell] == Valid && after[cell] != Valid;
-        }
-      }
-    });
+      lost += !(ghosts && ghosts[cell]) && before[cell] == Valid && after[cell] != Valid;
+    }
+  }
   lost = this->Group.sum(lost);
   this->move(output, local, lost == 0);
   return lost == 0 ? ""
@@ -100,16 +96,12 @@ std::string RankMesh::move(vtkPointSet* output, const std::vector<double>& local
 
 void RankMesh::move(vtkPointSet* output, const std::vector<double>& local, bool single) const
 {
-  this->Group.together(
-    [&]
-    {
-      if (output)
-      {
-        const std::vector<double> points = this->ofPiece(local);
-        vtkPoints* like = this->Input ? this->Input->GetPoints() : nullptr;
-        output->SetPoints(makePoints(points, single ? like : nullptr));
-        addDisplacement(output, this->piece().points, points);
-      }
-    });
+  if (output)
+  {
+    const std::vector<double> points = this->ofPiece(local);
+    vtkPoints* like = this->Input ? this->Input->GetPoints() : nullptr;
+    output->SetPoints(makePoints(points, single ? like : nullptr));
+    addDisplacement(output, this->piece().points, points);
+  }
 }
 }

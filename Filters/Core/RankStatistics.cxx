@@ -50,14 +50,10 @@ Measurement measureOnRanks(RankGroup& group, const Mesh& piece, int dimension, M
   const EvaluationOptions& options, const signed char* validity, const unsigned char* skip,
   double* values)
 {
-  group.together(
-    [&]
-    {
-      if (piece.view().numberOfCells > 0)
-      {
-        evaluateMetric(piece, metric, options, values);
-      }
-    });
+  if (piece.view().numberOfCells > 0)
+  {
+    evaluateMetric(piece, metric, options, values);
+  }
   return summarizeOnRanks(group, piece.view(), dimension, metric, validity, skip, values);
 }
 
@@ -69,17 +65,13 @@ Measurement summarizeOnRanks(RankGroup& group, const MeshView& view, int dimensi
   std::vector<double> own;
   std::vector<WorstElement> worstOfOwn, worst;
   Measurement result;
-  group.together(
-    [&]
-    {
-      if (view.numberOfCells > 0)
-      {
-        const CellValues data = { view.numberOfCells, values, validity, view.cellTypes, skip };
-        own = measuredValues(info, data);
-        worstOfOwn = worstElements(info, data);
-        result.counts = countValidity(validity, skip, view.numberOfCells);
-      }
-    });
+  if (view.numberOfCells > 0)
+  {
+    const CellValues data = { view.numberOfCells, values, validity, view.cellTypes, skip };
+    own = measuredValues(info, data);
+    worstOfOwn = worstElements(info, data);
+    result.counts = countValidity(validity, skip, view.numberOfCells);
+  }
   for (const auto& list : group.gatherItems(worstOfOwn))
   {
     worst.insert(worst.end(), list.begin(), list.end());

@@ -33,8 +33,7 @@ PartitionPoints loadPartitionPoints()
 std::vector<int> ownersByGraph(
   RankGroup& group, const MeshPiece& piece, Redistribution& how, std::string& why)
 {
-  const Processes processes;
-  if (processes.count() != group.size())
+  if (!group.communicator())
   {
     throw Error("PT-Scotch needs processes that communicate by MPI: take a k-d tree.");
   }
@@ -45,7 +44,8 @@ std::vector<int> ownersByGraph(
   std::vector<int> ofLocal = mesh.owners();
   try
   {
-    ofLocal = loadPartitionPoints()(mesh, processes.communicator());
+    group.agree();
+    ofLocal = loadPartitionPoints()(mesh, group.communicator());
   }
   catch (const NotDivided& error) // on all processes: the owners of the k-d tree stay
   {

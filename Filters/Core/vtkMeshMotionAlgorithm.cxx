@@ -3,6 +3,7 @@
 
 #include "Blocks.h"
 #include "BlockSeams.h"
+#include "GatheredExecution.h"
 #include "Processes.h"
 
 #include "vtkDataSet.h"
@@ -47,10 +48,11 @@ void vtkMeshMotionAlgorithm::ForEachBlock(vtkInformationVector** inputVector,
 }
 
 //------------------------------------------------------------------------------
-bool vtkMeshMotionAlgorithm::JoinsPartitions(vtkInformationVector** inputs)
+tautline::GatheredRules vtkMeshMotionAlgorithm::GetGatheredRules()
 {
-  return this->MergeCoincidentPoints ||
-    vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject::GetData(inputs[MeshPort]));
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.joinsPartitions = this->MergeCoincidentPoints || this->PartitionsHaveIds();
+  return rules;
 }
 
 //------------------------------------------------------------------------------

@@ -5,7 +5,7 @@
  *
  * Abstract. Such a filter keeps the connectivity. Its input on port 0 is a data set with explicit
  * points, or blocks of these, which are treated one after the other, each with its own boundary
- * (the partitions of a partitioned or multipiece data set are one mesh, see JoinsPartitions()): a
+ * (the partitions of a partitioned or multipiece data set are one mesh, see GetGatheredRules()): a
  * seam between two blocks stays in place with the boundary, and is a warning; if the boundary can
  * slide or move freely, it is an error, as the blocks would come apart (Merge Blocks is the
  * remedy). A mesh that is reversed throughout is treated as its mirror image. Cells that list
@@ -89,7 +89,7 @@ protected:
   ~vtkMeshMotionAlgorithm() override;
 
   /// Without MergeCoincidentPoints only global ids join partitions.
-  bool JoinsPartitions(vtkInformationVector** inputs) override;
+  tautline::GatheredRules GetGatheredRules() override;
 
   enum Ports
   {

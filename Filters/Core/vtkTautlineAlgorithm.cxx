@@ -4,6 +4,7 @@
 #include "Blocks.h"
 #include "ExecutionScope.h"
 #include "GatheredExecution.h"
+#include "ProcessGroup.h"
 #include "Processes.h"
 #include "ProgressStep.h"
 #include "ValidateInput.h"
@@ -198,9 +199,9 @@ int vtkTautlineAlgorithm::ExecuteData(
       problem = problem.empty() ? this->FindInputProblem(inputs) : problem;
     });
   problem = failure.empty() ? problem : failure;
-  const bool gathers =
-    tautline::isGathered(this, this->GetGatheredResult(), this->JoinsPartitions(inputs));
-  const bool together = this->ExecutesOnAllProcesses() || gathers;
+  const tautline::GatheredRules rules = this->GetGatheredRules();
+  const bool gathers = tautline::isGathered(this, rules);
+  const bool together = rules.onAll || gathers;
   if (together)
   {
     problem = tautline::firstProblem(problem);
@@ -224,8 +225,9 @@ int vtkTautlineAlgorithm::ExecuteData(
   {
     vtkWarningMacro(<< notice);
   }
-  const int executed = gathers && !(tautline::severalProcesses() && this->TakesPieces(inputs))
-    ? this->ExecuteGathered(request, inputs, outputs)
+  this->InPieces = gathers && tautline::severalProcesses() && this->TakesPieces(inputs);
+  const int executed = gathers && !this->InPieces
+    ? this->ExecuteGathered(rules, request, inputs, outputs)
     : this->Superclass::ProcessRequest(request, inputs, outputs);
   if (executed && !empty.empty())
   {
@@ -236,14 +238,10 @@ int vtkTautlineAlgorithm::ExecuteData(
 }
 
 //------------------------------------------------------------------------------
-int vtkTautlineAlgorithm::ExecuteGathered(
-  vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
+int vtkTautlineAlgorithm::ExecuteGathered(tautline::GatheredRules rules, vtkInformation* request,
+  vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  tautline::GatheredRules rules;
-  rules.result = this->GetGatheredResult();
-  rules.base = this->GetGatheredBase();
   rules.exchange = [this](tautline::ResultStream& stream) { this->ExchangeResult(stream); };
-  rules.assist = [this] { this->Assist(); };
   // On the first process, which is the only one that VTK has meanwhile.
   const bool several = tautline::severalProcesses() != nullptr;
   const auto execute = [&]
@@ -268,12 +266,12 @@ int vtkTautlineAlgorithm::ExecuteGathered(
 //------------------------------------------------------------------------------
 int vtkTautlineAlgorithm::ModifyRequest(vtkInformation* request, int when)
 {
+  const tautline::GatheredRules rules = this->GetGatheredRules();
   const bool update = when == vtkExecutive::BeforeForward &&
     request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) && this->GetNumberOfInputPorts() > 0 &&
     (this->ExecutesAgain() ||
       (tautline::severalProcesses() &&
-        (this->ExecutesOnAllProcesses() ||
-          this->GetGatheredResult() != tautline::GatheredResult::None)));
+        (rules.onAll || rules.result != tautline::GatheredResult::None)));
   return update ? this->UpdateInputs(request) : this->Superclass::ModifyRequest(request, when);
 }
 
@@ -354,9 +352,11 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkTautlineAlgorithm::GetGatheredResult() const
+tautline::GatheredRules vtkTautlineAlgorithm::GetGatheredRules()
 {
-  return tautline::GatheredResult::None;
+  tautline::GatheredRules rules;
+  rules.onAll = this->TakesComposite(MeshPort);
+  return rules;
 }
 
 //------------------------------------------------------------------------------
@@ -366,15 +366,16 @@ bool vtkTautlineAlgorithm::TakesPieces(vtkInformationVector**)
 }
 
 //------------------------------------------------------------------------------
-bool vtkTautlineAlgorithm::JoinsPartitions(vtkInformationVector**)
-{
-  return true;
-}
-
-//------------------------------------------------------------------------------
-bool vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject* input)
+bool vtkTautlineAlgorithm::PartitionsHaveIds()
 {
   bool all = true;
+  vtkDataObject* input = this->GetNumberOfInputConnections(MeshPort) > 0
+    ? this->GetInputDataObject(MeshPort, 0)
+    : nullptr;
+  if (!input)
+  {
+    return false;
+  }
   tautline::forEachLeaf(input,
     [&all](unsigned int, vtkDataSet* leaf)
     { all = all && (leaf->GetNumberOfPoints() == 0 || leaf->GetPointData()->GetGlobalIds()); });
@@ -429,12 +430,6 @@ std::string vtkTautlineAlgorithm::FindSettingProblem() const
 bool vtkTautlineAlgorithm::NeedsFinitePoints(int) const
 {
   return false;
-}
-
-//------------------------------------------------------------------------------
-bool vtkTautlineAlgorithm::ExecutesOnAllProcesses()
-{
-  return this->TakesComposite(MeshPort);
 }
 
 //------------------------------------------------------------------------------
@@ -501,7 +496,9 @@ int vtkTautlineAlgorithm::Fail(vtkInformationVector* outputVector, const std::st
 int vtkTautlineAlgorithm::Attempt(
   vtkInformationVector* outputVector, const char* memoryRemedy, const std::function<void()>& work)
 {
-  const std::string failure = vtkTautlineAlgorithm::FailureOf(memoryRemedy, work);
+  const auto group = this->InPieces ? tautline::tryProcessGroup() : nullptr;
+  const std::string failure =
+    vtkTautlineAlgorithm::FailureOf(memoryRemedy, [&] { group ? group->together(work) : work(); });
   return failure.empty() ? 1 : this->Fail(outputVector, failure);
 }
 

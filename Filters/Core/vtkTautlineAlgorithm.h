@@ -56,8 +56,8 @@ class vtkTable;
 
 namespace tautline
 {
-enum class GatheredResult;
 class ResultStream;
+struct GatheredRules;
 }
 
 class TAUTLINECORE_EXPORT vtkTautlineAlgorithm : public vtkDataObjectAlgorithm
@@ -118,45 +118,22 @@ protected:
   virtual std::string FindSettingProblem() const;
 
   /**
-   * Whether the processes of a parallel server execute the filter together, so that an invalid
-   * input of one of them is an error on all; otherwise the others would wait for it in
-   * RequestData(). Default: yes, if port 0 takes composite data. (VTK executes other filters once
-   * per block, and the processes may have different numbers of these.)
+   * How the processes of a parallel server execute the filter (GatheredExecution.h). Default: each
+   * executes it on what it has; all at once, if port 0 takes composite data. (VTK executes other
+   * filters once per block, and the processes may have different numbers of these.)
    */
-  virtual bool ExecutesOnAllProcesses();
-
-  /**
-   * How the processes of a parallel server execute the filter: None, the default, on each of them;
-   * else the first one has the whole mesh meanwhile and sends the results to the others
-   * (GatheredExecution.h).
-   */
-  virtual tautline::GatheredResult GetGatheredResult() const;
+  virtual tautline::GatheredRules GetGatheredRules();
 
   /**
    * Whether, instead, each process takes its piece of the mesh in this execution, with the settings
    * and inputs at hand: RequestData() is then called on all of them at once. Collective, with the
-   * same answer everywhere; called if GetGatheredResult() is not None, before RequestData().
+   * same answer everywhere; called if the rules gather the mesh, before RequestData().
    * Default: no.
    */
   virtual bool TakesPieces(vtkInformationVector** inputs);
 
-  /**
-   * Whether, with GetGatheredResult() other than None, the partitions of a partitioned or
-   * multipiece data set are one mesh on one process, as they are on several. Default: yes.
-   */
-  virtual bool JoinsPartitions(vtkInformationVector** inputs);
-
-  /// Whether all data sets with points have global ids of these.
-  static bool PartitionsHaveIds(vtkDataObject* input);
-
-  /**
-   * What the other processes do while the first one is in RequestData() with the whole mesh, in
-   * step with it. They communicate by a RankGroup that TakesPieces() has made. Default: nothing.
-   */
-  virtual void Assist() {}
-
-  /// The input port whose mesh the output has. Default: 0.
-  virtual int GetGatheredBase() const { return 0; }
+  /// Whether all data sets with points on port 0 have global ids of these.
+  bool PartitionsHaveIds();
 
   /// Writes or reads the members that hold results, so that all processes have those of the first.
   /// Override it and call that of the superclass, which exchanges the summary.
@@ -193,7 +170,7 @@ protected:
 
   /**
    * Does the work of RequestData(). If it throws, reports the message as an error and empties the
-   * summary and all outputs.
+   * summary and all outputs; on all processes, if each takes its piece and one throws.
    * @param memoryRemedy what the user can do where memory does not suffice: "choose fewer metrics"
    * @return 1, or 0 after an error: the result of RequestData()
    */
@@ -244,8 +221,8 @@ private:
   int ExecuteData(
     vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs);
 
-  int ExecuteGathered(
-    vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs);
+  int ExecuteGathered(tautline::GatheredRules rules, vtkInformation* request,
+    vtkInformationVector** inputs, vtkInformationVector* outputs);
   int UpdateInputs(vtkInformation* request);
 
   std::vector<int> SelectionPorts;
@@ -254,6 +231,7 @@ private:
   std::string UpstreamProblem;     ///< of a further execution, which reports it
   std::chrono::steady_clock::time_point Start; ///< of the execution
   bool Best = false;                           ///< whether HaveBest() was called in this execution
+  bool InPieces = false; ///< whether each process takes its piece in this execution
 };
 
 #endif

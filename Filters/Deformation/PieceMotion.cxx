@@ -21,13 +21,9 @@ void takeLeast(RankGroup& group, const RankMesh& mesh, const std::vector<double>
 {
   const Index points = mesh.mesh().localPoints();
   std::vector<double> component, negative;
-  group.together(
-    [&]
-    {
-      component.resize(given.size() / 3);
-      negative.resize(component.size());
-      motion.displacement.assign(3 * points, 0.0);
-    });
+  component.resize(given.size() / 3);
+  negative.resize(component.size());
+  motion.displacement.assign(3 * points, 0.0);
   for (int c = 0; c < 3; ++c)
   {
     for (std::size_t p = 0; p < component.size(); ++p)
@@ -70,52 +66,40 @@ double diagonalOf(const DistributedMesh& mesh)
 
 //------------------------------------------------------------------------------
 PieceMotion motionOfPieces(RankGroup& group, RankMesh& mesh, const PointFlags& chosen,
-  double amount, const std::function<bool(Index, Vec3&)>& displacementOf)
+  double amount, const std::function<Vec3(Index)>& displacementOf)
 {
   const Index points = mesh.piece().numberOfPoints;
   const std::vector<Index>& localOf = mesh.mesh().localOfPiece();
   PieceMotion motion;
   std::vector<double> given;
-  PointFlags placed, broken;
-  group.together(
-    [&]
+  PointFlags broken;
+  given.assign(3 * points, NotGiven);
+  broken.assign(points, 0);
+  for (Index p = 0; p < points; ++p)
+  {
+    if (localOf[p] < 0 || !chosen[localOf[p]])
     {
-      given.assign(3 * points, NotGiven);
-      placed.assign(points, 0);
-      broken = placed;
-      for (Index p = 0; p < points; ++p)
-      {
-        Vec3 d = { 0, 0, 0 };
-        if (localOf[p] < 0 || !chosen[localOf[p]] || !displacementOf(p, d))
-        {
-          continue;
-        }
-        placed[p] = 1;
-        broken[p] = !std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2]);
-        std::copy(d.begin(), d.end(), &given[3 * p]);
-      }
-    });
+      continue;
+    }
+    const Vec3 d = displacementOf(p);
+    broken[p] = !std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2]);
+    std::copy(d.begin(), d.end(), &given[3 * p]);
+  }
   motion.broken = countOwned(group, mesh.mesh(), mesh.anyOf(broken));
   if (motion.broken == 0)
   {
-    motion.given = mesh.anyOf(placed);
     takeLeast(group, mesh, given, amount, motion);
   }
   return motion;
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> localPoints(
-  RankGroup& group, const RankMesh& mesh, const std::vector<double>& ofPiece)
+std::vector<double> localPoints(const RankMesh& mesh, const std::vector<double>& ofPiece)
 {
   const Index points = mesh.mesh().localPoints();
   std::vector<double> local, component;
-  group.together(
-    [&]
-    {
-      local.resize(3 * points);
-      component.resize(ofPiece.size() / 3);
-    });
+  local.resize(3 * points);
+  component.resize(ofPiece.size() / 3);
   for (int c = 0; c < 3; ++c)
   {
     for (std::size_t p = 0; p < component.size(); ++p)

@@ -21,9 +21,7 @@ class RankMesh;
 /// A motion of the points here.
 struct PieceMotion
 {
-  std::vector<double> displacement; ///< 3 per local point, at the amount; 0 where none is given
-  PointFlags given;                 ///< one per local point
-  std::string how;                  ///< the correspondence of a target, a sentence
+  std::vector<double> displacement; ///< 3 per local point, at the amount; 0 where none is chosen
   Index broken = 0;                 ///< points of the mesh with one that is not finite
   double farthest = 0; ///< the largest difference between what pieces give for one point
 };
@@ -36,18 +34,17 @@ double diagonalOf(const DistributedMesh& mesh);
 
 /**
  * @brief The displacements of local points from those of the piece's. Of points that several pieces
- * have, of each component the least, which does not depend on the processes. Nothing is given if
- * one is broken. Collective.
+ * have, of each component the least, which does not depend on the processes. Empty if one is
+ * broken. Collective.
  * @param chosen one flag per local point: others are not asked for
- * @param displacementOf a point of the piece; writes what it moves by, or returns false
+ * @param displacementOf what a point of the piece moves by
  */
 PieceMotion motionOfPieces(RankGroup& group, RankMesh& mesh, const PointFlags& chosen,
-  double amount, const std::function<bool(Index, Vec3&)>& displacementOf);
+  double amount, const std::function<Vec3(Index)>& displacementOf);
 
 /// Coordinates of local points from those of the pieces, which are the same for one point on all of
 /// them, as RankMesh::ofPiece() gives them. Collective.
-std::vector<double> localPoints(
-  RankGroup& group, const RankMesh& mesh, const std::vector<double>& ofPiece);
+std::vector<double> localPoints(const RankMesh& mesh, const std::vector<double>& ofPiece);
 
 /// A mesh with other points, in place, as views of it read them; until the end of its life.
 class PlacedPoints

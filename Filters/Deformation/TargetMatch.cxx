@@ -33,6 +33,97 @@ using Flags = std::vector<unsigned char>;
 constexpr const char* OriginalIds = "vtkOriginalPointIds"; // as vtkDataSetSurfaceFilter names them
 constexpr Index None = -1;
 
+constexpr const char* EmptyTarget = "The target is empty: choose another one.";
+constexpr const char* NoIdsChosen =
+  "No array of point ids is chosen: choose one of the target's point arrays.";
+/// What to do where the order of a target's points is not that of the mesh's.
+constexpr const char* OrderRemedy =
+  "Choose Point Ids, an array that both have; or run Generate Global Ids on the mesh in one piece, "
+  "before it is cut and the target is made of it; or let each process have the same pieces of "
+  "both; or choose Closest Point.";
+
+/// The target is not the mesh in another place: it has other numbers of points.
+Error otherMesh(Index points, Index ofMesh)
+{
+  return Error("The target has " + std::to_string(points) + " points and the mesh has " +
+    std::to_string(ofMesh) + ": it is not the same mesh. Choose another Correspondence.");
+}
+
+/// The same, as it has other cells.
+Error otherCells()
+{
+  return Error("The target has as many points as the mesh, but not its cells in the order of the "
+               "global ids, or of the pieces. " +
+    std::string(OrderRemedy));
+}
+
+/// The target is not the boundary, or the points that move.
+Error otherBoundary(Index points, Index moving)
+{
+  return Error("The target has " + std::to_string(points) + " points, of the mesh " +
+    std::to_string(moving) +
+    " points move, and its cells are not those of the boundary in the same order: choose another "
+    "Correspondence, or what moves.");
+}
+
+/// The target has an array of point ids that the mesh has not, and the mesh no order.
+Error noNumbers(const std::string& array)
+{
+  return Error("The mesh has no array '" + array +
+    "' of its own, and its points are on several processes, so that they have no numbers that the "
+    "target could refer to: give the mesh the array, too, or run Generate Global Ids before it is "
+    "cut.");
+}
+
+/// Points of several processes would correspond by an order that they have not.
+Error noOrder(Index points)
+{
+  return Error("The target's " + std::to_string(points) +
+    " points would correspond to those of the mesh by their order, which is not known: mesh and "
+    "target are on several processes with other pieces of each, without an order of global ids of "
+    "both. " +
+    OrderRemedy);
+}
+
+/// "by projection: N points to the closest point of the target, ..."
+std::string describeProjection(Index points, double farthest)
+{
+  return "by projection: " + std::to_string(points) +
+    " points to the closest point of the target, the farthest of them " + std::to_string(farthest) +
+    " away";
+}
+
+/// ": N of M points of the boundary", behind how they correspond.
+std::string describeMatched(Index given, Index matched)
+{
+  return ": " + std::to_string(given) + " of " + std::to_string(matched) +
+    " points of the boundary";
+}
+
+/// Throws Error if target points that are given have coordinates that are not finite.
+void requireFiniteTarget(Index wrong)
+{
+  if (wrong > 0)
+  {
+    throw Error("The target has " + std::to_string(wrong) +
+      " points of the boundary with coordinates that are NaN or infinite: repair them, or leave "
+      "them out "
+      "(Correspondence: Point ids).");
+  }
+}
+
+/// Throws Error if values of an array of the target are none of the mesh.
+void requireKnownIds(Index unknown, const std::string& array, bool ofMesh)
+{
+  if (unknown > 0)
+  {
+    throw Error("The target's array '" + array + "' has " + std::to_string(unknown) +
+      " values that are no " +
+      (ofMesh ? "values of the mesh's array of that name" : "point of the mesh") +
+      ": choose another array, or None.");
+  }
+}
+
 Index countMarked(const Flags& flags)
 {
   return static_cast<Index>(flags.size()) - std::count(flags.begin(), flags.end(), 0);
@@ -54,6 +145,91 @@ struct EdgeHash
       static_cast<std::size_t>(e.second);
   }
 };
+
+/// The boundary of a mesh as ParaView's Extract Surface makes it, with vtkOriginalPointIds.
+vtkSmartPointer<vtkPolyData> skinOf(vtkDataSet* mesh)
+{
+  vtkNew<vtkDataSetSurfaceFilter> surface;
+  surface->SetInputData(mesh);
+  surface->PassThroughPointIdsOn();
+  surface->Update();
+  return surface->GetOutput();
+}
+
+/// The boundary edges of a surface as ParaView's Feature Edges makes them.
+vtkSmartPointer<vtkPolyData> rimOf(vtkPolyData* surface)
+{
+  vtkNew<vtkFeatureEdges> edges;
+  edges->SetInputData(surface);
+  edges->FeatureEdgesOff();
+  edges->NonManifoldEdgesOff();
+  edges->ColoringOff();
+  edges->Update();
+  return edges->GetOutput();
+}
+
+/// Throws Error if the cells of a target have too few dimensions for a boundary to lie on.
+void requireSurface(int dimension, bool ofVolume)
+{
+  if (dimension < (ofVolume ? 2 : 1))
+  {
+    throw Error(std::string("The target has no ") + (ofVolume ? "surface" : "curve") +
+      " the boundary could be moved to, and its points do not correspond to those of the mesh: "
+      "give a " +
+      (ofVolume ? "surface" : "curve") + ", or point ids.");
+  }
+}
+
+/// Points that were projected.
+struct Projection
+{
+  std::vector<double> displacement; ///< 3 per point, 0 where the flag is
+  double farthest = 0;
+};
+
+/**
+ * @brief The closest points of a surface, or of a curve for a planar mesh. Throws Error if it has
+ * no cells, and where none is closest, with the place.
+ * @param points 3 per point @param flags one per point: the others do not move
+ */
+Projection projected(
+  vtkDataSet* surface, const double* points, const std::vector<unsigned char>& flags)
+{
+  if (surface->GetNumberOfCells() == 0)
+  {
+    throw Error("The target has no boundary that points could be moved to: it is closed. Give a "
+                "curve, or a surface with a boundary.");
+  }
+  vtkNew<vtkStaticCellLocator> locator;
+  locator->SetDataSet(surface);
+  locator->BuildLocator();
+  vtkNew<vtkGenericCell> cell;
+  Projection result;
+  result.displacement.assign(3 * flags.size(), 0.0);
+  for (std::size_t i = 0; i < flags.size(); ++i)
+  {
+    if (!flags[i])
+    {
+      continue;
+    }
+    double closest[3], squared = -1;
+    vtkIdType id = None;
+    int part = 0;
+    locator->FindClosestPoint(points + 3 * i, closest, cell, id, part, squared);
+    if (id < 0)
+    {
+      throw Error("No point of the target is closest to the point at " + place(points + 3 * i) +
+        " of the mesh: repair the target, which has coordinates that are NaN or infinite, or "
+        "choose another one.");
+    }
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      result.displacement[3 * i + k] = closest[k] - points[3 * i + k];
+    }
+    result.farthest = std::max(result.farthest, std::sqrt(squared));
+  }
+  return result;
+}
 
 bool sameCells(const MeshView& a, const MeshView& b)
 {
@@ -346,45 +522,6 @@ void project(const TargetRequest& request, TargetPlaces& places)
 }
 
 //------------------------------------------------------------------------------
-Error otherMesh(Index points, Index ofMesh)
-{
-  return Error("The target has " + std::to_string(points) + " points and the mesh has " +
-    std::to_string(ofMesh) + ": it is not the same mesh. Choose another Correspondence.");
-}
-
-Error otherCells()
-{
-  return Error("The target has as many points as the mesh, but not its cells in the order of the "
-               "global ids, or of the pieces. " +
-    std::string(OrderRemedy));
-}
-
-Error otherBoundary(Index points, Index moving)
-{
-  return Error("The target has " + std::to_string(points) + " points, of the mesh " +
-    std::to_string(moving) +
-    " points move, and its cells are not those of the boundary in the same order: choose another "
-    "Correspondence, or what moves.");
-}
-
-Error noNumbers(const std::string& array)
-{
-  return Error("The mesh has no array '" + array +
-    "' of its own, and its points are on several processes, so that they have no numbers that the "
-    "target could refer to: give the mesh the array, too, or run Generate Global Ids before it is "
-    "cut.");
-}
-
-Error noOrder(Index points)
-{
-  return Error("The target's " + std::to_string(points) +
-    " points would correspond to those of the mesh by their order, which is not known: mesh and "
-    "target are on several processes with other pieces of each, without an order of global ids of "
-    "both. " +
-    OrderRemedy);
-}
-
-//------------------------------------------------------------------------------
 vtkDataArray* chosenTargetIds(vtkDataSet* target, const std::string& name)
 {
   if (name.empty() || name == "None")
@@ -398,117 +535,6 @@ vtkDataArray* chosenTargetIds(vtkDataSet* target, const std::string& name)
       "The target has no point array '" + name + "' of point ids: choose another, or None.");
   }
   return array;
-}
-
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> skinOf(vtkDataSet* mesh)
-{
-  vtkNew<vtkDataSetSurfaceFilter> surface;
-  surface->SetInputData(mesh);
-  surface->PassThroughPointIdsOn();
-  surface->Update();
-  return surface->GetOutput();
-}
-
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkPolyData> rimOf(vtkPolyData* surface)
-{
-  vtkNew<vtkFeatureEdges> edges;
-  edges->SetInputData(surface);
-  edges->FeatureEdgesOff();
-  edges->NonManifoldEdgesOff();
-  edges->ColoringOff();
-  edges->Update();
-  return edges->GetOutput();
-}
-
-//------------------------------------------------------------------------------
-void requireSurface(int dimension, bool ofVolume)
-{
-  if (dimension < (ofVolume ? 2 : 1))
-  {
-    throw Error(std::string("The target has no ") + (ofVolume ? "surface" : "curve") +
-      " the boundary could be moved to, and its points do not correspond to those of the mesh: "
-      "give a " +
-      (ofVolume ? "surface" : "curve") + ", or point ids.");
-  }
-}
-
-//------------------------------------------------------------------------------
-Projection projected(
-  vtkDataSet* surface, const double* points, const std::vector<unsigned char>& flags)
-{
-  if (surface->GetNumberOfCells() == 0)
-  {
-    throw Error("The target has no boundary that points could be moved to: it is closed. Give a "
-                "curve, or a surface with a boundary.");
-  }
-  vtkNew<vtkStaticCellLocator> locator;
-  locator->SetDataSet(surface);
-  locator->BuildLocator();
-  vtkNew<vtkGenericCell> cell;
-  Projection result;
-  result.displacement.assign(3 * flags.size(), 0.0);
-  for (std::size_t i = 0; i < flags.size(); ++i)
-  {
-    if (!flags[i])
-    {
-      continue;
-    }
-    double closest[3], squared = -1;
-    vtkIdType id = None;
-    int part = 0;
-    locator->FindClosestPoint(points + 3 * i, closest, cell, id, part, squared);
-    if (id < 0)
-    {
-      throw Error("No point of the target is closest to the point at " + place(points + 3 * i) +
-        " of the mesh: repair the target, which has coordinates that are NaN or infinite, or "
-        "choose another one.");
-    }
-    for (std::size_t k = 0; k < 3; ++k)
-    {
-      result.displacement[3 * i + k] = closest[k] - points[3 * i + k];
-    }
-    result.farthest = std::max(result.farthest, std::sqrt(squared));
-  }
-  return result;
-}
-
-//------------------------------------------------------------------------------
-std::string describeProjection(Index points, double farthest)
-{
-  return "by projection: " + std::to_string(points) +
-    " points to the closest point of the target, the farthest of them " + std::to_string(farthest) +
-    " away";
-}
-
-std::string describeMatched(Index given, Index matched)
-{
-  return ": " + std::to_string(given) + " of " + std::to_string(matched) +
-    " points of the boundary";
-}
-
-//------------------------------------------------------------------------------
-void requireFiniteTarget(Index wrong)
-{
-  if (wrong > 0)
-  {
-    throw Error("The target has " + std::to_string(wrong) +
-      " points of the boundary with coordinates that are NaN or infinite: repair them, or leave "
-      "them out "
-      "(Correspondence: Point ids).");
-  }
-}
-
-void requireKnownIds(Index unknown, const std::string& array, bool ofMesh)
-{
-  if (unknown > 0)
-  {
-    throw Error("The target's array '" + array + "' has " + std::to_string(unknown) +
-      " values that are no " +
-      (ofMesh ? "values of the mesh's array of that name" : "point of the mesh") +
-      ": choose another array, or None.");
-  }
 }
 
 //------------------------------------------------------------------------------

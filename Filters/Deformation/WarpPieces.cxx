@@ -4,7 +4,7 @@
 #include "Processes.h"
 #include "RankMesh.h"
 #include "RankStatistics.h"
-#include "TargetPieces.h"
+#include "PieceMotion.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Mesh/BoundaryParts.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
@@ -12,10 +12,11 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkIdList.h"
+#include "vtkNew.h"
 #include "vtkPointData.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -85,7 +86,6 @@ private:
   std::vector<double> Displacement; ///< 3 per local point, at the amount
   MovedPoints Cloud;                ///< of a transform
   std::vector<double> Tensors;      ///< 6 per local cell, or empty
-  std::string Correspondence;       ///< of a target, a sentence
 };
 
 //------------------------------------------------------------------------------
@@ -140,29 +140,23 @@ PointFlags PieceWarp::chosenToMove()
   if (!byPiece)
   {
     PointFlags moved;
-    this->Group.together(
-      [&] { moved = movedPoints(Mesh(this->local().view()), this->Boundary, choice); });
+    moved = movedPoints(Mesh(this->local().view()), this->Boundary, choice);
     return moved;
   }
   PointFlags marked(this->Whole.piece().numberOfPoints, 0);
   const bool selected = this->Group.any(this->Piece.moved != nullptr);
-  this->Group.together(
-    [&]
-    {
-      const auto copy = markSelected(this->Piece.input, this->Piece.moved);
-      choice.selected = vtkDataSet::SafeDownCast(copy);
-      choice.elsewhere = selected;
-      if (choice.part == MovedPart::Values && this->here())
-      {
-        choice.array =
-          chosenArray(set.arrays, MovedArray, this->Piece.input, "of the part that moves");
-        choice.ofCells = chosenOfCells(set.arrays, MovedArray);
-      }
-      if (this->here())
-      {
-        marked = markedPoints(Mesh(this->Whole.piece()), choice);
-      }
-    });
+  const auto copy = markSelected(this->Piece.input, this->Piece.moved);
+  choice.selected = vtkDataSet::SafeDownCast(copy);
+  choice.elsewhere = selected;
+  if (choice.part == MovedPart::Values && this->here())
+  {
+    choice.array = chosenArray(set.arrays, MovedArray, this->Piece.input, "of the part that moves");
+    choice.ofCells = chosenOfCells(set.arrays, MovedArray);
+  }
+  if (this->here())
+  {
+    marked = markedPoints(Mesh(this->Whole.piece()), choice);
+  }
   PointFlags moved = this->Whole.anyOf(marked);
   const Index chosen = this->countOwned(moved);
   std::transform(moved.begin(), moved.end(), this->Boundary.begin(), moved.begin(),
@@ -176,21 +170,16 @@ PointFlags PieceWarp::chosenToMove()
 PointFlags PieceWarp::staying()
 {
   PointFlags marked(this->Whole.piece().numberOfPoints, 0);
-  this->Group.together(
-    [&]
-    {
-      if (!this->here())
-      {
-        return;
-      }
-      const Mesh piece(this->Whole.piece());
-      const auto copy = markSelected(this->Piece.input, this->Piece.fixed);
-      markPoints(piece,
-        chosenArray(
-          this->Settings.arrays, FixedArray, this->Piece.input, "of fixed points", ArrayOf::Points),
-        false, marked);
-      markPoints(piece, vtkDataSet::SafeDownCast(copy), marked);
-    });
+  if (this->here())
+  {
+    const Mesh piece(this->Whole.piece());
+    const auto copy = markSelected(this->Piece.input, this->Piece.fixed);
+    markPoints(piece,
+      chosenArray(
+        this->Settings.arrays, FixedArray, this->Piece.input, "of fixed points", ArrayOf::Points),
+      false, marked);
+    markPoints(piece, vtkDataSet::SafeDownCast(copy), marked);
+  }
   return this->Whole.anyOf(marked);
 }
 
@@ -200,27 +189,20 @@ void PieceWarp::moveByArray()
 {
   const Index points = this->Whole.piece().numberOfPoints;
   std::vector<double> given(3 * points, 0.0);
-  this->Group.together(
-    [&]
-    {
-      PointFlags boundary(points, 0);
-      for (Index p = 0; p < points; ++p)
-      {
-        const Index at = this->local().localOfPiece()[p];
-        boundary[p] = at >= 0 && this->Boundary[at];
-      }
-      if (this->here())
-      {
-        given =
-          displacementsOf(displacementArray(this->Settings.arrays, this->Piece.input), boundary);
-      }
-    });
+  PointFlags boundary(points, 0);
+  for (Index p = 0; p < points; ++p)
+  {
+    const Index at = this->local().localOfPiece()[p];
+    boundary[p] = at >= 0 && this->Boundary[at];
+  }
+  if (this->here())
+  {
+    given = displacementsOf(displacementArray(this->Settings.arrays, this->Piece.input), boundary);
+  }
   PieceMotion motion =
     motionOfPieces(this->Group, this->Whole, this->Boundary, this->Settings.amount,
-      [&given](Index p, Vec3& d)
-      {
-        std::copy_n(&given[3 * p], 3, d.begin());
-        return true;
+      [&given](Index p) {
+        return Vec3{ given[3 * p], given[3 * p + 1], given[3 * p + 2] };
       });
   if (motion.farthest > 0)
   {
@@ -241,11 +223,11 @@ void PieceWarp::moveOverTime()
   const MeshView& piece = this->Whole.piece();
   PieceMotion motion =
     motionOfPieces(this->Group, this->Whole, this->Boundary, this->Settings.amount,
-      [&](Index p, Vec3& d)
+      [&](Index p)
       {
-        this->Piece.input->GetPoint(p, d.data());
-        d = d - tautline::pointOf(piece, p);
-        return true;
+        Vec3 place;
+        this->Piece.input->GetPoint(p, place.data());
+        return place - tautline::pointOf(piece, p);
       });
   if (motion.broken > 0)
   {
@@ -293,35 +275,27 @@ void PieceWarp::moveByTransform()
   };
   this->Moved = this->chosenToMove();
   std::vector<MovedPoint> own;
-  this->Group.together(
-    [&]
+  for (Index p = 0; p < this->local().localPoints(); ++p)
+  {
+    if (this->Moved[p] && this->local().owned(p))
     {
-      for (Index p = 0; p < this->local().localPoints(); ++p)
-      {
-        if (this->Moved[p] && this->local().owned(p))
-        {
-          own.push_back({ this->Ids[p], pointOf(this->local().view(), p) });
-        }
-      }
-    });
+      own.push_back({ this->Ids[p], pointOf(this->local().view(), p) });
+    }
+  }
   const std::vector<std::vector<MovedPoint>> lists = this->Group.gatherItems(own);
-  this->Group.together(
-    [&]
-    {
-      std::vector<MovedPoint> all;
-      for (const std::vector<MovedPoint>& list : lists)
-      {
-        all.insert(all.end(), list.begin(), list.end());
-      }
-      std::sort(all.begin(), all.end(),
-        [](const MovedPoint& a, const MovedPoint& b) { return a.id < b.id; });
-      for (const MovedPoint& point : all)
-      {
-        this->Cloud.ids.push_back(point.id);
-        this->Cloud.places.insert(this->Cloud.places.end(), point.place.begin(), point.place.end());
-      }
-      this->Displacement = this->transformed(1.0);
-    });
+  std::vector<MovedPoint> all;
+  for (const std::vector<MovedPoint>& list : lists)
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(
+    all.begin(), all.end(), [](const MovedPoint& a, const MovedPoint& b) { return a.id < b.id; });
+  for (const MovedPoint& point : all)
+  {
+    this->Cloud.ids.push_back(point.id);
+    this->Cloud.places.insert(this->Cloud.places.end(), point.place.begin(), point.place.end());
+  }
+  this->Displacement = this->transformed(1.0);
 }
 
 //------------------------------------------------------------------------------
@@ -334,26 +308,21 @@ void PieceWarp::findTensors()
     return;
   }
   std::vector<double> ofPiece;
-  this->Group.together(
-    [&]
+  if (this->here())
+  {
+    ofPiece = set.tensorsByRegion ? tensorsOf(chosenArray(set.arrays, RegionArray,
+                                                this->Piece.input, "of regions", ArrayOf::Cells),
+                                      set.regions, set.options.tensor.data())
+                                  : tensorsOf(chosenArray(set.arrays, TensorArray,
+                                      this->Piece.input, "of coefficients", ArrayOf::Cells));
+    for (std::size_t cell = 0; 6 * cell < ofPiece.size(); ++cell)
     {
-      if (!this->here())
+      if (!this->Whole.skipped()[cell])
       {
-        return;
+        requireTensor(&ofPiece[6 * cell], static_cast<Index>(cell), "piece");
       }
-      ofPiece = set.tensorsByRegion ? tensorsOf(chosenArray(set.arrays, RegionArray,
-                                                  this->Piece.input, "of regions", ArrayOf::Cells),
-                                        set.regions, set.options.tensor.data())
-                                    : tensorsOf(chosenArray(set.arrays, TensorArray,
-                                        this->Piece.input, "of coefficients", ArrayOf::Cells));
-      for (std::size_t cell = 0; 6 * cell < ofPiece.size(); ++cell)
-      {
-        if (!this->Whole.skipped()[cell])
-        {
-          requireTensor(&ofPiece[6 * cell], static_cast<Index>(cell), "piece");
-        }
-      }
-    });
+    }
+  }
   this->Tensors = this->Whole.ofCells(ofPiece, 6);
 }
 
@@ -362,7 +331,7 @@ void PieceWarp::findTensors()
 void PieceWarp::prescribe(WarpFacts& facts)
 {
   this->Stay = this->staying();
-  this->Group.together([&] { this->Prescribed = this->Boundary; });
+  this->Prescribed = this->Boundary;
   for (Index p = 0; p < this->local().localPoints(); ++p)
   {
     double* d = &this->Displacement[3 * p];
@@ -394,8 +363,8 @@ WarpResult PieceWarp::resultOfStep()
   if (done != kept.frames.end())
   {
     WarpResult result;
-    this->Group.together([&] { result = copyWithoutPoints(done->second); });
-    result.points = localPoints(this->Group, this->Whole, done->second.points);
+    result = copyWithoutPoints(done->second);
+    result.points = localPoints(this->Whole, done->second.points);
     return result;
   }
   WarpResult result =
@@ -405,14 +374,10 @@ WarpResult PieceWarp::resultOfStep()
     notePrevious(before->second, result);
   }
   const Index most = this->Group.maximum(3 * this->Whole.piece().numberOfPoints);
-  this->Group.together(
-    [&]
-    {
-      limitFrames(kept, static_cast<std::size_t>(most));
-      WarpResult frame = copyWithoutPoints(result);
-      frame.points = this->Whole.ofPiece(result.points);
-      kept.frames[step] = std::move(frame);
-    });
+  limitFrames(kept, static_cast<std::size_t>(most));
+  WarpResult frame = copyWithoutPoints(result);
+  frame.points = this->Whole.ofPiece(result.points);
+  kept.frames[step] = std::move(frame);
   return result;
 }
 
@@ -421,7 +386,7 @@ WarpResult PieceWarp::resultOfStep()
 WarpResult PieceWarp::warpFromPrevious(const WarpResult& previous)
 {
   DistributedMesh& mesh = this->local();
-  std::vector<double> points = localPoints(this->Group, this->Whole, previous.points);
+  std::vector<double> points = localPoints(this->Whole, previous.points);
   if (countInvalidOnRanks(mesh, this->Whole.mirrored(), points, this->Settings.options.threads) > 0)
   {
     WarpResult result = this->run(this->Displacement);
@@ -429,15 +394,11 @@ WarpResult PieceWarp::warpFromPrevious(const WarpResult& previous)
     return result;
   }
   std::vector<double> rise;
-  this->Group.together(
-    [&]
-    {
-      rise = this->Displacement;
-      for (std::size_t i = 0; i < rise.size(); ++i)
-      {
-        rise[i] += mesh.points()[i] - points[i];
-      }
-    });
+  rise = this->Displacement;
+  for (std::size_t i = 0; i < rise.size(); ++i)
+  {
+    rise[i] += mesh.points()[i] - points[i];
+  }
   const PlacedPoints placed(mesh, std::move(points));
   return this->run(rise);
 }
@@ -449,23 +410,15 @@ WarpResult PieceWarp::warp()
   const auto zero = [](const std::vector<double>& values)
   { return std::all_of(values.begin(), values.end(), [](double d) { return d == 0; }); };
   bool rests = false;
-  this->Group.together(
-    [&]
-    {
-      // Full turns end where they began, but not on the way.
-      constexpr double somewhere = 1.0 / 3;
-      rests = zero(this->Displacement) && (!transform || zero(this->transformed(somewhere)));
-    });
+  // Full turns end where they began, but not on the way.
+  constexpr double somewhere = 1.0 / 3;
+  rests = zero(this->Displacement) && (!transform || zero(this->transformed(somewhere)));
   if (!this->Group.any(!rests))
   {
     WarpResult result;
-    this->Group.together(
-      [&]
-      {
-        result.points = this->local().points();
-        result.history.resize(1);
-        result.history[0].stage = "rest";
-      });
+    result.points = this->local().points();
+    result.history.resize(1);
+    result.history[0].stage = "rest";
     return result;
   }
   return this->run(this->Displacement);
@@ -482,7 +435,7 @@ WarpResult PieceWarp::run(const std::vector<double>& displacement)
   options.maximumSeconds = set.secondsLeft();
   options.progress = [&set](double fraction) { return set.progress(0, fraction); };
   Warper warper(
-    this->local(), this->Whole.mirrored(), this->Ids, Processes().communicator(), options);
+    this->local(), this->Whole.mirrored(), this->Ids, this->Group.communicator(), options);
   if (set.motion != MotionSource::Transform)
   {
     return warper.warp(displacement.data());
@@ -511,26 +464,22 @@ void PieceWarp::report(WarpResult& result, WarpFacts& facts, TableRows& history,
   std::vector<double> end, values;
   std::vector<signed char> validity;
   std::unique_ptr<Mesh> before, after;
-  this->Group.together(
-    [&]
-    {
-      end = this->Whole.ofPiece(result.points);
-      result.points = {};
-      this->Displacement = {};
-      this->Tensors = {};
-      this->Ids = {};
-      this->Cloud = {};
-      for (PointFlags* flags : { &this->Boundary, &this->Moved, &this->Stay, &this->Prescribed })
-      {
-        *flags = {};
-      }
-      this->Whole.releaseMesh();
-      before = std::make_unique<Mesh>(view, threads);
-      before->setMirrored(this->Whole.mirrored());
-      after.reset(new Mesh(this->Whole.movedPiece(end)));
-      validity.resize(view.numberOfCells);
-      values.resize(view.numberOfCells);
-    });
+  end = this->Whole.ofPiece(result.points);
+  result.points = {};
+  this->Displacement = {};
+  this->Tensors = {};
+  this->Ids = {};
+  this->Cloud = {};
+  for (PointFlags* flags : { &this->Boundary, &this->Moved, &this->Stay, &this->Prescribed })
+  {
+    *flags = {};
+  }
+  this->Whole.releaseMesh();
+  before = std::make_unique<Mesh>(view, threads);
+  before->setMirrored(this->Whole.mirrored());
+  after.reset(new Mesh(this->Whole.movedPiece(end)));
+  validity.resize(view.numberOfCells);
+  values.resize(view.numberOfCells);
   const int dimension = this->Whole.volume() ? 3 : 2;
   const unsigned char* skip = this->Whole.skipped().data();
   WarpQualities q;
@@ -539,18 +488,18 @@ void PieceWarp::report(WarpResult& result, WarpFacts& facts, TableRows& history,
   for (const bool moved : { false, true })
   {
     const Mesh& mesh = moved ? *after : *before;
-    this->Group.together([&] { mesh.classifyCells(validity.data(), threads); });
+    mesh.classifyCells(validity.data(), threads);
     const Measurement m = measureOnRanks(this->Group, mesh, dimension, Metric::InverseMeanRatio,
       ideal, validity.data(), skip, values.data());
     (moved ? q.after : q.before) = { m.worst, m.statistics.mean };
   }
-  this->Group.together([&] { measureSimilarity(*after, *before, threads, values); });
+  measureSimilarity(*after, *before, threads, values);
   const Measurement shape = summarizeOnRanks(
     this->Group, view, dimension, Metric::ShapeSimilarity, validity.data(), skip, values.data());
   q.shape = { shape.worst, shape.statistics.mean };
   q.inverted = shape.counts.inverted + shape.counts.degenerate;
   q.elements = q.inverted + shape.counts.valid;
-  this->Group.together([&] { addWarpArrays(this->Piece.output, values, validity); });
+  addWarpArrays(this->Piece.output, values, validity);
   TableRows unused;
   const bool first = this->Group.rank() == 0; // tables of several processes would be joined
   addWarpReport(result, facts, q, "", { note, this->Whole.notice() }, first ? history : unused,
@@ -571,17 +520,8 @@ void PieceWarp::findMotion()
     case MotionSource::Transform:
       this->moveByTransform();
       break;
-    case MotionSource::Target:
-    {
-      requireTarget(this->Group, this->Piece.target);
-      this->Moved = this->chosenToMove();
-      const bool all = this->Settings.part == MovedPart::Automatic;
-      PieceMotion motion = moveToTarget(this->Settings, this->Group, this->Whole, this->Piece,
-        this->Moved, all ? this->Boundary : this->Moved);
-      this->Displacement = std::move(motion.displacement);
-      this->Correspondence = std::move(motion.how);
+    case MotionSource::Target: // gathered
       break;
-    }
   }
 }
 
@@ -605,7 +545,6 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   {
     return;
   }
-  facts.motion = this->Correspondence;
   facts.method = nameOf(this->Settings.options.method);
   const WarpCoefficients coefficients = this->Settings.options.coefficients;
   facts.coefficients = this->Settings.anisotropic() && this->Settings.amount > 0 &&
@@ -614,6 +553,41 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
   facts.threads = this->Settings.options.threads;
   facts.seconds = clock.seconds();
   this->report(result, facts, history, statistics, totals);
+}
+
+/// Whether a piece has as many points as another and the same cells; null is empty.
+bool haveSameCells(vtkDataSet* piece, vtkDataSet* other)
+{
+  if (!other || other->GetNumberOfPoints() != piece->GetNumberOfPoints() ||
+    other->GetNumberOfCells() != piece->GetNumberOfCells())
+  {
+    return !other && piece->GetNumberOfPoints() == 0;
+  }
+  vtkNew<vtkIdList> a, b;
+  for (vtkIdType cell = 0; cell < piece->GetNumberOfCells(); ++cell)
+  {
+    piece->GetCellPoints(cell, a);
+    other->GetCellPoints(cell, b);
+    if (!std::equal(a->begin(), a->end(), b->begin(), b->end()))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Whether a piece has as many points as another and the same global ids, or both have none.
+bool haveSameIds(vtkDataSet* piece, vtkDataSet* other)
+{
+  vtkDataArray* a = piece->GetPointData()->GetGlobalIds();
+  vtkDataArray* b = other->GetPointData()->GetGlobalIds();
+  const vtkIdType points = piece->GetNumberOfPoints();
+  bool same = points == other->GetNumberOfPoints() && (points == 0 || !a == !b);
+  for (vtkIdType i = 0; same && a && b && i < points; ++i)
+  {
+    same = a->GetComponent(i, 0) == b->GetComponent(i, 0);
+  }
+  return same;
 }
 
 /// Whether a piece has the points and cells that another has, wherever the points are.
@@ -625,33 +599,20 @@ bool areAlike(vtkDataSet* piece, vtkDataSet* other)
 }
 
 //------------------------------------------------------------------------------
-std::string needOfWholeMesh(
-  const WarpSettings& settings, vtkDataObject* input, vtkDataObject* target)
-{
-  if (settings.motion == MotionSource::Target)
-  {
-    const bool blocks =
-      !vtkDataSet::SafeDownCast(input) || (target && !vtkDataSet::SafeDownCast(target));
-    if (minimumOverProcesses(blocks ? 0 : 1) == 0)
-    {
-      return "targets with blocks";
-    }
-  }
-  return "";
-}
-
-//------------------------------------------------------------------------------
 void warpPieces(WarpSession& session, RankGroup& group, RankMesh& mesh, const WarpPiece& piece,
   TableRows& history, TableRows& statistics, WarpTotals& totals)
 {
-  if (session.sequence() && group.any(!areAlike(piece.input, session.ownPiece().first)))
-  {
-    session.beginGathered();
-    return;
-  }
-  if (session.atRequested() || session.settings.fromPreviousStep)
-  {
-    PieceWarp(session, group, mesh, piece).run(history, statistics, totals);
-  }
+  group.together(
+    [&]
+    {
+      if (session.sequence() && group.any(!areAlike(piece.input, session.ownPiece().first)))
+      {
+        session.beginGathered();
+      }
+      else if (session.atRequested() || session.settings.fromPreviousStep)
+      {
+        PieceWarp(session, group, mesh, piece).run(history, statistics, totals);
+      }
+    });
 }
 }

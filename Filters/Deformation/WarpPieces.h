@@ -8,19 +8,12 @@
 
 #include "WarpSession.h"
 
-class vtkDataObject;
 class vtkDataSet;
 class vtkSelection;
 
 namespace tautline
 {
 class RankMesh;
-
-/// What needs the whole mesh in one place, in the plural, "targets with blocks"; "" if each process
-/// takes its piece. Collective.
-/// @param input the piece of the mesh @param target of this process, or null
-std::string needOfWholeMesh(
-  const WarpSettings& settings, vtkDataObject* input, vtkDataObject* target);
 
 /// What a process has of the inputs and outputs.
 struct WarpPiece
@@ -29,7 +22,6 @@ struct WarpPiece
   vtkDataSet* rest;    ///< what the mesh is made of: the input, at the first time step
   vtkSelection* moved; ///< what is selected to move, or null
   vtkSelection* fixed; ///< to stay, or null
-  vtkDataSet* target;  ///< of a motion to a target, or null
   vtkDataSet* output;
 };
 

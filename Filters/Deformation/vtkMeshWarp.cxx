@@ -334,8 +334,7 @@ int vtkMeshWarp::RequestData(
         vtkDataObject* first = session.sequence() ? session.firstPiece(input) : input;
         const tautline::WarpPiece piece = { vtkDataSet::SafeDownCast(input),
           vtkDataSet::SafeDownCast(first), vtkSelection::GetData(inputVector[MovedPort]),
-          vtkSelection::GetData(inputVector[FixedPort]), vtkDataSet::SafeDownCast(target),
-          vtkDataSet::SafeDownCast(output) };
+          vtkSelection::GetData(inputVector[FixedPort]), vtkDataSet::SafeDownCast(output) };
         tautline::warpPieces(session, *this->Group, *pieces, piece, history, statistics, totals);
         return;
       }
@@ -414,17 +413,13 @@ bool vtkMeshWarp::ExecutesAgain() const
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkMeshWarp::GetGatheredResult() const
+tautline::GatheredRules vtkMeshWarp::GetGatheredRules()
 {
-  return tautline::GatheredResult::SameMesh;
-}
-
-//------------------------------------------------------------------------------
-bool vtkMeshWarp::JoinsPartitions(vtkInformationVector** inputs)
-{
-  return this->Superclass::JoinsPartitions(inputs) &&
-    (!this->Session->sequence() ||
-      vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject::GetData(inputs[MeshPort])));
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::SameMesh;
+  rules.joinsPartitions =
+    rules.joinsPartitions && (!this->Session->sequence() || this->PartitionsHaveIds());
+  return rules;
 }
 
 //------------------------------------------------------------------------------
@@ -449,15 +444,14 @@ bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
   }
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
   vtkPointSet* first = sequence ? session.firstPiece(input) : nullptr;
-  const std::string what =
-    tautline::needOfWholeMesh(session.settings, input, vtkDataObject::GetData(inputs[TargetPort]));
+  const bool toTarget = session.settings.motion == tautline::MotionSource::Target;
   std::string why =
-    what.empty() || !tautline::isScattered(input) ? "" : what + " need the whole mesh";
+    toTarget && tautline::isScattered(input) ? "a motion to a target needs the whole mesh" : "";
   if (sequence && session.gathers)
   {
     why = "its pieces change over time";
   }
-  else if (what.empty())
+  else if (!toTarget)
   {
     this->Pieces = tautline::takePieces(this->Group, first ? first : input, this->Threads,
       this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute), &why);

@@ -65,14 +65,9 @@
  * points or cells than at the first time step, the mesh is gathered from then on, and needs global
  * ids.
  *
- * A target stays in pieces, too, whose copies of a point may differ by rounding. Its points
- * correspond by an array of ids that both have; or, AUTOMATIC_MATCH and SAME_MESH, by their places
- * in pieces that have the points and cells of those of the mesh. Otherwise what corresponds by its
- * order on one process (SAME_MESH, SAME_BOUNDARY, AUTOMATIC_MATCH where the numbers of points are
- * the same, ids that are numbers of points) does so in the order of the global ids of mesh and
- * target, which have to be those of one mesh; without, it is an error, unless all of both is on one
- * process. Each process compares a share of the ids and edges, and none has the boundary. Of a
- * target that is matched by CLOSEST_POINT each process gets the surface.
+ * A motion to a target gathers both on the first process. Their points correspond as on one
+ * process, in the order of the global ids of mesh and target, which have to be those of one mesh; without
+ * ids, what corresponds by its order is an error, unless all of both is on one process.
  *
  * With blocks, inclined planes, cells that list their points in opposite orders and coordinates of
  * extreme size, the first process has the whole mesh while it computes and sends the results to the
@@ -462,11 +457,10 @@ protected:
     vtkInformationVector* outputVector) override;
   /// While time steps before the one requested are taken.
   bool ExecutesAgain() const override;
-  tautline::GatheredResult GetGatheredResult() const override;
+  tautline::GatheredRules GetGatheredRules() override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   bool TakesPieces(vtkInformationVector** inputs) override;
   /// Over time partitions are joined by global ids only: their places change.
-  bool JoinsPartitions(vtkInformationVector** inputs) override;
   void ClearResult() override;
 
   tautline::WarpSettings GetSettings();

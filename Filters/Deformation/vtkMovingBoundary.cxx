@@ -23,12 +23,8 @@ vtkStandardNewMacro(vtkMovingBoundary);
 
 namespace
 {
-enum InputPorts
-{
-  TargetPort = 1,
-  MovedPort = 2,
-  FixedPort = 3
-};
+/// Of input; the first has the mesh.
+constexpr int BoundaryPort = 1, MovedSelection = 2, FixedSelection = 3;
 
 using PointIds = std::vector<vtkIdType>;
 
@@ -143,7 +139,7 @@ int vtkMovingBoundary::RequestData(
   tautline::WarpSession& session = this->GetSession();
   session.settings = this->GetSettings();
   vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
-  vtkDataObject* target = vtkDataObject::GetData(inputVector[TargetPort]);
+  vtkDataObject* target = vtkDataObject::GetData(inputVector[BoundaryPort]);
   vtkPolyData* output = vtkPolyData::GetData(outputVector, MeshPort);
   vtkNew<vtkPolyData> found;
   const std::string failure = FailureOf("warp the mesh in parts",
@@ -160,9 +156,9 @@ int vtkMovingBoundary::RequestData(
         (found->*set)(cells);
       }
       const auto moved =
-        tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedPort]));
+        tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedSelection]));
       const auto fixed =
-        tautline::markSelected(input, vtkSelection::GetData(inputVector[FixedPort]));
+        tautline::markSelected(input, vtkSelection::GetData(inputVector[FixedSelection]));
       const auto scratch = vtkSmartPointer<vtkDataObject>::Take(input->NewInstance());
       tautline::forEachBlock(input, nullptr, fixed, scratch,
         [&](const tautline::InputBlock& block)
@@ -186,9 +182,11 @@ int vtkMovingBoundary::RequestData(
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkMovingBoundary::GetGatheredResult() const
+tautline::GatheredRules vtkMovingBoundary::GetGatheredRules()
 {
-  return tautline::GatheredResult::OnFirst;
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::OnFirst;
+  return rules;
 }
 
 //------------------------------------------------------------------------------

@@ -57,7 +57,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   /// The boundary stays on the first process.
-  tautline::GatheredResult GetGatheredResult() const override;
+  tautline::GatheredRules GetGatheredRules() override;
   bool TakesPieces(vtkInformationVector**) override { return false; }
   /// No error: the summary has the message.
   int Fail(vtkInformationVector* outputVector, const std::string& message) override;

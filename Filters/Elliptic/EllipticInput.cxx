@@ -84,27 +84,23 @@ void flag(
 
 //------------------------------------------------------------------------------
 EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkAlgorithm* algorithm,
-  const Processes& processes, int threads)
+  RankGroup& processes, int threads)
   : Local(mesh)
 {
-  processes.together(
-    [&]()
-    {
-      this->Adapter = std::make_unique<MeshAdapter>(mesh.input, threads);
-      this->Skip = cellsToSkip(*this->Adapter);
-      requireDistinctCells(this->Adapter->mesh(), this->Skip.empty() ? nullptr : this->Skip.data());
-      const std::string more = this->Adapter->notice();
-      this->Notice = mesh.notice + (mesh.notice.empty() || more.empty() ? "" : " ") + more;
-      this->Problem.pde = choice.pde;
-      if (mesh.input->GetNumberOfPoints() > 0)
-      {
-        this->readArrays(choice, algorithm);
-      }
-    });
+  this->Adapter = std::make_unique<MeshAdapter>(mesh.input, threads);
+  this->Skip = cellsToSkip(*this->Adapter);
+  requireDistinctCells(this->Adapter->mesh(), this->Skip.empty() ? nullptr : this->Skip.data());
+  const std::string more = this->Adapter->notice();
+  this->Notice = mesh.notice + (mesh.notice.empty() || more.empty() ? "" : " ") + more;
+  this->Problem.pde = choice.pde;
+  if (mesh.input->GetNumberOfPoints() > 0)
+  {
+    this->readArrays(choice, algorithm);
+  }
   this->settleOrientation(processes, threads);
   this->settleDimension(choice, processes);
   this->Part.communicator = processes.communicator();
-  this->Part.globalIds = processes.count() > 1 ? mesh.globalIds.data() : nullptr;
+  this->Part.globalIds = processes.size() > 1 ? mesh.globalIds.data() : nullptr;
   this->Part.skip = this->Skip.empty() ? nullptr : this->Skip.data();
   this->markFixed(choice, algorithm, processes);
 
@@ -121,7 +117,7 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
   problem.source = choice.source.constant;
   problem.sources = orNull(this->Values.sources, choice.source.kind != PointFunction::Constant);
   problem.fixedValues = orNull(this->Values.given, !choice.given.isZero());
-  if (choice.redistribution != Redistribution::None && processes.count() > 1)
+  if (choice.redistribution != Redistribution::None && processes.size() > 1)
   {
     this->divide(choice.redistribution, threads);
   }
@@ -129,32 +125,24 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
 }
 
 //------------------------------------------------------------------------------
-void EllipticInput::assemble(const Processes& processes, int threads)
+void EllipticInput::assemble(RankGroup& processes, int threads)
 {
+  processes.agree(); // before PETSc communicates
   if (!this->Division)
   {
-    processes.together(
-      [&]()
-      {
-        this->System =
-          std::make_unique<EllipticSystem>(this->piece(), this->Problem, this->Part, threads);
-      });
+    this->System =
+      std::make_unique<EllipticSystem>(this->piece(), this->Problem, this->Part, threads);
     return;
   }
   try
   {
-    processes.together(
-      [&]()
-      {
-        this->System = std::make_unique<EllipticSystem>(
-          *this->DividedMesh, this->DividedProblem, this->DividedPart, threads);
-      });
+    this->System = std::make_unique<EllipticSystem>(
+      *this->DividedMesh, this->DividedProblem, this->DividedPart, threads);
   }
   catch (const Error&) // on all processes
   {
     // The message is to have the numbers of cells and points in the pieces.
-    processes.together(
-      [&]() { requireSolvable(this->piece(), this->Problem, this->Part, threads); });
+    processes.together([&] { requireSolvable(this->piece(), this->Problem, this->Part, threads); });
     throw;
   }
   this->Values = Arrays(); // what Problem has of the pieces is not read any more
@@ -191,12 +179,8 @@ void EllipticInput::divide(Redistribution how, int threads)
     owners = ownersByTree(group, view, this->skipped());
   }
 
-  group.together(
-    [&]
-    {
-      this->Skip.resize(static_cast<std::size_t>(view.numberOfCells), 0);
-      this->Part.skip = this->Skip.data();
-    });
+  this->Skip.resize(static_cast<std::size_t>(view.numberOfCells), 0);
+  this->Part.skip = this->Skip.data();
   this->Division = std::make_unique<CellDivision>(group, view, ids, owners);
 
   const CellDivision& division = *this->Division;
@@ -237,14 +221,10 @@ void EllipticInput::divide(Redistribution how, int threads)
   this->DividedPart = this->Part;
   this->DividedPart.globalIds = division.ids().data();
   this->DividedPart.skip = this->DividedSkip.data();
-  group.together(
-    [&]
-    {
-      this->DividedMesh = std::make_unique<Mesh>(division.view(), threads);
-      this->DividedMesh->setSpace(this->piece().space());
-      this->DividedMesh->setMirrored(this->piece().mirrored());
-      this->Notice += (this->Notice.empty() ? "" : " ") + dividedSentence(group, how, why);
-    });
+  this->DividedMesh = std::make_unique<Mesh>(division.view(), threads);
+  this->DividedMesh->setSpace(this->piece().space());
+  this->DividedMesh->setMirrored(this->piece().mirrored());
+  this->Notice += (this->Notice.empty() ? "" : " ") + dividedSentence(group, how, why);
 }
 
 //------------------------------------------------------------------------------
@@ -255,7 +235,7 @@ EllipticSolution EllipticInput::fields(const std::vector<double>& unknowns) cons
   {
     return this->System->fields(unknowns);
   }
-  this->Group->together([&] { solution = this->System->fields(unknowns); });
+  solution = this->System->fields(unknowns);
   const int derivatives = solution.components == 1 ? 3 : TensorSize;
   solution.values = this->Division->pointsToPieces(solution.values, solution.components);
   solution.gradients = this->Division->cellsToPieces(solution.gradients, derivatives);
@@ -314,44 +294,36 @@ void EllipticInput::readArrays(const EllipticChoice& choice, vtkAlgorithm* algor
 }
 
 //------------------------------------------------------------------------------
-void EllipticInput::settleOrientation(const Processes& processes, int threads)
+void EllipticInput::settleOrientation(RankGroup& processes, int threads)
 {
   std::string text;
   std::vector<signed char> validity;
-  processes.together(
-    [&]()
-    {
-      const Mesh& mesh = this->piece();
-      if (mesh.higherOrderCells() > 0)
-      {
-        throw Error("The mesh has " + std::to_string(mesh.higherOrderCells()) +
-          " cells of quadratic or higher order: run Tessellate first.");
-      }
-      text = processes.count() > 1 ? "" : this->Adapter->orient();
-    });
-  if (processes.count() > 1)
+  const Mesh& mesh = this->piece();
+  if (mesh.higherOrderCells() > 0)
+  {
+    throw Error("The mesh has " + std::to_string(mesh.higherOrderCells()) +
+      " cells of quadratic or higher order: run Tessellate first.");
+  }
+  text = processes.size() > 1 ? "" : this->Adapter->orient();
+  if (processes.size() > 1)
   {
     // As a part of the whole mesh: its plane, and the order of its cells.
     this->Group = makeProcessGroup();
     RankPiece part = { &this->piece(), this->skipped(), this->Local.globalIds.data() };
     const MeshSpace whole = spaceOnRanks(*this->Group, { part });
-    processes.together(
-      [&]()
-      {
-        this->Adapter->mesh().setSpace(whole);
-        validity.resize(static_cast<std::size_t>(this->piece().view().numberOfCells));
-        this->piece().classifyCells(validity.data(), threads);
-      });
+    this->Adapter->mesh().setSpace(whole);
+    validity.resize(static_cast<std::size_t>(this->piece().view().numberOfCells));
+    this->piece().classifyCells(validity.data(), threads);
     part.ghosts = this->Adapter->ghostCells();
     RankOrder order = consistentOrderOnRanks(*this->Group, { part }, { validity.data() });
     requireOrder(order, whole.dimension);
-    processes.together([&]() { text = this->Adapter->orient(validity.data(), order); });
+    text = this->Adapter->orient(validity.data(), order);
   }
   this->Notice = text + (text.empty() || this->Notice.empty() ? "" : " ") + this->Notice;
 }
 
 //------------------------------------------------------------------------------
-void EllipticInput::settleDimension(const EllipticChoice& choice, const Processes& processes)
+void EllipticInput::settleDimension(const EllipticChoice& choice, RankGroup& processes)
 {
   const Mesh& mesh = this->piece();
   const auto highest =
@@ -372,36 +344,31 @@ void EllipticInput::settleDimension(const EllipticChoice& choice, const Processe
 
 //------------------------------------------------------------------------------
 void EllipticInput::markFixed(
-  const EllipticChoice& choice, vtkAlgorithm* algorithm, const Processes& processes)
+  const EllipticChoice& choice, vtkAlgorithm* algorithm, RankGroup& processes)
 {
   const MeshView& view = this->Adapter->mesh().view();
   vtkDataSet* data = this->Local.input;
   const auto points = static_cast<std::size_t>(view.numberOfPoints);
   std::vector<unsigned char> chosen(points, 0), where(points, 1);
   bool any = choice.fixedPart == EllipticChoice::OnlyChosen;
-  processes.together(
-    [&]()
+  if (points > 0)
+  {
+    vtkDataArray* array = chosenArray(algorithm, choice.fixedArray, data, "of fixed points");
+    flag(array, array && data->GetCellData()->GetArray(array->GetName()) == array, view, chosen);
+    if (this->Local.selected)
     {
-      if (points == 0)
-      {
-        return;
-      }
-      vtkDataArray* array = chosenArray(algorithm, choice.fixedArray, data, "of fixed points");
-      flag(array, array && data->GetCellData()->GetArray(array->GetName()) == array, view, chosen);
-      if (this->Local.selected)
-      {
-        flag(this->Local.selected->GetCellData()->GetArray(SelectedArray), true, view, chosen);
-        flag(this->Local.selected->GetPointData()->GetArray(SelectedArray), false, view, chosen);
-      }
-      any = any || array || this->Local.selected;
-      if (choice.fixedPart == EllipticChoice::PartOfBoundary)
-      {
-        const auto values = evaluate(choice.fixedWhere, "fixed part of the boundary", data, 1);
-        std::transform(
-          values.begin(), values.end(), where.begin(), [](double value) { return value != 0; });
-        any = true;
-      }
-    });
+      flag(this->Local.selected->GetCellData()->GetArray(SelectedArray), true, view, chosen);
+      flag(this->Local.selected->GetPointData()->GetArray(SelectedArray), false, view, chosen);
+    }
+    any = any || array || this->Local.selected;
+    if (choice.fixedPart == EllipticChoice::PartOfBoundary)
+    {
+      const auto values = evaluate(choice.fixedWhere, "fixed part of the boundary", data, 1);
+      std::transform(
+        values.begin(), values.end(), where.begin(), [](double value) { return value != 0; });
+      any = true;
+    }
+  }
   if (processes.everywhere(!any))
   {
     return; // the whole boundary, which the system finds by itself

@@ -58,7 +58,7 @@ public:
    * without a consistent orientation.
    */
   EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkAlgorithm* algorithm,
-    const Processes& processes, int threads);
+    RankGroup& processes, int threads);
 
   /// The system of the part that this process works on: of its piece, unless redistributed.
   const EllipticSystem& system() const { return *this->System; }
@@ -79,11 +79,11 @@ public:
 
 private:
   void readArrays(const EllipticChoice& choice, vtkAlgorithm* algorithm);
-  void settleOrientation(const Processes& processes, int threads);
-  void settleDimension(const EllipticChoice& choice, const Processes& processes);
-  void markFixed(const EllipticChoice& choice, vtkAlgorithm* algorithm, const Processes& processes);
+  void settleOrientation(RankGroup& processes, int threads);
+  void settleDimension(const EllipticChoice& choice, RankGroup& processes);
+  void markFixed(const EllipticChoice& choice, vtkAlgorithm* algorithm, RankGroup& processes);
   void divide(Redistribution how, int threads);
-  void assemble(const Processes& processes, int threads);
+  void assemble(RankGroup& processes, int threads);
 
   /// What a problem refers to.
   struct Arrays

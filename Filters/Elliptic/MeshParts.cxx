@@ -182,8 +182,8 @@ struct Box
 };
 
 /// The boxes of the pieces of all processes. @param numbers one per piece. Collective.
-std::vector<Box> boxesOf(const std::vector<Piece>& pieces, const std::vector<std::size_t>& numbers,
-  const Processes& processes)
+std::vector<Box> boxesOf(
+  const std::vector<Piece>& pieces, const std::vector<std::size_t>& numbers, RankGroup& processes)
 {
   constexpr std::size_t size = 8;
   std::vector<double> sent;
@@ -195,7 +195,7 @@ std::vector<Box> boxesOf(const std::vector<Piece>& pieces, const std::vector<std
       sent.end(), { static_cast<double>(processes.rank()), static_cast<double>(numbers[i]) });
     sent.insert(sent.end(), bounds, bounds + 6);
   }
-  sent = processes.gather(sent);
+  sent = processes.gatherJoined(sent);
   std::vector<Box> boxes;
   for (std::size_t k = 0; k + size <= sent.size(); k += size)
   {
@@ -208,46 +208,42 @@ std::vector<Box> boxesOf(const std::vector<Piece>& pieces, const std::vector<std
 /// Flags, for each piece, the points that other pieces may share. @param ghosts whether any
 /// piece has some. Collective.
 std::vector<std::vector<char>> sharedPoints(
-  const std::vector<Piece>& pieces, bool ghosts, const Processes& processes)
+  const std::vector<Piece>& pieces, bool ghosts, RankGroup& processes)
 {
   constexpr double few = 0.1; // of the points: then finding those inside costs more than it saves
   std::vector<std::size_t> numbers(pieces.size());
   std::iota(numbers.begin(), numbers.end(), std::size_t(0));
   const std::vector<Box> boxes = boxesOf(pieces, numbers, processes);
   std::vector<std::vector<char>> shared;
-  processes.together(
-    [&]()
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    vtkDataSet* input = pieces[i].input;
+    std::vector<char> flags(static_cast<std::size_t>(input->GetNumberOfPoints()), 0);
+    for (vtkIdType k = 0; k < input->GetNumberOfPoints(); ++k)
     {
-      for (std::size_t i = 0; i < pieces.size(); ++i)
-      {
-        vtkDataSet* input = pieces[i].input;
-        std::vector<char> flags(static_cast<std::size_t>(input->GetNumberOfPoints()), 0);
-        for (vtkIdType k = 0; k < input->GetNumberOfPoints(); ++k)
-        {
-          double p[3];
-          input->GetPoint(k, p);
-          const bool finite = std::isfinite(p[0] + p[1] + p[2]);
-          flags[k] = finite &&
-            std::any_of(boxes.begin(), boxes.end(),
-              [&](const Box& box)
-              {
-                const bool same = box.rank == processes.rank() && box.number == static_cast<int>(i);
-                return !same && box.bounds.ContainsPoint(p);
-              });
-        }
-        const auto count = static_cast<double>(std::count(flags.begin(), flags.end(), 1));
-        if (!ghosts && count > few * static_cast<double>(flags.size()))
-        {
-          dropInside(input, flags);
-        }
-        shared.push_back(std::move(flags));
-      }
-    });
+      double p[3];
+      input->GetPoint(k, p);
+      const bool finite = std::isfinite(p[0] + p[1] + p[2]);
+      flags[k] = finite &&
+        std::any_of(boxes.begin(), boxes.end(),
+          [&](const Box& box)
+          {
+            const bool same = box.rank == processes.rank() && box.number == static_cast<int>(i);
+            return !same && box.bounds.ContainsPoint(p);
+          });
+    }
+    const auto count = static_cast<double>(std::count(flags.begin(), flags.end(), 1));
+    if (!ghosts && count > few * static_cast<double>(flags.size()))
+    {
+      dropInside(input, flags);
+    }
+    shared.push_back(std::move(flags));
+  }
   return shared;
 }
 
 /// Whether any piece has ghosts. Collective.
-bool anyGhosts(const std::vector<Piece>& pieces, const Processes& processes)
+bool anyGhosts(const std::vector<Piece>& pieces, RankGroup& processes)
 {
   return !processes.everywhere(std::none_of(pieces.begin(), pieces.end(),
     [](const Piece& piece) { return piece.input->GetCellGhostArray() != nullptr; }));
@@ -261,8 +257,7 @@ Vec3 placeOf(const Piece& piece, std::size_t point)
 }
 
 /// Global ids by coordinates, which must be equal in all digits. Collective.
-std::vector<std::vector<Index>> generateIds(
-  const std::vector<Piece>& pieces, const Processes& processes)
+std::vector<std::vector<Index>> generateIds(const std::vector<Piece>& pieces, RankGroup& processes)
 {
   const bool ghosts = anyGhosts(pieces, processes);
   const std::vector<std::vector<char>> shared = sharedPoints(pieces, ghosts, processes);
@@ -282,7 +277,7 @@ std::vector<std::vector<Index>> generateIds(
   }
   // Shared points first, in the order of their coordinates; then those of one process after the
   // other.
-  coordinates = processes.gather(coordinates);
+  coordinates = processes.gatherJoined(coordinates);
   std::vector<Vec3> places;
   for (std::size_t k = 0; k + 2 < coordinates.size(); k += 3)
   {
@@ -291,7 +286,7 @@ std::vector<std::vector<Index>> generateIds(
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
   auto next = static_cast<Index>(places.size());
-  const std::vector<double> counts = processes.gather({ privates });
+  const std::vector<double> counts = processes.gatherJoined(std::vector<double>{ privates });
   for (int rank = 0; rank < processes.rank(); ++rank)
   {
     next += static_cast<Index>(counts[static_cast<std::size_t>(rank)]);
@@ -322,7 +317,7 @@ Index repetitions(std::vector<Index> ids)
  * @param mergePoints whether points of one piece may have the same id, by coordinates: they are one
  */
 std::vector<std::vector<Index>> globalIdsOf(
-  const std::vector<Piece>& pieces, bool mergePoints, const Processes& processes)
+  const std::vector<Piece>& pieces, bool mergePoints, RankGroup& processes)
 {
   std::vector<vtkDataArray*> given;
   for (const Piece& piece : pieces)
@@ -336,43 +331,39 @@ std::vector<std::vector<Index>> globalIdsOf(
   {
     ids = generateIds(pieces, processes);
   }
-  processes.together(
-    [&]()
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    for (vtkIdType k = 0; known && k < given[i]->GetNumberOfTuples(); ++k)
     {
-      for (std::size_t i = 0; i < pieces.size(); ++i)
-      {
-        for (vtkIdType k = 0; known && k < given[i]->GetNumberOfTuples(); ++k)
-        {
-          ids[i].push_back(static_cast<Index>(given[i]->GetComponent(k, 0)));
-        }
-        const Index repeated = repetitions(ids[i]);
-        const bool negative =
-          std::any_of(ids[i].begin(), ids[i].end(), [](Index id) { return id < 0; });
-        const bool apart =
-          repeated > 0 && (known || !mergePoints || anyCollapse(pieces[i].input, ids[i]));
-        if (apart || negative)
-        {
-          throw Error(std::to_string(repeated) +
-            " points are at the place of another one, or have its global id, and cannot be "
-            "distinguished from points of other parts: run Clean to Grid first, or solve in one "
-            "process.");
-        }
-      }
-    });
+      ids[i].push_back(static_cast<Index>(given[i]->GetComponent(k, 0)));
+    }
+    const Index repeated = repetitions(ids[i]);
+    const bool negative =
+      std::any_of(ids[i].begin(), ids[i].end(), [](Index id) { return id < 0; });
+    const bool apart =
+      repeated > 0 && (known || !mergePoints || anyCollapse(pieces[i].input, ids[i]));
+    if (apart || negative)
+    {
+      throw Error(std::to_string(repeated) +
+        " points are at the place of another one, or have its global id, and cannot be "
+        "distinguished from points of other parts: run Clean to Grid first, or solve in one "
+        "process.");
+    }
+  }
   return ids;
 }
 
 //------------------------------------------------------------------------------
-void visitGroup(const Group& group, LocalMesh& mesh, bool mergePoints, const Processes& processes,
+void visitGroup(const Group& group, LocalMesh& mesh, bool mergePoints, RankGroup& processes,
   const std::function<void(LocalMesh&)>& visit)
 {
   std::unique_ptr<Seamless> seamless;
-  processes.together([&]() { seamless = std::make_unique<Seamless>(group.pieces, mergePoints); });
+  seamless = std::make_unique<Seamless>(group.pieces, mergePoints);
   const std::vector<Piece>& pieces = seamless->pieces;
   mesh.notice =
     group.notice + (group.notice.empty() || seamless->notice.empty() ? "" : " ") + seamless->notice;
   std::vector<std::vector<Index>> ids;
-  if (processes.maximum(static_cast<Index>(pieces.size())) > 1 || processes.count() > 1)
+  if (processes.maximum(static_cast<Index>(pieces.size())) > 1 || processes.size() > 1)
   {
     ids = globalIdsOf(pieces, mergePoints, processes);
   }
@@ -384,28 +375,26 @@ void visitGroup(const Group& group, LocalMesh& mesh, bool mergePoints, const Pro
   const std::string unitedText = describeUnited(united);
   mesh.notice += (mesh.notice.empty() || unitedText.empty() ? "" : " ") + unitedText;
   std::unique_ptr<Merged> merged;
-  processes.together(
-    [&]()
+  if (pieces.size() == 1 && united == 0)
+  {
+    mesh.input = pieces[0].input;
+    mesh.selected = pieces[0].selected;
+    mesh.output = pieces[0].output;
+    mesh.globalIds = ids.empty() ? std::vector<Index>() : std::move(ids[0]);
+  }
+  else
+  {
+    mesh.input = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    if (!pieces.empty())
     {
-      if (pieces.size() == 1 && united == 0)
-      {
-        mesh.input = pieces[0].input;
-        mesh.selected = pieces[0].selected;
-        mesh.output = pieces[0].output;
-        mesh.globalIds = ids.empty() ? std::vector<Index>() : std::move(ids[0]);
-        return;
-      }
-      mesh.input = vtkSmartPointer<vtkUnstructuredGrid>::New();
-      if (!pieces.empty())
-      {
-        merged = std::make_unique<Merged>(pieces, ids);
-        mesh.input = merged->Input;
-        mesh.selected = merged->Selected;
-        mesh.globalIds = merged->GlobalIds;
-      }
-      mesh.output = vtkSmartPointer<vtkUnstructuredGrid>::New();
-      mesh.output->ShallowCopy(mesh.input);
-    });
+      merged = std::make_unique<Merged>(pieces, ids);
+      mesh.input = merged->Input;
+      mesh.selected = merged->Selected;
+      mesh.globalIds = merged->GlobalIds;
+    }
+    mesh.output = vtkSmartPointer<vtkUnstructuredGrid>::New();
+    mesh.output->ShallowCopy(mesh.input);
+  }
   visit(mesh);
   if (merged)
   {
@@ -442,8 +431,7 @@ std::vector<std::size_t> connectedHere(const std::vector<Group>& groups)
 }
 
 /// The same of the pieces on all processes. Collective.
-std::vector<std::size_t> connectedOnAll(
-  const std::vector<Group>& groups, const Processes& processes)
+std::vector<std::size_t> connectedOnAll(const std::vector<Group>& groups, RankGroup& processes)
 {
   const std::unique_ptr<RankGroup> group = makeProcessGroup();
   std::vector<Piece> all;
@@ -457,49 +445,41 @@ std::vector<std::size_t> connectedOnAll(
   std::vector<std::unique_ptr<MeshAdapter>> adapters;
   std::vector<BlockPiece> pieces;
   std::vector<RankPiece> parts;
-  processes.together(
-    [&]()
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    const auto number = static_cast<int>(groupOf[i]);
+    const vtkBoundingBox own(all[i].input->GetBounds());
+    const auto meets = [&](const Box& box)
+    { return box.number != number && box.bounds.IsValid() && own.Intersects(box.bounds); };
+    if (own.IsValid() && std::any_of(boxes.begin(), boxes.end(), meets))
     {
-      for (std::size_t i = 0; i < all.size(); ++i)
-      {
-        const auto number = static_cast<int>(groupOf[i]);
-        const vtkBoundingBox own(all[i].input->GetBounds());
-        const auto meets = [&](const Box& box)
-        { return box.number != number && box.bounds.IsValid() && own.Intersects(box.bounds); };
-        if (own.IsValid() && std::any_of(boxes.begin(), boxes.end(), meets))
-        {
-          adapters.push_back(std::make_unique<MeshAdapter>(all[i].input));
-          parts.push_back({ &adapters.back()->mesh(), adapters.back()->ghostCells(), nullptr });
-          pieces.push_back({ parts.back(), number, false });
-        }
-      }
-    });
+      adapters.push_back(std::make_unique<MeshAdapter>(all[i].input));
+      parts.push_back({ &adapters.back()->mesh(), adapters.back()->ghostCells(), nullptr });
+      pieces.push_back({ parts.back(), number, false });
+    }
+  }
   const MeshSpace whole = spaceOnRanks(*group, parts);
-  processes.together(
-    [&]()
-    {
-      for (std::size_t i = 0; i < pieces.size(); ++i)
-      {
-        Mesh& mesh = adapters[i]->mesh();
-        mesh.setSpace(whole);
-        std::vector<signed char> validity(static_cast<std::size_t>(mesh.view().numberOfCells));
-        mesh.classifyCells(validity.data());
-        pieces[i].reversed = mesh.orientation(validity.data()).state == Orientation::Reversed;
-      }
-    });
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    Mesh& mesh = adapters[i]->mesh();
+    mesh.setSpace(whole);
+    std::vector<signed char> validity(static_cast<std::size_t>(mesh.view().numberOfCells));
+    mesh.classifyCells(validity.data());
+    pieces[i].reversed = mesh.orientation(validity.data()).state == Orientation::Reversed;
+  }
   const std::vector<int> found = connectedBlocks(*group, pieces, static_cast<int>(groups.size()));
   return { found.begin(), found.end() };
 }
 
 /// Makes one of the groups with seams between them. Collective.
-void joinGroups(std::vector<Group>& groups, const Processes& processes)
+void joinGroups(std::vector<Group>& groups, RankGroup& processes)
 {
   if (groups.size() < 2)
   {
     return;
   }
   const std::vector<std::size_t> to =
-    processes.count() > 1 ? connectedOnAll(groups, processes) : connectedHere(groups);
+    processes.size() > 1 ? connectedOnAll(groups, processes) : connectedHere(groups);
   for (std::size_t g = 0; g < groups.size(); ++g)
   {
     Group& target = groups[to[g]];
@@ -519,7 +499,7 @@ void joinGroups(std::vector<Group>& groups, const Processes& processes)
 
 //------------------------------------------------------------------------------
 void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* output,
-  bool mergePoints, const Processes& processes, const std::function<void(LocalMesh&)>& visit)
+  bool mergePoints, RankGroup& processes, const std::function<void(LocalMesh&)>& visit)
 {
   if (auto* blocks = vtkCompositeDataSet::SafeDownCast(input))
   {

@@ -7,7 +7,7 @@
 #ifndef tautline_MeshParts_h
 #define tautline_MeshParts_h
 
-#include "Processes.h"
+#include "ProcessGroup.h"
 
 #include "vtkSmartPointer.h"
 
@@ -52,6 +52,6 @@ struct LocalMesh
  * @param output of the class of the input; gets its structure
  */
 void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* output,
-  bool mergePoints, const Processes& processes, const std::function<void(LocalMesh&)>& visit);
+  bool mergePoints, RankGroup& processes, const std::function<void(LocalMesh&)>& visit);
 }
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Sections.h"
 
-#include "Processes.h"
+#include "ProcessGroup.h"
 
 #include "tautline/Core/Interruption.h"
 
@@ -92,7 +92,7 @@ std::vector<vtkDataSet*> volumesOf(vtkDataObject* mesh)
 }
 
 /// Of the bounds on all processes; valid if any has points.
-vtkBoundingBox boundsOf(const std::vector<vtkDataSet*>& volumes, const Processes& processes)
+vtkBoundingBox boundsOf(const std::vector<vtkDataSet*>& volumes, RankGroup& processes)
 {
   vtkBoundingBox own;
   for (vtkDataSet* data : volumes)
@@ -105,7 +105,7 @@ vtkBoundingBox boundsOf(const std::vector<vtkDataSet*>& volumes, const Processes
     corners.insert(corners.end(), own.GetMinPoint(), own.GetMinPoint() + Axes);
     corners.insert(corners.end(), own.GetMaxPoint(), own.GetMaxPoint() + Axes);
   }
-  corners = processes.gather(corners);
+  corners = processes.gatherJoined(corners);
   vtkBoundingBox all;
   for (std::size_t i = 0; i + Axes <= corners.size(); i += Axes)
   {
@@ -155,9 +155,9 @@ public:
   }
 
   /// Those of all processes. Collective.
-  void sum(const Processes& processes)
+  void sum(RankGroup& processes)
   {
-    const std::vector<double> all = processes.gather(this->Areas);
+    const std::vector<double> all = processes.gatherJoined(this->Areas);
     std::fill(this->Areas.begin(), this->Areas.end(), 0.0);
     for (std::size_t i = 0; i < all.size(); ++i)
     {
@@ -225,24 +225,20 @@ private:
 }
 
 //------------------------------------------------------------------------------
-void cutVolumes(vtkDataObject* mesh, const Processes& processes, vtkPolyData* sections)
+void cutVolumes(vtkDataObject* mesh, RankGroup& processes, vtkPolyData* sections)
 {
   std::vector<vtkDataSet*> volumes;
-  processes.together([&] { volumes = volumesOf(mesh); });
+  volumes = volumesOf(mesh);
   const vtkBoundingBox bounds = boundsOf(volumes, processes);
   if (!bounds.IsValid())
   {
     return;
   }
   SectionAreas areas(bounds);
-  processes.together(
-    [&]
-    {
-      for (vtkDataSet* data : volumes)
-      {
-        areas.add(data);
-      }
-    });
+  for (vtkDataSet* data : volumes)
+  {
+    areas.add(data);
+  }
   areas.sum(processes);
   const std::array<double, Axes> center = { areas.place(0), areas.place(1), areas.place(2) };
   vtkNew<vtkAppendPolyData> all;

@@ -11,7 +11,7 @@ class vtkPolyData;
 
 namespace tautline
 {
-class Processes;
+class RankGroup;
 
 /**
  * @brief Cuts volume meshes by three planes, normal to the axes, on all processes. Collective.
@@ -26,6 +26,6 @@ class Processes;
  * @param sections gets the part of this process, with the point and cell data, and the active point
  * scalars of the mesh; nothing is added if there are no volume meshes
  */
-void cutVolumes(vtkDataObject* mesh, const Processes& processes, vtkPolyData* sections);
+void cutVolumes(vtkDataObject* mesh, RankGroup& processes, vtkPolyData* sections);
 }
 #endif

@@ -55,7 +55,7 @@ struct Contribution
 
 /// Those with the largest shares on all processes; without shares, with the largest eigenvalues.
 std::vector<Contribution> largest(const tautline::ElementContributions& elements,
-  const tautline::Mesh& mesh, const tautline::Processes& processes)
+  const tautline::Mesh& mesh, tautline::RankGroup& processes)
 {
   const std::vector<double>& by =
     elements.share.empty() ? elements.largestEigenvalue : elements.share;
@@ -82,7 +82,7 @@ std::vector<Contribution> largest(const tautline::ElementContributions& elements
       elements.largestEigenvalue[cell], mesh.center(cell, type) }
       .append(numbers);
   }
-  numbers = processes.gather(numbers);
+  numbers = processes.gatherJoined(numbers);
   std::vector<Contribution> all;
   for (std::size_t i = 0; i + Contribution::Size <= numbers.size(); i += Contribution::Size)
   {
@@ -107,8 +107,8 @@ std::vector<double> ofOwn(std::vector<double> values, const unsigned char* skip)
 
 /// log10 of each positive value over the geometric mean of those that count on all processes; NaN
 /// for others.
-std::vector<double> excess(const std::vector<double>& values, const std::vector<double>& own,
-  const tautline::Processes& processes)
+std::vector<double> excess(
+  const std::vector<double>& values, const std::vector<double>& own, tautline::RankGroup& processes)
 {
   double sum = 0.0, count = 0.0;
   for (double value : own)
@@ -130,7 +130,7 @@ std::vector<double> excess(const std::vector<double>& values, const std::vector<
 /// The number of elements on all processes, and the smallest number that have 90 % of the
 /// eigenvalue together.
 std::array<tautline::Index, 2> concentration(
-  const std::vector<double>& shares, const tautline::Processes& processes)
+  const std::vector<double>& shares, tautline::RankGroup& processes)
 {
   const auto above = [&](double threshold, double& sum)
   {
@@ -235,7 +235,7 @@ double vtkConditionEstimator::Estimate(const tautline::EllipticInput& input, int
 
 //------------------------------------------------------------------------------
 void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-  const tautline::Processes& processes, tautline::TableRows& table)
+  tautline::RankGroup& processes, tautline::TableRows& table)
 {
   constexpr auto none = static_cast<int>(tautline::Preconditioner::None);
   const tautline::EllipticSystem& system = input.system();
@@ -287,7 +287,7 @@ void vtkConditionEstimator::Compute(const tautline::EllipticInput& input, tautli
   for (const Contribution& element : largest(own, input.piece(), processes))
   {
     text << "\nElement " << element.cell;
-    if (processes.count() > 1)
+    if (processes.size() > 1)
     {
       text << " of process " << element.process;
     }

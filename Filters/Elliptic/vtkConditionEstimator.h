@@ -94,7 +94,7 @@ protected:
 
   void Reset() override;
   void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-    const tautline::Processes& processes, tautline::TableRows& table) override;
+    tautline::RankGroup& processes, tautline::TableRows& table) override;
 
 private:
   vtkConditionEstimator(const vtkConditionEstimator&) = delete;

@@ -52,7 +52,7 @@ vtkEllipticAlgorithm::~vtkEllipticAlgorithm() = default;
 struct vtkEllipticAlgorithm::KeptSystem
 {
   KeptSystem(const tautline::LocalMesh& mesh, const tautline::EllipticChoice& choice,
-    vtkAlgorithm* algorithm, const tautline::Processes& processes, int threads)
+    vtkAlgorithm* algorithm, tautline::RankGroup& processes, int threads)
     : Mesh(mesh)
     , Input(this->Mesh, choice, algorithm, processes, threads)
   {
@@ -71,7 +71,7 @@ void vtkEllipticAlgorithm::ForgetSystems()
 
 //------------------------------------------------------------------------------
 const tautline::EllipticInput& vtkEllipticAlgorithm::Assembled(const tautline::LocalMesh& mesh,
-  const tautline::EllipticChoice& choice, const tautline::Processes& processes)
+  const tautline::EllipticChoice& choice, tautline::RankGroup& processes)
 {
   const std::size_t number = static_cast<std::size_t>(mesh.number);
   this->Systems.resize(std::max(this->Systems.size(), number + 1));
@@ -130,37 +130,39 @@ int vtkEllipticAlgorithm::RequestData(
   const int succeeded = this->Attempt(outputVector, "solve on a coarser mesh, or on more processes",
     [&]
     {
-      const tautline::Processes processes;
-      const tautline::EllipticChoice choice = this->GetChoice();
-      tautline::TableRows rows;
-      vtkSmartPointer<vtkDataObject> selected;
+      const auto group = tautline::makeProcessGroup();
+      tautline::RankGroup& processes = *group;
       processes.together(
-        [&]() {
-          selected =
-            tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
-        });
-      tautline::forEachMesh(input, selected, output, this->MergeCoincidentPoints, processes,
-        [&](tautline::LocalMesh& mesh)
+        [&]
         {
-          std::optional<tautline::ProgressStep> assembly(std::in_place, this,
-            static_cast<double>(mesh.number) / mesh.meshes,
-            (mesh.number + AssemblyShare) / mesh.meshes);
-          const tautline::EllipticInput& problem = this->Assembled(mesh, choice, processes);
-          assembly.reset();
-          this->Unknowns += problem.system().unknowns();
-          this->AssemblySeconds += problem.system().assembleSeconds();
-          this->HaveBest();
-          this->Compute(problem, mesh, processes, rows);
-          this->Describe(mesh, problem.notice());
-          if (!this->KeepsSystems())
+          const tautline::EllipticChoice choice = this->GetChoice();
+          tautline::TableRows rows;
+          const vtkSmartPointer<vtkDataObject> selected =
+            tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
+          tautline::forEachMesh(input, selected, output, this->MergeCoincidentPoints, processes,
+            [&](tautline::LocalMesh& mesh)
+            {
+              std::optional<tautline::ProgressStep> assembly(std::in_place, this,
+                static_cast<double>(mesh.number) / mesh.meshes,
+                (mesh.number + AssemblyShare) / mesh.meshes);
+              const tautline::EllipticInput& problem = this->Assembled(mesh, choice, processes);
+              assembly.reset();
+              this->Unknowns += problem.system().unknowns();
+              this->AssemblySeconds += problem.system().assembleSeconds();
+              this->HaveBest();
+              processes.agree(); // before PETSc communicates
+              this->Compute(problem, mesh, processes, rows);
+              this->Describe(mesh, problem.notice());
+              if (!this->KeepsSystems())
+              {
+                this->Systems[mesh.number].reset(); // its memory, before the next one's
+              }
+            });
+          if (processes.rank() == 0)
           {
-            this->Systems[mesh.number].reset(); // its memory, before the next one's
+            rows.fill(vtkTable::GetData(outputVector, TablePort));
           }
         });
-      if (processes.rank() == 0)
-      {
-        rows.fill(vtkTable::GetData(outputVector, TablePort));
-      }
     });
   if (!succeeded)
   {

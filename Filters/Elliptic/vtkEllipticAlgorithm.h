@@ -46,7 +46,7 @@
 namespace tautline
 {
 class EllipticInput;
-class Processes;
+class RankGroup;
 class TableRows;
 struct EllipticChoice;
 struct LocalMesh;
@@ -264,7 +264,7 @@ protected:
   virtual void Reset();
   /// Computes the result on a mesh. Collective. Throws tautline::Error.
   virtual void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-    const tautline::Processes& processes, tautline::TableRows& table) = 0;
+    tautline::RankGroup& processes, tautline::TableRows& table) = 0;
 
   /// Whether systems are kept for the next execution. The derived class calls ForgetSystems() if
   /// the input or a property has changed.
@@ -294,7 +294,7 @@ private:
 
   tautline::EllipticChoice GetChoice() const;
   const tautline::EllipticInput& Assembled(const tautline::LocalMesh& mesh,
-    const tautline::EllipticChoice& choice, const tautline::Processes& processes);
+    const tautline::EllipticChoice& choice, tautline::RankGroup& processes);
 
   std::vector<std::shared_ptr<KeptSystem>> Systems; ///< by the number of the mesh
   int Assemblies = 0;

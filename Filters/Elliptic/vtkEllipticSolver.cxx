@@ -4,7 +4,7 @@
 #include "ContentStamp.h"
 #include "EllipticInput.h"
 #include "EllipticOutput.h"
-#include "Processes.h"
+#include "ProcessGroup.h"
 #include "Sections.h"
 #include "TableRows.h"
 
@@ -218,8 +218,9 @@ int vtkEllipticSolver::RequestData(
   return this->Attempt(outputVector, "switch Sections off",
     [&]
     {
-      tautline::cutVolumes(vtkDataObject::GetData(outputVector, SolutionPort),
-        tautline::Processes(), vtkPolyData::GetData(outputVector, SectionsPort));
+      const auto processes = tautline::makeProcessGroup();
+      tautline::cutVolumes(vtkDataObject::GetData(outputVector, SolutionPort), *processes,
+        vtkPolyData::GetData(outputVector, SectionsPort));
     });
 }
 
@@ -241,7 +242,7 @@ int vtkEllipticSolver::SolveOrShow(
   const bool same = this->SeriesTime.GetMTime() > this->GetMTime() && inputs == this->SeriesInputs;
   this->SeriesInputs = std::move(inputs);
   // A process whose piece is the old one solves again with the others.
-  if (!tautline::Processes().everywhere(same))
+  if (!tautline::makeProcessGroup()->everywhere(same))
   {
     this->Series.clear();
     this->ForgetSystems();
@@ -266,22 +267,15 @@ int vtkEllipticSolver::SolveOrShow(
 
 //------------------------------------------------------------------------------
 std::vector<double> vtkEllipticSolver::StartValues(const tautline::PointFunction& function,
-  const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-  const tautline::Processes& processes)
+  const tautline::EllipticInput& input, tautline::LocalMesh& mesh)
 {
-  std::vector<double> values;
-  processes.together(
-    [&]()
-    {
-      const int components = this->Equation == ELASTICITY ? 3 : 1;
-      values = tautline::valuesAt(function, this, mesh.input, components);
-    });
-  return input.unknownsOf(values);
+  const int components = this->Equation == ELASTICITY ? 3 : 1;
+  return input.unknownsOf(tautline::valuesAt(function, this, mesh.input, components));
 }
 
 //------------------------------------------------------------------------------
 void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
-  tautline::LocalMesh& mesh, const tautline::Processes& processes, tautline::TableRows& table)
+  tautline::LocalMesh& mesh, tautline::RankGroup& processes, tautline::TableRows& table)
 {
   const tautline::EllipticSystem& system = input.system();
   if (this->Series.size() <= static_cast<std::size_t>(mesh.number))
@@ -302,11 +296,11 @@ void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
     const std::vector<double> start =
       this->StartValues(function("initial solution", this->InitialType, this->InitialValue,
                           this->InitialDisplacement, InitialArray, this->InitialExpression),
-        input, mesh, processes);
+        input, mesh);
     const std::vector<double> velocity = this->TimeScheme == NEWMARK
       ? this->StartValues(function("initial velocity", this->VelocityType, this->VelocityValue,
                             this->VelocityVector, VelocityArray, this->VelocityExpression),
-          input, mesh, processes)
+          input, mesh)
       : std::vector<double>();
     tautline::TimeOptions time;
     time.scheme = static_cast<tautline::TimeScheme>(this->TimeScheme);
@@ -315,7 +309,8 @@ void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
     time.mass = static_cast<tautline::MassMatrix>(this->MassMatrix);
     time.density = this->Density;
     time.rigidBodyModes = this->RigidBodyModes;
-    processes.together([&]() { tautline::requireSeriesMemory(system, time); });
+    tautline::requireSeriesMemory(system, time);
+    processes.agree(); // before PETSc communicates
     tautline::SolverOptions options = this->GetSolverOptions();
     options.observer = [&](int step, double)
     { return this->Report(mesh, static_cast<double>(step) / this->NumberOfTimeSteps); };
@@ -358,7 +353,7 @@ void vtkEllipticSolver::ComputeSteps(const tautline::EllipticInput& input,
 
 //------------------------------------------------------------------------------
 void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-  const tautline::Processes& processes, tautline::TableRows& table)
+  tautline::RankGroup& processes, tautline::TableRows& table)
 {
   if (this->TimeScheme != STATIONARY)
   {

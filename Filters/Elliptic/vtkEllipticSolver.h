@@ -255,7 +255,7 @@ protected:
   /// The time steps of one solution have one system.
   bool KeepsSystems() const override { return this->TimeScheme != STATIONARY; }
   void Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-    const tautline::Processes& processes, tautline::TableRows& table) override;
+    tautline::RankGroup& processes, tautline::TableRows& table) override;
 
 private:
   vtkEllipticSolver(const vtkEllipticSolver&) = delete;
@@ -267,11 +267,10 @@ private:
     vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   /// Computes all time steps of a mesh, unless they are known, and shows the requested one.
   void ComputeSteps(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-    const tautline::Processes& processes, tautline::TableRows& table);
+    tautline::RankGroup& processes, tautline::TableRows& table);
   /// The unknowns at time 0, or their derivatives.
   std::vector<double> StartValues(const tautline::PointFunction& function,
-    const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-    const tautline::Processes& processes);
+    const tautline::EllipticInput& input, tautline::LocalMesh& mesh);
   /// The times of the steps.
   std::vector<double> Times() const;
   /// Adds the arrays. @return the number of points in no element

@@ -136,7 +136,7 @@ void vtkSolverStudy::Reset()
 
 //------------------------------------------------------------------------------
 void vtkSolverStudy::Compute(const tautline::EllipticInput& input, tautline::LocalMesh& mesh,
-  const tautline::Processes&, tautline::TableRows& table)
+  tautline::RankGroup&, tautline::TableRows& table)
 {
   std::vector<int> numbers = this->Combinations;
   if (numbers.empty())

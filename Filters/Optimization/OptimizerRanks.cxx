@@ -145,44 +145,35 @@ void keepTotalSize(tautline::RankGroup& group, const tautline::RankMesh& mesh,
 {
   const tautline::DistributedMesh& local = mesh.mesh();
   std::vector<double> own;
-  group.together(
-    [&]
+  std::vector<double> sizes(local.view().numberOfCells);
+  std::vector<signed char> validity(sizes.size());
+  if (!sizes.empty())
+  {
+    const tautline::Mesh whole = inputOf(mesh, local.view(), options.threads);
+    tautline::EvaluationOptions evaluation;
+    evaluation.threads = options.threads;
+    tautline::evaluateMetric(whole, tautline::Metric::Size, evaluation, sizes.data());
+    whole.classifyCells(validity.data(), options.threads);
+  }
+  for (std::size_t i = 0; i < sizes.size(); ++i)
+  {
+    if (local.ownedCells()[i] && validity[i] == tautline::Valid)
     {
-      std::vector<double> sizes(local.view().numberOfCells);
-      std::vector<signed char> validity(sizes.size());
-      if (!sizes.empty())
-      {
-        const tautline::Mesh whole = inputOf(mesh, local.view(), options.threads);
-        tautline::EvaluationOptions evaluation;
-        evaluation.threads = options.threads;
-        tautline::evaluateMetric(whole, tautline::Metric::Size, evaluation, sizes.data());
-        whole.classifyCells(validity.data(), options.threads);
-      }
-      for (std::size_t i = 0; i < sizes.size(); ++i)
-      {
-        if (local.ownedCells()[i] && validity[i] == tautline::Valid)
-        {
-          own.push_back(sizes[i]);
-        }
-      }
-    });
+      own.push_back(sizes[i]);
+    }
+  }
   const double total = group.orderlessSum(own);
   const auto valid = group.sum(static_cast<tautline::Index>(own.size()));
-  group.together(
-    [&]
-    {
-      constexpr auto size = static_cast<std::size_t>(tautline::TargetType::Size);
-      tautline::compareSizesWith(inputOf(mesh, mesh.piece(), options.threads), total, valid,
-        elements.targetsOfPiece[size], options);
-      tautline::compareSizesWith(inputOf(mesh, local.view(), options.threads), total, valid,
-        elements.targets[size], options);
-    });
+  constexpr auto size = static_cast<std::size_t>(tautline::TargetType::Size);
+  tautline::compareSizesWith(inputOf(mesh, mesh.piece(), options.threads), total, valid,
+    elements.targetsOfPiece[size], options);
+  tautline::compareSizesWith(
+    inputOf(mesh, local.view(), options.threads), total, valid, elements.targets[size], options);
 }
 
 /// Targets of a type, from the arrays of the pieces; null for the ideal one.
-const tautline::Targets* targetOf(const tautline::OptimizerSettings& settings,
-  tautline::RankGroup& group, vtkDataSet* input, const tautline::RankMesh& mesh,
-  tautline::TargetType type, ElementOptions& elements)
+const tautline::Targets* targetOf(const tautline::OptimizerSettings& settings, vtkDataSet* input,
+  const tautline::RankMesh& mesh, tautline::TargetType type, ElementOptions& elements)
 {
   using tautline::TargetType;
   if (type == TargetType::Ideal)
@@ -192,29 +183,21 @@ const tautline::Targets* targetOf(const tautline::OptimizerSettings& settings,
   const auto number = static_cast<std::size_t>(type);
   const int threads = settings.options.threads;
   std::vector<double> ofPiece;
-  group.together(
-    [&]
-    {
-      tautline::TargetChoice choice;
-      choice.type = type;
-      if (input->GetNumberOfCells() > 0)
-      {
-        const bool size = type == TargetType::Size;
-        (size ? choice.size : choice.tensor) =
-          settings.targetArray(size ? tautline::SizeArray : tautline::TensorArray, input);
-        ofPiece = tautline::targetValues(mesh.piece(), choice);
-      }
-      // First, so that errors have the numbers of the input's cells.
-      elements.targetsOfPiece[number] =
-        tautline::targetsOf(inputOf(mesh, mesh.piece(), threads), type, ofPiece);
-    });
+  tautline::TargetChoice choice;
+  choice.type = type;
+  if (input->GetNumberOfCells() > 0)
+  {
+    const bool size = type == TargetType::Size;
+    (size ? choice.size : choice.tensor) =
+      settings.targetArray(size ? tautline::SizeArray : tautline::TensorArray, input);
+    ofPiece = tautline::targetValues(mesh.piece(), choice);
+  }
+  // First, so that errors have the numbers of the input's cells.
+  elements.targetsOfPiece[number] =
+    tautline::targetsOf(inputOf(mesh, mesh.piece(), threads), type, ofPiece);
   const std::vector<double> values = mesh.ofCells(ofPiece, tautline::targetComponents(type));
-  group.together(
-    [&]
-    {
-      elements.targets[number] =
-        tautline::targetsOf(inputOf(mesh, mesh.mesh().view(), threads), type, values);
-    });
+  elements.targets[number] =
+    tautline::targetsOf(inputOf(mesh, mesh.mesh().view(), threads), type, values);
   return &elements.targets[number];
 }
 
@@ -234,27 +217,23 @@ void setObjectives(const tautline::OptimizerSettings& settings, tautline::RankGr
     for (std::size_t i = 0; i < settings.objectives.size(); ++i)
     {
       options.objectives[i].evaluation.targets =
-        targetOf(settings, group, input, mesh, settings.objectives[i].target, elements);
+        targetOf(settings, input, mesh, settings.objectives[i].target, elements);
     }
   }
   std::vector<double> weights;
-  group.together(
-    [&]
+  if (input->GetNumberOfCells() > 0)
+  {
+    weights = tautline::scalarsOf(tautline::chosenArray(settings.arrays, tautline::WeightArray,
+                                    input, "of element weights", tautline::ArrayOf::Cells),
+      "weights");
+  }
+  for (std::size_t cell = 0; cell < weights.size(); ++cell)
+  {
+    if (!mesh.skipped()[cell])
     {
-      if (input->GetNumberOfCells() > 0)
-      {
-        weights = tautline::scalarsOf(tautline::chosenArray(settings.arrays, tautline::WeightArray,
-                                        input, "of element weights", tautline::ArrayOf::Cells),
-          "weights");
-      }
-      for (std::size_t cell = 0; cell < weights.size(); ++cell)
-      {
-        if (!mesh.skipped()[cell])
-        {
-          tautline::requireElementWeight(static_cast<tautline::Index>(cell), weights[cell]);
-        }
-      }
-    });
+      tautline::requireElementWeight(static_cast<tautline::Index>(cell), weights[cell]);
+    }
+  }
   const bool weighted = group.any(!weights.empty());
   elements.weights = weighted ? mesh.ofCells(weights, 1) : weights;
   elements.weights.reserve(1); // not null, also without cells
@@ -301,7 +280,7 @@ PointOptions pointOptions(const tautline::OptimizerSettings& settings, tautline:
 {
   PointOptions result;
   std::vector<double> limits;
-  group.together([&] { limits = readArrays(settings, input, selection, mesh); });
+  limits = readArrays(settings, input, selection, mesh);
   result.fixed = mesh.fixed(settings.boundary == tautline::BoundaryMotion::Fixed);
   const double any = std::numeric_limits<double>::infinity();
   if (group.any(!limits.empty()))
@@ -334,9 +313,11 @@ PointOptions pointOptions(const tautline::OptimizerSettings& settings, tautline:
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkMeshOptimizer::GetGatheredResult() const
+tautline::GatheredRules vtkMeshOptimizer::GetGatheredRules()
 {
-  return tautline::GatheredResult::SameMesh;
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::SameMesh;
+  return rules;
 }
 
 //------------------------------------------------------------------------------
@@ -392,14 +373,10 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   tautline::OptimizerSettings settings = this->GetSettings();
   settings.geometry = vtkDataObject::GetData(inputVector[tautline::OptimizerPorts::Geometry]);
   tautline::OptimizeOptions& options = settings.options;
-  group->together(
-    [&]
-    {
-      input = tautline::requirePiece(vtkDataObject::GetData(inputVector[MeshPort]));
-      const bool features = isChosen(settings, tautline::KindArray, input) ||
-        isChosen(settings, tautline::RegionArray, input);
-      requireLocalSettings(settings, features, this->Animation);
-    });
+  input = tautline::requirePiece(vtkDataObject::GetData(inputVector[MeshPort]));
+  const bool features = isChosen(settings, tautline::KindArray, input) ||
+    isChosen(settings, tautline::RegionArray, input);
+  requireLocalSettings(settings, features, this->Animation);
   std::unique_ptr<tautline::RankMesh> alone;
   if (!pieces)
   {
@@ -442,7 +419,8 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
     tautline::summarize(run.result, mesh.mesh().globalPoints(), mesh.mesh().globalCells(), "") +
     qualities;
   const std::string why = run.result.reason == tautline::StopReason::NoFreeVertices
-    ? "Every point is fixed: choose another Boundary, fix fewer points, or refine the mesh."
+    ? mesh.whyNoneIsFree(settings.boundary == tautline::BoundaryMotion::Fixed,
+        settings.boundary == tautline::BoundaryMotion::Sliding, tautline::BoundaryRemedy)
     : std::string();
   for (const std::string& sentence : { why, run.note, mesh.notice() })
   {

@@ -27,6 +27,7 @@ namespace tautline
 {
 /// In the menu.
 constexpr const char* OptimizerName = "Optimize Mesh";
+constexpr const char* BoundaryRemedy = "choose another Boundary";
 /// Input ports besides the mesh.
 namespace OptimizerPorts
 {

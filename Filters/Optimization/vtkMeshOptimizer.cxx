@@ -562,7 +562,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   {
     run.summary = tautline::summarize(run.result, mesh, block.name) + qualities;
     const std::string why = run.result.reason == tautline::StopReason::NoFreeVertices
-      ? mesh.whyNoneIsFree("choose another Boundary")
+      ? mesh.whyNoneIsFree(tautline::BoundaryRemedy)
       : std::string();
     for (const std::string& sentence : { why, setup.describeFeatures(), note, mesh.notice() })
     {

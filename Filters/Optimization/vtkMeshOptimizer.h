@@ -55,7 +55,7 @@
  * surfaces in space, inclined planes and blocks; boundaries that slide on curved surfaces or on a
  * geometry; regions, feature kinds and features that are shown; targets of a reference mesh
  * (PRESERVE_SHAPE); the templates P_MEAN and MAXIMUM; steps that improve the worst element
- * (WORST_ELEMENT). Animation is refused on several processes.
+ * (WORST_ELEMENT); and any mesh with Animation.
  *
  * @par Example:
  * @code
@@ -614,7 +614,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void ClearResult() override;
-  tautline::GatheredResult GetGatheredResult() const override;
+  tautline::GatheredRules GetGatheredRules() override;
   bool TakesPieces(vtkInformationVector** inputs) override;
   std::string FindSettingProblem() const override;
   void ExchangeResult(tautline::ResultStream& stream) override;

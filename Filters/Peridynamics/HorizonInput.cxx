@@ -16,20 +16,10 @@
 #include "vtkPointData.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <map>
 #include <string>
 
 namespace tautline
 {
-//------------------------------------------------------------------------------
-void throwNoTriangles(Index count, const CellTopology& type)
-{
-  throw Error("the mesh has " + std::to_string(count) + " cells that are no triangles (" +
-    type.name +
-    "): run Tetrahedralize first, which cuts them into triangles, or for a volume take a slice or "
-    "its surface");
-}
-
 //------------------------------------------------------------------------------
 HorizonInput::HorizonInput(
   vtkDataSet* input, vtkDataArray* region, double layerValue, bool mergePoints, int threads)
@@ -50,7 +40,10 @@ HorizonInput::HorizonInput(
   {
     if (block.type != CellType::Triangle && block.count > 0)
     {
-      throwNoTriangles(block.count, topology(block.type));
+      throw Error("the mesh has " + std::to_string(block.count) + " cells that are no triangles (" +
+        topology(block.type).name +
+        "): run Tetrahedralize first, which cuts them into triangles, or for a volume take a slice "
+        "or its surface");
     }
     triangles = block.type == CellType::Triangle ? &block : triangles;
   }
@@ -94,30 +87,6 @@ HorizonInput::HorizonInput(
     }
     this->Mesh.layer.push_back(
       region && region->GetComponent(static_cast<vtkIdType>(cell), 0) == layerValue);
-  }
-}
-
-//------------------------------------------------------------------------------
-HorizonInput::HorizonInput(
-  const HorizonPlane& plane, const std::vector<NumberedTriangle>& triangles)
-  : HorizonPlane(plane)
-{
-  std::map<Index, Index> numbers;
-  for (const NumberedTriangle& triangle : triangles)
-  {
-    this->Cells.push_back(static_cast<vtkIdType>(triangle.cell));
-    this->Mesh.layer.push_back(0);
-    for (std::size_t k = 0; k < 3; ++k)
-    {
-      const auto [known, fresh] =
-        numbers.emplace(triangle.points[k], static_cast<Index>(numbers.size()));
-      this->Mesh.triangles.push_back(known->second);
-      if (fresh)
-      {
-        const auto p = this->project(triangle.places[k]);
-        this->Mesh.points.insert(this->Mesh.points.end(), p.begin(), p.end());
-      }
-    }
   }
 }
 

@@ -23,9 +23,6 @@ class vtkInformation;
 
 namespace tautline
 {
-/// Throws Error for cells that are no triangles.
-[[noreturn]] void throwNoTriangles(Index count, const CellTopology& type);
-
 /// A plane in space, with coordinates in it.
 class HorizonPlane
 {
@@ -52,20 +49,9 @@ private:
   Vec3 Offset = { 0, 0, 0 }; ///< normal to the plane
 };
 
-/// A triangle of a larger mesh.
-struct NumberedTriangle
-{
-  Index cell; ///< its number there
-  std::array<Index, 3> points;
-  std::array<Vec3, 3> places;
-};
-
 class HorizonInput : public HorizonPlane
 {
 public:
-  /// Takes triangles of a larger mesh; points have numbers in the order in which they occur.
-  HorizonInput(const HorizonPlane& plane, const std::vector<NumberedTriangle>& triangles);
-
   /**
    * @brief Takes the triangles of a planar mesh; points keep their numbers.
    *

@@ -3,7 +3,6 @@
 
 #include "GatheredExecution.h"
 #include "HorizonInput.h"
-#include "HorizonPieces.h"
 #include "ProgressStep.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Interruption.h"
@@ -128,68 +127,6 @@ bool isNegligible(const tautline::DiscIntersection& met, const Disc& disc)
   return met.exactArea <= NegligibleArea * disc.radius * disc.radius;
 }
 
-/// A triangle of a piece that meets the disc, on its way to the first process.
-struct MetTriangle
-{
-  tautline::TriangleKey key;
-  tautline::NumberedTriangle triangle;
-};
-
-/// The triangles of all pieces that meet the disc, on the first process, in the order that they
-/// have in the whole mesh. Collective.
-tautline::HorizonInput takeFromPieces(const tautline::HorizonPieces& pieces, const Disc& disc)
-{
-  using namespace tautline;
-  std::vector<std::vector<MetTriangle>> sent(pieces.group().size());
-  std::vector<TriangleKey> own, keys;
-  const MeshView& view = pieces.view();
-  RankGroup& group = pieces.group();
-  const auto find = [&](Index t)
-  {
-    MetTriangle found = { pieces.keyOf(t), { -1, {}, {} } };
-    double xy[6];
-    for (int k = 0; k < 3; ++k)
-    {
-      const Index point = view.connectivity[view.offsets[t] + k];
-      found.triangle.points[k] = pieces.pointIds()[point];
-      found.triangle.places[k] = pointOf(view, point);
-      const auto p = pieces.plane().project(found.triangle.places[k]);
-      std::copy(p.begin(), p.end(), xy + 2 * k);
-    }
-    if (!isNegligible(intersectDisc(xy, disc.center[0], disc.center[1], disc.radius), disc))
-    {
-      own.push_back(found.key);
-      sent[0].push_back(found);
-    }
-  };
-  group.together(
-    [&] { std::for_each(pieces.triangles().begin(), pieces.triangles().end(), find); });
-  const std::vector<std::vector<TriangleKey>> all = group.gatherItems(own);
-  group.together(
-    [&]
-    {
-      for (const std::vector<TriangleKey>& list : all)
-      {
-        keys.insert(keys.end(), list.begin(), list.end());
-      }
-      std::sort(keys.begin(), keys.end());
-    });
-  const std::vector<Index> numbers = pieces.cellNumbers(keys);
-  std::vector<NumberedTriangle> triangles;
-  for (const std::vector<MetTriangle>& list : group.exchangeItems(sent))
-  {
-    for (const MetTriangle& met : list)
-    {
-      const auto at = std::lower_bound(keys.begin(), keys.end(), met.key);
-      triangles.push_back(met.triangle);
-      triangles.back().cell = numbers[at - keys.begin()];
-    }
-  }
-  std::sort(triangles.begin(), triangles.end(),
-    [](const NumberedTriangle& a, const NumberedTriangle& b) { return a.cell < b.cell; });
-  return HorizonInput(pieces.plane(), triangles);
-}
-
 /// The triangles that meet the disc, and the triangles that replace their parts in it.
 void collectTriangles(const tautline::HorizonInput& taken, const Disc& disc,
   TriangleCollector& triangles, TriangleCollector& pieces)
@@ -259,20 +196,9 @@ int vtkHorizonNeighbors::FillInputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkHorizonNeighbors::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return tautline::processGathered(
-    this, {}, tautline::GatheredResult::OnFirst, { true, 0 }, request, inputs, outputs,
-    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); },
-    [&]
-    {
-      vtkDataObject* input = vtkDataObject::GetData(inputs[0]);
-      return tautline::takeOrFail(this->PieceError,
-        [&]
-        {
-          const bool merge = !tautline::havePointIds(input);
-          this->Pieces = tautline::HorizonPieces::take(input, merge, 0);
-          return this->Pieces != nullptr;
-        });
-    });
+  return tautline::processGathered(this, {}, tautline::GatheredResult::OnFirst, { true, 0 },
+    request, inputs, outputs,
+    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
 }
 
 //------------------------------------------------------------------------------
@@ -282,36 +208,21 @@ int vtkHorizonNeighbors::RequestData(
   vtkPolyData* triangles = vtkPolyData::GetData(outputVector, 0);
   vtkPolyData* circle = vtkPolyData::GetData(outputVector, 1);
   vtkPolyData* pieces = vtkPolyData::GetData(outputVector, 2);
-  const std::unique_ptr<tautline::HorizonPieces> own = std::move(this->Pieces);
   try
   {
-    if (!this->PieceError.empty())
+    tautline::validateInput(vtkDataObject::GetData(inputVector[0]), { true });
+    const vtkSmartPointer<vtkDataSet> input =
+      tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
+    if (input->GetNumberOfCells() == 0)
     {
-      throw tautline::Error(this->PieceError);
-    }
-    vtkSmartPointer<vtkDataSet> input;
-    if (!own)
-    {
-      tautline::validateInput(vtkDataObject::GetData(inputVector[0]), { true });
-      input = tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
-      if (input->GetNumberOfCells() == 0)
-      {
-        tautline::warnOfEmptyInput(this, vtkDataObject::GetData(inputVector[0]), "cells");
-        return 1;
-      }
+      tautline::warnOfEmptyInput(this, vtkDataObject::GetData(inputVector[0]), "cells");
+      return 1;
     }
     this->CheckHorizon();
     const tautline::ProgressStep progress(this, 0.0, 1.0);
     Disc disc = { {}, this->Horizon };
     const tautline::Vec3 center = { this->Center[0], this->Center[1], this->Center[2] };
-    disc.center = own ? own->plane().project(center) : disc.center;
-    const tautline::HorizonInput taken = own
-      ? takeFromPieces(*own, disc)
-      : tautline::HorizonInput(input, nullptr, 0.0, false, 0); // of places only
-    if (own && own->group().rank() > 0)
-    {
-      return 1;
-    }
+    const tautline::HorizonInput taken(input, nullptr, 0.0, false, 0); // of places only
     disc.center = taken.project(center);
     fillCircle(taken, disc, circle);
     TriangleCollector met(true), chords(false);

@@ -26,15 +26,9 @@
  * A centre off the plane is projected to it.
  *
  * @par Several processes:
- * Each finds the triangles of its piece that meet the disc, and the first process has the outputs.
- * `CellId` counts through the cells in the order of their global ids, if all pieces have some; else
- * in that of the global ids of their points, or of the places of these, x first; a mesh that one
- * process has keeps its order. Without global ids of points those at the same place are one. A mesh
- * with inverted triangles or ones that are listed in opposite orders, with cells of other types
- * than triangles (in vtkPolyData also vertices and lines), in a plane that is not at right angles
- * to an axis, with coordinates of extreme size, of quadratic cells or in blocks is put together on
- * the first process. Triangles with the same global id that are not marked as ghost cells are an
- * error.
+ * The pieces are gathered on the first process, which has the outputs. `CellId` counts through the
+ * cells in the order of their global ids, if all pieces have some; else in that of the global ids
+ * of their points, or of the places of these, x first; a mesh that one process has keeps its order.
  *
  * @sa tautline::intersectDisc (tautline/Peridynamics/Horizon.h), vtkPeridynamicStiffness
  */
@@ -44,14 +38,6 @@
 
 #include "TautlinePeridynamicsModule.h" // for export macro
 #include "vtkPolyDataAlgorithm.h"
-
-#include <memory> // for Pieces
-#include <string> // for PieceError
-
-namespace tautline
-{
-class HorizonPieces;
-}
 
 class TAUTLINEPERIDYNAMICS_EXPORT vtkHorizonNeighbors : public vtkPolyDataAlgorithm
 {
@@ -93,10 +79,6 @@ private:
 
   double Center[3] = { 0.5, 0.5, 0.0 };
   double Horizon = 0.2;
-
-  // Of an execution on several processes:
-  std::unique_ptr<tautline::HorizonPieces> Pieces; ///< null: gathered
-  std::string PieceError;                          ///< why there are no pieces, or ""
 };
 
 #endif

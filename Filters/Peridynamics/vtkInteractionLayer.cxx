@@ -3,7 +3,6 @@
 
 #include "HorizonInput.h"
 #include "GatheredExecution.h"
-#include "LayerPieces.h"
 #include "ProgressStep.h"
 #include "ValidateInput.h"
 
@@ -28,6 +27,41 @@
 
 vtkStandardNewMacro(vtkInteractionLayer);
 
+namespace
+{
+/// The name of the cell array of interaction layer and domain, and its values.
+constexpr const char* ReferenceArray = "Reference";
+constexpr int DomainValue = 1, LayerValue = 2;
+
+/// Adds copies of arrays: `count` rows, row `from(i)` of the input as row i, zeros where that is
+/// negative.
+void passData(vtkDataSetAttributes* input, vtkDataSetAttributes* output, vtkIdType count,
+  const std::function<vtkIdType(vtkIdType)>& from)
+{
+  for (int a = 0; a < input->GetNumberOfArrays(); ++a)
+  {
+    vtkDataArray* array = input->GetArray(a);
+    if (!array)
+    {
+      continue;
+    }
+    auto copy = vtkSmartPointer<vtkDataArray>::Take(array->NewInstance());
+    copy->SetName(array->GetName());
+    copy->SetNumberOfComponents(array->GetNumberOfComponents());
+    copy->SetNumberOfTuples(count);
+    copy->Fill(0.0);
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      if (from(i) >= 0)
+      {
+        copy->SetTuple(i, from(i), array);
+      }
+    }
+    output->AddArray(copy);
+  }
+}
+}
+
 //------------------------------------------------------------------------------
 vtkInteractionLayer::vtkInteractionLayer() = default;
 
@@ -47,24 +81,9 @@ int vtkInteractionLayer::FillInputPortInformation(int, vtkInformation* info)
 vtkTypeBool vtkInteractionLayer::ProcessRequest(
   vtkInformation* request, vtkInformationVector** inputs, vtkInformationVector* outputs)
 {
-  return tautline::processGathered(
-    this, { this->TimeLimit, nullptr }, tautline::GatheredResult::NewMesh, { true, this->Threads },
-    request, inputs, outputs,
-    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); },
-    [&]
-    {
-      return tautline::takeOrFail(this->PieceError,
-        [&]
-        {
-          this->Pieces = tautline::HorizonPieces::take(
-            vtkDataObject::GetData(inputs[0]), this->MergeCoincidentPoints, this->Threads);
-          if (this->Pieces && !tautline::canSurround(*this->Pieces))
-          {
-            this->Pieces.reset();
-          }
-          return this->Pieces != nullptr;
-        });
-    });
+  return tautline::processGathered(this, { this->TimeLimit, nullptr },
+    tautline::GatheredResult::NewMesh, { true, this->Threads }, request, inputs, outputs,
+    [&] { return this->Superclass::ProcessRequest(request, inputs, outputs); });
 }
 
 //------------------------------------------------------------------------------
@@ -72,13 +91,8 @@ int vtkInteractionLayer::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
   vtkUnstructuredGrid* output = vtkUnstructuredGrid::GetData(outputVector);
-  const std::unique_ptr<tautline::HorizonPieces> pieces = std::move(this->Pieces);
   try
   {
-    if (!this->PieceError.empty())
-    {
-      throw tautline::Error(this->PieceError);
-    }
     tautline::InteractionLayerOptions options;
     options.width = this->Width;
     options.elementSize = this->ElementSize;
@@ -89,13 +103,6 @@ int vtkInteractionLayer::RequestData(
       return !this->GetAbortExecute();
     };
     const tautline::ProgressStep progress(this, 0.0, 0.9);
-    if (pieces)
-    {
-      tautline::addLayerToPieces(*pieces,
-        vtkDataSet::SafeDownCast(vtkDataObject::GetData(inputVector[0])), options, this->TimeLimit,
-        output);
-      return 1;
-    }
     tautline::validateInput(vtkDataObject::GetData(inputVector[0]), { true, this->Threads });
     const vtkSmartPointer<vtkDataSet> input =
       tautline::wholeMesh(vtkDataObject::GetData(inputVector[0]));
@@ -123,7 +130,7 @@ int vtkInteractionLayer::RequestData(
     }
     output->SetPoints(points);
     vtkNew<vtkIntArray> reference;
-    reference->SetName(tautline::ReferenceArray);
+    reference->SetName(ReferenceArray);
     output->Allocate(static_cast<vtkIdType>(made.numberOfTriangles()));
     for (tautline::Index t = 0; t < made.numberOfTriangles(); ++t)
     {
@@ -131,13 +138,13 @@ int vtkInteractionLayer::RequestData(
         static_cast<vtkIdType>(made.triangles[3 * t + 1]),
         static_cast<vtkIdType>(made.triangles[3 * t + 2]) };
       output->InsertNextCell(VTK_TRIANGLE, 3, ids);
-      reference->InsertNextValue(made.layer[t] ? tautline::LayerValue : tautline::DomainValue);
+      reference->InsertNextValue(made.layer[t] ? LayerValue : DomainValue);
     }
     const vtkIdType oldPoints = input->GetNumberOfPoints();
     const auto oldTriangles = static_cast<vtkIdType>(taken.mesh().numberOfTriangles());
-    tautline::passData(input->GetPointData(), output->GetPointData(), points->GetNumberOfPoints(),
+    passData(input->GetPointData(), output->GetPointData(), points->GetNumberOfPoints(),
       [&](vtkIdType i) { return i < oldPoints ? i : -1; });
-    tautline::passData(input->GetCellData(), output->GetCellData(), reference->GetNumberOfTuples(),
+    passData(input->GetCellData(), output->GetCellData(), reference->GetNumberOfTuples(),
       [&](vtkIdType i) { return i < oldTriangles ? taken.cell(i) : -1; });
     for (vtkDataSetAttributes* data :
       std::initializer_list<vtkDataSetAttributes*>{ output->GetPointData(), output->GetCellData() })
@@ -145,7 +152,7 @@ int vtkInteractionLayer::RequestData(
       data->RemoveArray(vtkDataSetAttributes::GhostArrayName()); // there are no ghosts any more
     }
     output->GetCellData()->AddArray(reference);
-    output->GetCellData()->SetActiveScalars(tautline::ReferenceArray);
+    output->GetCellData()->SetActiveScalars(ReferenceArray);
   }
   catch (const std::exception& error)
   {

@@ -26,14 +26,8 @@
  * the matrix in exact discretization.
  *
  * @par Several processes:
- * Each keeps its piece, without ghost cells, and adds the triangles of the layer that are nearest
- * to its boundary. The first process gets the edges of the boundary of the whole mesh and computes
- * the layer. Without global ids of points, and with MergeCoincidentPoints, those at the same place
- * are one. A mesh with inverted or degenerate triangles or ones that are listed in opposite orders,
- * with cells of other types than triangles (in vtkPolyData also vertices and lines), in a plane
- * that is not at right angles to an axis, with coordinates of extreme size, of quadratic cells, in
- * blocks, or without MergeCoincidentPoints and global ids is put together on the first process.
- * Triangles with the same global id that are not marked as ghost cells are an error.
+ * The first process has the mesh while it computes; each gets its piece, without ghost cells, and
+ * the triangles of the layer next to it.
  *
  * @par Example:
  * @code
@@ -55,14 +49,6 @@
 #include "TautlinePeridynamicsModule.h" // for export macro
 #include "vtkTautlineSetRange.h"        // for the setters
 #include "vtkUnstructuredGridAlgorithm.h"
-
-#include <memory> // for Pieces
-#include <string> // for PieceError
-
-namespace tautline
-{
-class HorizonPieces;
-}
 
 class TAUTLINEPERIDYNAMICS_EXPORT vtkInteractionLayer : public vtkUnstructuredGridAlgorithm
 {
@@ -134,10 +120,6 @@ private:
   double ElementSize = 0.0;
   int Threads = 0;
   bool MergeCoincidentPoints = true;
-
-  // Of an execution on several processes:
-  std::unique_ptr<tautline::HorizonPieces> Pieces; ///< null: gathered
-  std::string PieceError;                          ///< why there are no pieces, or ""
 };
 
 #endif

@@ -388,9 +388,12 @@ void vtkPeridynamicStiffness::Report(const tautline::PeridynamicSystem& system,
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkPeridynamicStiffness::GetGatheredResult() const
+tautline::GatheredRules vtkPeridynamicStiffness::GetGatheredRules()
 {
-  return tautline::GatheredResult::SameMesh;
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::SameMesh;
+  rules.assist = [this] { this->Assist(); };
+  return rules;
 }
 
 //------------------------------------------------------------------------------

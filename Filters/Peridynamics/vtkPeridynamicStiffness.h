@@ -404,15 +404,17 @@ protected:
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   bool NeedsFinitePoints(int port) const override;
-  tautline::GatheredResult GetGatheredResult() const override;
+  tautline::GatheredRules GetGatheredRules() override;
   bool TakesPieces(vtkInformationVector** inputs) override;
-  void Assist() override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
 
 private:
   vtkPeridynamicStiffness(const vtkPeridynamicStiffness&) = delete;
   void operator=(const vtkPeridynamicStiffness&) = delete;
+
+  /// What the other processes do while the first one is in RequestData(), in step with it.
+  void Assist();
 
   tautline::PeridynamicOptions GetOptions();
   void Compute(tautline::Assistants& assistants, vtkDataSet* input, vtkDataSet* output,

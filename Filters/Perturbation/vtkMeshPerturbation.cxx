@@ -7,9 +7,8 @@
 #include "MovableMesh.h"
 #include "PointMerge.h"
 #include "GatheredExecution.h"
-#include "RankMesh.h"
 #include "tautline/Mesh/CoordinateOrder.h"
-#include "tautline/Perturbation/PerturbOnRanks.h"
+#include "tautline/Perturbation/Perturb.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataObject.h"
@@ -90,22 +89,14 @@ int vtkMeshPerturbation::RequestData(
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   this->ClearResult();
-  const std::unique_ptr<tautline::RankMesh> pieces = std::move(this->Pieces);
   return this->Attempt(outputVector, "perturb the mesh in parts",
     [&]
     {
-      const std::string seams = this->MergeCoincidentPoints && !pieces
+      const std::string seams = this->MergeCoincidentPoints
         ? tautline::describeBlockSeams(input, this->Threads)
         : std::string();
       tautline::Perturbation total;
       std::string notices;
-      if (pieces)
-      {
-        this->PerturbPiece(*pieces, vtkDataObject::GetData(outputVector), total, notices);
-        this->Report(total);
-        this->AddToSummary(notices);
-        return;
-      }
       tautline::forEachBlock(input, nullptr, nullptr, vtkDataObject::GetData(outputVector),
         [&](const tautline::InputBlock& block) { this->Perturb(block, total, notices); });
       this->Report(total);
@@ -163,7 +154,13 @@ void vtkMeshPerturbation::Perturb(
   {
     ids = tautline::coordinateOrder(mesh, adapter.inputView().points, one);
   }
-  tautline::PerturbOptions options = this->GetOptions(type == VTK_FLOAT);
+  tautline::PerturbOptions options;
+  options.percentage = this->Percentage;
+  options.fraction = this->Fraction;
+  options.tangledFraction = this->TangledFraction;
+  options.seed = static_cast<std::uint64_t>(this->Seed);
+  options.singlePrecision = type == VTK_FLOAT;
+  options.threads = this->Threads;
   options.ids = ids.data();
   options.progress = [this, &block, blocks](double fraction)
   { return this->Proceed((block.number + fraction) / blocks); };
@@ -199,69 +196,6 @@ void vtkMeshPerturbation::Perturb(
 }
 
 //------------------------------------------------------------------------------
-tautline::PerturbOptions vtkMeshPerturbation::GetOptions(bool singlePrecision) const
-{
-  tautline::PerturbOptions options;
-  options.percentage = this->Percentage;
-  options.fraction = this->Fraction;
-  options.tangledFraction = this->TangledFraction;
-  options.seed = static_cast<std::uint64_t>(this->Seed);
-  options.singlePrecision = singlePrecision;
-  options.threads = this->Threads;
-  return options;
-}
-
-//------------------------------------------------------------------------------
-bool vtkMeshPerturbation::JoinsPartitions(vtkInformationVector** inputs)
-{
-  return this->MergeCoincidentPoints ||
-    vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject::GetData(inputs[0]));
-}
-
-//------------------------------------------------------------------------------
-bool vtkMeshPerturbation::TakesPieces(vtkInformationVector** inputs)
-{
-  this->Pieces.reset();
-  this->Group.reset();
-  if (this->TangledFraction > 0)
-  {
-    return false;
-  }
-  this->Pieces = tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[0]), this->Threads,
-    this->MergeCoincidentPoints, tautline::Redistribution::None);
-  return this->Pieces != nullptr;
-}
-
-//------------------------------------------------------------------------------
-void vtkMeshPerturbation::PerturbPiece(tautline::RankMesh& mesh, vtkDataObject* output,
-  tautline::Perturbation& total, std::string& notices)
-{
-  auto* input = vtkPointSet::SafeDownCast(this->GetInputDataObject(0, 0));
-  const bool any = input && input->GetNumberOfPoints() > 0;
-  this->Group->together(
-    [&]
-    {
-      output->ShallowCopy(this->GetInputDataObject(0, 0));
-      if (any)
-      {
-        mesh.fix(tautline::chosenArray(
-                   this, FixedArray, input, "of fixed points", tautline::ArrayOf::Points),
-          false);
-      }
-    });
-  const std::vector<unsigned char> fixed = mesh.fixed(true);
-  const std::vector<tautline::Index> ids = mesh.pointIds();
-  const bool single = any && input->GetPoints()->GetDataType() == VTK_FLOAT;
-  tautline::PerturbOptions options = this->GetOptions(this->Group->any(single));
-  options.ids = ids.data();
-  options.progress = [this](double fraction) { return this->Proceed(fraction); };
-  total = tautline::perturbOnRanks(mesh.mesh(), mesh.mirrored(), fixed.data(), options);
-  notices = mesh.notice();
-  const std::string rounded = mesh.move(vtkPointSet::SafeDownCast(output), total.points);
-  notices += (notices.empty() || rounded.empty() ? "" : "\n") + rounded;
-}
-
-//------------------------------------------------------------------------------
 void vtkMeshPerturbation::ClearResult()
 {
   this->Report({});
@@ -288,9 +222,12 @@ void vtkMeshPerturbation::Report(const tautline::Perturbation& result)
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkMeshPerturbation::GetGatheredResult() const
+tautline::GatheredRules vtkMeshPerturbation::GetGatheredRules()
 {
-  return tautline::GatheredResult::SameMesh;
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::SameMesh;
+  rules.joinsPartitions = this->MergeCoincidentPoints || this->PartitionsHaveIds();
+  return rules;
 }
 
 //------------------------------------------------------------------------------

@@ -48,10 +48,8 @@
  * Quadratic cells are refused. Points shared by two blocks are on the boundary of each and stay.
  *
  * @par Several processes:
- * Each works on its piece of the mesh, with the points of one process, bitwise. With a
- * TangledFraction above 0, composite data, surfaces in space and inclined planes the pieces are
- * gathered on the first process. Random numbers are drawn by the global ids of the points; without
- * ids, by the order of their coordinates.
+ * The pieces are gathered on the first process. Random numbers are drawn by the global ids of the
+ * points; without ids, by the order of their coordinates: so the points are those of one process.
  *
  * @par Example:
  * @code
@@ -74,17 +72,13 @@
 #include "vtkTautlineTimedAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
-#include <memory> // for the pieces
 #include <string> // for the notices
 
 class vtkDataSet;
 
 namespace tautline
 {
-class RankGroup;
-class RankMesh;
 struct InputBlock;
-struct PerturbOptions;
 struct Perturbation;
 }
 
@@ -162,11 +156,8 @@ protected:
   ~vtkMeshPerturbation() override;
 
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  tautline::GatheredResult GetGatheredResult() const override;
+  tautline::GatheredRules GetGatheredRules() override;
   void ExchangeResult(tautline::ResultStream& stream) override;
-  bool TakesPieces(vtkInformationVector** inputs) override;
-  /// Without MergeCoincidentPoints only global ids join partitions.
-  bool JoinsPartitions(vtkInformationVector** inputs) override;
   void ClearResult() override;
 
 private:
@@ -176,15 +167,7 @@ private:
   /// Perturbs a data set and adds its numbers and remarks.
   void Perturb(
     const tautline::InputBlock& block, tautline::Perturbation& total, std::string& notices);
-  /// The same for the piece of this process.
-  void PerturbPiece(tautline::RankMesh& mesh, vtkDataObject* output, tautline::Perturbation& total,
-    std::string& notices);
-  tautline::PerturbOptions GetOptions(bool singlePrecision) const;
   void Report(const tautline::Perturbation& result);
-
-  /// The mesh of an execution in which each process takes its piece; else null.
-  std::unique_ptr<tautline::RankGroup> Group;
-  std::unique_ptr<tautline::RankMesh> Pieces;
 
   double Percentage = 50.0;
   double Fraction = 0.5;

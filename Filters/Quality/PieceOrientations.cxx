@@ -72,51 +72,38 @@ void PieceOrientations::findMesh(
   std::vector<RankPiece> pieces;
   this->Found.push_back(std::make_unique<WholeOrientation>());
   WholeOrientation& whole = *this->Found.back();
-  group.together(
-    [&]
-    {
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        adapters[i] = std::make_unique<MeshAdapter>(data[i], threads);
-        skips[i] = cellsToSkip(*adapters[i]);
-        ids[i] = idsOf(data[i]->GetPointData()->GetGlobalIds());
-        pieces.push_back({ &adapters[i]->mesh(), skips[i].empty() ? nullptr : skips[i].data(),
-          ids[i].empty() ? nullptr : ids[i].data() });
-        this->Pieces[data[i]] = { &whole, i };
-      }
-    });
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    adapters[i] = std::make_unique<MeshAdapter>(data[i], threads);
+    skips[i] = cellsToSkip(*adapters[i]);
+    ids[i] = idsOf(data[i]->GetPointData()->GetGlobalIds());
+    pieces.push_back({ &adapters[i]->mesh(), skips[i].empty() ? nullptr : skips[i].data(),
+      ids[i].empty() ? nullptr : ids[i].data() });
+    this->Pieces[data[i]] = { &whole, i };
+  }
   whole.space = spaceOnRanks(group, pieces);
   const bool lacking =
     group.any(std::any_of(ids.begin(), ids.end(), [](const auto& list) { return list.empty(); }));
   std::vector<std::vector<signed char>> validity(count);
   std::vector<const signed char*> validities;
-  group.together(
-    [&]
-    {
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        Mesh& mesh = adapters[i]->mesh();
-        mesh.setSpace(whole.space);
-        validity[i].resize(mesh.view().numberOfCells);
-        mesh.classifyCells(validity[i].data(), threads);
-        validities.push_back(validity[i].data());
-        pieces[i].ghosts = adapters[i]->ghostCells();
-        pieces[i].globalIds = lacking ? nullptr : pieces[i].globalIds;
-      }
-    });
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    Mesh& mesh = adapters[i]->mesh();
+    mesh.setSpace(whole.space);
+    validity[i].resize(mesh.view().numberOfCells);
+    mesh.classifyCells(validity[i].data(), threads);
+    validities.push_back(validity[i].data());
+    pieces[i].ghosts = adapters[i]->ghostCells();
+    pieces[i].globalIds = lacking ? nullptr : pieces[i].globalIds;
+  }
   whole.order = consistentOrderOnRanks(group, pieces, validities);
   std::vector<PieceFindings> findings;
-  group.together(
-    [&]
-    {
-      const bool reversed = whole.order.order.reversed > 0;
-      for (std::size_t i = 0; i < count; ++i)
-      {
-        findings.push_back(
-          findingsOf(*adapters[i], reversed ? whole.order.reverse[i].data() : nullptr,
-            skips[i].empty() ? nullptr : skips[i].data()));
-      }
-    });
+  const bool reversed = whole.order.order.reversed > 0;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    findings.push_back(findingsOf(*adapters[i], reversed ? whole.order.reverse[i].data() : nullptr,
+      skips[i].empty() ? nullptr : skips[i].data()));
+  }
   const std::string remarks = describeFindings(group, findings);
   if (group.rank() == 0)
   {

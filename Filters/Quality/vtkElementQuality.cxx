@@ -2,6 +2,7 @@
 #include "vtkElementQuality.h"
 
 #include "BadElements.h"
+#include "GatheredExecution.h"
 #include "Blocks.h"
 #include "ColorMaps.h"
 #include "CriteriaGrader.h"
@@ -221,8 +222,12 @@ int vtkElementQuality::RequestData(
         // Without MPI each process measures its piece as a mesh of its own.
         if (const auto group = all ? tautline::tryProcessGroup() : nullptr)
         {
-          orientations.find(
-            vtkDataObject::GetData(inputVector[0]), this->Threads, *group, this->ReversedMesh);
+          group->together(
+            [&]
+            {
+              orientations.find(
+                vtkDataObject::GetData(inputVector[0]), this->Threads, *group, this->ReversedMesh);
+            });
         }
       }));
     if (!malformed.empty())
@@ -273,9 +278,11 @@ int vtkElementQuality::RequestData(
 }
 
 //------------------------------------------------------------------------------
-bool vtkElementQuality::ExecutesOnAllProcesses()
+tautline::GatheredRules vtkElementQuality::GetGatheredRules()
 {
-  return this->Controller != nullptr;
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.onAll = this->Controller != nullptr;
+  return rules;
 }
 
 //------------------------------------------------------------------------------

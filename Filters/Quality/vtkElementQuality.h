@@ -279,7 +279,7 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
-  bool ExecutesOnAllProcesses() override;
+  tautline::GatheredRules GetGatheredRules() override;
   void ClearResult() override;
 
 private:

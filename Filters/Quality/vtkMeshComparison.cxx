@@ -2,13 +2,10 @@
 #include "vtkMeshComparison.h"
 
 #include "Blocks.h"
-#include "ComparisonPieces.h"
 #include "GatheredExecution.h"
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
-#include "ProcessGroup.h"
 #include "ProgressStep.h"
-#include "RankMesh.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Mesh/CellOrder.h"
 #include "tautline/Quality/Compare.h"
@@ -30,8 +27,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
 #include <optional>
 #include <sstream>
 
@@ -45,19 +40,6 @@ struct vtkMeshComparison::Totals
   tautline::Index invertedBefore = 0, invertedAfter = 0;
   double largestDisplacement = 0;
   double blocks = 1, blocksDone = 0; ///< for the progress
-
-  void gather(tautline::RankGroup& group);
-};
-
-/// Two meshes, or a piece of them, with the same cells.
-struct vtkMeshComparison::Pair
-{
-  tautline::MeshAdapter &was, &is;
-  vtkDataSet *after, *output;
-  const unsigned char* skip; ///< one flag per cell: it does not count; may be null
-  bool changeOfAll;          ///< whether cells that do not count have a Change, too
-  /// Classifies the cells of both after their order is settled.
-  std::function<void(signed char* validBefore, signed char* validAfter)> classify;
 };
 
 namespace
@@ -142,29 +124,6 @@ void settleOrientation(tautline::MeshAdapter& before, tautline::MeshAdapter& aft
 }
 
 //------------------------------------------------------------------------------
-/// Adds up what the processes have found. Collective.
-void vtkMeshComparison::Totals::gather(tautline::RankGroup& group)
-{
-  for (tautline::MetricChange& change : this->changes)
-  {
-    for (tautline::Index* count :
-      { &change.better, &change.worse, &change.equal, &change.before.count, &change.after.count })
-    {
-      *count = group.sum(*count);
-    }
-    for (tautline::ValueSummary* values : { &change.before, &change.after })
-    {
-      values->minimum = -group.maximum(-values->minimum);
-      values->maximum = group.maximum(values->maximum);
-      values->sum = group.orderlessSum({ values->sum });
-    }
-  }
-  this->invertedBefore = group.sum(this->invertedBefore);
-  this->invertedAfter = group.sum(this->invertedAfter);
-  this->largestDisplacement = group.maximum(this->largestDisplacement);
-}
-
-//------------------------------------------------------------------------------
 vtkMeshComparison::vtkMeshComparison()
 {
   this->DeclarePorts(2, 2);
@@ -191,93 +150,22 @@ int vtkMeshComparison::RequestData(
   totals.changes.resize(totals.metrics.size());
   totals.blocks = tautline::countBlocks(vtkDataObject::GetData(inputVector[0]));
   vtkDataObject* output = vtkDataObject::GetData(outputVector, 0);
-  const std::unique_ptr<tautline::ComparisonPieces> pieces = std::move(this->Pieces);
   return this->Attempt(outputVector, "choose fewer metrics or compare the mesh in parts",
     [&]
     {
-      if (!this->PieceError.empty())
-      {
-        throw tautline::Error(this->PieceError);
-      }
-      if (pieces)
-      {
-        this->ComparePieces(*pieces, vtkDataObject::GetData(inputVector[1]), output, totals);
-      }
-      else
-      {
-        this->CompareBlocks(vtkDataObject::GetData(inputVector[0]),
-          vtkDataObject::GetData(inputVector[1]), output, totals);
-      }
+      this->CompareBlocks(vtkDataObject::GetData(inputVector[0]),
+        vtkDataObject::GetData(inputVector[1]), output, totals);
       this->Tabulate(totals, vtkDataObject::GetData(outputVector, 1));
-      if (pieces && this->Group->rank() > 0)
-      {
-        vtkDataObject::GetData(outputVector, 1)->Initialize();
-      }
-      this->AddToSummary(this->WhyGathered);
     });
 }
 
 //------------------------------------------------------------------------------
-bool vtkMeshComparison::TakesPieces(vtkInformationVector** inputs)
+tautline::GatheredRules vtkMeshComparison::GetGatheredRules()
 {
-  this->Pieces.reset();
-  this->PieceError.clear();
-  std::string why;
-  this->Group = tautline::tryProcessGroup();
-  vtkDataObject* before = vtkDataObject::GetData(inputs[0]);
-  if (this->Group)
-  {
-    this->PieceError = FailureOf("compare the mesh in parts",
-      [&]
-      {
-        this->Pieces = tautline::ComparisonPieces::take(
-          *this->Group, before, vtkDataObject::GetData(inputs[1]), this->Threads, why);
-      });
-  }
-  else if (tautline::isScattered(before))
-  {
-    why = "the processes do not communicate by MPI";
-  }
-  this->WhyGathered = tautline::gatheredSentence(why);
-  return this->Pieces || !this->PieceError.empty();
-}
-
-//------------------------------------------------------------------------------
-void vtkMeshComparison::ComparePieces(
-  tautline::ComparisonPieces& pieces, vtkDataObject* after, vtkDataObject* output, Totals& totals)
-{
-  this->Group->together(
-    [&]
-    {
-      totals.blocks = static_cast<double>(std::max<std::size_t>(pieces.pieces().size(), 1));
-      std::map<vtkDataSet*, vtkSmartPointer<vtkDataSet>> results;
-      for (tautline::ComparedPiece& piece : pieces.pieces())
-      {
-        auto result = vtkSmartPointer<vtkDataSet>::Take(piece.after->NewInstance());
-        tautline::MeshAdapter &was = *piece.was, &is = *piece.is;
-        this->Measure(
-          { was, is, piece.after, result, piece.skip.empty() ? nullptr : piece.skip.data(), true,
-            [&](signed char* validBefore, signed char* validAfter)
-            {
-              was.mesh().classifyCells(validBefore, this->Threads);
-              is.mesh().classifyCells(validAfter, this->Threads);
-            } },
-          totals);
-        piece.was.reset();
-        piece.is.reset();
-        results[piece.after] = result;
-      }
-      output->ShallowCopy(tautline::rebuild(after, false,
-        [&results](int, vtkDataSet* piece)
-        { return piece ? results[piece] : vtkSmartPointer<vtkDataSet>(); }));
-    });
-  totals.gather(*this->Group);
-}
-
-//------------------------------------------------------------------------------
-tautline::GatheredResult vtkMeshComparison::GetGatheredResult() const
-{
-  return tautline::GatheredResult::SameMesh;
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::SameMesh;
+  rules.base = 1; // the output is the second mesh
+  return rules;
 }
 
 //------------------------------------------------------------------------------
@@ -339,17 +227,7 @@ void vtkMeshComparison::Compare(
     throw Error("The meshes have different connectivity: " + difference +
       ". Compare meshes that differ in their coordinates only.");
   }
-  this->Measure({ was, is, after, output, is.ghostCells(), false,
-                  [&](signed char* validBefore, signed char* validAfter)
-                  { settleOrientation(was, is, validBefore, validAfter, this->Threads); } },
-    totals);
-}
-
-//------------------------------------------------------------------------------
-void vtkMeshComparison::Measure(const Pair& pair, Totals& totals)
-{
-  using namespace tautline;
-  const auto& [was, is, after, output, skip, changeOfAll, classify] = pair;
+  const unsigned char* skip = is.ghostCells();
   const auto stepAt = [&](double step)
   {
     const double steps = static_cast<double>(totals.metrics.size()) + 1.0; // with the checks
@@ -367,7 +245,7 @@ void vtkMeshComparison::Measure(const Pair& pair, Totals& totals)
 
   signed char* validBefore = addFlags(output, "Validity_before");
   signed char* validAfter = addFlags(output, "Validity_after");
-  classify(validBefore, validAfter);
+  settleOrientation(was, is, validBefore, validAfter, this->Threads);
   const Index cells = output->GetNumberOfCells();
   totals.invertedBefore += countValidity(validBefore, skip, cells).inverted;
   totals.invertedAfter += countValidity(validAfter, skip, cells).inverted;
@@ -390,12 +268,6 @@ void vtkMeshComparison::Measure(const Pair& pair, Totals& totals)
     requireInRange(info, evaluateMetric(is.mesh(), info.metric, options, high));
     compareMetric(info, dimension, { cells, low, validBefore, types, skip },
       { cells, high, validAfter, types, skip }, this->Tolerance, change.data(), totals.changes[m]);
-    if (skip && changeOfAll)
-    {
-      MetricChange ignored;
-      compareMetric(info, dimension, { cells, low, validBefore, types, nullptr },
-        { cells, high, validAfter, types, nullptr }, this->Tolerance, change.data(), ignored);
-    }
     for (Index i = 0; i < cells; ++i)
     {
       delta[i] = high[i] - low[i];

@@ -40,20 +40,10 @@
  * Metrics take the ideal cell as their target and the mean over the corners of a cell.
  *
  * @par Several processes:
- * Each compares its pieces; the table and the summary are those of the whole mesh, the table on the
- * first process. The second mesh may be cut otherwise than the first: its points and cells are then
- * found by the global ids of the points (Generate Global Ids), which both need, and the points of
- * the first mesh go to the pieces of the second. Without ids only points that have not moved are
- * found; otherwise it is an error. Pieces with the same cells and other ids are matched by the ids
- * if these match throughout, else by the order of points and cells. That one id is at one place is
- * checked where points are found by ids; pieces with the same cells and the same ids need no match,
- * and points that several of them share are compared piece by piece. Ghost cells are compared and
- * do not count; other copies of cells are not cells of the mesh: where the first mesh is cut
- * otherwise, and where cells have global ids, they are an error. Without global ids of points
- * pieces with the same cells are taken for pieces that are cut alike. Where some cells list their
- * points in the opposite order of their neighbours, or connected parts are reversed and others are
- * not, with coordinates of extreme size, and where processes have different blocks, the first
- * process has both meshes while it computes; the summary states why.
+ * The first process has both meshes while it computes, and the pieces of the second one get the
+ * results; the table is on the first process. The meshes may be cut differently: their points and
+ * cells are then matched by the global ids of the points (Generate Global Ids), or else by the
+ * order of the coordinates, if the points have not moved. Ghost cells are copies, which do not count.
  *
  * @par Example:
  * @code
@@ -75,15 +65,7 @@
 #include "vtkMetricAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
-#include <memory> // for Pieces
-
 class vtkDataSet;
-
-namespace tautline
-{
-class ComparisonPieces;
-class RankGroup;
-}
 
 class TAUTLINEQUALITY_EXPORT vtkMeshComparison : public vtkMetricAlgorithm
 {
@@ -107,32 +89,19 @@ protected:
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  tautline::GatheredResult GetGatheredResult() const override;
-  bool TakesPieces(vtkInformationVector** inputs) override;
-  /// The output is the second mesh.
-  int GetGatheredBase() const override { return 1; }
+  tautline::GatheredRules GetGatheredRules() override;
 
 private:
   vtkMeshComparison(const vtkMeshComparison&) = delete;
   void operator=(const vtkMeshComparison&) = delete;
 
   struct Totals;
-  struct Pair;
   void Compare(vtkDataSet* before, vtkDataSet* after, vtkDataSet* output, Totals& totals);
   void CompareBlocks(
     vtkDataObject* before, vtkDataObject* after, vtkDataObject* output, Totals& totals);
-  void ComparePieces(tautline::ComparisonPieces& pieces, vtkDataObject* after,
-    vtkDataObject* output, Totals& totals);
-  void Measure(const Pair& pair, Totals& totals);
   void Tabulate(const Totals& totals, vtkDataObject* output);
 
   double Tolerance = 1e-6;
-
-  // Of an execution on several processes:
-  std::unique_ptr<tautline::RankGroup> Group;
-  std::unique_ptr<tautline::ComparisonPieces> Pieces; ///< null: gathered
-  std::string PieceError;                             ///< why there are no pieces, or ""
-  std::string WhyGathered;                            ///< a sentence, or ""
 };
 
 #endif

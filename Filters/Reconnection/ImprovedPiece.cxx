@@ -118,18 +118,14 @@ ImprovedCells writePoints(RankGroup& group, const ReconnectablePiece& piece,
       (measure(cells, places, piece.mirrored, threads, improved) &&
         !isWorse(improved, result.history.front()));
   };
-  group.together([&] { good = measureAt(single ? toSinglePrecision(coordinates) : coordinates); });
+  good = measureAt(single ? toSinglePrecision(coordinates) : coordinates);
   const bool rounded = !group.any(single && !good);
-  group.together(
-    [&]
-    {
-      if (single && !rounded)
-      {
-        measureAt(coordinates);
-      }
-      output->SetPoints(
-        single && rounded ? makePoints(coordinates, given) : makePoints(coordinates, 3));
-    });
+  if (single && !rounded)
+  {
+    measureAt(coordinates);
+  }
+  output->SetPoints(
+    single && rounded ? makePoints(coordinates, given) : makePoints(coordinates, 3));
   improved.note = rounded ? "" : PrecisionNote;
   return improved;
 }
@@ -157,39 +153,35 @@ void writePointData(RankGroup& group, const ReconnectablePiece& piece,
   std::sort(wanted.begin(), wanted.end());
   wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
   const auto rows = pointRows(group, own, piece.numbers, wanted);
-  group.together(
-    [&]
+  vtkPointData* to = output->GetPointData();
+  to->InterpolateAllocate(own, static_cast<vtkIdType>(points.size()));
+  vtkNew<vtkIdList> ids;
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    pollInterruption(static_cast<Index>(i));
+    const auto id = static_cast<vtkIdType>(i);
+    if (points[i].ofPiece >= 0)
     {
-      vtkPointData* to = output->GetPointData();
-      to->InterpolateAllocate(own, static_cast<vtkIdType>(points.size()));
-      vtkNew<vtkIdList> ids;
-      std::vector<double> weights;
-      for (std::size_t i = 0; i < points.size(); ++i)
-      {
-        pollInterruption(static_cast<Index>(i));
-        const auto id = static_cast<vtkIdType>(i);
-        if (points[i].ofPiece >= 0)
-        {
-          to->CopyData(own, points[i].ofPiece, id);
-          continue;
-        }
-        const Index at = points[i].ofResult;
-        if (result.numbers[at] < result.firstInserted)
-        {
-          to->CopyData(rows, placeOf(wanted, result.numbers[at]), id);
-          continue;
-        }
-        ids->Reset();
-        weights.clear();
-        for (Index k = result.shareOffsets[at]; k < result.shareOffsets[at + 1]; ++k)
-        {
-          ids->InsertNextId(placeOf(wanted, result.shares[k].number));
-          weights.push_back(result.shares[k].weight);
-        }
-        to->InterpolatePoint(rows, id, ids, weights.data());
-      }
-      to->RemoveArray(vtkDataSetAttributes::GhostArrayName());
-    });
+      to->CopyData(own, points[i].ofPiece, id);
+      continue;
+    }
+    const Index at = points[i].ofResult;
+    if (result.numbers[at] < result.firstInserted)
+    {
+      to->CopyData(rows, placeOf(wanted, result.numbers[at]), id);
+      continue;
+    }
+    ids->Reset();
+    weights.clear();
+    for (Index k = result.shareOffsets[at]; k < result.shareOffsets[at + 1]; ++k)
+    {
+      ids->InsertNextId(placeOf(wanted, result.shares[k].number));
+      weights.push_back(result.shares[k].weight);
+    }
+    to->InterpolatePoint(rows, id, ids, weights.data());
+  }
+  to->RemoveArray(vtkDataSetAttributes::GhostArrayName());
 }
 
 void writeCellData(const ReconnectablePiece& piece, const RankReconnection& result,
@@ -210,27 +202,19 @@ ImprovedCells writePiece(RankGroup& group, const ReconnectablePiece& piece,
   std::vector<OutputPoint> points;
   std::vector<double> coordinates;
   Simplices cells;
-  group.together(
-    [&]
-    {
-      output->Initialize();
-      points = pointsOf(piece, result);
-      coordinates = coordinatesOf(points, piece, result);
-      cells = cellsOf(points, result);
-    });
+  output->Initialize();
+  points = pointsOf(piece, result);
+  coordinates = coordinatesOf(points, piece, result);
+  cells = cellsOf(points, result);
   const ImprovedCells improved =
     writePoints(group, piece, result, coordinates, cells, threads, output);
   writePointData(group, piece, result, points, output);
-  group.together(
-    [&]
-    {
-      if (auto* grid = vtkUnstructuredGrid::SafeDownCast(output))
-      {
-        grid->SetCells(VTK_TETRA, makeCells(cells.connectivity, cells.corners));
-      }
-      writeCellData(piece, result, improved, output);
-      output->GetFieldData()->ShallowCopy(piece.input->GetFieldData());
-    });
+  if (auto* grid = vtkUnstructuredGrid::SafeDownCast(output))
+  {
+    grid->SetCells(VTK_TETRA, makeCells(cells.connectivity, cells.corners));
+  }
+  writeCellData(piece, result, improved, output);
+  output->GetFieldData()->ShallowCopy(piece.input->GetFieldData());
   return improved;
 }
 }

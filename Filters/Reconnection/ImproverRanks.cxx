@@ -26,13 +26,6 @@ constexpr int VolumeDimension = 3;
 }
 
 //------------------------------------------------------------------------------
-bool vtkMeshImprover::JoinsPartitions(vtkInformationVector** inputs)
-{
-  return this->MergeCoincidentPoints ||
-    vtkTautlineAlgorithm::PartitionsHaveIds(vtkDataObject::GetData(inputs[MeshPort]));
-}
-
-//------------------------------------------------------------------------------
 bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
 {
   this->Pieces.reset();
@@ -58,22 +51,22 @@ bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
     {
       return false; // it is in one place
     }
-    why = why.empty() ? this->FindReasonToGather(input) : why;
     if (why.empty())
     {
-      this->Pieces = std::make_unique<tautline::RankMesh>(
+      this->Group->together([&] { why = this->FindReasonToGather(input); });
+    }
+    if (why.empty())
+    {
+      this->Pieces = tautline::RankMesh::make(
         *this->Group, vtkDataSet::SafeDownCast(input), this->Threads, this->MergeCoincidentPoints);
-      if (this->Pieces->inverted() == 0)
+      if (this->Pieces && this->Pieces->inverted() == 0)
       {
         return true;
       }
+      why = this->Pieces ? "cells are inverted, or parts list their points in the opposite order"
+                         : tautline::oppositeOrders;
       this->Pieces.reset();
-      why = "cells are inverted, or parts list their points in the opposite order";
     }
-  }
-  catch (const tautline::OppositeOrders&)
-  {
-    why = tautline::oppositeOrders;
   }
   catch (const std::exception& error) // on all processes, which report it in RequestData()
   {
@@ -129,25 +122,20 @@ void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkData
   tautline::RankGroup& group = *this->Group;
   auto* input = vtkDataSet::SafeDownCast(vtkDataObject::GetData(inputVector[MeshPort]));
   vtkDataArray* regions = nullptr;
-  group.together(
-    [&]
-    {
-      if (input->GetNumberOfPoints() > 0)
-      {
-        mesh->fix(tautline::chosenArray(this, tautline::ImproverArrays::Fixed, input,
-                    "of fixed points", tautline::ArrayOf::Points),
-          false);
-        mesh->fixSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
-        regions = tautline::chosenArray(
-          this, tautline::ImproverArrays::Region, input, "of regions", tautline::ArrayOf::Cells);
-      }
-    });
+  if (input->GetNumberOfPoints() > 0)
+  {
+    mesh->fix(tautline::chosenArray(this, tautline::ImproverArrays::Fixed, input, "of fixed points",
+                tautline::ArrayOf::Points),
+      false);
+    mesh->fixSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
+    regions = tautline::chosenArray(
+      this, tautline::ImproverArrays::Region, input, "of regions", tautline::ArrayOf::Cells);
+  }
   tautline::ReconnectablePiece piece = tautline::takePiece(group, *mesh, input, regions);
   mesh.reset(); // its memory
   tautline::ReconnectionOptions options;
-  this->PrepareOptions(options);
-  options.observer = [this](const tautline::ReconnectionRecord&, double progress)
-  { return this->Proceed(progress); };
+  constexpr double onlyBlock = 0.0, blocks = 1.0;
+  this->PrepareOptions(options, onlyBlock, blocks);
   const tautline::RankReconnection result =
     tautline::improveOnRanks(group, std::move(piece.mesh), options, this->Rounds);
   const tautline::ImprovedCells cells =
@@ -161,7 +149,7 @@ void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkData
                                         "opposite order, and it is treated as its mirror image."
                                       : "");
   }
-  this->Summary = tautline::shareText(tautline::severalProcesses(), this->Summary);
+  this->Summary = group.fromFirst(this->Summary);
 }
 
 //------------------------------------------------------------------------------
@@ -196,7 +184,8 @@ void vtkMeshImprover::ReportOnRanks(const tautline::RankReconnection& result,
   this->AddToSummary(tautline::describeResult(whole, false));
   this->AddToSummary("In parts on " + std::to_string(group.size()) + " processes, in " +
     std::to_string(result.history.size() - 1) + " rounds.");
-  this->AddToSummary(tautline::describeRemaining(left, false, targetAngle));
+  this->AddToSummary(tautline::describeRemaining(
+    left, false, static_cast<tautline::ReconnectionBoundary>(this->Boundary), targetAngle));
   this->AddToSummary(tautline::describeForced(left, false, result.forcedInverseMeanRatio));
   this->AddToSummary(cells.note);
 }

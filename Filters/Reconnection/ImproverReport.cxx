@@ -26,6 +26,12 @@ constexpr Reasons remedies = { "", "try the preset Aggressive, a larger time lim
   "let the boundary slide on flat parts or on the surface, or repair the surface mesh",
   "fix fewer points", "choose fewer regions",
   "let the boundary slide on flat parts or on the surface" };
+/// The same where the boundary slides on flat parts, and where it does so on the surface.
+constexpr Reasons remediesOfSliding = { "", remedies[1],
+  "let the boundary slide on the surface, or repair the surface mesh", remedies[3], remedies[4],
+  "let the boundary slide on the surface" };
+constexpr Reasons remediesOnSurface = { "", remedies[1], "repair the surface mesh", remedies[3],
+  remedies[4], "choose a larger Feature Angle, or repair the surface mesh" };
 
 /// The same for triangles.
 constexpr Reasons edgeObstacles = { "it is not below the target",
@@ -38,21 +44,35 @@ constexpr Reasons edgeRemedies = { "",
   "change the geometry", "fix fewer points",
   "let the boundary slide on flat parts, choose fewer regions or a larger feature angle",
   "let the boundary slide on flat parts" };
+constexpr Reasons edgeRemediesOfSliding = { "", edgeRemedies[1], edgeRemedies[2], edgeRemedies[3],
+  "choose fewer regions or a larger feature angle", "change the geometry" };
 
 /// How the elements and their angles are called.
 struct Words
 {
   const char *one, *many, *title, *angle;
-  const Reasons &obstacles, &remedies;
+  const Reasons& obstacles;
 };
 constexpr Words tetrahedra = { "tetrahedron", "tetrahedra", "Tetrahedra", "dihedral angle",
-  obstacles, remedies };
-constexpr Words triangles = { "triangle", "triangles", "Triangles", "angle", edgeObstacles,
-  edgeRemedies };
+  obstacles };
+constexpr Words triangles = { "triangle", "triangles", "Triangles", "angle", edgeObstacles };
 
 const Words& wordsOf(bool isTriangles)
 {
   return isTriangles ? triangles : tetrahedra;
+}
+
+/// What would help where the boundary may move as it does.
+const Reasons& remediesFor(bool isTriangles, ReconnectionBoundary boundary)
+{
+  const bool fixed = boundary == ReconnectionBoundary::Fixed;
+  if (isTriangles)
+  {
+    return fixed ? edgeRemedies : edgeRemediesOfSliding;
+  }
+  return fixed                                  ? remedies
+    : boundary == ReconnectionBoundary::Sliding ? remediesOfSliding
+                                                : remediesOnSurface;
 }
 
 /// "12 edge removals, 3 motions of points"
@@ -212,9 +232,10 @@ std::string describeResult(const ReconnectionResult& result, bool isTriangles)
 }
 
 //------------------------------------------------------------------------------
-std::string describeRemaining(
-  const std::vector<RemainingElement>& remaining, bool isTriangles, double targetAngle)
+std::string describeRemaining(const std::vector<RemainingElement>& remaining, bool isTriangles,
+  ReconnectionBoundary boundary, double targetAngle)
 {
+  const Reasons& helps = remediesFor(isTriangles, boundary);
   const Words& words = wordsOf(isTriangles);
   std::ostringstream text;
   if (remaining.empty())
@@ -234,7 +255,7 @@ std::string describeRemaining(
   {
     if (counts[k] > 0)
     {
-      text << "\n- " << counts[k] << ": " << words.obstacles[k] << " (" << words.remedies[k] << ")";
+      text << "\n- " << counts[k] << ": " << words.obstacles[k] << " (" << helps[k] << ")";
     }
   }
   const auto listed = std::min<std::size_t>(remaining.size(), ListedElements);

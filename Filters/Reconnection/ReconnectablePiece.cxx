@@ -51,17 +51,13 @@ void takeRegions(RankGroup& group, vtkDataArray* regions, ReconnectablePiece& pi
     return;
   }
   std::vector<double> own, all;
-  group.together(
-    [&]
-    {
-      requireNumbers(regions);
-      for (const Index cell : piece.cells)
-      {
-        own.push_back(regionAt(regions, cell));
-      }
-      std::sort(own.begin(), own.end());
-      own.erase(std::unique(own.begin(), own.end()), own.end());
-    });
+  requireNumbers(regions);
+  for (const Index cell : piece.cells)
+  {
+    own.push_back(regionAt(regions, cell));
+  }
+  std::sort(own.begin(), own.end());
+  own.erase(std::unique(own.begin(), own.end()), own.end());
   for (const std::vector<double>& list : group.gatherItems(own))
   {
     all.insert(all.end(), list.begin(), list.end());
@@ -92,14 +88,10 @@ CellKinds kindsOnRanks(RankGroup& group, vtkDataSet* input)
     Index type, cells;
   };
   std::vector<Count> own;
-  group.together(
-    [&]
-    {
-      for (const auto& [type, cells] : countCells(input, false))
-      {
-        own.push_back({ type, cells });
-      }
-    });
+  for (const auto& [type, cells] : countCells(input, false))
+  {
+    own.push_back({ type, cells });
+  }
   std::map<int, Index> counts;
   for (const std::vector<Count>& list : group.gatherItems(own))
   {
@@ -121,7 +113,7 @@ ReconnectablePiece takePiece(
   piece.mesh.fixed = mesh.markedOfPiece(piece.numbers);
   piece.mesh.numbers = piece.numbers;
   piece.mesh.mirrored = piece.mirrored = mesh.mirrored();
-  group.together([&] { takeCells(mesh, piece); });
+  takeCells(mesh, piece);
   takeRegions(group, regions, piece);
   piece.firstCell = sumBefore(group, input->GetNumberOfCells());
   return piece;

@@ -188,7 +188,7 @@ void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
 //------------------------------------------------------------------------------
 /// Sets all options of tetrahedra or triangles but those of a mesh.
 template <class Options>
-void vtkMeshImprover::PrepareOptions(Options& options) const
+void vtkMeshImprover::PrepareOptions(Options& options, double block, double blocks)
 {
   this->SetOptions(options);
   tautline::applyPreset(static_cast<tautline::ReconnectionPreset>(this->Preset), options);
@@ -196,9 +196,17 @@ void vtkMeshImprover::PrepareOptions(Options& options) const
   {
     options.targetAngle = this->TargetAngle;
   }
+  options.observer = [=](const tautline::ReconnectionRecord& record, double progress)
+  {
+    this->ShowIteration(FilterName, record.pass,
+      { { "below target", static_cast<double>(record.belowTarget) },
+        { "worst", record.worstInverseMeanRatio } });
+    return this->Proceed((block + progress) / blocks);
+  };
 }
 
-template void vtkMeshImprover::PrepareOptions(tautline::ReconnectionOptions& options) const;
+template void vtkMeshImprover::PrepareOptions(
+  tautline::ReconnectionOptions& options, double block, double blocks);
 
 //------------------------------------------------------------------------------
 /// Runs the kernel on a mesh. @param targetAngle set to the one that was used
@@ -207,17 +215,10 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
 {
   const auto prepare = [&](auto& options)
   {
-    this->PrepareOptions(options);
+    this->PrepareOptions(options, block.number, blocks);
     targetAngle = options.targetAngle;
     options.fixed = mesh.fixed().data();
     options.regions = mesh.regions().empty() ? nullptr : mesh.regions().data();
-    options.observer = [&](const tautline::ReconnectionRecord& record, double progress)
-    {
-      this->ShowIteration(FilterName, record.pass,
-        { { "below target", static_cast<double>(record.belowTarget) },
-          { "worst", record.worstInverseMeanRatio } });
-      return this->Proceed((block.number + progress) / static_cast<double>(blocks));
-    };
   };
   std::vector<double> sizes;
   if (!mesh.isTriangles())
@@ -304,7 +305,8 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
   this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
     tautline::describeResult(result, triangles));
   this->TakeResult(result);
-  this->AddToSummary(tautline::describeRemaining(left, triangles, targetAngle));
+  this->AddToSummary(tautline::describeRemaining(
+    left, triangles, static_cast<tautline::ReconnectionBoundary>(this->Boundary), targetAngle));
   this->AddToSummary(tautline::describeForced(left, triangles, result.forcedInverseMeanRatio));
   this->AddToSummary(improved.note);
   this->AddToSummary(mesh.leftOut());
@@ -344,9 +346,12 @@ void vtkMeshImprover::TakeResult(const tautline::ReconnectionResult& result)
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkMeshImprover::GetGatheredResult() const
+tautline::GatheredRules vtkMeshImprover::GetGatheredRules()
 {
-  return tautline::GatheredResult::NewMesh;
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::NewMesh;
+  rules.joinsPartitions = this->MergeCoincidentPoints || this->PartitionsHaveIds();
+  return rules;
 }
 
 //------------------------------------------------------------------------------

@@ -379,10 +379,9 @@ protected:
 
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
-  tautline::GatheredResult GetGatheredResult() const override;
+  tautline::GatheredRules GetGatheredRules() override;
   bool TakesPieces(vtkInformationVector** inputs) override;
   /// Without MergeCoincidentPoints only global ids join partitions.
-  bool JoinsPartitions(vtkInformationVector** inputs) override;
   std::string FindSettingProblem() const override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
@@ -402,7 +401,7 @@ private:
 
   void SetOptions(tautline::ReconnectionOptions& options) const;
   template <class Options>
-  void PrepareOptions(Options& options) const;
+  void PrepareOptions(Options& options, double block, double blocks);
   tautline::ReconnectionResult Run(const tautline::ReconnectableMesh& mesh,
     const tautline::InputBlock& block, int blocks, double& targetAngle);
   std::vector<double> SetSize(vtkDataSet* input, tautline::ReconnectionOptions& options);

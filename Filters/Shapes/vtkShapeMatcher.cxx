@@ -277,9 +277,11 @@ void vtkShapeMatcher::ClearResult()
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkShapeMatcher::GetGatheredResult() const
+tautline::GatheredRules vtkShapeMatcher::GetGatheredRules()
 {
-  return tautline::GatheredResult::OnFirst;
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::OnFirst;
+  return rules;
 }
 
 //------------------------------------------------------------------------------

@@ -102,7 +102,7 @@ protected:
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   bool NeedsFinitePoints(int port) const override;
-  tautline::GatheredResult GetGatheredResult() const override;
+  tautline::GatheredRules GetGatheredRules() override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
 

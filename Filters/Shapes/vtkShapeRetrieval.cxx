@@ -339,9 +339,12 @@ void vtkShapeRetrieval::ClearResult()
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkShapeRetrieval::GetGatheredResult() const
+tautline::GatheredRules vtkShapeRetrieval::GetGatheredRules()
 {
-  return tautline::GatheredResult::OnFirst;
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::OnFirst;
+  rules.assist = [this] { this->Assist(); };
+  return rules;
 }
 
 //------------------------------------------------------------------------------

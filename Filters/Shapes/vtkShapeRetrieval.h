@@ -143,15 +143,17 @@ protected:
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   int RequestInformation(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
   int RequestData(vtkInformation*, vtkInformationVector**, vtkInformationVector*) override;
-  tautline::GatheredResult GetGatheredResult() const override;
+  tautline::GatheredRules GetGatheredRules() override;
   bool TakesPieces(vtkInformationVector** inputs) override;
-  void Assist() override;
   void ExchangeResult(tautline::ResultStream& stream) override;
   void ClearResult() override;
 
 private:
   vtkShapeRetrieval(const vtkShapeRetrieval&) = delete;
   void operator=(const vtkShapeRetrieval&) = delete;
+
+  /// What the other processes do while the first one is in RequestData(), in step with it.
+  void Assist();
 
   tautline::RetrievalOptions GetOptionsOfRun();
 

@@ -36,6 +36,7 @@ constexpr int FixedArray = 0;
 
 constexpr int ListedElements = 10;
 constexpr const char* FilterName = "Untangle Mesh"; // in the menu
+constexpr const char* BoundaryRemedy = "switch Fix Boundary off";
 
 /// In the order of tautline::Obstacle.
 constexpr std::array<const char*, 5> reasons = { "valid",
@@ -203,21 +204,7 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
     mesh.fixBoundary();
   }
 
-  tautline::UntangleOptions options;
-  options.method = static_cast<tautline::UntangleMethod>(this->Method);
-  options.effort = static_cast<tautline::Effort>(this->Effort);
-  options.maximumSeconds = this->GetRemainingSeconds();
-  options.fixed = mesh.fixed().data();
-  options.threads = this->Threads;
-  options.observer = [&](const tautline::IterationState& state)
-  {
-    this->HaveBest();
-    this->ShowIteration(FilterName, state.record.iteration,
-      { { "objective", state.record.objective },
-        { "inverted", static_cast<double>(state.record.inverted) } });
-    return this->ProceedInBlock(
-      block.number, std::max(state.progress, tautline::openEnded(state.record.iteration)));
-  };
+  const tautline::UntangleOptions options = this->GetOptions(mesh.fixed().data(), block.number);
   tautline::UntangleResult result = tautline::untangle(mesh.mesh(), options);
   this->HaveBest();
   std::string unsettled;
@@ -249,7 +236,7 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
     tautline::surfaceErrorSentence(mesh.frame().unit() * result.surfaceError));
   if (result.reason == tautline::StopReason::NoFreeVertices)
   {
-    this->AddToSummary(mesh.whyNoneIsFree("switch Fix Boundary off"));
+    this->AddToSummary(mesh.whyNoneIsFree(BoundaryRemedy));
   }
   this->AddToSummary(note);
   this->AddToSummary(mesh.notice());
@@ -257,9 +244,32 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
 }
 
 //------------------------------------------------------------------------------
-tautline::GatheredResult vtkMeshUntangler::GetGatheredResult() const
+tautline::UntangleOptions vtkMeshUntangler::GetOptions(const unsigned char* fixed, int block)
 {
-  return tautline::GatheredResult::SameMesh;
+  tautline::UntangleOptions options;
+  options.method = static_cast<tautline::UntangleMethod>(this->Method);
+  options.effort = static_cast<tautline::Effort>(this->Effort);
+  options.maximumSeconds = this->GetRemainingSeconds();
+  options.fixed = fixed;
+  options.threads = this->Threads;
+  options.observer = [this, block](const tautline::IterationState& state)
+  {
+    this->HaveBest();
+    this->ShowIteration(FilterName, state.record.iteration,
+      { { "objective", state.record.objective },
+        { "inverted", static_cast<double>(state.record.inverted) } });
+    return this->ProceedInBlock(
+      block, std::max(state.progress, tautline::openEnded(state.record.iteration)));
+  };
+  return options;
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredRules vtkMeshUntangler::GetGatheredRules()
+{
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::SameMesh;
+  return rules;
 }
 
 //------------------------------------------------------------------------------
@@ -297,29 +307,16 @@ void vtkMeshUntangler::UntangleOnRanks(
   tautline::RankMesh& mesh = *pieces;
   output->ShallowCopy(data);
   auto* input = vtkDataSet::SafeDownCast(data);
-  group->together(
-    [&]
-    {
-      if (input->GetNumberOfPoints() > 0)
-      {
-        mesh.fix(tautline::chosenArray(
-                   this, FixedArray, input, "of fixed points", tautline::ArrayOf::Points),
-          false);
-        mesh.fixSelected(data, vtkSelection::GetData(inputVector[SelectionPort]));
-      }
-    });
-  const std::vector<unsigned char> fixed = mesh.fixed(this->FixBoundary);
-  tautline::UntangleOptions options;
-  options.method = static_cast<tautline::UntangleMethod>(this->Method);
-  options.effort = static_cast<tautline::Effort>(this->Effort);
-  options.maximumSeconds = this->GetRemainingSeconds();
-  options.fixed = fixed.data();
-  options.threads = this->Threads;
-  options.observer = [&](const tautline::IterationState& state)
+  if (input->GetNumberOfPoints() > 0)
   {
-    this->HaveBest();
-    return this->Proceed(std::max(state.progress, tautline::openEnded(state.record.iteration)));
-  };
+    mesh.fix(
+      tautline::chosenArray(this, FixedArray, input, "of fixed points", tautline::ArrayOf::Points),
+      false);
+    mesh.fixSelected(data, vtkSelection::GetData(inputVector[SelectionPort]));
+  }
+  const std::vector<unsigned char> fixed = mesh.fixed(this->FixBoundary);
+  constexpr int onlyBlock = 0;
+  const tautline::UntangleOptions options = this->GetOptions(fixed.data(), onlyBlock);
   const tautline::RankUntangleResult untangled =
     tautline::untangleOnRanks(mesh.mesh(), mesh.mirrored(), options);
   const tautline::UntangleResult& result = untangled.result;
@@ -347,6 +344,10 @@ void vtkMeshUntangler::UntangleOnRanks(
       ? "The whole mesh did not fit into the memory of the first process, where the elements that "
         "are left would have been untangled: take fewer cells, or more memory."
       : "");
+  if (result.reason == tautline::StopReason::NoFreeVertices)
+  {
+    this->AddToSummary(mesh.whyNoneIsFree(this->FixBoundary, false, BoundaryRemedy));
+  }
   this->AddToSummary(note);
   this->AddToSummary(mesh.notice());
   if (group->rank() > 0)

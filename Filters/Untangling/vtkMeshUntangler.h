@@ -56,6 +56,7 @@ class RankGroup;
 class RankMesh;
 class TableRows;
 struct InputBlock;
+struct UntangleOptions;
 }
 
 class TAUTLINEUNTANGLING_EXPORT vtkMeshUntangler : public vtkMeshMotionAlgorithm
@@ -136,7 +137,7 @@ protected:
   int RequestData(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   void ClearResult() override;
-  tautline::GatheredResult GetGatheredResult() const override;
+  tautline::GatheredRules GetGatheredRules() override;
   bool TakesPieces(vtkInformationVector** inputs) override;
   void ExchangeResult(tautline::ResultStream& stream) override;
 
@@ -146,6 +147,7 @@ private:
 
   void Untangle(const tautline::InputBlock& block, tautline::TableRows& history);
 
+  tautline::UntangleOptions GetOptions(const unsigned char* fixed, int block);
   void UntangleOnRanks(
     vtkInformationVector** inputVector, vtkDataObject* output, tautline::TableRows& history);
 

@@ -94,21 +94,22 @@ public:
   }
   int rank() const override { return this->Rank; }
   int size() const override { return this->Exchange.size; }
-  void start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override
+  Index messages = 0; ///< sent so far
+
+protected:
+  void sendAll(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override
   {
-    const std::lock_guard<std::mutex> lock(this->Exchange.mutex);
-    for (const RankMessage& message : sent)
     {
-      this->Exchange.boxes[message.rank][this->Rank] = message.bytes;
-      ++this->messages;
+      const std::lock_guard<std::mutex> lock(this->Exchange.mutex);
+      for (const RankMessage& message : sent)
+      {
+        this->Exchange.boxes[message.rank][this->Rank] = message.bytes;
+        ++this->messages;
+      }
     }
-    this->Received = &received;
-  }
-  void finish() override
-  {
     this->Exchange.wait();
     std::map<int, Bytes>& box = this->Exchange.boxes[this->Rank];
-    for (RankMessage& message : *this->Received)
+    for (RankMessage& message : received)
     {
       const auto found = box.find(message.rank);
       if (found == box.end() || found->second.size() != message.bytes.size())
@@ -124,7 +125,7 @@ public:
     }
     this->Exchange.wait();
   }
-  std::vector<Bytes> allGather(const Bytes& own) override
+  std::vector<Bytes> gatherAll(const Bytes& own) override
   {
     {
       const std::lock_guard<std::mutex> lock(this->Exchange.mutex);
@@ -142,15 +143,12 @@ public:
     return all;
   }
 
-  Index messages = 0; ///< sent so far
-
 private:
   ThreadExchange& Exchange;
   int Rank;
-  std::vector<RankMessage>* Received = nullptr;
 };
 
-/** Calls work(group) on as many ranks; throws what the first of them does. */
+/** Calls work(group) together on as many ranks; throws what the first of them does. */
 template <class Rank = ThreadRank, class Work>
 void onRanks(int size, const Work& work)
 {
@@ -165,7 +163,7 @@ void onRanks(int size, const Work& work)
         Rank group(exchange, rank);
         try
         {
-          work(group);
+          group.together([&] { work(group); });
         }
         catch (...)
         {

@@ -206,31 +206,6 @@ refused(wording("horizon-zero"), HorizonNeighbors(mesh(), Horizon=0))
 refused(wording("layer-width"), InteractionLayer(mesh(), Width=0))
 refused(wording("layer-time"), InteractionLayer(mesh(), ElementSize=0.002, Width=0.5, TimeLimit=0.2))
 
-
-
-def mebibytes(filter_):
-    """What the first rank takes at most, beyond what it has."""
-
-    def status(name):
-        with open("/proc/self/status", encoding="utf-8") as file:
-            return next(int(line.split()[1]) for line in file if line.startswith(name)) / 1024
-
-    with open("/proc/self/clear_refs", "w", encoding="utf-8") as file:
-        file.write("5")  # resets the maximum
-    before = status("VmRSS:")
-    update(filter_)
-    return status("VmHWM:") - before
-
-
-# The first rank has 100 triangles, and keeps to that unless the mesh is put together.
-for kind in ("plain", "inclined"):
-    large = update(mesh(kind=kind, n=400, cut="slabs", uneven=1))
-    results[f"memory {kind}"] = [
-        mebibytes(HorizonNeighbors(large, Center=[0.1, 0.1, 0], Horizon=0.01)),
-        mebibytes(InteractionLayer(large, ElementSize=0.1)),
-        mebibytes(CompareMeshes(Input=large, Other=large)),
-    ]
-
 results["ranks"] = RANKS
 with open(sys.argv[1], "w", encoding="utf-8") as out:
     json.dump(results, out)

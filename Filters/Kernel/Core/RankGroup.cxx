@@ -7,6 +7,7 @@
 #include <exception>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace tautline
 {
@@ -22,14 +23,47 @@ constexpr int highBits = 60, lowBits = 32;
 constexpr const char* vague = "Another rank";
 constexpr const char* interrupted = "the computation was interrupted";
 constexpr const char* elsewhere = "Another rank has rejected its part of the data.";
+
+/// An error of which all ranks know.
+class SharedError : public Error
+{
+public:
+  SharedError(const std::string& message, bool alike)
+    : Error(message)
+    , alike(alike)
+  {
+  }
+
+  bool alike; ///< whether all ranks have thrown the same from the same call of together()
+};
 }
 
 //------------------------------------------------------------------------------
 RankGroup::~RankGroup() = default;
 
 //------------------------------------------------------------------------------
-std::vector<Bytes> RankGroup::exchange(
-  const std::vector<Bytes>& sent, const std::function<void(const std::vector<Index>&)>& prepare)
+void RankGroup::send(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received)
+{
+  this->agree();
+  this->sendAll(sent, received);
+}
+
+//------------------------------------------------------------------------------
+std::vector<Bytes> RankGroup::allGather(const Bytes& own)
+{
+  this->agree();
+  return this->gatherAll(own);
+}
+
+//------------------------------------------------------------------------------
+bool RankGroup::anyOfAll(bool flag)
+{
+  const std::vector<Bytes> all = this->gatherAll(Bytes(1, flag ? 1 : 0));
+  return std::any_of(all.begin(), all.end(), [](const Bytes& one) { return one[0] != 0; });
+}
+
+//------------------------------------------------------------------------------
+std::vector<Bytes> RankGroup::exchange(const std::vector<Bytes>& sent)
 {
   std::vector<Index> lengths;
   for (const Bytes& bytes : sent)
@@ -40,29 +74,19 @@ std::vector<Bytes> RankGroup::exchange(
   const int own = this->rank();
   std::vector<RankMessage> out, in;
   std::vector<Bytes> received(sent.size());
-  // All that grows with what is sent.
-  this->together(
-    [&]
+  received[own] = sent[own];
+  for (int r = 0; r < this->size(); ++r)
+  {
+    if (r != own && !sent[r].empty())
     {
-      if (prepare)
-      {
-        prepare(expected);
-      }
-      received[own] = sent[own];
-      for (int r = 0; r < this->size(); ++r)
-      {
-        if (r != own && !sent[r].empty())
-        {
-          out.push_back({ r, sent[r] });
-        }
-        if (r != own && expected[r] > 0)
-        {
-          in.push_back({ r, Bytes(static_cast<std::size_t>(expected[r])) });
-        }
-      }
-    });
-  this->start(out, in);
-  this->finish();
+      out.push_back({ r, sent[r] });
+    }
+    if (r != own && expected[r] > 0)
+    {
+      in.push_back({ r, Bytes(static_cast<std::size_t>(expected[r])) });
+    }
+  }
+  this->send(out, in);
   for (RankMessage& message : in)
   {
     received[message.rank] = std::move(message.bytes);
@@ -89,8 +113,7 @@ std::vector<Index> RankGroup::transpose(std::vector<Index> numbers)
     }
     const std::vector<RankMessage> out = { { (own + step) % size, bytesOf(moving) } };
     std::vector<RankMessage> in = { { (own - step + size) % size, Bytes(out[0].bytes.size()) } };
-    this->start(out, in);
-    this->finish();
+    this->send(out, in);
     const std::vector<Index> arrived = itemsOf<Index>(in[0].bytes);
     auto next = arrived.begin();
     for (int i = 0; i < size; ++i)
@@ -107,32 +130,45 @@ std::vector<Index> RankGroup::transpose(std::vector<Index> numbers)
 }
 
 //------------------------------------------------------------------------------
+std::string RankGroup::fromFirst(const std::string& text)
+{
+  const bool first = this->rank() == 0;
+  const Bytes found = this->allGather(first ? Bytes(text.begin(), text.end()) : Bytes())[0];
+  return std::string(found.begin(), found.end());
+}
+
+//------------------------------------------------------------------------------
 Index RankGroup::sum(Index value)
 {
-  Index total = 0;
-  for (const auto& one : this->gatherItems(std::vector<Index>{ value }))
-  {
-    total += one[0];
-  }
-  return total;
+  const std::vector<Index> all = this->gatherJoined(std::vector<Index>{ value });
+  return std::accumulate(all.begin(), all.end(), Index(0));
+}
+
+double RankGroup::sum(double value)
+{
+  const std::vector<double> all = this->gatherJoined(std::vector<double>{ value });
+  return std::accumulate(all.begin(), all.end(), 0.0);
 }
 
 Index RankGroup::maximum(Index value)
 {
-  for (const auto& one : this->gatherItems(std::vector<Index>{ value }))
-  {
-    value = std::max(value, one[0]);
-  }
-  return value;
+  const std::vector<Index> all = this->gatherJoined(std::vector<Index>{ value });
+  return *std::max_element(all.begin(), all.end());
 }
 
 double RankGroup::maximum(double value)
 {
-  for (const auto& one : this->gatherItems(std::vector<double>{ value }))
+  for (const double one : this->gatherJoined(std::vector<double>{ value }))
   {
-    value = std::max(value, one[0]);
+    value = std::max(value, one);
   }
   return value;
+}
+
+bool RankGroup::any(bool value)
+{
+  this->agree();
+  return this->anyOfAll(value);
 }
 
 //------------------------------------------------------------------------------
@@ -187,27 +223,69 @@ void RankGroup::together(const std::function<void()>& work)
     work();
     return;
   }
-  std::string message;
-  std::exception_ptr interruption;
+  std::string failure;
+  std::exception_ptr own;
+  bool interruption = false;
+  ++this->Depth;
   try
   {
     work();
   }
+  catch (const SharedError&)
+  {
+    --this->Depth;
+    throw;
+  }
   catch (const std::exception& error)
   {
-    message = errorText(error, "take more processes or a coarser mesh");
-    message = message.empty() ? elsewhere : message;
+    own = std::current_exception();
+    failure = errorText(error, "take more processes or a coarser mesh");
+    failure = failure.empty() ? elsewhere : failure;
   }
   catch (...) // an interruption, which is no error
   {
-    interruption = std::current_exception();
-    message = interrupted;
+    if (this->Left)
+    {
+      --this->Depth;
+      throw;
+    }
+    own = std::current_exception();
+    interruption = true;
+    failure = interrupted;
   }
-  const std::vector<Bytes> all = this->allGather(Bytes(message.begin(), message.end()));
-  if (interruption)
+  const int depth = this->Depth--;
+  try
   {
-    std::rethrow_exception(interruption);
+    this->agreeOn(failure, depth);
   }
+  catch (const SharedError& error)
+  {
+    this->Left = interruption;
+    if (interruption || error.alike)
+    {
+      std::rethrow_exception(own);
+    }
+    throw;
+  }
+}
+
+//------------------------------------------------------------------------------
+void RankGroup::agree()
+{
+  this->agreeOn("", 0);
+}
+
+//------------------------------------------------------------------------------
+/// @param failure of this rank, or "" @param depth of the call of together() that it left
+void RankGroup::agreeOn(const std::string& failure, int depth)
+{
+  this->Left = false;
+  if (this->size() == 1 || !this->anyOfAll(!failure.empty()))
+  {
+    return;
+  }
+  const std::vector<Bytes> all = this->gatherAll(Bytes(failure.begin(), failure.end()));
+  const std::vector<Bytes> depths = this->gatherAll(bytesOf(std::vector<int>{ depth }));
   // Of a rank that explains it, rather than of one that was told so.
   const auto explains = [](const Bytes& text)
   { return !text.empty() && std::string(text.begin(), text.end()).rfind(vague, 0) != 0; };
@@ -216,18 +294,17 @@ void RankGroup::together(const std::function<void()>& work)
   first = explained
     ? first
     : std::find_if(all.begin(), all.end(), [](const Bytes& text) { return !text.empty(); });
-  if (first != all.end())
-  {
-    const bool everywhere =
-      std::all_of(all.begin(), all.end(), [&](const Bytes& text) { return text == *first; });
-    const std::string where =
-      everywhere || !explained ? "" : "In process " + std::to_string(first - all.begin()) + ": ";
-    throw Error(where + std::string(first->begin(), first->end()));
-  }
+  const bool everywhere =
+    std::all_of(all.begin(), all.end(), [&](const Bytes& text) { return text == *first; });
+  const bool alike = everywhere &&
+    std::all_of(depths.begin(), depths.end(), [&](const Bytes& one) { return one == depths[0]; });
+  const std::string where =
+    everywhere || !explained ? "" : "In process " + std::to_string(first - all.begin()) + ": ";
+  throw SharedError(where + std::string(first->begin(), first->end()), alike);
 }
 
 //------------------------------------------------------------------------------
-void SingleRank::start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received)
+void SingleRank::sendAll(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received)
 {
   if (!sent.empty() || !received.empty())
   {

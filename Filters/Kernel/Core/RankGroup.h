@@ -7,12 +7,13 @@
 #ifndef tautline_RankGroup_h
 #define tautline_RankGroup_h
 
+#include "Communicator.h"
 #include "Types.h"
 
 #include <algorithm>
 #include <cstring>
-#include <exception>
 #include <functional>
+#include <string>
 #include <type_traits>
 #include <vector>
 
@@ -30,7 +31,13 @@ struct RankMessage
 /**
  * @class tautline::RankGroup
  * @brief Communication between ranks. All methods but rank() and size() are collective: every rank
- * calls them in the same order. Implementations write start(), finish() and allGather().
+ * calls them in the same order.
+ *
+ * What fails on one rank must not leave the others waiting. Code that calls these methods runs in
+ * together(): each of them first agrees on whether a rank has left by an exception, and throws on
+ * all ranks if one has. So algorithms throw where they find an error, as on one process.
+ *
+ * Implementations write sendAll() and gatherAll().
  */
 class TAUTLINE_KERNEL_EXPORT RankGroup
 {
@@ -39,17 +46,29 @@ public:
 
   virtual int rank() const = 0;
   virtual int size() const = 0;
+  /// Of MPI, for libraries that communicate by it; null: this rank alone, or ranks without MPI.
+  virtual Communicator communicator() const { return nullptr; }
 
   /**
-   * @brief Starts to send and to receive, and returns at once. No second start() before finish().
-   * @param sent kept unchanged by the caller until finish(); at most one message per rank
-   * @param received of the size that each message has, at most one per rank; filled by finish()
+   * @brief Does work that may communicate by this group. What it throws on any rank is thrown on
+   * all: what all ranks throw alike, as it is; else an Error with the message of the lowest rank
+   * that explains it. An interruption is one on its own rank, and an error on the others. Calls
+   * nest.
+   *
+   * What communicates in other ways, as PETSc does, needs all ranks: agree() before it.
    */
-  virtual void start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) = 0;
-  /// Waits for what was started.
-  virtual void finish() = 0;
+  void together(const std::function<void()>& work);
+  /// Throws, on all ranks, if one has left together(). Every other method begins with it.
+  void agree();
+
+  /**
+   * @brief Sends and receives messages of known sizes.
+   * @param sent at most one message per rank
+   * @param received of the size that each message has, at most one per rank
+   */
+  void send(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received);
   /// The bytes of every rank, on every rank.
-  virtual std::vector<Bytes> allGather(const Bytes& own) = 0;
+  std::vector<Bytes> allGather(const Bytes& own);
 
   /**
    * @brief Sends one number to each rank (numbers[r], also to itself) and returns that of each.
@@ -61,34 +80,46 @@ public:
    */
   std::vector<Index> transpose(std::vector<Index> numbers);
   /**
-   * @brief Sends bytes to each rank (sent[r], also to itself) and returns those of each rank. A
-   * rank without memory for what it receives is an error on all, as in together().
-   * @param prepare called before they are sent, with how many come from each rank; what it throws
-   * on any rank is thrown on all
+   * @brief Sends bytes to each rank (sent[r], also to itself) and returns those of each rank.
    */
-  std::vector<Bytes> exchange(const std::vector<Bytes>& sent,
-    const std::function<void(const std::vector<Index>&)>& prepare = nullptr);
-  /// The same with lists of items; also a rank without memory for copies of these is one on all.
+  std::vector<Bytes> exchange(const std::vector<Bytes>& sent);
+  /// The same with lists of items.
   template <class Item>
   std::vector<std::vector<Item>> exchangeItems(const std::vector<std::vector<Item>>& sent);
   /// The items of every rank, on every rank.
   template <class Item>
   std::vector<std::vector<Item>> gatherItems(const std::vector<Item>& own);
 
+  /// The same, one after the other.
+  template <class Item>
+  std::vector<Item> gatherJoined(const std::vector<Item>& own);
+
+  /// The text of the first rank.
+  std::string fromFirst(const std::string& text);
   Index sum(Index value);
+  double sum(double value); ///< in the order of the ranks
   Index maximum(Index value);
   double maximum(double value);
-  bool any(bool value) { return this->maximum(static_cast<Index>(value)) > 0; }
+  bool any(bool value);
+  bool everywhere(bool value) { return !this->any(!value); }
   /// The sum of the values of all ranks and of all lists, rounded once: it depends neither on the
   /// order of the values nor on the ranks they are on. Values that are not finite give NaN.
   double orderlessSum(const std::vector<double>& values);
 
-  /**
-   * @brief Does work that does not communicate. What it throws on any rank is thrown on all, as
-   * Error, with the message of the lowest rank that explains it, so that none waits for another. An
-   * interruption is one on its own rank, and an error on the others. One rank throws as usual.
-   */
-  void together(const std::function<void()>& work);
+protected:
+  /// As send(), on all ranks at once.
+  virtual void sendAll(
+    const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) = 0;
+  /// As allGather(), on all ranks at once.
+  virtual std::vector<Bytes> gatherAll(const Bytes& own) = 0;
+  /// Whether a flag is set on any rank, on all ranks at once.
+  virtual bool anyOfAll(bool flag);
+
+private:
+  void agreeOn(const std::string& failure, int depth);
+
+  int Depth = 0;     ///< of calls of together()
+  bool Left = false; ///< by an interruption, of which all ranks know
 };
 
 /// This process alone.
@@ -97,9 +128,10 @@ class TAUTLINE_KERNEL_EXPORT SingleRank : public RankGroup
 public:
   int rank() const override { return 0; }
   int size() const override { return 1; }
-  void start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override;
-  void finish() override {}
-  std::vector<Bytes> allGather(const Bytes& own) override { return { own }; }
+
+protected:
+  void sendAll(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override;
+  std::vector<Bytes> gatherAll(const Bytes& own) override { return { own }; }
 };
 
 template <class Item>
@@ -128,37 +160,12 @@ std::vector<Item> itemsOf(const Bytes& bytes)
 template <class Item>
 std::vector<std::vector<Item>> RankGroup::exchangeItems(const std::vector<std::vector<Item>>& sent)
 {
-  // What fails here is reported where all ranks are.
   std::vector<Bytes> bytes(sent.size());
-  std::exception_ptr failure;
-  try
+  std::transform(sent.begin(), sent.end(), bytes.begin(), bytesOf<Item>);
+  std::vector<std::vector<Item>> received;
+  for (const Bytes& arrived : this->exchange(bytes))
   {
-    std::transform(sent.begin(), sent.end(), bytes.begin(), bytesOf<Item>);
-  }
-  catch (const std::exception&)
-  {
-    failure = std::current_exception();
-    std::fill(bytes.begin(), bytes.end(), Bytes());
-  }
-  std::vector<std::vector<Item>> received(sent.size());
-  const std::vector<Bytes> arrived = this->exchange(bytes,
-    [&](const std::vector<Index>& lengths)
-    {
-      if (failure)
-      {
-        std::rethrow_exception(failure);
-      }
-      for (std::size_t r = 0; r < lengths.size(); ++r)
-      {
-        received[r].resize(static_cast<std::size_t>(lengths[r]) / sizeof(Item));
-      }
-    });
-  for (std::size_t r = 0; r < arrived.size(); ++r)
-  {
-    if (!arrived[r].empty())
-    {
-      std::memcpy(received[r].data(), arrived[r].data(), received[r].size() * sizeof(Item));
-    }
+    received.push_back(itemsOf<Item>(arrived));
   }
   return received;
 }
@@ -172,6 +179,17 @@ std::vector<std::vector<Item>> RankGroup::gatherItems(const std::vector<Item>& o
     all.push_back(itemsOf<Item>(one));
   }
   return all;
+}
+
+template <class Item>
+std::vector<Item> RankGroup::gatherJoined(const std::vector<Item>& own)
+{
+  std::vector<Item> joined;
+  for (const std::vector<Item>& one : this->gatherItems(own))
+  {
+    joined.insert(joined.end(), one.begin(), one.end());
+  }
+  return joined;
 }
 }
 #endif

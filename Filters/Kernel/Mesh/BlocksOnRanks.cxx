@@ -87,37 +87,32 @@ std::vector<int> connectedBlocks(
   RankGroup& group, const std::vector<BlockPiece>& pieces, int blocks)
 {
   std::vector<BlockBox> boxes;
-  group.together(
-    [&] { std::transform(pieces.begin(), pieces.end(), std::back_inserter(boxes), boxOf); });
+  std::transform(pieces.begin(), pieces.end(), std::back_inserter(boxes), boxOf);
   std::vector<BlockBox> allBoxes;
   for (const std::vector<BlockBox>& list : group.gatherItems(boxes))
   {
     allBoxes.insert(allBoxes.end(), list.begin(), list.end());
   }
   std::vector<std::vector<BlockFacet>> facets;
-  group.together([&] { facets = facetsToSend(group, pieces, allBoxes); });
+  facets = facetsToSend(group, pieces, allBoxes);
   facets = group.exchangeItems(facets);
 
   using Pair = std::array<int, 2>;
   std::vector<Pair> pairs;
   const bool sided = group.any(std::any_of(pieces.begin(), pieces.end(),
     [](const BlockPiece& piece) { return piece.piece.mesh->dimension() != Dimension::Surface; }));
-  group.together(
-    [&]
+  forEachSeamPair(facets,
+    [&](const SeamPlace& one, const SeamPlace& other)
     {
-      forEachSeamPair(facets,
-        [&](const SeamPlace& one, const SeamPlace& other)
-        {
-          const BlockFacet &a = facets[one.rank][one.number], &b = facets[other.rank][other.number];
-          // Cells on the two sides walk round it in opposite senses.
-          if (a.block != b.block && (!sided || a.forward != b.forward))
-          {
-            pairs.push_back({ std::min(a.block, b.block), std::max(a.block, b.block) });
-          }
-        });
-      std::sort(pairs.begin(), pairs.end());
-      pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+      const BlockFacet &a = facets[one.rank][one.number], &b = facets[other.rank][other.number];
+      // Cells on the two sides walk round it in opposite senses.
+      if (a.block != b.block && (!sided || a.forward != b.forward))
+      {
+        pairs.push_back({ std::min(a.block, b.block), std::max(a.block, b.block) });
+      }
     });
+  std::sort(pairs.begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   UnionFind sets(blocks);
   for (const std::vector<Pair>& list : group.gatherItems(pairs))
   {

@@ -124,39 +124,34 @@ BoundaryParts boundaryPartsOnRanks(const DistributedMesh& mesh)
   const Index n = mesh.localPoints();
   UnionFind facets(n), pieces(n);
   std::vector<unsigned char> onBoundary(n, 0), used(n, 0);
-  group.together(
-    [&]
-    {
-      if (view.numberOfCells == 0)
+  if (view.numberOfCells > 0)
+  {
+    const Mesh local(view);
+    FacetTable table(local);
+    table.forEachFacet(
+      [&](Index first, const FacetUse* use, Index count)
       {
-        return;
-      }
-      const Mesh local(view);
-      FacetTable table(local);
-      table.forEachFacet(
-        [&](Index first, const FacetUse* use, Index count)
+        // Only of the facets at an own point all cells are here.
+        bool own = mesh.owned(first);
+        for (const Index other : use->others)
         {
-          // Only of the facets at an own point all cells are here.
-          bool own = mesh.owned(first);
-          for (const Index other : use->others)
+          own = own || (other >= 0 && mesh.owned(other));
+        }
+        for (const Index other : use->others)
+        {
+          if (other >= 0)
           {
-            own = own || (other >= 0 && mesh.owned(other));
+            pieces.join(first, other);
+            used[first] = used[other] = 1;
           }
-          for (const Index other : use->others)
+          if (other >= 0 && count == 1 && own)
           {
-            if (other >= 0)
-            {
-              pieces.join(first, other);
-              used[first] = used[other] = 1;
-            }
-            if (other >= 0 && count == 1 && own)
-            {
-              facets.join(first, other);
-              onBoundary[first] = onBoundary[other] = 1;
-            }
+            facets.join(first, other);
+            onBoundary[first] = onBoundary[other] = 1;
           }
-        });
-    });
+        }
+      });
+  }
   Index count = 0, components = 0;
   const std::vector<Index> setOf = numberSetsOnRanks(mesh, facets, onBoundary, count);
   const std::vector<Index> componentOf = numberSetsOnRanks(mesh, pieces, used, components);

@@ -397,13 +397,9 @@ BoundaryShape boundaryShapeOnRanks(const DistributedMesh& mesh, double flatAngle
   std::unique_ptr<Mesh> local;
   std::unique_ptr<ShapeFinder> finder;
   std::vector<unsigned char> bent;
-  group.together(
-    [&]
-    {
-      local = std::make_unique<Mesh>(mesh.view(), threads);
-      finder = std::make_unique<ShapeFinder>(*local, flatAngle, 0.0);
-      bent = finder->bent();
-    });
+  local = std::make_unique<Mesh>(mesh.view(), threads);
+  finder = std::make_unique<ShapeFinder>(*local, flatAngle, 0.0);
+  bent = finder->bent();
   // Of the points that this rank owns all facets are here; the others are as their owners say.
   BoundaryShape& shape = finder->shape();
   mesh.exchange(shape.fixed.data());

@@ -34,39 +34,31 @@ std::vector<int> ownersByTree(RankGroup& group, const MeshView& piece, const uns
   std::vector<Vec3> places;
   // 0 and -0 are one place.
   const auto placeOf = [&piece](Index p) { return pointOf(piece, p) + Vec3{ 0, 0, 0 }; };
-  group.together(
-    [&]
+  use.assign(static_cast<std::size_t>(piece.numberOfPoints), Unused);
+  for (Index cell = 0; cell < piece.numberOfCells; ++cell)
+  {
+    const unsigned char as = ghosts && ghosts[cell] ? OfGhost : Counts;
+    for (Index n = piece.offsets[cell]; n < piece.offsets[cell + 1]; ++n)
     {
-      use.assign(static_cast<std::size_t>(piece.numberOfPoints), Unused);
-      for (Index cell = 0; cell < piece.numberOfCells; ++cell)
-      {
-        const unsigned char as = ghosts && ghosts[cell] ? OfGhost : Counts;
-        for (Index n = piece.offsets[cell]; n < piece.offsets[cell + 1]; ++n)
-        {
-          unsigned char& of = use[piece.connectivity[n]];
-          of = std::max(of, as);
-        }
-      }
-      for (Index p = 0; p < piece.numberOfPoints; ++p)
-      {
-        const Vec3 x = placeOf(p);
-        use[p] = std::isfinite(x[0] + x[1] + x[2]) ? use[p] : static_cast<unsigned char>(Unused);
-        if (use[p] == Counts)
-        {
-          places.push_back(x);
-        }
-      }
-    });
+      unsigned char& of = use[piece.connectivity[n]];
+      of = std::max(of, as);
+    }
+  }
+  for (Index p = 0; p < piece.numberOfPoints; ++p)
+  {
+    const Vec3 x = placeOf(p);
+    use[p] = std::isfinite(x[0] + x[1] + x[2]) ? use[p] : static_cast<unsigned char>(Unused);
+    if (use[p] == Counts)
+    {
+      places.push_back(x);
+    }
+  }
   const PointDivision division(group, places);
   std::vector<int> owners;
-  group.together(
-    [&]
-    {
-      for (Index p = 0; p < piece.numberOfPoints; ++p)
-      {
-        owners.push_back(use[p] == Unused ? -1 : division.find(placeOf(p)));
-      }
-    });
+  for (Index p = 0; p < piece.numberOfPoints; ++p)
+  {
+    owners.push_back(use[p] == Unused ? -1 : division.find(placeOf(p)));
+  }
   return owners;
 }
 
@@ -79,54 +71,46 @@ CellDivision::CellDivision(
 {
   std::vector<std::vector<SentPoint>> points;
   Lists cells;
-  group.together(
-    [&]
+  this->file(piece, owners);
+  cells = this->cellLists(piece);
+  for (const std::vector<Index>& list : this->PiecePoints)
+  {
+    points.emplace_back();
+    for (const Index p : list)
     {
-      this->file(piece, owners);
-      cells = this->cellLists(piece);
-      for (const std::vector<Index>& list : this->PiecePoints)
-      {
-        points.emplace_back();
-        for (const Index p : list)
-        {
-          points.back().push_back({ ids[p], {} });
-          std::copy_n(piece.points + 3 * p, 3, points.back().back().x);
-        }
-      }
-    });
+      points.back().push_back({ ids[p], {} });
+      std::copy_n(piece.points + 3 * p, 3, points.back().back().x);
+    }
+  }
   const std::vector<std::vector<SentPoint>> fromRanks = group.exchangeItems(points);
   points.clear();
   cells = group.exchangeItems(cells);
-  const auto take = [&]
+  std::unordered_map<Index, Index> known;
+  this->PartPoints.resize(fromRanks.size());
+  this->PartCells.resize(fromRanks.size());
+  for (std::size_t rank = 0; rank < fromRanks.size(); ++rank)
   {
-    std::unordered_map<Index, Index> known;
-    this->PartPoints.resize(fromRanks.size());
-    this->PartCells.resize(fromRanks.size());
-    for (std::size_t rank = 0; rank < fromRanks.size(); ++rank)
+    for (const SentPoint& point : fromRanks[rank])
     {
-      for (const SentPoint& point : fromRanks[rank])
+      const auto [at, fresh] = known.emplace(point.id, static_cast<Index>(this->Ids.size()));
+      this->PartPoints[rank].push_back(at->second);
+      if (fresh)
       {
-        const auto [at, fresh] = known.emplace(point.id, static_cast<Index>(this->Ids.size()));
-        this->PartPoints[rank].push_back(at->second);
-        if (fresh)
-        {
-          this->Ids.push_back(point.id);
-          this->Points.insert(this->Points.end(), point.x, point.x + 3);
-        }
+        this->Ids.push_back(point.id);
+        this->Points.insert(this->Points.end(), point.x, point.x + 3);
       }
-      const auto first = static_cast<Index>(this->Types.size());
-      this->take(cells[rank], this->PartPoints[rank]);
-      this->PartCells[rank].resize(this->Types.size() - static_cast<std::size_t>(first));
-      std::iota(this->PartCells[rank].begin(), this->PartCells[rank].end(), first);
     }
-    this->View.numberOfPoints = static_cast<Index>(this->Ids.size());
-    this->View.points = this->Points.data();
-    this->View.numberOfCells = static_cast<Index>(this->Types.size());
-    this->View.cellTypes = this->Types.data();
-    this->View.offsets = this->Offsets.data();
-    this->View.connectivity = this->Connectivity.data();
-  };
-  group.together(take);
+    const auto first = static_cast<Index>(this->Types.size());
+    this->take(cells[rank], this->PartPoints[rank]);
+    this->PartCells[rank].resize(this->Types.size() - static_cast<std::size_t>(first));
+    std::iota(this->PartCells[rank].begin(), this->PartCells[rank].end(), first);
+  }
+  this->View.numberOfPoints = static_cast<Index>(this->Ids.size());
+  this->View.points = this->Points.data();
+  this->View.numberOfCells = static_cast<Index>(this->Types.size());
+  this->View.cellTypes = this->Types.data();
+  this->View.offsets = this->Offsets.data();
+  this->View.connectivity = this->Connectivity.data();
 }
 
 //------------------------------------------------------------------------------

@@ -93,21 +93,17 @@ private:
   {
     std::vector<std::vector<Value>> sent;
     std::vector<Value> result;
-    this->Group.together(
-      [&]
+    result.resize(static_cast<std::size_t>(components * count));
+    for (const std::vector<Index>& list : from)
+    {
+      sent.emplace_back();
+      sent.back().reserve(components * list.size());
+      for (const Index item : list)
       {
-        result.resize(static_cast<std::size_t>(components * count));
-        for (const std::vector<Index>& list : from)
-        {
-          sent.emplace_back();
-          sent.back().reserve(components * list.size());
-          for (const Index item : list)
-          {
-            const auto begin = values.begin() + components * item;
-            sent.back().insert(sent.back().end(), begin, begin + components);
-          }
-        }
-      });
+        const auto begin = values.begin() + components * item;
+        sent.back().insert(sent.back().end(), begin, begin + components);
+      }
+    }
     const std::vector<std::vector<Value>> received = this->Group.exchangeItems(sent);
     for (std::size_t rank = to.size(); rank-- > 0;) // the lowest one prevails
     {

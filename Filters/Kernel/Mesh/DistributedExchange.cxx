@@ -58,8 +58,7 @@ void exchangeValues(RankGroup& group,
       received.push_back({ neighbour.rank, Bytes(size * in.size()) });
     }
   }
-  group.start(sent, received);
-  group.finish();
+  group.send(sent, received);
   auto message = received.begin();
   std::vector<Value> got(components);
   for (const auto& neighbour : neighbours)

@@ -41,35 +41,27 @@ struct IdAndPlace
 void checkIds(RankGroup& group, const std::vector<IdAndPlace>& own)
 {
   std::vector<std::vector<IdAndPlace>> sent;
-  group.together(
-    [&]
-    {
-      sent.resize(group.size());
-      for (const IdAndPlace& item : own)
-      {
-        sent[SplitMix::mixed(static_cast<std::uint64_t>(item.id)) % sent.size()].push_back(item);
-      }
-    });
+  sent.resize(group.size());
+  for (const IdAndPlace& item : own)
+  {
+    sent[SplitMix::mixed(static_cast<std::uint64_t>(item.id)) % sent.size()].push_back(item);
+  }
   const auto received = group.exchangeItems(sent);
-  group.together(
-    [&]
+  std::vector<IdAndPlace> all;
+  for (const auto& list : received)
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(
+    all.begin(), all.end(), [](const IdAndPlace& a, const IdAndPlace& b) { return a.id < b.id; });
+  for (std::size_t i = 1; i < all.size(); ++i)
+  {
+    if (all[i].id == all[i - 1].id && !std::equal(all[i].x, all[i].x + 3, all[i - 1].x))
     {
-      std::vector<IdAndPlace> all;
-      for (const auto& list : received)
-      {
-        all.insert(all.end(), list.begin(), list.end());
-      }
-      std::sort(all.begin(), all.end(),
-        [](const IdAndPlace& a, const IdAndPlace& b) { return a.id < b.id; });
-      for (std::size_t i = 1; i < all.size(); ++i)
-      {
-        if (all[i].id == all[i - 1].id && !std::equal(all[i].x, all[i].x + 3, all[i - 1].x))
-        {
-          throw Error("The global point id " + std::to_string(all[i].id) +
-            " is at two places: run Generate Global Ids again.");
-        }
-      }
-    });
+      throw Error("The global point id " + std::to_string(all[i].id) +
+        " is at two places: run Generate Global Ids again.");
+    }
+  }
 }
 }
 
@@ -101,48 +93,51 @@ struct DistributedMesh::SentPoint
 DistributedMesh::DistributedMesh(RankGroup& group, const MeshPiece& piece)
   : Group(&group)
 {
+  group.together([&] { this->build(piece); });
+}
+
+//------------------------------------------------------------------------------
+void DistributedMesh::build(const MeshPiece& piece)
+{
+  RankGroup& group = *this->Group;
   std::vector<char> used;
-  group.together(
-    [&]
+  const Mesh checked(piece.view); // throws for arrays that are out of range
+  used.assign(piece.view.numberOfPoints, 0);
+  for (Index cell = 0; cell < piece.view.numberOfCells; ++cell)
+  {
+    const char mark = piece.ghosts && piece.ghosts[cell] ? 1 : 3;
+    for (Index n = piece.view.offsets[cell];
+         takesPart(piece.view, cell) && n < piece.view.offsets[cell + 1]; ++n)
     {
-      const Mesh checked(piece.view); // throws for arrays that are out of range
-      used.assign(piece.view.numberOfPoints, 0);
-      for (Index cell = 0; cell < piece.view.numberOfCells; ++cell)
+      const Index point = piece.view.connectivity[n];
+      if (point < 0 || point >= piece.view.numberOfPoints) // beyond what the cell's type has
       {
-        const char mark = piece.ghosts && piece.ghosts[cell] ? 1 : 3;
-        for (Index n = piece.view.offsets[cell];
-             takesPart(piece.view, cell) && n < piece.view.offsets[cell + 1]; ++n)
-        {
-          const Index point = piece.view.connectivity[n];
-          if (point < 0 || point >= piece.view.numberOfPoints) // beyond what the cell's type has
-          {
-            throw Error("Cell " + std::to_string(cell) + " lists point " + std::to_string(point) +
-              ", but the mesh has " + std::to_string(piece.view.numberOfPoints) + " points.");
-          }
-          used[point] |= mark;
-        }
+        throw Error("Cell " + std::to_string(cell) + " lists point " + std::to_string(point) +
+          ", but the mesh has " + std::to_string(piece.view.numberOfPoints) + " points.");
       }
-      for (Index p = 0; p < piece.view.numberOfPoints; ++p)
-      {
-        const double* x = piece.view.points + 3 * p;
-        if (used[p] && !(std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])))
-        {
-          throw Error("Point " + std::to_string(p) +
-            " has a coordinate that is not finite: remove its cells first, by Threshold or Clean "
-            "to Grid.");
-        }
-        if (used[p] && piece.globalIds && piece.globalIds[p] < 0)
-        {
-          throw Error("The global id of point " + std::to_string(p) +
-            " is negative: run Generate Global Ids again.");
-        }
-        if (used[p] && piece.owners && (piece.owners[p] < 0 || piece.owners[p] >= group.size()))
-        {
-          throw Error("Point " + std::to_string(p) + " shall be owned by rank " +
-            std::to_string(piece.owners[p]) + " of " + std::to_string(group.size()) + ".");
-        }
-      }
-    });
+      used[point] |= mark;
+    }
+  }
+  for (Index p = 0; p < piece.view.numberOfPoints; ++p)
+  {
+    const double* x = piece.view.points + 3 * p;
+    if (used[p] && !(std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])))
+    {
+      throw Error("Point " + std::to_string(p) +
+        " has a coordinate that is not finite: remove its cells first, by Threshold or Clean "
+        "to Grid.");
+    }
+    if (used[p] && piece.globalIds && piece.globalIds[p] < 0)
+    {
+      throw Error("The global id of point " + std::to_string(p) +
+        " is negative: run Generate Global Ids again.");
+    }
+    if (used[p] && piece.owners && (piece.owners[p] < 0 || piece.owners[p] >= group.size()))
+    {
+      throw Error("Point " + std::to_string(p) + " shall be owned by rank " +
+        std::to_string(piece.owners[p]) + " of " + std::to_string(group.size()) + ".");
+    }
+  }
   this->numberPoints(piece, used);
   this->takeCells(piece, used);
   this->connect();
@@ -217,25 +212,21 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
     }
     return key;
   };
-  group.together(
-    [&]
+  for (Index p = 0; p < n; ++p)
+  {
+    if (used[p])
     {
-      for (Index p = 0; p < n; ++p)
-      {
-        if (used[p])
-        {
-          keys.push_back(keyOf(p));
-        }
-      }
-      for (const PointKey& key : keys)
-      {
-        if (withIds)
-        {
-          ids.push_back({ key.id, { key.x[0], key.x[1], key.x[2] } });
-        }
-      }
-      std::sort(keys.begin(), keys.end());
-    });
+      keys.push_back(keyOf(p));
+    }
+  }
+  for (const PointKey& key : keys)
+  {
+    if (withIds)
+    {
+      ids.push_back({ key.id, { key.x[0], key.x[1], key.x[2] } });
+    }
+  }
+  std::sort(keys.begin(), keys.end());
   if (withIds)
   {
     checkIds(group, ids);
@@ -251,48 +242,36 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
   RankGroup& group = *this->Group;
   std::vector<PointKey> samples, range;
   std::vector<std::vector<PointKey>> sent;
-  group.together(
-    [&]
-    {
-      for (std::size_t i = 0; i < samplesPerRank && !keys.empty(); ++i)
-      {
-        samples.push_back(keys[i * keys.size() / samplesPerRank]);
-      }
-    });
+  for (std::size_t i = 0; i < samplesPerRank && !keys.empty(); ++i)
+  {
+    samples.push_back(keys[i * keys.size() / samplesPerRank]);
+  }
   const std::vector<std::vector<PointKey>> sampled = group.gatherItems(samples);
-  group.together(
-    [&]
-    {
-      std::vector<PointKey> all, limits;
-      for (const auto& list : sampled)
-      {
-        all.insert(all.end(), list.begin(), list.end());
-      }
-      std::sort(all.begin(), all.end());
-      for (int r = 1; r < group.size() && !all.empty(); ++r)
-      {
-        limits.push_back(all[r * all.size() / group.size()]);
-      }
-      sent.resize(group.size());
-      for (const PointKey& key : keys)
-      {
-        sent[std::upper_bound(limits.begin(), limits.end(), key) - limits.begin()].push_back(key);
-      }
-    });
+  std::vector<PointKey> all, limits;
+  for (const auto& list : sampled)
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end());
+  for (int r = 1; r < group.size() && !all.empty(); ++r)
+  {
+    limits.push_back(all[r * all.size() / group.size()]);
+  }
+  sent.resize(group.size());
+  for (const PointKey& key : keys)
+  {
+    sent[std::upper_bound(limits.begin(), limits.end(), key) - limits.begin()].push_back(key);
+  }
   const std::vector<std::vector<PointKey>> received = group.exchangeItems(sent);
-  group.together(
-    [&]
+  for (const auto& list : received)
+  {
+    range.insert(range.end(), list.begin(), list.end());
+  }
+  std::sort(range.begin(), range.end(),
+    [&](const PointKey& a, const PointKey& b)
     {
-      for (const auto& list : received)
-      {
-        range.insert(range.end(), list.begin(), list.end());
-      }
-      std::sort(range.begin(), range.end(),
-        [&](const PointKey& a, const PointKey& b)
-        {
-          return std::make_tuple(a.place(), a.rank, a.source) <
-            std::make_tuple(b.place(), b.rank, b.source);
-        });
+      return std::make_tuple(a.place(), a.rank, a.source) <
+        std::make_tuple(b.place(), b.rank, b.source);
     });
   return range;
 }
@@ -307,14 +286,10 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
   if (piece.divideAnew)
   {
     std::vector<Vec3> places;
-    group.together(
-      [&]
-      {
-        for (const PointKey& key : keys)
-        {
-          places.push_back({ key.x[0], key.x[1], key.x[2] });
-        }
-      });
+    for (const PointKey& key : keys)
+    {
+      places.push_back({ key.x[0], key.x[1], key.x[2] });
+    }
     division = std::make_unique<PointDivision>(group, places);
   }
   const std::vector<PointKey> range = this->distribute(keys);
@@ -336,38 +311,34 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
     Index source, number, owner;
   };
   std::vector<std::vector<Reply>> replies;
-  const auto reply = [&]
+  replies.resize(group.size());
+  for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end, ++first)
   {
-    replies.resize(group.size());
-    for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end, ++first)
+    Index owner = range[begin].rank;
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    for (end = begin; end < range.size() && !(range[begin] < range[end]); ++end)
     {
-      Index owner = range[begin].rank;
-      std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
-      for (end = begin; end < range.size() && !(range[begin] < range[end]); ++end)
+      const std::uint64_t hash = ownerHash(first, static_cast<int>(range[end].rank));
+      if (range[end].withCell && hash < least)
       {
-        const std::uint64_t hash = ownerHash(first, static_cast<int>(range[end].rank));
-        if (range[end].withCell && hash < least)
-        {
-          least = hash;
-          owner = range[end].rank;
-        }
-      }
-      if (least < std::numeric_limits<std::uint64_t>::max()) // an element has it
-      {
-        const PointKey& key = range[begin];
-        owner = key.owner >= 0 ? key.owner
-          : division           ? division->find({ key.x[0], key.x[1], key.x[2] })
-                               : owner;
-      }
-      for (std::size_t i = begin; i < end; ++i)
-      {
-        replies[range[i].rank].push_back({ range[i].source, first, owner });
+        least = hash;
+        owner = range[end].rank;
       }
     }
-    this->PieceNumbers.assign(piece.view.numberOfPoints, -1);
-    this->PieceOwners.assign(piece.view.numberOfPoints, -1);
-  };
-  group.together(reply);
+    if (least < std::numeric_limits<std::uint64_t>::max()) // an element has it
+    {
+      const PointKey& key = range[begin];
+      owner = key.owner >= 0 ? key.owner
+        : division           ? division->find({ key.x[0], key.x[1], key.x[2] })
+                             : owner;
+    }
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      replies[range[i].rank].push_back({ range[i].source, first, owner });
+    }
+  }
+  this->PieceNumbers.assign(piece.view.numberOfPoints, -1);
+  this->PieceOwners.assign(piece.view.numberOfPoints, -1);
   for (const auto& list : group.exchangeItems(replies))
   {
     for (const Reply& reply : list)
@@ -426,36 +397,28 @@ void DistributedMesh::exchangePoints(
   };
   std::vector<std::vector<SentPoint>> sent;
   std::vector<SentPoint> points;
-  group.together(
-    [&]
+  sent.resize(group.size());
+  for (int rank = 0; rank < group.size(); ++rank)
+  {
+    std::vector<Index>& some = needed[rank];
+    std::sort(some.begin(), some.end());
+    some.erase(std::unique(some.begin(), some.end()), some.end());
+    std::transform(some.begin(), some.end(), std::back_inserter(sent[rank]), pointAt);
+  }
+  points.reserve(static_cast<std::size_t>(view.numberOfPoints));
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    if (used[p])
     {
-      sent.resize(group.size());
-      for (int rank = 0; rank < group.size(); ++rank)
-      {
-        std::vector<Index>& some = needed[rank];
-        std::sort(some.begin(), some.end());
-        some.erase(std::unique(some.begin(), some.end()), some.end());
-        std::transform(some.begin(), some.end(), std::back_inserter(sent[rank]), pointAt);
-      }
-      points.reserve(static_cast<std::size_t>(view.numberOfPoints));
-      for (Index p = 0; p < view.numberOfPoints; ++p)
-      {
-        if (used[p])
-        {
-          points.push_back(pointAt(p));
-        }
-      }
-    });
+      points.push_back(pointAt(p));
+    }
+  }
   const auto received = group.exchangeItems(sent);
-  group.together(
-    [&]
-    {
-      for (const auto& list : received)
-      {
-        points.insert(points.end(), list.begin(), list.end());
-      }
-      this->takePoints(piece, used, points);
-    });
+  for (const auto& list : received)
+  {
+    points.insert(points.end(), list.begin(), list.end());
+  }
+  this->takePoints(piece, used, points);
 }
 
 //------------------------------------------------------------------------------
@@ -471,84 +434,76 @@ std::vector<std::vector<std::int32_t>> DistributedMesh::exchangeCells(
   const auto isOwn = [&](Index point) { return this->PieceOwners[point] == self; };
   std::vector<std::vector<Index>> sent, needed;
   std::size_t staying = 0; // length of the list of those of this rank
-  const auto list = [&]
+  sent.resize(group.size());
+  needed.resize(group.size());
+  std::vector<int> ranks;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
-    sent.resize(group.size());
-    needed.resize(group.size());
-    std::vector<int> ranks;
-    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    if (!takes(cell))
     {
-      if (!takes(cell))
+      continue;
+    }
+    const Index *begin = view.connectivity + view.offsets[cell],
+                *end = view.connectivity + view.offsets[cell + 1];
+    const auto own = std::count_if(begin, end, isOwn);
+    staying += own > 0 ? 2 + static_cast<std::size_t>(end - begin) : 0;
+    if (own == end - begin) // most cells stay
+    {
+      continue;
+    }
+    ranks.clear();
+    for (const Index* node = begin; node != end; ++node)
+    {
+      ranks.push_back(this->PieceOwners[*node]);
+    }
+    std::sort(ranks.begin(), ranks.end());
+    ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
+    for (const int rank : ranks)
+    {
+      if (rank == self)
       {
         continue;
       }
-      const Index *begin = view.connectivity + view.offsets[cell],
-                  *end = view.connectivity + view.offsets[cell + 1];
-      const auto own = std::count_if(begin, end, isOwn);
-      staying += own > 0 ? 2 + static_cast<std::size_t>(end - begin) : 0;
-      if (own == end - begin) // most cells stay
-      {
-        continue;
-      }
-      ranks.clear();
+      sent[rank].push_back(view.cellTypes[cell]);
+      sent[rank].push_back(end - begin);
       for (const Index* node = begin; node != end; ++node)
       {
-        ranks.push_back(this->PieceOwners[*node]);
-      }
-      std::sort(ranks.begin(), ranks.end());
-      ranks.erase(std::unique(ranks.begin(), ranks.end()), ranks.end());
-      for (const int rank : ranks)
-      {
-        if (rank == self)
-        {
-          continue;
-        }
-        sent[rank].push_back(view.cellTypes[cell]);
-        sent[rank].push_back(end - begin);
-        for (const Index* node = begin; node != end; ++node)
-        {
-          sent[rank].push_back(this->PieceNumbers[*node]);
-          needed[rank].push_back(*node);
-        }
+        sent[rank].push_back(this->PieceNumbers[*node]);
+        needed[rank].push_back(*node);
       }
     }
-  };
-  group.together(list);
+  }
   this->exchangePoints(piece, used, std::move(needed));
 
   std::vector<std::vector<std::int32_t>> lists;
   const std::vector<std::vector<Index>> received = group.exchangeItems(sent);
-  const auto take = [&]
+  lists.resize(group.size());
+  for (int rank = 0; rank < group.size(); ++rank)
   {
-    lists.resize(group.size());
-    for (int rank = 0; rank < group.size(); ++rank)
+    const std::vector<Index>& from = received[rank];
+    for (std::size_t i = 0; i < from.size(); i += 2 + static_cast<std::size_t>(from[i + 1]))
     {
-      const std::vector<Index>& from = received[rank];
-      for (std::size_t i = 0; i < from.size(); i += 2 + static_cast<std::size_t>(from[i + 1]))
-      {
-        const auto begin = from.begin() + static_cast<std::ptrdiff_t>(i) + 2;
-        lists[rank].push_back(static_cast<std::int32_t>(from[i]));
-        lists[rank].push_back(static_cast<std::int32_t>(from[i + 1]));
-        std::transform(begin, begin + static_cast<std::ptrdiff_t>(from[i + 1]),
-          std::back_inserter(lists[rank]),
-          [this](Index number) { return static_cast<std::int32_t>(this->local(number)); });
-      }
+      const auto begin = from.begin() + static_cast<std::ptrdiff_t>(i) + 2;
+      lists[rank].push_back(static_cast<std::int32_t>(from[i]));
+      lists[rank].push_back(static_cast<std::int32_t>(from[i + 1]));
+      std::transform(begin, begin + static_cast<std::ptrdiff_t>(from[i + 1]),
+        std::back_inserter(lists[rank]),
+        [this](Index number) { return static_cast<std::int32_t>(this->local(number)); });
     }
-    lists[self].reserve(staying);
-    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  }
+  lists[self].reserve(staying);
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const Index *begin = view.connectivity + view.offsets[cell],
+                *end = view.connectivity + view.offsets[cell + 1];
+    if (takes(cell) && std::any_of(begin, end, isOwn))
     {
-      const Index *begin = view.connectivity + view.offsets[cell],
-                  *end = view.connectivity + view.offsets[cell + 1];
-      if (takes(cell) && std::any_of(begin, end, isOwn))
-      {
-        lists[self].push_back(view.cellTypes[cell]);
-        lists[self].push_back(static_cast<std::int32_t>(end - begin));
-        std::transform(begin, end, std::back_inserter(lists[self]),
-          [this](Index point) { return static_cast<std::int32_t>(this->LocalOfPiece[point]); });
-      }
+      lists[self].push_back(view.cellTypes[cell]);
+      lists[self].push_back(static_cast<std::int32_t>(end - begin));
+      std::transform(begin, end, std::back_inserter(lists[self]),
+        [this](Index point) { return static_cast<std::int32_t>(this->LocalOfPiece[point]); });
     }
-  };
-  group.together(take);
+  }
   return lists;
 }
 
@@ -580,24 +535,20 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
   RankGroup& group = *this->Group;
   std::vector<std::vector<std::int32_t>> lists = this->exchangeCells(piece, used);
   std::unique_ptr<TakenCells> taken;
-  group.together(
-    [&]
+  taken = std::make_unique<TakenCells>(std::move(lists), this->localPoints());
+  const std::vector<TakenCells::Cell>& cells = taken->cells();
+  for (std::size_t i = 1; i < cells.size(); ++i)
+  {
+    if (cells[i].rank != cells[i - 1].rank && cells[i].least == cells[i - 1].least &&
+      taken->same(cells[i], cells[i - 1]))
     {
-      taken = std::make_unique<TakenCells>(std::move(lists), this->localPoints());
-      const std::vector<TakenCells::Cell>& cells = taken->cells();
-      for (std::size_t i = 1; i < cells.size(); ++i)
-      {
-        if (cells[i].rank != cells[i - 1].rank && cells[i].least == cells[i - 1].least &&
-          taken->same(cells[i], cells[i - 1]))
-        {
-          throw Error("Processes " + std::to_string(std::min(cells[i].rank, cells[i - 1].rank)) +
-            " and " + std::to_string(std::max(cells[i].rank, cells[i - 1].rank)) +
-            " have the same cell, and neither marks it as a ghost: give each cell to one process, "
-            "or mark copies in the array vtkGhostType.");
-        }
-      }
-      this->copyCells(*taken);
-    });
+      throw Error("Processes " + std::to_string(std::min(cells[i].rank, cells[i - 1].rank)) +
+        " and " + std::to_string(std::max(cells[i].rank, cells[i - 1].rank)) +
+        " have the same cell, and neither marks it as a ghost: give each cell to one process, "
+        "or mark copies in the array vtkGhostType.");
+    }
+  }
+  this->copyCells(*taken);
 
   const Index own = std::count(this->OwnedCells.begin(), this->OwnedCells.end(), 1);
   this->GlobalCells = group.sum(own);
@@ -616,36 +567,28 @@ void DistributedMesh::connect()
   RankGroup& group = *this->Group;
   std::vector<std::vector<Index>> wanted;
   std::vector<std::vector<std::int32_t>> received;
-  group.together(
-    [&]
-    {
-      wanted.resize(group.size());
-      received.resize(group.size());
-      for (Index p = 0; p < this->localPoints(); ++p)
-      {
-        if (!this->owned(p))
-        {
-          wanted[this->Owners[p]].push_back(this->Numbers[p]);
-          received[this->Owners[p]].push_back(static_cast<std::int32_t>(p));
-        }
-      }
-    });
-  const auto asked = group.exchangeItems(wanted);
-  const auto pair = [&]
+  wanted.resize(group.size());
+  received.resize(group.size());
+  for (Index p = 0; p < this->localPoints(); ++p)
   {
-    for (int rank = 0; rank < group.size(); ++rank)
+    if (!this->owned(p))
     {
-      Subset::Neighbour neighbour = { rank, {}, std::move(received[rank]) };
-      for (const Index number : asked[rank])
-      {
-        neighbour.sent.push_back(static_cast<std::int32_t>(this->local(number)));
-      }
-      if (!neighbour.sent.empty() || !neighbour.received.empty())
-      {
-        this->Halo.push_back(std::move(neighbour));
-      }
+      wanted[this->Owners[p]].push_back(this->Numbers[p]);
+      received[this->Owners[p]].push_back(static_cast<std::int32_t>(p));
     }
-  };
-  group.together(pair);
+  }
+  const auto asked = group.exchangeItems(wanted);
+  for (int rank = 0; rank < group.size(); ++rank)
+  {
+    Subset::Neighbour neighbour = { rank, {}, std::move(received[rank]) };
+    for (const Index number : asked[rank])
+    {
+      neighbour.sent.push_back(static_cast<std::int32_t>(this->local(number)));
+    }
+    if (!neighbour.sent.empty() || !neighbour.received.empty())
+    {
+      this->Halo.push_back(std::move(neighbour));
+    }
+  }
 }
 }

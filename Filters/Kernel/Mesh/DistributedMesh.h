@@ -121,6 +121,7 @@ public:
 private:
   struct PointKey;
   struct SentPoint;
+  void build(const MeshPiece& piece);
   void findBounds(const MeshPiece& piece, const std::vector<char>& used);
   std::vector<PointKey> makeKeys(const MeshPiece& piece, const std::vector<char>& used);
   void numberPoints(const MeshPiece& piece, const std::vector<char>& used);

@@ -409,7 +409,7 @@ OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPa
 
 /// The lists of all ranks, one after the other.
 template <class Item>
-std::vector<Item> together(const std::vector<std::vector<Item>>& lists)
+std::vector<Item> joined(const std::vector<std::vector<Item>>& lists)
 {
   std::vector<Item> all;
   for (const std::vector<Item>& list : lists)
@@ -471,15 +471,11 @@ RankOrder orderOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
   const Vec3 origin = commonOrigin(group, pieces);
   PieceOrders own(pieces, validity, dimension, haveSigns);
   std::vector<std::vector<OrderFacet>> sent(group.size());
-  group.together(
-    [&]
-    {
-      own.find(origin);
-      for (const OrderFacet& facet : own.Facets)
-      {
-        sent[homeOf(facet.hash, group)].push_back(facet);
-      }
-    });
+  own.find(origin);
+  for (const OrderFacet& facet : own.Facets)
+  {
+    sent[homeOf(facet.hash, group)].push_back(facet);
+  }
   std::vector<Index> firsts = { 0 };
   for (const auto& count : group.gatherItems(std::vector<std::size_t>{ own.Parts.size() }))
   {
@@ -487,34 +483,25 @@ RankOrder orderOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
   }
   const std::vector<std::vector<OrderFacet>> received = group.exchangeItems(sent);
   std::vector<PartPair> pairs;
-  group.together(
-    [&]
-    {
-      pairs = pairsAt(received, firsts, haveSigns && overlapping);
-      unitePairs(pairs);
-    });
+  pairs = pairsAt(received, firsts, haveSigns && overlapping);
+  unitePairs(pairs);
   const Index disagreeing = group.sum(own.Disagreeing);
   const auto allParts = onFirst(group, own.Parts);
   const auto allPairs = onFirst(group, pairs);
   std::vector<std::vector<Turn>> turns(group.size());
   std::vector<OrderTotals> totals;
-  group.together(
-    [&]
+  if (group.rank() == 0)
+  {
+    std::vector<PartPair> merged = joined(allPairs);
+    unitePairs(merged);
+    std::vector<Turn> all;
+    totals.push_back(
+      decide(joined(allParts), merged, haveSigns, mirrored ? -1.0 : 1.0, disagreeing, all));
+    for (int rank = 0; rank < group.size(); ++rank)
     {
-      if (group.rank() > 0)
-      {
-        return;
-      }
-      std::vector<PartPair> joined = together(allPairs);
-      unitePairs(joined);
-      std::vector<Turn> all;
-      totals.push_back(
-        decide(together(allParts), joined, haveSigns, mirrored ? -1.0 : 1.0, disagreeing, all));
-      for (int rank = 0; rank < group.size(); ++rank)
-      {
-        turns[rank].assign(all.begin() + firsts[rank], all.begin() + firsts[rank + 1]);
-      }
-    });
+      turns[rank].assign(all.begin() + firsts[rank], all.begin() + firsts[rank + 1]);
+    }
+  }
   const OrderTotals all = group.gatherItems(totals)[0][0];
   const std::vector<Turn> ownTurns = group.exchangeItems(turns)[0];
   found.disagreeing = all.disagreeing;
@@ -527,7 +514,7 @@ RankOrder orderOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
     result.order.cells = all.cells;
     result.order.ambiguous = all.ambiguous;
     result.order.firstAmbiguous = group.size() == 1 ? all.firstAmbiguous : -1;
-    group.together([&] { result.reverse = own.reverse(ownTurns); });
+    result.reverse = own.reverse(ownTurns);
   }
   else if (found.reversedParts > 0)
   {

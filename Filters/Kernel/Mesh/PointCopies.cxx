@@ -225,39 +225,27 @@ JoinedCopies joinCopies(RankGroup& group, const MeshView& view, const Index* ids
   std::vector<Box> boxes(1), all;
   std::vector<std::vector<Copy>> sent;
   std::vector<std::vector<Moved>> moved;
-  group.together(
-    [&]
+  shortest = shortestEdges(view);
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    if (std::isfinite(shortest[p]))
     {
-      shortest = shortestEdges(view);
-      for (Index p = 0; p < view.numberOfPoints; ++p)
-      {
-        if (std::isfinite(shortest[p]))
-        {
-          boxes[0].add(view.points + 3 * p);
-        }
-      }
-    });
+      boxes[0].add(view.points + 3 * p);
+    }
+  }
   const auto gathered = group.gatherItems(boxes);
-  group.together(
-    [&]
-    {
-      for (const std::vector<Box>& box : gathered)
-      {
-        all.push_back(box[0]);
-      }
-      sent = candidates(group, view, ids, shortest, all);
-    });
+  for (const std::vector<Box>& box : gathered)
+  {
+    all.push_back(box[0]);
+  }
+  sent = candidates(group, view, ids, shortest, all);
   const auto received = group.exchangeItems(sent);
-  group.together(
-    [&]
-    {
-      std::vector<Copy> copies;
-      for (const std::vector<Copy>& list : received)
-      {
-        copies.insert(copies.end(), list.begin(), list.end());
-      }
-      moved = findMoved(copies, received.size(), result, together);
-    });
+  std::vector<Copy> copies;
+  for (const std::vector<Copy>& list : received)
+  {
+    copies.insert(copies.end(), list.begin(), list.end());
+  }
+  moved = findMoved(copies, received.size(), result, together);
   // Ids of which most are at several places are not those of one mesh.
   result.apart = group.sum(result.apart);
   if (group.sum(together) <= result.apart)
@@ -271,21 +259,17 @@ JoinedCopies joinCopies(RankGroup& group, const MeshView& view, const Index* ids
     return result;
   }
   const auto places = group.exchangeItems(moved);
-  group.together(
-    [&]
+  for (const std::vector<Moved>& list : places)
+  {
+    if (!list.empty() && result.points.empty())
     {
-      for (const std::vector<Moved>& list : places)
-      {
-        if (!list.empty() && result.points.empty())
-        {
-          result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
-        }
-        for (const Moved& one : list)
-        {
-          std::copy_n(one.x, 3, &result.points[3 * one.source]);
-        }
-      }
-    });
+      result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
+    }
+    for (const Moved& one : list)
+    {
+      std::copy_n(one.x, 3, &result.points[3 * one.source]);
+    }
+  }
   return result;
 }
 }

@@ -75,13 +75,9 @@ PointDivision::PointDivision(RankGroup& group, const std::vector<Vec3>& points)
   {
     sample.insert(sample.end(), list.begin(), list.end());
   }
-  group.together(
-    [&]
-    {
-      std::sort(sample.begin(), sample.end());
-      sample.erase(std::unique(sample.begin(), sample.end()), sample.end());
-      this->split(0, group.size(), sample.begin(), sample.end());
-    });
+  std::sort(sample.begin(), sample.end());
+  sample.erase(std::unique(sample.begin(), sample.end()), sample.end());
+  this->split(0, group.size(), sample.begin(), sample.end());
 }
 
 //------------------------------------------------------------------------------

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RankPieces.h
- * @brief What is known of a mesh in pieces on several ranks that stay where they are: its plane,
- * its orientation, and which points and cells of another mesh are the same.
+ * @brief What is known of a mesh in pieces on several ranks that stay where they are: its plane and
+ * its orientation.
  */
 #ifndef tautline_RankPieces_h
 #define tautline_RankPieces_h
@@ -49,20 +49,5 @@ TAUTLINE_KERNEL_EXPORT MeshSpace spaceOnRanks(
  */
 TAUTLINE_KERNEL_EXPORT Orientation orientationOnRanks(RankGroup& group,
   const std::vector<RankPiece>& pieces, const std::vector<const signed char*>& validity);
-
-/**
- * @brief Where the points of a mesh are in another one with the same points and cells, whose pieces
- * are others. Collective.
- *
- * Points correspond by the global ids if both meshes have some, else by their coordinates. No rank
- * gets the pieces of another: each point and cell has a rank that gets what all have of it.
- *
- * Throws Error, on all ranks, if the points or cells of the meshes differ, a cell lists its points
- * in another order, one id is at two places, or ranks have a cell of `other` twice. Ghost cells of
- * `mesh` need a counterpart, those of `other` do not count.
- * @return for each piece of `mesh` the coordinates of its points in `other`
- */
-TAUTLINE_KERNEL_EXPORT std::vector<std::vector<double>> pointsInOther(
-  RankGroup& group, const std::vector<RankPiece>& mesh, const std::vector<RankPiece>& other);
 }
 #endif

@@ -23,16 +23,12 @@ GlobalFunctionOnRanks::GlobalFunctionOnRanks(const DistributedMesh& mesh, const 
   , Slopes(objectives, 1.0)
   , Grids(rows, threads)
 {
-  mesh.group().together(
-    [&]
-    {
-      this->Terms.resize(mesh.view().numberOfCells);
-      if (problem)
-      {
-        this->Local =
-          std::make_unique<GlobalFunction>(*problem, optimizer, rows.rowOfPoint(), rows.rows());
-      }
-    });
+  this->Terms.resize(mesh.view().numberOfCells);
+  if (problem)
+  {
+    this->Local =
+      std::make_unique<GlobalFunction>(*problem, optimizer, rows.rowOfPoint(), rows.rows());
+  }
 }
 
 std::size_t GlobalFunctionOnRanks::size() const
@@ -44,14 +40,10 @@ std::size_t GlobalFunctionOnRanks::size() const
 void GlobalFunctionOnRanks::put(const double* x)
 {
   this->Rows.spread(x, this->All.data(), this->Size);
-  this->TheMesh.group().together(
-    [&]
-    {
-      if (this->Local)
-      {
-        this->Local->put(this->All.data());
-      }
-    });
+  if (this->Local)
+  {
+    this->Local->put(this->All.data());
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -80,19 +72,14 @@ double GlobalFunctionOnRanks::sum(const std::vector<double>& terms)
 //------------------------------------------------------------------------------
 double GlobalFunctionOnRanks::valueAndGradient(const double* x, double* gradient)
 {
-  RankGroup& group = this->TheMesh.group();
   const std::size_t n = this->Slopes.size();
   this->Rows.spread(x, this->All.data(), this->Size);
   const auto find = [&](const auto& work)
   {
-    group.together(
-      [&]
-      {
-        if (this->Local && this->Allowed)
-        {
-          work();
-        }
-      });
+    if (this->Local && this->Allowed)
+    {
+      work();
+    }
   };
   this->Allowed = true;
   find(
@@ -122,25 +109,21 @@ double GlobalFunctionOnRanks::valueAndGradient(const double* x, double* gradient
 void GlobalFunctionOnRanks::makeMatrix()
 {
   bool fits = true;
-  this->TheMesh.group().together(
-    [&]
+  try
+  {
+    if (this->Local && !this->Local->hasMatrix())
     {
-      try
-      {
-        if (this->Local && !this->Local->hasMatrix())
-        {
-          this->Local->makeMatrix();
-        }
-      }
-      catch (const MemoryError&)
-      {
-        fits = false;
-      }
-      catch (const std::bad_alloc&)
-      {
-        fits = false;
-      }
-    });
+      this->Local->makeMatrix();
+    }
+  }
+  catch (const MemoryError&)
+  {
+    fits = false;
+  }
+  catch (const std::bad_alloc&)
+  {
+    fits = false;
+  }
   if (this->TheMesh.group().any(!fits))
   {
     throw MemoryError("The matrix of Newton's method does not fit into memory: choose another "
@@ -151,24 +134,16 @@ void GlobalFunctionOnRanks::makeMatrix()
 void GlobalFunctionOnRanks::linearize(const double* x)
 {
   this->put(x);
-  this->TheMesh.group().together(
-    [&]
-    {
-      if (this->Local)
-      {
-        this->Local->rebase(this->All.data());
-      }
-    });
+  if (this->Local)
+  {
+    this->Local->rebase(this->All.data());
+  }
   this->makeMatrix();
   bool convex = this->Newton;
-  this->TheMesh.group().together(
-    [&]
-    {
-      if (this->Local)
-      {
-        convex = this->Local->fillMatrix();
-      }
-    });
+  if (this->Local)
+  {
+    convex = this->Local->fillMatrix();
+  }
   this->Convex = !this->TheMesh.group().any(!convex);
   if (this->Convex)
   {

@@ -119,15 +119,11 @@ bool OptimizationOnRanks::findHarmonicPoints(std::vector<double>& points)
 //------------------------------------------------------------------------------
 void OptimizationOnRanks::shiftPoints(double part, std::vector<double>& points)
 {
-  this->Group.together(
-    [&]
-    {
-      if (this->Problem)
-      {
-        shiftFreePoints(
-          this->Problem->moving(), this->Free, this->TheMesh.numbers().data(), part, points);
-      }
-    });
+  if (this->Problem)
+  {
+    shiftFreePoints(
+      this->Problem->moving(), this->Free, this->TheMesh.numbers().data(), part, points);
+  }
   this->TheMesh.exchange(points.data(), 3); // a copy of a point may miss edges
 }
 }

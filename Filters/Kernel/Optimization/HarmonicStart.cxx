@@ -261,31 +261,27 @@ bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
   Index count = 0;
   bool fits = true;
   std::vector<double> all, found, x, right;
-  mesh.group().together(
-    [&]
+  try
+  {
+    if (problem)
     {
-      try
-      {
-        if (problem)
-        {
-          requireMemoryFor(*problem); // also for what follows, where no rank may fail alone
-          count = rows.rows();
-          a = assemble(*problem, rows.rowOfPoint(), count, points);
-        }
-        all.resize(static_cast<std::size_t>(size * rows.rows()));
-        found.resize(all.size());
-        x.resize(static_cast<std::size_t>(size * rows.numberOfOwned()));
-        right.resize(x.size());
-      }
-      catch (const std::bad_alloc&)
-      {
-        fits = false;
-      }
-      catch (const MemoryError&)
-      {
-        fits = false;
-      }
-    });
+      requireMemoryFor(*problem); // also for what follows, where no rank may fail alone
+      count = rows.rows();
+      a = assemble(*problem, rows.rowOfPoint(), count, points);
+    }
+    all.resize(static_cast<std::size_t>(size * rows.rows()));
+    found.resize(all.size());
+    x.resize(static_cast<std::size_t>(size * rows.numberOfOwned()));
+    right.resize(x.size());
+  }
+  catch (const std::bad_alloc&)
+  {
+    fits = false;
+  }
+  catch (const MemoryError&)
+  {
+    fits = false;
+  }
   if (mesh.group().any(!fits))
   {
     throw MemoryError("The harmonic map does not fit into memory.");

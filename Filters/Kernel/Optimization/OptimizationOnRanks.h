@@ -33,7 +33,7 @@ public:
 
 private:
   void agree();
-  void untangle();
+  bool untangle();
   bool stage();
   void makeProblem();
   void rescaleUntangling();

@@ -559,7 +559,6 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
 bool untangleFirst(
   const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)
 {
-  UntangleOptions untangling;
   std::vector<unsigned char> held = heldInUntangling(options, mesh.view().numberOfPoints);
   if (!options.fixed && !held.empty())
   {
@@ -567,22 +566,8 @@ bool untangleFirst(
     std::transform(held.begin(), held.end(), boundary.begin(), held.begin(),
       [](unsigned char h, char b) { return static_cast<unsigned char>(h || b); });
   }
-  untangling.fixed = held.empty() ? nullptr : held.data();
-  untangling.threads = options.threads;
-  if (options.stopping.maximumSeconds > 0)
-  {
-    // 0 would be no limit.
-    untangling.maximumSeconds = std::max(
-      std::numeric_limits<double>::min(), options.stopping.maximumSeconds - clock.seconds());
-  }
   bool proceed = true;
-  untangling.observer = [&](const IterationState& state)
-  {
-    IterationRecord record = state.record;
-    record.objectives.assign(options.objectives.size(), 0.0);
-    record.mean = record.worst = record.objectives;
-    return proceed = !options.observer || options.observer({ record, 0.0, state.points });
-  };
+  const UntangleOptions untangling = untanglingFirst(options, held, clock, proceed);
   UntangleResult untangled = untangle(mesh, untangling);
   result.points = std::move(untangled.points);
   result.invertedAfter = untangled.invertedAfter;

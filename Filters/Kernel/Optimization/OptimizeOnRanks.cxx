@@ -67,23 +67,19 @@ OptimizationOnRanks::OptimizationOnRanks(
 {
   // To the checks, what is at the edge of this part only is not on the boundary.
   const std::vector<unsigned char> boundary = rankBoundary(mesh);
-  this->Group.together(
-    [&]
-    {
-      requireLocalOptions(options);
-      requireOrdinaryScale(mesh.view(), "Optimization");
-      if (mesh.view().numberOfCells > 0)
-      {
-        this->Start = std::make_unique<Mesh>(mesh.view(), options.threads);
-        this->Start->setMirrored(mirrored);
-        std::vector<unsigned char> held(boundary.size());
-        std::transform(boundary.begin(), boundary.end(), options.fixed, held.begin(),
-          [](unsigned char on, unsigned char fixed) { return !on || fixed; });
-        OptimizeOptions checked = options;
-        checked.fixed = held.data();
-        checkOptions(*this->Start, checked);
-      }
-    });
+  requireLocalOptions(options);
+  requireOrdinaryScale(mesh.view(), "Optimization");
+  if (mesh.view().numberOfCells > 0)
+  {
+    this->Start = std::make_unique<Mesh>(mesh.view(), options.threads);
+    this->Start->setMirrored(mirrored);
+    std::vector<unsigned char> held(boundary.size());
+    std::transform(boundary.begin(), boundary.end(), options.fixed, held.begin(),
+      [](unsigned char on, unsigned char fixed) { return !on || fixed; });
+    OptimizeOptions checked = options;
+    checked.fixed = held.data();
+    checkOptions(*this->Start, checked);
+  }
   this->agree();
 }
 
@@ -114,28 +110,20 @@ void OptimizationOnRanks::makeProblem()
 {
   const SimplexFrame frame = frameOf(this->TheMesh, this->Points);
   std::vector<unsigned char> closed;
-  this->Group.together(
-    [&]
-    {
-      this->Problem.reset();
-      if (this->Start)
-      {
-        this->Problem = std::make_unique<OptimizationProblem>(
-          *this->Start, this->Options, this->Points, this->Clock, &frame);
-      }
-    });
+  this->Problem.reset();
+  if (this->Start)
+  {
+    this->Problem = std::make_unique<OptimizationProblem>(
+      *this->Start, this->Options, this->Points, this->Clock, &frame);
+  }
   this->rescaleUntangling();
-  this->Group.together(
-    [&]
-    {
-      if (this->Problem)
-      {
-        closed = this->Problem->closedForms();
-        const bool weighted = std::any_of(this->Problem->resolved().begin(),
-          this->Problem->resolved().end(), [](const Objective& o) { return o.elementWeights; });
-        closed.push_back(!weighted);
-      }
-    });
+  if (this->Problem)
+  {
+    closed = this->Problem->closedForms();
+    const bool weighted = std::any_of(this->Problem->resolved().begin(),
+      this->Problem->resolved().end(), [](const Objective& o) { return o.elementWeights; });
+    closed.push_back(!weighted);
+  }
   // An objective is in closed form on all ranks or on none.
   std::vector<unsigned char> agreed(this->Options.objectives.size() + 1, 1);
   for (const auto& list : this->Group.gatherItems(closed))
@@ -177,22 +165,17 @@ void OptimizationOnRanks::makeProblem()
 void OptimizationOnRanks::rescaleUntangling()
 {
   std::vector<double> largest;
-  this->Group.together(
-    [&] { largest = this->Problem ? this->Problem->largestValues() : std::vector<double>(); });
+  largest = this->Problem ? this->Problem->largestValues() : std::vector<double>();
   const Index count = this->Group.maximum(static_cast<Index>(largest.size()));
   largest.resize(static_cast<std::size_t>(count), 0.0);
   for (double& value : largest)
   {
     value = this->Group.maximum(value);
   }
-  this->Group.together(
-    [&]
-    {
-      if (this->Problem)
-      {
-        this->Problem->rescaleUntangling(largest);
-      }
-    });
+  if (this->Problem)
+  {
+    this->Problem->rescaleUntangling(largest);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -232,19 +215,15 @@ IterationRecord OptimizationOnRanks::record(int iteration)
   record.iteration = iteration;
   std::vector<signed char> validity;
   Index invalid = 0;
-  this->Group.together(
-    [&]
-    {
-      validity.resize(this->TheMesh.view().numberOfCells);
-      if (this->Problem)
-      {
-        this->Problem->moving().classifyCells(validity.data(), this->Options.threads);
-      }
-      for (std::size_t cell = 0; cell < validity.size(); ++cell)
-      {
-        invalid += this->TheMesh.ownedCells()[cell] && isInvalid(validity[cell]);
-      }
-    });
+  validity.resize(this->TheMesh.view().numberOfCells);
+  if (this->Problem)
+  {
+    this->Problem->moving().classifyCells(validity.data(), this->Options.threads);
+  }
+  for (std::size_t cell = 0; cell < validity.size(); ++cell)
+  {
+    invalid += this->TheMesh.ownedCells()[cell] && isInvalid(validity[cell]);
+  }
   record.inverted = this->Group.sum(invalid);
   for (std::size_t i = 0; i < this->Options.objectives.size(); ++i)
   {
@@ -266,42 +245,29 @@ bool OptimizationOnRanks::report(const IterationRecord& record)
   this->Result.history.push_back(presentable(*this->TheScalarizer, record));
   bool proceed = true;
   const auto points = [&](double* to) { std::copy(this->Points.begin(), this->Points.end(), to); };
-  this->Group.together(
-    [&]
-    {
-      proceed = !this->Options.observer ||
-        this->Options.observer(
-          { this->Result.history.back(), this->Watch.progress(record), points });
-    });
+  proceed = !this->Options.observer ||
+    this->Options.observer({ this->Result.history.back(), this->Watch.progress(record), points });
   return !this->Group.any(!proceed);
 }
 
 //------------------------------------------------------------------------------
 void OptimizationOnRanks::store()
 {
-  this->Group.together(
-    [&]
-    {
-      if (this->Problem)
-      {
-        this->Problem->store();
-      }
-    });
+  if (this->Problem)
+  {
+    this->Problem->store();
+  }
   this->TheMesh.exchange(this->Points.data(), 3);
 }
 
 void OptimizationOnRanks::restart(const std::vector<double>& points)
 {
-  this->Group.together(
-    [&]
-    {
-      const std::vector<double> to = points;
-      this->Points = to;
-      if (this->Problem)
-      {
-        this->Problem->restart(to);
-      }
-    });
+  const std::vector<double> to = points;
+  this->Points = to;
+  if (this->Problem)
+  {
+    this->Problem->restart(to);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -426,13 +392,14 @@ bool OptimizationOnRanks::stage()
 }
 
 //------------------------------------------------------------------------------
-void OptimizationOnRanks::untangle()
+/// False if the observer stopped it on any rank.
+bool OptimizationOnRanks::untangle()
 {
   const auto& objectives = this->Options.objectives;
   if (this->Result.invertedBefore == 0 ||
     std::any_of(objectives.begin(), objectives.end(), canUntangle))
   {
-    return;
+    return true;
   }
   if (!this->Options.untangleFirst)
   {
@@ -440,22 +407,21 @@ void OptimizationOnRanks::untangle()
       " elements are inverted or degenerate, and no objective repairs them: untangle first, or add "
       "the untangling metric.");
   }
-  UntangleOptions options;
   const std::vector<unsigned char> held =
     heldInUntangling(this->Options, static_cast<Index>(this->Points.size() / 3));
-  options.fixed = held.empty() ? nullptr : held.data();
-  options.threads = this->Options.threads;
-  if (this->Options.stopping.maximumSeconds > 0)
-  {
-    options.maximumSeconds = std::max(std::numeric_limits<double>::min(),
-      this->Options.stopping.maximumSeconds - this->Clock.seconds());
-  }
+  bool proceed = true;
+  const UntangleOptions options = untanglingFirst(this->Options, held, this->Clock, proceed);
   UntangleResult found = untangleOnRanks(this->TheMesh, this->Mirrored, options).result;
   this->Points = std::move(found.points);
   this->Result.newlyInvalid = found.newlyInvalid;
+  this->Result.untangled = true;
+  if (this->Group.any(!proceed))
+  {
+    return false;
+  }
   requireWithinLimits(this->Group.sum(beyondLimits(this->Options, this->TheMesh.points().data(),
     this->Points, [this](Index p) { return this->TheMesh.owned(p); })));
-  this->Result.untangled = true;
+  return true;
 }
 
 //------------------------------------------------------------------------------
@@ -472,7 +438,14 @@ OptimizeResult OptimizationOnRanks::run()
     countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
   this->Guard = std::make_unique<RankGuard>(
     this->TheMesh, this->Mirrored, this->Options, this->Result.invertedBefore == 0);
-  this->untangle();
+  if (!this->untangle())
+  {
+    this->Result.reason = StopReason::Aborted;
+    this->Result.points = this->Points;
+    this->Result.invertedAfter =
+      countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
+    return this->Result;
+  }
   const Index invalid = countInvalidOnRanks(this->TheMesh, this->Mirrored, this->Points, threads);
   const std::vector<double> start = this->Points;
   while (this->stage())
@@ -532,6 +505,7 @@ void requireLocalOptions(const OptimizeOptions& options)
 //------------------------------------------------------------------------------
 OptimizeResult optimizeOnRanks(DistributedMesh& mesh, bool mirrored, const OptimizeOptions& options)
 {
+  OptimizeResult result;
   mesh.group().together(
     [&]
     {
@@ -540,47 +514,44 @@ OptimizeResult optimizeOnRanks(DistributedMesh& mesh, bool mirrored, const Optim
         throw Error(
           "The fixed points of a mesh on several ranks must be given, see rankBoundary().");
       }
+      // What the owner says of a point counts.
+      std::vector<unsigned char> fixed;
+      OptimizeOptions agreed = options;
+      if (options.fixed)
+      {
+        fixed.assign(options.fixed, options.fixed + mesh.localPoints());
+      }
+      fixed.reserve(1); // not null, which would be the boundary
+      agreed.fixed = fixed.data();
+      mesh.exchange(fixed.data());
+      std::vector<double> planes, lines;
+      const auto agreeOn = [&](const double*& given, std::vector<double>& directions)
+      {
+        if (mesh.group().any(given != nullptr))
+        {
+          directions.assign(3 * mesh.localPoints(), 0.0);
+          std::copy_n(given, given ? directions.size() : 0, directions.begin());
+          mesh.exchange(directions.data(), 3);
+          directions.reserve(1);
+          given = directions.data();
+        }
+      };
+      agreeOn(agreed.slidePlanes, planes);
+      agreeOn(agreed.slideLines, lines);
+      result = OptimizationOnRanks(mesh, mirrored, agreed).run();
     });
-  // What the owner says of a point counts.
-  std::vector<unsigned char> fixed;
-  OptimizeOptions agreed = options;
-  if (options.fixed)
-  {
-    fixed.assign(options.fixed, options.fixed + mesh.localPoints());
-  }
-  fixed.reserve(1); // not null, which would be the boundary
-  agreed.fixed = fixed.data();
-  mesh.exchange(fixed.data());
-  std::vector<double> planes, lines;
-  const auto agreeOn = [&](const double*& given, std::vector<double>& directions)
-  {
-    if (mesh.group().any(given != nullptr))
-    {
-      directions.assign(3 * mesh.localPoints(), 0.0);
-      std::copy_n(given, given ? directions.size() : 0, directions.begin());
-      mesh.exchange(directions.data(), 3);
-      directions.reserve(1);
-      given = directions.data();
-    }
-  };
-  agreeOn(agreed.slidePlanes, planes);
-  agreeOn(agreed.slideLines, lines);
-  return OptimizationOnRanks(mesh, mirrored, agreed).run();
+  return result;
 }
 
 //------------------------------------------------------------------------------
 std::vector<unsigned char> rankBoundary(const DistributedMesh& mesh)
 {
   std::vector<unsigned char> flags(mesh.localPoints(), 0);
-  mesh.group().together(
-    [&]
-    {
-      if (mesh.view().numberOfCells > 0)
-      {
-        const std::vector<char> boundary = boundaryPoints(Mesh(mesh.view()));
-        std::copy(boundary.begin(), boundary.end(), flags.begin());
-      }
-    });
+  if (mesh.view().numberOfCells > 0)
+  {
+    const std::vector<char> boundary = boundaryPoints(Mesh(mesh.view()));
+    std::copy(boundary.begin(), boundary.end(), flags.begin());
+  }
   mesh.exchange(flags.data());
   return flags;
 }
@@ -590,19 +561,15 @@ Index countInvalidOnRanks(
   const DistributedMesh& mesh, bool mirrored, const std::vector<double>& points, int threads)
 {
   Index count = 0;
-  mesh.group().together(
-    [&]
-    {
-      std::vector<signed char> validity(mesh.view().numberOfCells);
-      if (!validity.empty())
-      {
-        movedMesh(mesh, mirrored, points, threads).classifyCells(validity.data(), threads);
-      }
-      for (std::size_t cell = 0; cell < validity.size(); ++cell)
-      {
-        count += mesh.ownedCells()[cell] && isInvalid(validity[cell]);
-      }
-    });
+  std::vector<signed char> validity(mesh.view().numberOfCells);
+  if (!validity.empty())
+  {
+    movedMesh(mesh, mirrored, points, threads).classifyCells(validity.data(), threads);
+  }
+  for (std::size_t cell = 0; cell < validity.size(); ++cell)
+  {
+    count += mesh.ownedCells()[cell] && isInvalid(validity[cell]);
+  }
   return mesh.group().sum(count);
 }
 }

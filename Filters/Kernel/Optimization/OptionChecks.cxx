@@ -165,6 +165,29 @@ std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Inde
 }
 
 //------------------------------------------------------------------------------
+UntangleOptions untanglingFirst(const OptimizeOptions& options,
+  const std::vector<unsigned char>& held, const Stopwatch& clock, bool& proceed)
+{
+  UntangleOptions untangling;
+  untangling.fixed = held.empty() ? nullptr : held.data();
+  untangling.threads = options.threads;
+  if (options.stopping.maximumSeconds > 0)
+  {
+    // 0 would be no limit.
+    untangling.maximumSeconds = std::max(
+      std::numeric_limits<double>::min(), options.stopping.maximumSeconds - clock.seconds());
+  }
+  untangling.observer = [&](const IterationState& state)
+  {
+    IterationRecord record = state.record;
+    record.objectives.assign(options.objectives.size(), 0.0);
+    record.mean = record.worst = record.objectives;
+    return proceed = !options.observer || options.observer({ record, 0.0, state.points });
+  };
+  return untangling;
+}
+
+//------------------------------------------------------------------------------
 Index beyondLimits(const OptimizeOptions& options, const double* start,
   const std::vector<double>& points, const std::function<bool(Index)>& counts)
 {

@@ -7,7 +7,9 @@
 #define tautline_OptionChecks_h
 
 #include "OptimizeOptions.h"
+#include "tautline/Core/Stopwatch.h"
 #include "tautline/Mesh/Mesh.h"
+#include "tautline/Untangling/UntangleOptions.h"
 
 #include <functional>
 #include <vector>
@@ -23,6 +25,10 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options);
  * the boundary.
  */
 std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Index points);
+/// The options of untangling before an optimization, in the time that is left, with its observer.
+/// @param held see heldInUntangling() @param proceed set to false if the observer stops it
+UntangleOptions untanglingFirst(const OptimizeOptions& options,
+  const std::vector<unsigned char>& held, const Stopwatch& clock, bool& proceed);
 /**
  * @brief How many points, 3 coordinates each, are farther from their start than their limit.
  * @param counts whether a point counts

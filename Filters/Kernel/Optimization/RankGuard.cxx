@@ -55,22 +55,18 @@ RankGuard::RankGuard(
 /// Throws Error on all ranks if a valid element of the input has no finite value.
 void RankGuard::requireValues(const Elements& start) const
 {
-  this->TheMesh.group().together(
-    [&]
+  const MeshView& view = this->TheMesh.view();
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    if (start.validity[cell] == Valid && start.values[cell] == HUGE_VAL)
     {
-      const MeshView& view = this->TheMesh.view();
-      for (Index cell = 0; cell < view.numberOfCells; ++cell)
-      {
-        if (start.validity[cell] == Valid && start.values[cell] == HUGE_VAL)
-        {
-          // The numbers of cells are those of a part: where it is does not depend on the ranks.
-          std::ostringstream place;
-          const Vec3 p = pointOf(view, view.connectivity[view.offsets[cell]]);
-          place << "a cell at the point (" << p[0] << ", " << p[1] << ", " << p[2] << ")";
-          throw Error(noValueToJudge(metricInfo(this->Judged.metric), place.str()));
-        }
-      }
-    });
+      // The numbers of cells are those of a part: where it is does not depend on the ranks.
+      std::ostringstream place;
+      const Vec3 p = pointOf(view, view.connectivity[view.offsets[cell]]);
+      place << "a cell at the point (" << p[0] << ", " << p[1] << ", " << p[2] << ")";
+      throw Error(noValueToJudge(metricInfo(this->Judged.metric), place.str()));
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -84,31 +80,26 @@ RankGuard::Elements RankGuard::measure(const std::vector<double>& points) const
 {
   Elements found;
   found.worst = -HUGE_VAL;
-  this->TheMesh.group().together(
-    [&]
+  const Index cells = this->TheMesh.view().numberOfCells;
+  found.values.assign(cells, -HUGE_VAL);
+  found.validity.assign(cells, Valid);
+  if (cells > 0)
+  {
+    const Mesh moved = movedMesh(this->TheMesh, this->Mirrored, points, this->Threads);
+    moved.classifyCells(found.validity.data(), this->Threads);
+    std::vector<double> q(cells);
+    evaluateJudged(moved, this->Judged.metric, this->Judged.evaluation, q.data());
+    const MetricInfo& info = metricInfo(this->Judged.metric);
+    for (const CellBlock& block : moved.blocks())
     {
-      const Index cells = this->TheMesh.view().numberOfCells;
-      found.values.assign(cells, -HUGE_VAL);
-      found.validity.assign(cells, Valid);
-      if (cells == 0)
+      for (Index i = 0; info.definedOn(block.type) && i < block.count; ++i)
       {
-        return;
+        const Index cell = block.cell(i);
+        found.values[cell] = this->Larger ? -q[cell] : q[cell];
+        found.worst = std::max(found.worst, found.values[cell]);
       }
-      const Mesh moved = movedMesh(this->TheMesh, this->Mirrored, points, this->Threads);
-      moved.classifyCells(found.validity.data(), this->Threads);
-      std::vector<double> q(cells);
-      evaluateJudged(moved, this->Judged.metric, this->Judged.evaluation, q.data());
-      const MetricInfo& info = metricInfo(this->Judged.metric);
-      for (const CellBlock& block : moved.blocks())
-      {
-        for (Index i = 0; info.definedOn(block.type) && i < block.count; ++i)
-        {
-          const Index cell = block.cell(i);
-          found.values[cell] = this->Larger ? -q[cell] : q[cell];
-          found.worst = std::max(found.worst, found.values[cell]);
-        }
-      }
-    });
+    }
+  }
   found.worst = this->TheMesh.group().maximum(found.worst);
   return found;
 }
@@ -133,40 +124,35 @@ void addObjectiveOnRanks(const DistributedMesh& mesh, const Objective& objective
   double worst = -HUGE_VAL;
   const MetricInfo& info = metricInfo(objective.metric);
   const bool larger = info.direction == Direction::LargerIsBetter;
-  group.together(
-    [&]
+  if (moved)
+  {
+    std::vector<double> q(moved->view().numberOfCells);
+    evaluateJudged(*moved, objective.metric, objective.evaluation, q.data());
+    for (const CellBlock& block : moved->blocks())
     {
-      if (!moved)
+      for (Index k = 0; info.definedOn(block.type) && k < block.count; ++k)
       {
-        return;
-      }
-      std::vector<double> q(moved->view().numberOfCells);
-      evaluateJudged(*moved, objective.metric, objective.evaluation, q.data());
-      for (const CellBlock& block : moved->blocks())
-      {
-        for (Index k = 0; info.definedOn(block.type) && k < block.count; ++k)
+        const Index cell = block.cell(k);
+        const double weight = objective.elementWeights ? objective.elementWeights[cell] : 1.0;
+        if (!mesh.ownedCells()[cell])
         {
-          const Index cell = block.cell(k);
-          const double weight = objective.elementWeights ? objective.elementWeights[cell] : 1.0;
-          if (!mesh.ownedCells()[cell])
-          {
-            continue;
-          }
-          const bool fault = info.barrier && validity[cell] != Valid && weight > 0 &&
-            cornerValidity(*moved, cell) != Valid;
-          if (weight > 0)
-          {
-            const bool undefined = fault || !std::isfinite(q[cell]);
-            terms.push_back(undefined ? HUGE_VAL : weight * termOf(objective, q[cell]));
-          }
-          if (validity[cell] == Valid)
-          {
-            values.push_back(std::isfinite(q[cell]) ? q[cell] : 0.0);
-            worst = std::max(worst, larger ? -q[cell] : q[cell]);
-          }
+          continue;
+        }
+        const bool fault = info.barrier && validity[cell] != Valid && weight > 0 &&
+          cornerValidity(*moved, cell) != Valid;
+        if (weight > 0)
+        {
+          const bool undefined = fault || !std::isfinite(q[cell]);
+          terms.push_back(undefined ? HUGE_VAL : weight * termOf(objective, q[cell]));
+        }
+        if (validity[cell] == Valid)
+        {
+          values.push_back(std::isfinite(q[cell]) ? q[cell] : 0.0);
+          worst = std::max(worst, larger ? -q[cell] : q[cell]);
         }
       }
-    });
+    }
+  }
   const double sum = group.orderlessSum(terms);
   record.objectives.push_back(std::isnan(sum) ? HUGE_VAL : sum);
   const Index count = group.sum(static_cast<Index>(values.size()));

@@ -25,10 +25,7 @@ public:
   double reached() override { return this->worst(); }
   bool isFast() override { return this->Fast; }
   bool sweep(double worst, double power, double pull) override;
-  void keep() override
-  {
-    this->Run.Group.together([&] { this->Best = this->Run.Points; });
-  }
+  void keep() override { this->Best = this->Run.Points; }
   void goBack() override { this->Run.restart(this->Best); }
 
 private:
@@ -52,23 +49,19 @@ OptimizationOnRanks::StepsOfWorst::StepsOfWorst(OptimizationOnRanks& run)
   this->Larger = metricInfo(metric).direction == Direction::LargerIsBetter;
   bool general = metric != Metric::InverseMeanRatio;
   std::vector<double> weights;
-  run.Group.together(
-    [&]
+  this->Judged = judgedAs(
+    run.Problem ? run.Resolved[0] : run.Options.objectives[0], metric, run.Options.threads);
+  this->Best = run.Points;
+  general = general || (run.Problem && run.Problem->localTerms()[0].shapePower == 0);
+  const MetricInfo& info = metricInfo(metric);
+  for (Index cell = 0; run.Problem && cell < run.TheMesh.view().numberOfCells; ++cell)
+  {
+    const CellType type = cornerType(run.TheMesh.view().cellTypes[cell]);
+    if (run.TheMesh.ownedCells()[cell] && type != CellType::Unsupported && info.definedOn(type))
     {
-      this->Judged = judgedAs(
-        run.Problem ? run.Resolved[0] : run.Options.objectives[0], metric, run.Options.threads);
-      this->Best = run.Points;
-      general = general || (run.Problem && run.Problem->localTerms()[0].shapePower == 0);
-      const MetricInfo& info = metricInfo(metric);
-      for (Index cell = 0; run.Problem && cell < run.TheMesh.view().numberOfCells; ++cell)
-      {
-        const CellType type = cornerType(run.TheMesh.view().cellTypes[cell]);
-        if (run.TheMesh.ownedCells()[cell] && type != CellType::Unsupported && info.definedOn(type))
-        {
-          weights.push_back(this->Judged.elementWeights ? this->Judged.elementWeights[cell] : 1.0);
-        }
-      }
-    });
+      weights.push_back(this->Judged.elementWeights ? this->Judged.elementWeights[cell] : 1.0);
+    }
+  }
   this->Fast = !run.Group.any(general);
   this->TotalWeight = run.Group.orderlessSum(weights);
 }
@@ -103,24 +96,20 @@ double OptimizationOnRanks::StepsOfWorst::valueOfMean(double power) const
   std::vector<double> terms, weights;
   double largest = 0;
   bool fault = false;
-  this->Run.Group.together(
-    [&]
+  for (Index cell = 0; cell < mesh.view().numberOfCells; ++cell)
+  {
+    const double weight = this->Judged.elementWeights ? this->Judged.elementWeights[cell] : 1.0;
+    const double value = elements.values[cell];
+    if (!mesh.ownedCells()[cell] || value == -infinity || !(weight > 0))
     {
-      for (Index cell = 0; cell < mesh.view().numberOfCells; ++cell)
-      {
-        const double weight = this->Judged.elementWeights ? this->Judged.elementWeights[cell] : 1.0;
-        const double value = elements.values[cell];
-        if (!mesh.ownedCells()[cell] || value == -infinity || !(weight > 0))
-        {
-          continue;
-        }
-        // Larger is better: the reciprocals, of the values without their sign.
-        fault = fault || elements.validity[cell] != Valid || (this->Larger && !(value < 0));
-        terms.push_back(this->Larger ? -1 / value : std::abs(value));
-        weights.push_back(weight);
-        largest = std::max(largest, terms.back());
-      }
-    });
+      continue;
+    }
+    // Larger is better: the reciprocals, of the values without their sign.
+    fault = fault || elements.validity[cell] != Valid || (this->Larger && !(value < 0));
+    terms.push_back(this->Larger ? -1 / value : std::abs(value));
+    weights.push_back(weight);
+    largest = std::max(largest, terms.back());
+  }
   largest = this->Run.Group.maximum(largest);
   if (this->Run.Group.any(fault) || !std::isfinite(largest) || !(this->TotalWeight > 0))
   {
@@ -151,34 +140,31 @@ bool OptimizationOnRanks::StepsOfWorst::sweep(double worst, double power, double
   OptimizationProblem* problem = this->Run.Problem.get();
   SweepTerms sweeps;
   bool uniform = true;
-  this->Run.Group.together(
-    [&]
+  if (problem)
+  {
+    sweeps.options = worstOptions(*problem);
+    sweeps.terms = problem->localTerms();
+    sweeps.terms.resize(1);
+    uniform = problem->simplices().uniform();
+    if (this->Fast)
     {
-      if (!problem)
-      {
-        return;
-      }
-      sweeps.options = worstOptions(*problem);
-      sweeps.terms = problem->localTerms();
-      sweeps.terms.resize(1);
-      uniform = problem->simplices().uniform();
-      if (this->Fast)
-      {
-        sweeps.terms[0].worst = worst;
-        return;
-      }
-      if (!this->Mean || this->Power != power)
-      {
-        Objective second = this->Judged;
-        second.objectiveTemplate = ObjectiveTemplate::PowerMean;
-        second.power = this->Power = power;
-        this->Mean = std::make_unique<ObjectiveSum>(
-          problem->moving(), second, this->Run.Options.threads, true);
-        this->Mean->setTotalWeight(this->TotalWeight);
-      }
+      sweeps.terms[0].worst = worst;
+    }
+    else if (!this->Mean || this->Power != power)
+    {
+      Objective second = this->Judged;
+      second.objectiveTemplate = ObjectiveTemplate::PowerMean;
+      second.power = this->Power = power;
+      this->Mean =
+        std::make_unique<ObjectiveSum>(problem->moving(), second, this->Run.Options.threads, true);
+      this->Mean->setTotalWeight(this->TotalWeight);
+    }
+    if (!this->Fast)
+    {
       sweeps.terms.emplace_back();
       sweeps.terms.back().metric = this->Mean.get();
-    });
+    }
+  }
   const std::vector<double> start = this->values(power);
   if (!this->Fast &&
     std::any_of(start.begin(), start.end(), [](double v) { return !std::isfinite(v) || v == 0; }))
@@ -190,16 +176,12 @@ bool OptimizationOnRanks::StepsOfWorst::sweep(double worst, double power, double
   RankSweeper sweeper(
     this->Run.TheMesh, problem, this->Run.Sets, this->Run.Options.threads, &sweeps);
   const bool ofSimplices = this->Fast && !this->Run.Group.any(!uniform);
-  this->Run.Group.together(
-    [&]
-    {
-      if (problem && (ofSimplices || !this->Fast))
-      {
-        sweeper.wakeOnly(ofSimplices
-            ? problem->verticesAbove(nearWorst * worst)
-            : problem->verticesNear(this->Judged, problem->measure(this->Judged), worst, power));
-      }
-    });
+  if (problem && (ofSimplices || !this->Fast))
+  {
+    sweeper.wakeOnly(ofSimplices
+        ? problem->verticesAbove(nearWorst * worst)
+        : problem->verticesNear(this->Judged, problem->measure(this->Judged), worst, power));
+  }
   for (int i = 0; i < sweepsPerRound; ++i)
   {
     sweeper.sweep(scalarizer, i == 0 ? start : this->values(power));
@@ -251,41 +233,33 @@ Index OptimizationOnRanks::restoreWorst()
   const MeshView& view = this->TheMesh.view();
   std::vector<unsigned char> restored, back;
   std::vector<double> points;
-  this->Group.together([&] { restored.assign(this->TheMesh.localPoints(), 0); });
+  restored.assign(this->TheMesh.localPoints(), 0);
   for (int round = 0;; ++round)
   {
     const RankGuard::Elements elements = this->Guard->measure(this->Points);
-    this->Group.together(
-      [&]
+    back = restored;
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    {
+      const bool offends = round >= maxRounds || this->Guard->offends(elements, cell);
+      for (Index n = view.offsets[cell]; offends && n < view.offsets[cell + 1]; ++n)
       {
-        back = restored;
-        for (Index cell = 0; cell < view.numberOfCells; ++cell)
-        {
-          const bool offends = round >= maxRounds || this->Guard->offends(elements, cell);
-          for (Index n = view.offsets[cell]; offends && n < view.offsets[cell + 1]; ++n)
-          {
-            back[view.connectivity[n]] = 1;
-          }
-        }
-      });
+        back[view.connectivity[n]] = 1;
+      }
+    }
     this->TheMesh.exchange(back.data());
     if (!this->Group.any(back != restored))
     {
       break;
     }
-    this->Group.together(
-      [&]
+    restored.swap(back);
+    points = this->Points;
+    for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
+    {
+      if (restored[p])
       {
-        restored.swap(back);
-        points = this->Points;
-        for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
-        {
-          if (restored[p])
-          {
-            std::copy_n(&this->TheMesh.points()[3 * p], 3, &points[3 * p]);
-          }
-        }
-      });
+        std::copy_n(&this->TheMesh.points()[3 * p], 3, &points[3 * p]);
+      }
+    }
     this->restart(points);
   }
   Index count = 0;

@@ -120,36 +120,31 @@ RankSweeper::RankSweeper(const DistributedMesh& mesh, OptimizationProblem* probl
   const int highest =
     this->Sets.empty() ? -1 : *std::max_element(this->Sets.begin(), this->Sets.end());
   const auto numberOfSets = static_cast<int>(group.maximum(static_cast<Index>(highest))) + 1;
-  group.together(
-    [&]
+  this->VertexOf.assign(points, -1);
+  this->Buffer.assign(Sent * points, 0.0);
+  this->Own.resize(numberOfSets);
+  for (std::int32_t v = 0; problem && v < problem->simplices().freeVertices(); ++v)
+  {
+    const Index p = problem->simplices().point(v);
+    this->VertexOf[p] = v;
+    if (mesh.owned(p) && this->Sets[p] >= 0)
     {
-      this->VertexOf.assign(points, -1);
-      this->Buffer.assign(Sent * points, 0.0);
-      this->Own.resize(numberOfSets);
-      for (std::int32_t v = 0; problem && v < problem->simplices().freeVertices(); ++v)
-      {
-        const Index p = problem->simplices().point(v);
-        this->VertexOf[p] = v;
-        if (mesh.owned(p) && this->Sets[p] >= 0)
-        {
-          this->Own[this->Sets[p]].push_back(v);
-        }
-      }
-      if (!problem)
-      {
-        return;
-      }
-      const SweepTerms sweeps =
-        other ? *other : SweepTerms{ problem->localTerms(), problem->localOptions() };
-      if (problem->simplices().dimension() == 3)
-      {
-        this->Impl = std::make_unique<Implementation<3>>(*problem, sweeps, threads);
-      }
-      else
-      {
-        this->Impl = std::make_unique<Implementation<2>>(*problem, sweeps, threads);
-      }
-    });
+      this->Own[this->Sets[p]].push_back(v);
+    }
+  }
+  if (problem)
+  {
+    const SweepTerms sweeps =
+      other ? *other : SweepTerms{ problem->localTerms(), problem->localOptions() };
+    if (problem->simplices().dimension() == 3)
+    {
+      this->Impl = std::make_unique<Implementation<3>>(*problem, sweeps, threads);
+    }
+    else
+    {
+      this->Impl = std::make_unique<Implementation<2>>(*problem, sweeps, threads);
+    }
+  }
   std::vector<unsigned char> flags(points);
   for (int set = 0; set < numberOfSets; ++set)
   {
@@ -264,14 +259,10 @@ SweepResult RankSweeper::sweep(const Scalarizer& scalarizer, const std::vector<d
         group.orderlessSum(this->Impl && !failure ? this->Impl->Changes[k] : std::vector<double>());
     }
   }
-  group.together(
-    [&]
-    {
-      if (failure)
-      {
-        std::rethrow_exception(failure);
-      }
-    });
+  if (failure)
+  {
+    std::rethrow_exception(failure);
+  }
   SweepResult result;
   result.visited = group.sum(visited);
   result.moved = group.sum(moved);

@@ -144,35 +144,30 @@ RoundedResult measureRoundedOnRanks(const DistributedMesh& mesh, bool mirrored,
   std::unique_ptr<Mesh> input, moved; // null on a rank without cells
   std::vector<signed char> before, after;
   std::vector<Objective> objectives;
-  group.together(
-    [&]
+  objectives = options.objectives;
+  for (Objective& objective : objectives)
+  {
+    objective.evaluation.threads = options.threads;
+    objective.objectiveTemplate = objective.objectiveTemplate == ObjectiveTemplate::Default
+      ? defaultTemplate(objective.metric)
+      : objective.objectiveTemplate;
+  }
+  if (mesh.view().numberOfCells > 0)
+  {
+    const auto at = [&](const std::vector<double>& points)
+    { return movedMesh(mesh, mirrored, points, options.threads); };
+    input = std::make_unique<Mesh>(at(mesh.points()));
+    moved = std::make_unique<Mesh>(at(rounded));
+    before = cellValidity(*input, options.threads);
+    after = cellValidity(*moved, options.threads);
+    const std::vector<signed char> there = cellValidity(at(result.points), options.threads);
+    for (std::size_t cell = 0; cell < after.size(); ++cell)
     {
-      objectives = options.objectives;
-      for (Objective& objective : objectives)
-      {
-        objective.evaluation.threads = options.threads;
-        objective.objectiveTemplate = objective.objectiveTemplate == ObjectiveTemplate::Default
-          ? defaultTemplate(objective.metric)
-          : objective.objectiveTemplate;
-      }
-      if (mesh.view().numberOfCells == 0)
-      {
-        return;
-      }
-      const auto at = [&](const std::vector<double>& points)
-      { return movedMesh(mesh, mirrored, points, options.threads); };
-      input = std::make_unique<Mesh>(at(mesh.points()));
-      moved = std::make_unique<Mesh>(at(rounded));
-      before = cellValidity(*input, options.threads);
-      after = cellValidity(*moved, options.threads);
-      const std::vector<signed char> there = cellValidity(at(result.points), options.threads);
-      for (std::size_t cell = 0; cell < after.size(); ++cell)
-      {
-        const bool owned = mesh.ownedCells()[cell] != 0;
-        found.lost += owned && there[cell] == Valid && after[cell] != Valid;
-        found.inverted += owned && isInvalid(after[cell]);
-      }
-    });
+      const bool owned = mesh.ownedCells()[cell] != 0;
+      found.lost += owned && there[cell] == Valid && after[cell] != Valid;
+      found.inverted += owned && isInvalid(after[cell]);
+    }
+  }
   found.lost = group.sum(found.lost);
   found.inverted = group.sum(found.inverted);
   found.record.inverted = found.inverted;

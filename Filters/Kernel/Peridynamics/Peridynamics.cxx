@@ -473,10 +473,7 @@ void addTriangles(RankGroup& group, const PeridynamicWork& work, const PairInteg
   // Within a colour no two threads write to the same row; the colours have a fixed order, the same
   // on all ranks, so that rows are summed in it.
   std::vector<std::vector<std::int32_t>> colours;
-  group.together(
-    [&] {
-      colours = colourTriangles(work.triangles, space, space.trianglesWithUnknowns(work.triangles));
-    });
+  colours = colourTriangles(work.triangles, space, space.trianglesWithUnknowns(work.triangles));
   const Index slices = group.size() > 1 ? SlicesOnRanks : 1;
   Index done = 0;
   const Index all = std::count(work.needed.begin(), work.needed.end(), 1);
@@ -489,29 +486,98 @@ void addTriangles(RankGroup& group, const PeridynamicWork& work, const PairInteg
     for (Index slice = 0; slice < slices; ++slice)
     {
       const Index begin = size * slice / slices, end = size * (slice + 1) / slices;
-      group.together(
-        [&]
+      parallelFor(
+        end - begin, grain, options.threads, scratches,
+        [&](Scratch& scratch, Index k)
         {
-          parallelFor(
-            end - begin, grain, options.threads, scratches,
-            [&](Scratch& scratch, Index k)
-            {
-              const Index t = own[begin + k];
-              work.neighboursOf(t, scratch.near);
-              scratch.assembler->assemble(t, scratch.near, scratch.sums);
-              flush(work, rows, t, scratch.near, scratch.sums, scale, given, system);
-            },
-            [&](double fraction)
-            {
-              const double now = fraction * static_cast<double>(end - begin);
-              return control.proceed(
-                (static_cast<double>(done) + now) / static_cast<double>(std::max<Index>(all, 1)));
-            });
-          control.throwIfStopped();
+          const Index t = own[begin + k];
+          work.neighboursOf(t, scratch.near);
+          scratch.assembler->assemble(t, scratch.near, scratch.sums);
+          flush(work, rows, t, scratch.near, scratch.sums, scale, given, system);
+        },
+        [&](double fraction)
+        {
+          const double now = fraction * static_cast<double>(end - begin);
+          return control.proceed(
+            (static_cast<double>(done) + now) / static_cast<double>(std::max<Index>(all, 1)));
         });
+      control.throwIfStopped();
+      group.agree();
       done += end - begin;
     }
   }
+}
+
+/// What fails on a rank, also at the time limit, fails on all within a slice.
+PeridynamicSystem assembledOnRanks(RankGroup& group, const HorizonMesh& mesh,
+  const PeridynamicOptions& options, const std::vector<double>* given)
+{
+  PeridynamicSystem system;
+  std::unique_ptr<AssemblyParts> parts;
+  const double share = group.rank() == 0 ? 1.0 : 1.0 / group.size();
+  checkAssembly(mesh, options, given, share, system);
+  parts = std::make_unique<AssemblyParts>(mesh, options);
+  const bool first = group.rank() == 0;
+  const PlanarTriangles& triangles = parts->triangles;
+  const FunctionSpace& space = parts->space;
+  const std::vector<int> ranks = ranksOfRows(group, space);
+  std::vector<char> own, needed;
+  own.resize(space.unknowns);
+  needed.assign(triangles.size(), 0);
+  std::transform(ranks.begin(), ranks.end(), own.begin(),
+    [&group](int rank) { return static_cast<char>(rank == group.rank()); });
+  for (Index t = 0; t < triangles.size(); ++t)
+  {
+    for (int a = 0; a < space.perTriangle(); ++a)
+    {
+      const Index row = space.unknownOf[space.function(triangles, t, a)];
+      needed[t] |= static_cast<char>(row >= 0 && own[row]);
+    }
+  }
+  const PeridynamicWork work = { triangles, parts->grid, space, options, parts->cut, needed };
+  AssemblyControl control(options, 0.0, 0.5);
+  const bool exact = options.discretization == Discretization::Exact;
+  const bool stateBased = options.model == PeridynamicModel::StateBased;
+  std::shared_ptr<PairIntegrals> integrals;
+  integrals = exact ? makePairIntegrals(work) : nullptr;
+  const Index slices = group.size() > 1 ? SlicesOnRanks : 1;
+  for (Index slice = 0; exact && slice < slices; ++slice)
+  {
+    integratePairs(
+      *integrals, slice, slices, [&](double fraction) { return control.proceed(fraction); });
+    control.throwIfStopped();
+    group.agree();
+  }
+  control.setRange(exact ? 0.5 : 0.0, stateBased ? StateBasedShare : 1.0);
+  system.matrix = makePattern(space, first ? std::vector<char>(own.size(), 1) : own,
+    parts->supports, interactionReach(options), system.components, options.threads);
+  system.constraintLoad.assign(given ? system.matrix.size : 0, 0.0);
+  system.integratedPairs = group.sum(exact ? numberOfIntegratedPairs(*integrals) : 0);
+  addTriangles(group, work, integrals.get(), own, given, control, system);
+  if (group.size() > 1)
+  {
+    gatherRows(group, ranks, system);
+  }
+  if (first)
+  {
+    if (stateBased)
+    {
+      control.setRange(StateBasedShare, 1.0);
+      addDilatation(
+        work, given, system, [&](double fraction) { return control.proceed(fraction); });
+      control.throwIfStopped();
+    }
+    system.asymmetry = symmetrize(system.matrix, options.threads);
+    dropZeros(system.matrix);
+    if (exact)
+    {
+      system.asymmetry = 0.0; // rounding
+    }
+    checkDiagonal(system);
+  }
+  system.unknownOf = space.unknownOf;
+  system.functionOf = space.functionOf;
+  return system;
 }
 }
 
@@ -528,91 +594,7 @@ PeridynamicSystem assemblePeridynamics(RankGroup& group, const HorizonMesh& mesh
   const PeridynamicOptions& options, const std::vector<double>* given)
 {
   PeridynamicSystem system;
-  std::unique_ptr<AssemblyParts> parts;
-  const double share = group.rank() == 0 ? 1.0 : 1.0 / group.size();
-  // What may fail, also at the time limit, fails on all ranks.
-  group.together(
-    [&]
-    {
-      checkAssembly(mesh, options, given, share, system);
-      parts = std::make_unique<AssemblyParts>(mesh, options);
-    });
-  const bool first = group.rank() == 0;
-  const PlanarTriangles& triangles = parts->triangles;
-  const FunctionSpace& space = parts->space;
-  const std::vector<int> ranks = ranksOfRows(group, space);
-  std::vector<char> own, needed;
-  group.together(
-    [&]
-    {
-      own.resize(space.unknowns);
-      needed.assign(triangles.size(), 0);
-      std::transform(ranks.begin(), ranks.end(), own.begin(),
-        [&group](int rank) { return static_cast<char>(rank == group.rank()); });
-      for (Index t = 0; t < triangles.size(); ++t)
-      {
-        for (int a = 0; a < space.perTriangle(); ++a)
-        {
-          const Index row = space.unknownOf[space.function(triangles, t, a)];
-          needed[t] |= static_cast<char>(row >= 0 && own[row]);
-        }
-      }
-    });
-  const PeridynamicWork work = { triangles, parts->grid, space, options, parts->cut, needed };
-  AssemblyControl control(options, 0.0, 0.5);
-  const bool exact = options.discretization == Discretization::Exact;
-  const bool stateBased = options.model == PeridynamicModel::StateBased;
-  std::shared_ptr<PairIntegrals> integrals;
-  group.together([&] { integrals = exact ? makePairIntegrals(work) : nullptr; });
-  const Index slices = group.size() > 1 ? SlicesOnRanks : 1;
-  for (Index slice = 0; exact && slice < slices; ++slice)
-  {
-    group.together(
-      [&]
-      {
-        integratePairs(
-          *integrals, slice, slices, [&](double fraction) { return control.proceed(fraction); });
-        control.throwIfStopped();
-      });
-  }
-  group.together(
-    [&]
-    {
-      control.setRange(exact ? 0.5 : 0.0, stateBased ? StateBasedShare : 1.0);
-      system.matrix = makePattern(space, first ? std::vector<char>(own.size(), 1) : own,
-        parts->supports, interactionReach(options), system.components, options.threads);
-      system.constraintLoad.assign(given ? system.matrix.size : 0, 0.0);
-    });
-  system.integratedPairs = group.sum(exact ? numberOfIntegratedPairs(*integrals) : 0);
-  addTriangles(group, work, integrals.get(), own, given, control, system);
-  if (group.size() > 1)
-  {
-    gatherRows(group, ranks, system);
-  }
-  group.together(
-    [&]
-    {
-      if (!first)
-      {
-        return;
-      }
-      if (stateBased)
-      {
-        control.setRange(StateBasedShare, 1.0);
-        addDilatation(
-          work, given, system, [&](double fraction) { return control.proceed(fraction); });
-        control.throwIfStopped();
-      }
-      system.asymmetry = symmetrize(system.matrix, options.threads);
-      dropZeros(system.matrix);
-      if (exact)
-      {
-        system.asymmetry = 0.0; // rounding
-      }
-      checkDiagonal(system);
-    });
-  system.unknownOf = space.unknownOf;
-  system.functionOf = space.functionOf;
+  group.together([&] { system = assembledOnRanks(group, mesh, options, given); });
   return system;
 }
 

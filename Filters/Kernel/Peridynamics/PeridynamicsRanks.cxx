@@ -15,15 +15,11 @@ std::vector<int> ranksOfRows(RankGroup& group, const FunctionSpace& space)
     return ranks;
   }
   std::vector<Vec3> places;
-  group.together(
-    [&]
-    {
-      for (const Index f : space.functionOf)
-      {
-        const Vec2 middle = 0.5 * (space.low[f] + space.high[f]);
-        places.push_back({ middle[0], middle[1], 0.0 });
-      }
-    });
+  for (const Index f : space.functionOf)
+  {
+    const Vec2 middle = 0.5 * (space.low[f] + space.high[f]);
+    places.push_back({ middle[0], middle[1], 0.0 });
+  }
   // The same on all ranks; one of them is enough for the division.
   const PointDivision division(group, group.rank() == 0 ? places : std::vector<Vec3>());
   std::transform(places.begin(), places.end(), ranks.begin(),
@@ -50,25 +46,20 @@ void gatherRows(RankGroup& group, const std::vector<int>& ranks, PeridynamicSyst
       }
     };
     std::vector<std::vector<double>> sent(group.size());
-    group.together(
-      [&]
-      {
-        std::vector<double>& values = sent[0];
-        if (group.rank() == rank)
+    std::vector<double>& own = sent[0];
+    if (group.rank() == rank)
+    {
+      forEachRow(
+        [&](Index row, Index begin, Index end)
         {
-          forEachRow(
-            [&](Index row, Index begin, Index end)
-            {
-              values.insert(
-                values.end(), matrix.values.begin() + begin, matrix.values.begin() + end);
-              if (loaded)
-              {
-                values.push_back(system.constraintLoad[row]);
-              }
-            });
-          matrix = SparseMatrix();
-        }
-      });
+          own.insert(own.end(), matrix.values.begin() + begin, matrix.values.begin() + end);
+          if (loaded)
+          {
+            own.push_back(system.constraintLoad[row]);
+          }
+        });
+      matrix = SparseMatrix();
+    }
     const std::vector<double> values = std::move(group.exchangeItems(sent)[rank]);
     if (group.rank() == 0)
     {

@@ -309,17 +309,6 @@ void Perturber::accept(Index vertex, const Vec3& p)
 }
 
 //------------------------------------------------------------------------------
-void Perturber::follow(Index vertex, const double* p)
-{
-  std::copy_n(p, 3, &this->Result.points[3 * vertex]);
-  this->gather(vertex);
-  for (const Neighbour& n : this->Star)
-  {
-    this->States[n.cell] = this->stateOf(n);
-  }
-}
-
-//------------------------------------------------------------------------------
 void Perturber::moveVertex(Index vertex)
 {
   this->gather(vertex);
@@ -350,7 +339,8 @@ void Perturber::moveVertex(Index vertex)
 //------------------------------------------------------------------------------
 void Perturber::move()
 {
-  const Index count = countToMove(this->Result.movable, this->Options);
+  const double share = this->Options.percentage / 100.0 * static_cast<double>(this->Result.movable);
+  const Index count = this->Options.fraction > 0 ? static_cast<Index>(share + 0.5) : 0;
   if (count == 0)
   {
     return;
@@ -486,13 +476,6 @@ Perturbation Perturber::finish()
       std::max(this->Result.largestDisplacement, norm(now - before));
   }
   return std::move(this->Result);
-}
-
-//------------------------------------------------------------------------------
-Index countToMove(Index movable, const PerturbOptions& options)
-{
-  const double share = options.percentage / 100.0 * static_cast<double>(movable);
-  return options.fraction > 0 ? static_cast<Index>(share + 0.5) : 0;
 }
 
 //------------------------------------------------------------------------------

@@ -26,8 +26,6 @@ enum Stream : std::uint64_t
 
 /// Throws Error on options out of range and on cells of higher order.
 void checkPerturbation(const Mesh& mesh, const PerturbOptions& options);
-/// How many of the movable vertices move.
-Index countToMove(Index movable, const PerturbOptions& options);
 
 /// A cell around the vertex that moves.
 struct Neighbour
@@ -60,17 +58,6 @@ public:
   void tangle();
   Perturbation finish();
 
-  /// The number of a vertex by which its random numbers and its turn are chosen.
-  Index idOf(Index vertex) const { return this->Options.ids ? this->Options.ids[vertex] : vertex; }
-  const std::vector<Index>& movable() const { return this->Movable; }
-  const VertexCells& adjacency() const { return this->Adjacency; }
-  const std::vector<signed char>& states() const { return this->States; }
-  std::vector<double>& points() { return this->Result.points; }
-  /// Moves a vertex short of inversion, with the others where they are.
-  void moveVertex(Index vertex);
-  /// Takes over where another rank has moved a vertex to.
-  void follow(Index vertex, const double* p);
-
 private:
   /// A vertex in a random order.
   struct Key
@@ -83,6 +70,10 @@ private:
     }
   };
 
+  /// The number of a vertex by which its random numbers and its turn are chosen.
+  Index idOf(Index vertex) const { return this->Options.ids ? this->Options.ids[vertex] : vertex; }
+  /// Moves a vertex short of inversion, with the others where they are.
+  void moveVertex(Index vertex);
   void findNormals();
   void findMovable(const unsigned char* fixed);
   std::vector<Index> sortedByChance(std::uint64_t stream) const;

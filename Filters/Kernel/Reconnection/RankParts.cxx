@@ -417,45 +417,36 @@ void redistribute(RankGroup& group, const std::vector<int>& targets, MeshPart& p
   std::vector<std::vector<PartCell>> cells(group.size());
   std::vector<std::vector<PartPoint>> points(group.size());
   std::vector<std::vector<PartShare>> shares(group.size());
-  group.together(
-    [&]
+  for (std::size_t c = 0; c < targets.size(); ++c)
+  {
+    cells[targets[c]].push_back(part.cells[c]);
+  }
+  const PointPlaces places(part.points);
+  for (std::size_t r = 0; r < cells.size(); ++r)
+  {
+    points[r] = pointsOf(part, places, cells[r]);
+    auto share = part.shares.begin();
+    for (const PartPoint& point : points[r])
     {
-      for (std::size_t c = 0; c < targets.size(); ++c)
+      share = std::lower_bound(share, part.shares.end(), point.number,
+        [](const PartShare& a, Index number) { return a.point < number; });
+      for (auto s = share; s != part.shares.end() && s->point == point.number; ++s)
       {
-        cells[targets[c]].push_back(part.cells[c]);
+        shares[r].push_back(*s);
       }
-      const PointPlaces places(part.points);
-      for (std::size_t r = 0; r < cells.size(); ++r)
-      {
-        points[r] = pointsOf(part, places, cells[r]);
-        auto share = part.shares.begin();
-        for (const PartPoint& point : points[r])
-        {
-          share = std::lower_bound(share, part.shares.end(), point.number,
-            [](const PartShare& a, Index number) { return a.point < number; });
-          for (auto s = share; s != part.shares.end() && s->point == point.number; ++s)
-          {
-            shares[r].push_back(*s);
-          }
-        }
-      }
-    });
+    }
+  }
   part.cells = joined(group.exchangeItems(cells));
   part.points = joined(group.exchangeItems(points));
   part.shares = joined(group.exchangeItems(shares));
-  group.together(
-    [&]
-    {
-      sortCells(part.cells);
-      unitePoints(part.points);
-      const auto key = [](const PartShare& share)
-      { return std::make_pair(share.point, share.number); };
-      std::sort(part.shares.begin(), part.shares.end(),
-        [&](const PartShare& a, const PartShare& b) { return key(a) < key(b); });
-      part.shares.erase(std::unique(part.shares.begin(), part.shares.end(),
-                          [&](const PartShare& a, const PartShare& b) { return key(a) == key(b); }),
-        part.shares.end());
-    });
+  sortCells(part.cells);
+  unitePoints(part.points);
+  const auto key = [](const PartShare& share) { return std::make_pair(share.point, share.number); };
+  std::sort(part.shares.begin(), part.shares.end(),
+    [&](const PartShare& a, const PartShare& b) { return key(a) < key(b); });
+  part.shares.erase(std::unique(part.shares.begin(), part.shares.end(),
+                      [&](const PartShare& a, const PartShare& b) { return key(a) == key(b); }),
+    part.shares.end());
 }
 
 //------------------------------------------------------------------------------
@@ -465,32 +456,24 @@ std::vector<int> divideAmongRanks(
   const Index all = group.sum(static_cast<Index>(part.cells.size()));
   const Index step = std::max<Index>(1, all / (SamplesOfRank * group.size()));
   std::vector<Vec3> centroids, own;
-  group.together(
-    [&]
+  const PointPlaces places(part.points);
+  centroids.reserve(part.cells.size());
+  for (const PartCell& cell : part.cells)
+  {
+    centroids.push_back(centroidOf(part, places, cell));
+    // Chosen by its points: the same cells wherever they are.
+    if (hashOf(cell) % static_cast<std::uint64_t>(step) == 0)
     {
-      const PointPlaces places(part.points);
-      centroids.reserve(part.cells.size());
-      for (const PartCell& cell : part.cells)
-      {
-        centroids.push_back(centroidOf(part, places, cell));
-        // Chosen by its points: the same cells wherever they are.
-        if (hashOf(cell) % static_cast<std::uint64_t>(step) == 0)
-        {
-          own.push_back(centroids.back());
-        }
-      }
-    });
+      own.push_back(centroids.back());
+    }
+  }
   std::vector<Vec3> sample = joined(group.gatherItems(own));
   const std::vector<Ball> balls = joined(group.gatherItems(inside));
   std::vector<int> targets;
-  group.together(
-    [&]
-    {
-      const RankTree tree = chooseTree(std::move(sample), group.size(), balls, frame);
-      targets.reserve(centroids.size());
-      std::transform(centroids.begin(), centroids.end(), std::back_inserter(targets),
-        [&tree](const Vec3& x) { return tree.find(x); });
-    });
+  const RankTree tree = chooseTree(std::move(sample), group.size(), balls, frame);
+  targets.reserve(centroids.size());
+  std::transform(centroids.begin(), centroids.end(), std::back_inserter(targets),
+    [&tree](const Vec3& x) { return tree.find(x); });
   return targets;
 }
 
@@ -503,26 +486,22 @@ PartSurroundings surroundingsOf(
   PartSurroundings around;
   std::vector<OuterFacet> outer;
   Index tooMany = 0;
-  group.together(
-    [&]
+  const std::vector<OuterFacet> all = sortedFacets(part, Index(group.rank()));
+  for (std::size_t i = 0, end = 0; i < all.size(); i = end)
+  {
+    for (end = i; end < all.size() && all[end].facet == all[i].facet; ++end)
     {
-      const std::vector<OuterFacet> all = sortedFacets(part, Index(group.rank()));
-      for (std::size_t i = 0, end = 0; i < all.size(); i = end)
-      {
-        for (end = i; end < all.size() && all[end].facet == all[i].facet; ++end)
-        {
-        }
-        tooMany += end - i > 2;
-        if (end - i == 1)
-        {
-          outer.push_back(all[i]);
-        }
-        else if (isMarked(all[i].facet))
-        {
-          around.markedSides += 2;
-        }
-      }
-    });
+    }
+    tooMany += end - i > 2;
+    if (end - i == 1)
+    {
+      outer.push_back(all[i]);
+    }
+    else if (isMarked(all[i].facet))
+    {
+      around.markedSides += 2;
+    }
+  }
   throwIfAny(group, tooMany);
   std::vector<Facet> paired;
   const std::vector<Neighbour> neighbours = findNeighbours(group, outer, paired);
@@ -530,26 +509,22 @@ PartSurroundings surroundingsOf(
   around.shared = findShared(group, outer);
   std::vector<std::vector<PartCell>> cells(group.size());
   std::vector<std::vector<PartPoint>> points(group.size());
-  group.together(
-    [&]
+  const PointPlaces places(part.points);
+  std::vector<std::vector<Index>> ids(group.size());
+  for (const Neighbour& neighbour : neighbours)
+  {
+    ids[neighbour.rank].push_back(neighbour.cell);
+  }
+  for (std::size_t r = 0; r < ids.size(); ++r)
+  {
+    std::sort(ids[r].begin(), ids[r].end());
+    ids[r].erase(std::unique(ids[r].begin(), ids[r].end()), ids[r].end());
+    for (const Index cell : ids[r])
     {
-      const PointPlaces places(part.points);
-      std::vector<std::vector<Index>> ids(group.size());
-      for (const Neighbour& neighbour : neighbours)
-      {
-        ids[neighbour.rank].push_back(neighbour.cell);
-      }
-      for (std::size_t r = 0; r < ids.size(); ++r)
-      {
-        std::sort(ids[r].begin(), ids[r].end());
-        ids[r].erase(std::unique(ids[r].begin(), ids[r].end()), ids[r].end());
-        for (const Index cell : ids[r])
-        {
-          cells[r].push_back(part.cells[cell]);
-        }
-        points[r] = pointsOf(part, places, cells[r]);
-      }
-    });
+      cells[r].push_back(part.cells[cell]);
+    }
+    points[r] = pointsOf(part, places, cells[r]);
+  }
   around.cells = joined(group.exchangeItems(cells));
   around.points = joined(group.exchangeItems(points));
   sortCells(around.cells);

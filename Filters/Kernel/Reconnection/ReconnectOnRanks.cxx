@@ -104,37 +104,33 @@ private:
 void RankRounds::take(const RankTetrahedra& mesh)
 {
   Index largest = -1;
-  this->Group.together(
-    [&]
+  const std::size_t cells = mesh.tetrahedra.size() / CornersOfCell;
+  std::vector<char> used(mesh.numbers.size(), 0);
+  this->Part.cells.resize(cells);
+  for (std::size_t c = 0; c < cells; ++c)
+  {
+    PartCell& cell = this->Part.cells[c];
+    for (int k = 0; k < CornersOfCell; ++k)
     {
-      const std::size_t cells = mesh.tetrahedra.size() / CornersOfCell;
-      std::vector<char> used(mesh.numbers.size(), 0);
-      this->Part.cells.resize(cells);
-      for (std::size_t c = 0; c < cells; ++c)
-      {
-        PartCell& cell = this->Part.cells[c];
-        for (int k = 0; k < CornersOfCell; ++k)
-        {
-          const Index p = mesh.tetrahedra[CornersOfCell * c + k];
-          cell.points[k] = mesh.numbers[p];
-          used[p] = 1;
-        }
-        cell.region = mesh.regions.empty() ? 0 : mesh.regions[c];
-        cell.originRank = this->Group.rank();
-        cell.originCell = static_cast<Index>(c);
-      }
-      for (std::size_t p = 0; p < used.size(); ++p)
-      {
-        if (used[p])
-        {
-          const double* x = &mesh.points[3 * p];
-          const unsigned char fixed = mesh.fixed.empty() ? 0 : mesh.fixed[p];
-          this->Part.points.push_back({ mesh.numbers[p], { x[0], x[1], x[2] }, fixed, 1 });
-          largest = std::max(largest, mesh.numbers[p]);
-        }
-      }
-      unitePoints(this->Part.points);
-    });
+      const Index p = mesh.tetrahedra[CornersOfCell * c + k];
+      cell.points[k] = mesh.numbers[p];
+      used[p] = 1;
+    }
+    cell.region = mesh.regions.empty() ? 0 : mesh.regions[c];
+    cell.originRank = this->Group.rank();
+    cell.originCell = static_cast<Index>(c);
+  }
+  for (std::size_t p = 0; p < used.size(); ++p)
+  {
+    if (used[p])
+    {
+      const double* x = &mesh.points[3 * p];
+      const unsigned char fixed = mesh.fixed.empty() ? 0 : mesh.fixed[p];
+      this->Part.points.push_back({ mesh.numbers[p], { x[0], x[1], x[2] }, fixed, 1 });
+      largest = std::max(largest, mesh.numbers[p]);
+    }
+  }
+  unitePoints(this->Part.points);
   this->FirstInserted = this->NextPoint = this->Group.maximum(largest) + 1;
   this->FirstSize = this->Group.sum(static_cast<Index>(this->Part.cells.size()));
   for (const auto& list : this->Group.gatherItems(mesh.markedFacets))
@@ -399,21 +395,17 @@ void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& re
   std::vector<char> used(result.originalPoints.size(), 0);
   std::vector<Index> numbers(used.size(), -1);
   Index inserted = 0;
-  this->Group.together(
-    [&]
+  for (std::size_t c = 0; c < result.originalCells.size(); ++c)
+  {
+    for (int k = 0; k < CornersOfCell && result.originalCells[c] < own; ++k)
     {
-      for (std::size_t c = 0; c < result.originalCells.size(); ++c)
-      {
-        for (int k = 0; k < CornersOfCell && result.originalCells[c] < own; ++k)
-        {
-          used[result.tetrahedra[CornersOfCell * c + k]] = 1;
-        }
-      }
-      for (std::size_t p = 0; p < used.size(); ++p)
-      {
-        inserted += used[p] && result.originalPoints[p] < 0;
-      }
-    });
+      used[result.tetrahedra[CornersOfCell * c + k]] = 1;
+    }
+  }
+  for (std::size_t p = 0; p < used.size(); ++p)
+  {
+    inserted += used[p] && result.originalPoints[p] < 0;
+  }
   // What the number of cells did not allow is tried again when it may be larger.
   const bool retries = this->Spent < 1.0 &&
     std::count_if(result.originalCells.begin(), result.originalCells.end(),
@@ -428,55 +420,51 @@ void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& re
     first += r < this->Group.rank() ? counts[r][0] : 0;
     this->NextPoint += counts[r][0];
   }
-  this->Group.together(
-    [&]
+  std::vector<PartPoint> points;
+  Index next = first;
+  for (std::size_t p = 0; p < used.size(); ++p)
+  {
+    if (!used[p])
     {
-      std::vector<PartPoint> points;
-      Index next = first;
-      for (std::size_t p = 0; p < used.size(); ++p)
-      {
-        if (!used[p])
-        {
-          continue;
-        }
-        const Index original = result.originalPoints[p];
-        const double* x = &result.points[3 * p];
-        PartPoint point = { next, { x[0], x[1], x[2] }, 0, 0 };
-        if (original >= 0)
-        {
-          const PartPoint& before = local.points[original];
-          point.number = before.number;
-          point.fixed = before.fixed;
-          point.onAllSeams = before.onAllSeams && (local.nearSeam[original] || retries);
-        }
-        else
-        {
-          ++next;
-        }
-        numbers[p] = point.number;
-        points.push_back(point);
-      }
-      this->addShares(local, result, first, numbers);
-      std::vector<PartCell> cells;
-      for (std::size_t c = 0; c < result.originalCells.size(); ++c)
-      {
-        if (result.originalCells[c] >= own)
-        {
-          continue;
-        }
-        PartCell cell = part.cells[result.originalCells[c]];
-        for (int k = 0; k < CornersOfCell; ++k)
-        {
-          cell.points[k] = numbers[result.tetrahedra[CornersOfCell * c + k]];
-        }
-        cell.quality = result.qualities[c];
-        cell.bound = result.bounds[c];
-        cell.obstacle = result.obstacles[c];
-        cells.push_back(cell);
-      }
-      part.points = std::move(points); // originals keep their order, inserted ones follow
-      part.cells = std::move(cells);
-    });
+      continue;
+    }
+    const Index original = result.originalPoints[p];
+    const double* x = &result.points[3 * p];
+    PartPoint point = { next, { x[0], x[1], x[2] }, 0, 0 };
+    if (original >= 0)
+    {
+      const PartPoint& before = local.points[original];
+      point.number = before.number;
+      point.fixed = before.fixed;
+      point.onAllSeams = before.onAllSeams && (local.nearSeam[original] || retries);
+    }
+    else
+    {
+      ++next;
+    }
+    numbers[p] = point.number;
+    points.push_back(point);
+  }
+  this->addShares(local, result, first, numbers);
+  std::vector<PartCell> cells;
+  for (std::size_t c = 0; c < result.originalCells.size(); ++c)
+  {
+    if (result.originalCells[c] >= own)
+    {
+      continue;
+    }
+    PartCell cell = part.cells[result.originalCells[c]];
+    for (int k = 0; k < CornersOfCell; ++k)
+    {
+      cell.points[k] = numbers[result.tetrahedra[CornersOfCell * c + k]];
+    }
+    cell.quality = result.qualities[c];
+    cell.bound = result.bounds[c];
+    cell.obstacle = result.obstacles[c];
+    cells.push_back(cell);
+  }
+  part.points = std::move(points); // originals keep their order, inserted ones follow
+  part.cells = std::move(cells);
 }
 
 //------------------------------------------------------------------------------
@@ -499,13 +487,9 @@ bool RankRounds::neverInside(const PartCell& cell, const PointPlaces& places) co
 bool RankRounds::anyNeverInside()
 {
   bool found = false;
-  this->Group.together(
-    [&]
-    {
-      const PointPlaces places(this->Part.points);
-      found = std::any_of(this->Part.cells.begin(), this->Part.cells.end(),
-        [&](const PartCell& cell) { return this->neverInside(cell, places); });
-    });
+  const PointPlaces places(this->Part.points);
+  found = std::any_of(this->Part.cells.begin(), this->Part.cells.end(),
+    [&](const PartCell& cell) { return this->neverInside(cell, places); });
   return this->Group.any(found);
 }
 
@@ -546,7 +530,7 @@ std::vector<Ball> RankRounds::placesToKeep() const
 bool RankRounds::runRound(int round, int rounds)
 {
   std::vector<Ball> inside;
-  this->Group.together([&] { inside = round == 0 ? std::vector<Ball>() : this->placesToKeep(); });
+  inside = round == 0 ? std::vector<Ball>() : this->placesToKeep();
   redistribute(
     this->Group, divideAmongRanks(this->Group, this->Part, inside, this->Frame), this->Part);
   const std::vector<std::array<Index, 3>> none;
@@ -560,19 +544,15 @@ bool RankRounds::runRound(int round, int rounds)
   LocalMesh local;
   ReconnectionResult result;
   const bool any = !this->Part.cells.empty();
-  this->Group.together(
-    [&]
-    {
-      local = this->localMesh(around, round);
-      ReconnectionOptions options = this->Options;
-      this->setOptions(local, round, rounds, options);
-      if (any)
-      {
-        Mesh mesh(local.view(), options.threads);
-        mesh.setMirrored(this->Mirrored);
-        result = improveConnectivity(mesh, options);
-      }
-    });
+  local = this->localMesh(around, round);
+  ReconnectionOptions options = this->Options;
+  this->setOptions(local, round, rounds, options);
+  if (any)
+  {
+    Mesh mesh(local.view(), options.threads);
+    mesh.setMirrored(this->Mirrored);
+    result = improveConnectivity(mesh, options);
+  }
   this->takeResult(local, result);
   this->record(result, any);
   const ReconnectionRecord& last = this->Result.history.back();
@@ -611,42 +591,38 @@ RankReconnection RankRounds::finish()
   }
   redistribute(this->Group, targets, this->Part);
   RankReconnection& result = this->Result;
-  this->Group.together(
-    [&]
+  std::vector<std::pair<Index, std::size_t>> order; // of cells, by their original ones
+  for (const PartCell& cell : this->Part.cells)
+  {
+    order.emplace_back(cell.originCell, order.size());
+  }
+  std::sort(order.begin(), order.end());
+  result.firstInserted = this->FirstInserted;
+  result.shareOffsets = { 0 };
+  auto share = this->Part.shares.begin();
+  for (const PartPoint& point : this->Part.points)
+  {
+    result.numbers.push_back(point.number);
+    result.points.insert(result.points.end(), point.x.begin(), point.x.end());
+    for (; share != this->Part.shares.end() && share->point == point.number; ++share)
     {
-      std::vector<std::pair<Index, std::size_t>> order; // of cells, by their original ones
-      for (const PartCell& cell : this->Part.cells)
-      {
-        order.emplace_back(cell.originCell, order.size());
-      }
-      std::sort(order.begin(), order.end());
-      result.firstInserted = this->FirstInserted;
-      result.shareOffsets = { 0 };
-      auto share = this->Part.shares.begin();
-      for (const PartPoint& point : this->Part.points)
-      {
-        result.numbers.push_back(point.number);
-        result.points.insert(result.points.end(), point.x.begin(), point.x.end());
-        for (; share != this->Part.shares.end() && share->point == point.number; ++share)
-        {
-          result.shares.push_back({ share->number, share->weight });
-        }
-        result.shareOffsets.push_back(static_cast<Index>(result.shares.size()));
-      }
-      const PointPlaces places(this->Part.points);
-      for (const auto& [origin, c] : order)
-      {
-        const PartCell& cell = this->Part.cells[c];
-        for (const Index number : cell.points)
-        {
-          result.tetrahedra.push_back(places(number));
-        }
-        result.originalCells.push_back(origin);
-        result.obstacles.push_back(cell.obstacle);
-        result.qualities.push_back(cell.quality);
-        result.bounds.push_back(cell.bound);
-      }
-    });
+      result.shares.push_back({ share->number, share->weight });
+    }
+    result.shareOffsets.push_back(static_cast<Index>(result.shares.size()));
+  }
+  const PointPlaces places(this->Part.points);
+  for (const auto& [origin, c] : order)
+  {
+    const PartCell& cell = this->Part.cells[c];
+    for (const Index number : cell.points)
+    {
+      result.tetrahedra.push_back(places(number));
+    }
+    result.originalCells.push_back(origin);
+    result.obstacles.push_back(cell.obstacle);
+    result.qualities.push_back(cell.quality);
+    result.bounds.push_back(cell.bound);
+  }
   return std::move(result);
 }
 
@@ -677,21 +653,23 @@ std::string needsOneRank(const ReconnectionOptions& options)
 RankReconnection improveOnRanks(
   RankGroup& group, RankTetrahedra mesh, const ReconnectionOptions& options, int rounds)
 {
+  const std::string what = needsOneRank(options);
+  if (!what.empty())
+  {
+    throw Error("with " + what + ", the mesh is improved on one rank: gather it");
+  }
+  if (rounds < 1)
+  {
+    throw Error("the number of rounds must be at least 1");
+  }
+  RankReconnection result;
   group.together(
     [&]
     {
-      const std::string what = needsOneRank(options);
-      if (!what.empty())
-      {
-        throw Error("with " + what + ", the mesh is improved on one rank: gather it");
-      }
-      if (rounds < 1)
-      {
-        throw Error("the number of rounds must be at least 1");
-      }
+      RankRounds work(group, mesh, options);
+      mesh = RankTetrahedra();
+      result = work.run(rounds);
     });
-  RankRounds work(group, mesh, options);
-  mesh = RankTetrahedra();
-  return work.run(rounds);
+  return result;
 }
 }

@@ -138,14 +138,10 @@ public:
   std::vector<double> run()
   {
     std::vector<double> energies(static_cast<std::size_t>(this->Count * this->Count), -1.0);
-    this->Group.together(
-      [&]
-      {
-        runChunks(
-          this->Count, this->Options.match.threads,
-          [&](Index s) { this->named(s, [&] { this->prepareInTime(s); }); },
-          [this](double fraction) { return this->proceed(0, this->Count, fraction); });
-      });
+    runChunks(
+      this->Count, this->Options.match.threads,
+      [&](Index s) { this->named(s, [&] { this->prepareInTime(s); }); },
+      [this](double fraction) { return this->proceed(0, this->Count, fraction); });
     this->shareStop();
     if (this->Stop == MatchStop::Complete)
     {
@@ -220,7 +216,7 @@ private:
     while (going)
     {
       const auto before = static_cast<Index>(left.size());
-      this->Group.together([&] { this->matchRound(left, all, energies); });
+      this->matchRound(left, all, energies);
       const auto rest = std::stable_partition(
         left.begin(), left.end(), [&](Index pair) { return energies[pair] < 0.0; });
       for (auto pair = rest; pair != left.end(); ++pair)
@@ -554,50 +550,42 @@ std::vector<Silhouette> shapesOfFirst(RankGroup& group, const std::vector<Silhou
   std::vector<Vec2> outlines;
   std::vector<char> pixels; // of masks, which have 0 and 1
   const bool isFirst = group.rank() == 0;
-  group.together(
-    [&]
-    {
-      for (std::size_t i = 0; isFirst && i < own.size(); ++i)
-      {
-        const Silhouette& s = own[i];
-        sent.push_back({ static_cast<Index>(s.outline.size()), static_cast<Index>(s.mask.size()),
-          s.components, s.holes, s.width, s.height, s.centre, s.maxDistance, s.area, s.perimeter,
-          s.threshold, static_cast<char>(s.touchesBorder), static_cast<char>(s.dark) });
-        outlines.insert(outlines.end(), s.outline.begin(), s.outline.end());
-        std::transform(s.mask.begin(), s.mask.end(), std::back_inserter(pixels),
-          [](float inside) { return static_cast<char>(inside != 0.0f); });
-      }
-    });
+  for (std::size_t i = 0; isFirst && i < own.size(); ++i)
+  {
+    const Silhouette& s = own[i];
+    sent.push_back({ static_cast<Index>(s.outline.size()), static_cast<Index>(s.mask.size()),
+      s.components, s.holes, s.width, s.height, s.centre, s.maxDistance, s.area, s.perimeter,
+      s.threshold, static_cast<char>(s.touchesBorder), static_cast<char>(s.dark) });
+    outlines.insert(outlines.end(), s.outline.begin(), s.outline.end());
+    std::transform(s.mask.begin(), s.mask.end(), std::back_inserter(pixels),
+      [](float inside) { return static_cast<char>(inside != 0.0f); });
+  }
   sent = group.gatherItems(sent)[0];
   outlines = group.gatherItems(outlines)[0];
   pixels = group.gatherItems(pixels)[0];
   std::vector<Silhouette> shapes;
-  group.together(
-    [&]
-    {
-      auto point = outlines.begin();
-      auto pixel = pixels.begin();
-      for (const SentShape& from : sent)
-      {
-        Silhouette s;
-        s.outline.assign(point, point + from.points);
-        s.mask.assign(pixel, pixel + from.pixels);
-        point += from.points;
-        pixel += from.pixels;
-        s.components = from.components;
-        s.holes = from.holes;
-        s.width = from.width;
-        s.height = from.height;
-        s.centre = from.centre;
-        s.maxDistance = from.maxDistance;
-        s.area = from.area;
-        s.perimeter = from.perimeter;
-        s.threshold = from.threshold;
-        s.touchesBorder = from.touchesBorder != 0;
-        s.dark = from.dark != 0;
-        shapes.push_back(std::move(s));
-      }
-    });
+  auto point = outlines.begin();
+  auto pixel = pixels.begin();
+  for (const SentShape& from : sent)
+  {
+    Silhouette s;
+    s.outline.assign(point, point + from.points);
+    s.mask.assign(pixel, pixel + from.pixels);
+    point += from.points;
+    pixel += from.pixels;
+    s.components = from.components;
+    s.holes = from.holes;
+    s.width = from.width;
+    s.height = from.height;
+    s.centre = from.centre;
+    s.maxDistance = from.maxDistance;
+    s.area = from.area;
+    s.perimeter = from.perimeter;
+    s.threshold = from.threshold;
+    s.touchesBorder = from.touchesBorder != 0;
+    s.dark = from.dark != 0;
+    shapes.push_back(std::move(s));
+  }
   return shapes;
 }
 
@@ -613,12 +601,12 @@ Retrieval retrieveShapes(const std::vector<Silhouette>& shapes, const std::vecto
 Retrieval retrieveShapes(RankGroup& group, const std::vector<Silhouette>& shapes,
   const std::vector<Index>& labels, const RetrievalOptions& options)
 {
-  group.together([&] { checkInput(shapes, labels, options); });
+  checkInput(shapes, labels, options);
   const Index count = static_cast<Index>(shapes.size());
   Retrieval result;
   result.count = count;
   Comparison comparison(group, shapes, options);
-  result.distances = comparison.run();
+  group.together([&] { result.distances = comparison.run(); });
   result.stop = comparison.stop();
   result.vertices = comparison.vertices();
   result.matches = comparison.matches();

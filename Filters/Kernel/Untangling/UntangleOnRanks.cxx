@@ -221,12 +221,8 @@ RankUntangler::RankUntangler(DistributedMesh& mesh, bool mirrored, const Untangl
   , Mirrored(mirrored)
   , Options(options)
 {
-  this->Group.together(
-    [&]
-    {
-      this->Fixed.assign(options.fixed, options.fixed + mesh.localPoints());
-      this->Points = mesh.points();
-    });
+  this->Fixed.assign(options.fixed, options.fixed + mesh.localPoints());
+  this->Points = mesh.points();
   mesh.exchange(this->Fixed.data());
 }
 
@@ -236,23 +232,19 @@ Index RankUntangler::examine()
 {
   const MeshView& local = this->TheMesh.view();
   Index count = 0;
-  this->Group.together(
-    [&]
-    {
-      this->Validity.assign(local.numberOfCells, Valid);
-      if (local.numberOfCells > 0)
-      {
-        MeshView view = local;
-        view.points = this->Points.data();
-        Mesh moved(view, this->Options.threads);
-        moved.setMirrored(this->Mirrored);
-        moved.classifyCells(this->Validity.data(), this->Options.threads);
-      }
-      for (Index cell = 0; cell < local.numberOfCells; ++cell)
-      {
-        count += this->TheMesh.ownedCells()[cell] && isInvalid(this->Validity[cell]);
-      }
-    });
+  this->Validity.assign(local.numberOfCells, Valid);
+  if (local.numberOfCells > 0)
+  {
+    MeshView view = local;
+    view.points = this->Points.data();
+    Mesh moved(view, this->Options.threads);
+    moved.setMirrored(this->Mirrored);
+    moved.classifyCells(this->Validity.data(), this->Options.threads);
+  }
+  for (Index cell = 0; cell < local.numberOfCells; ++cell)
+  {
+    count += this->TheMesh.ownedCells()[cell] && isInvalid(this->Validity[cell]);
+  }
   return this->Group.sum(count);
 }
 
@@ -295,24 +287,20 @@ Region RankUntangler::gather(int width)
   std::vector<unsigned char> near, next;
   const auto mark = [&](auto wanted)
   {
-    this->Group.together(
-      [&]
+    next = near;
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    {
+      const Index* begin = view.connectivity + view.offsets[cell];
+      const Index* end = view.connectivity + view.offsets[cell + 1];
+      if (wanted(cell, begin, end))
       {
-        next = near;
-        for (Index cell = 0; cell < view.numberOfCells; ++cell)
-        {
-          const Index* begin = view.connectivity + view.offsets[cell];
-          const Index* end = view.connectivity + view.offsets[cell + 1];
-          if (wanted(cell, begin, end))
-          {
-            std::for_each(begin, end, [&](Index p) { next[p] = 1; });
-          }
-        }
-        near.swap(next);
-      });
+        std::for_each(begin, end, [&](Index p) { next[p] = 1; });
+      }
+    }
+    near.swap(next);
     this->TheMesh.exchange(near.data());
   };
-  this->Group.together([&] { near.assign(this->TheMesh.localPoints(), width < 0); });
+  near.assign(this->TheMesh.localPoints(), width < 0);
   mark(
     [&](Index cell, const Index* begin, const Index* end)
     {
@@ -326,7 +314,7 @@ Region RankUntangler::gather(int width)
   }
   std::vector<RegionPoint> points;
   std::vector<Index> cells;
-  this->Group.together([&] { this->listNear(near, points, cells); });
+  this->listNear(near, points, cells);
   const auto collect = [&](const auto& items)
   {
     if (width >= 0)
@@ -334,18 +322,14 @@ Region RankUntangler::gather(int width)
       return this->Group.gatherItems(items);
     }
     std::vector<std::decay_t<decltype(items)>> sent;
-    this->Group.together(
-      [&]
-      {
-        sent.resize(this->Group.size());
-        sent.front() = items;
-      });
+    sent.resize(this->Group.size());
+    sent.front() = items;
     return this->Group.exchangeItems(sent);
   };
   const auto allPoints = collect(points);
   const auto allCells = collect(cells);
   Region region;
-  this->Group.together([&] { region = makeRegion(allPoints, allCells); });
+  region = makeRegion(allPoints, allCells);
   return region;
 }
 
@@ -356,57 +340,53 @@ void RankUntangler::solve(const Region& region, int width)
   std::vector<RegionPoint> moved;
   std::vector<Index> obstacles; // of elements: the obstacle, how many points, their numbers
   std::vector<double> objectives;
-  this->Group.together(
-    [&]
+  const std::vector<std::vector<Index>> parts = connectedParts(region);
+  const bool whole = width < 0;
+  const std::size_t step = whole ? 1 : static_cast<std::size_t>(this->Group.size());
+  for (std::size_t i = whole ? 0 : this->Group.rank(); i < parts.size(); i += step)
+  {
+    const Part part = makePart(region, parts[i]);
+    Mesh mesh(part.view(), this->Options.threads);
+    mesh.setMirrored(this->Mirrored);
+    UntangleOptions options;
+    options.method = this->Options.method;
+    options.effort = this->Options.effort;
+    options.fixed = part.fixed.data();
+    options.threads = this->Options.threads;
+    if (this->Options.maximumSeconds > 0)
     {
-      const std::vector<std::vector<Index>> parts = connectedParts(region);
-      const bool whole = width < 0;
-      const std::size_t step = whole ? 1 : static_cast<std::size_t>(this->Group.size());
-      for (std::size_t i = whole ? 0 : this->Group.rank(); i < parts.size(); i += step)
+      options.maximumSeconds = std::max(
+        std::numeric_limits<double>::min(), this->Options.maximumSeconds - this->Clock.seconds());
+    }
+    const UntangleResult result = tautline::untangle(mesh, options);
+    objectives.push_back(result.history.empty() ? 0.0 : result.history.back().objective);
+    for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+    {
+      RegionPoint point = region.points[part.pointOf[p]];
+      if (!std::equal(point.x, point.x + 3, &result.points[3 * p]))
       {
-        const Part part = makePart(region, parts[i]);
-        Mesh mesh(part.view(), this->Options.threads);
-        mesh.setMirrored(this->Mirrored);
-        UntangleOptions options;
-        options.method = this->Options.method;
-        options.effort = this->Options.effort;
-        options.fixed = part.fixed.data();
-        options.threads = this->Options.threads;
-        if (this->Options.maximumSeconds > 0)
-        {
-          options.maximumSeconds = std::max(std::numeric_limits<double>::min(),
-            this->Options.maximumSeconds - this->Clock.seconds());
-        }
-        const UntangleResult result = tautline::untangle(mesh, options);
-        objectives.push_back(result.history.empty() ? 0.0 : result.history.back().objective);
-        for (std::size_t p = 0; p < part.pointOf.size(); ++p)
-        {
-          RegionPoint point = region.points[part.pointOf[p]];
-          if (!std::equal(point.x, point.x + 3, &result.points[3 * p]))
-          {
-            std::copy_n(&result.points[3 * p], 3, point.x);
-            moved.push_back(point);
-          }
-        }
-        for (std::size_t cell = 0; cell < part.cellOf.size(); ++cell)
-        {
-          if (result.obstacles[cell] != static_cast<signed char>(Obstacle::None))
-          {
-            const std::vector<Index>& sorted = region.cells[part.cellOf[cell]].sorted;
-            obstacles.push_back(result.obstacles[cell]);
-            obstacles.push_back(static_cast<Index>(sorted.size()));
-            obstacles.insert(obstacles.end(), sorted.begin(), sorted.end());
-          }
-        }
+        std::copy_n(&result.points[3 * p], 3, point.x);
+        moved.push_back(point);
       }
-    });
+    }
+    for (std::size_t cell = 0; cell < part.cellOf.size(); ++cell)
+    {
+      if (result.obstacles[cell] != static_cast<signed char>(Obstacle::None))
+      {
+        const std::vector<Index>& sorted = region.cells[part.cellOf[cell]].sorted;
+        obstacles.push_back(result.obstacles[cell]);
+        obstacles.push_back(static_cast<Index>(sorted.size()));
+        obstacles.insert(obstacles.end(), sorted.begin(), sorted.end());
+      }
+    }
+  }
   this->Objective = this->Group.orderlessSum(objectives);
   for (const auto& list : this->Group.gatherItems(moved))
   {
     this->take(list);
   }
   const auto found = this->Group.gatherItems(obstacles);
-  this->Group.together([&] { this->note(found, width); });
+  this->note(found, width);
 }
 
 //------------------------------------------------------------------------------
@@ -453,12 +433,8 @@ bool RankUntangler::report()
   constexpr double stages = 3.0;
   const auto points = [&](double* to) { std::copy(this->Points.begin(), this->Points.end(), to); };
   bool proceed = true;
-  this->Group.together(
-    [&]
-    {
-      proceed = !this->Options.observer ||
-        this->Options.observer({ record, std::min(1.0, record.iteration / stages), points });
-    });
+  proceed = !this->Options.observer ||
+    this->Options.observer({ record, std::min(1.0, record.iteration / stages), points });
   return !this->Group.any(!proceed);
 }
 
@@ -481,14 +457,10 @@ bool RankUntangler::fitsWhole()
     lack = error.what();
   }
   this->Result.exceededMemory = this->Group.any(!lack.empty());
-  this->Group.together(
-    [&]
-    {
-      if (!lack.empty() && this->Result.result.invertedAfter == this->Result.result.invertedBefore)
-      {
-        throw MemoryError(lack);
-      }
-    });
+  if (!lack.empty() && this->Result.result.invertedAfter == this->Result.result.invertedBefore)
+  {
+    throw MemoryError(lack);
+  }
   return !this->Result.exceededMemory;
 }
 
@@ -503,12 +475,8 @@ void RankUntangler::untangleWithin(int width)
   const Index before = result.invertedAfter;
   std::vector<double> kept;
   std::vector<signed char> validity;
-  this->Group.together(
-    [&]
-    {
-      kept = this->Points;
-      validity = this->Validity;
-    });
+  kept = this->Points;
+  validity = this->Validity;
   const Region region = this->gather(width);
   this->solve(region, width);
   result.invertedAfter = this->examine();
@@ -573,24 +541,20 @@ void RankUntangler::listRemaining()
 {
   std::vector<Index> lists;
   std::vector<Vec3> centers;
-  this->Group.together([&] { this->listInvalid(lists, centers); });
+  this->listInvalid(lists, centers);
   const auto allCenters = this->Group.gatherItems(centers);
   const auto allLists = this->Group.gatherItems(lists);
-  this->Group.together(
-    [&]
+  for (std::size_t rank = 0; rank < allLists.size(); ++rank)
+  {
+    const std::vector<Index>& list = allLists[rank];
+    for (std::size_t i = 0, k = 0; i < list.size(); i += 3 + list[i + 2], ++k)
     {
-      for (std::size_t rank = 0; rank < allLists.size(); ++rank)
-      {
-        const std::vector<Index>& list = allLists[rank];
-        for (std::size_t i = 0, k = 0; i < list.size(); i += 3 + list[i + 2], ++k)
-        {
-          const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 3;
-          const auto obstacle = static_cast<Obstacle>(list[i]);
-          this->Result.remaining[{ begin, begin + list[i + 2] }] = { obstacle,
-            static_cast<unsigned char>(list[i + 1]), allCenters[rank][k] };
-        }
-      }
-    });
+      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 3;
+      const auto obstacle = static_cast<Obstacle>(list[i]);
+      this->Result.remaining[{ begin, begin + list[i + 2] }] = { obstacle,
+        static_cast<unsigned char>(list[i + 1]), allCenters[rank][k] };
+    }
+  }
   for (const auto& element : this->Result.remaining)
   {
     this->Result.result.impossible += element.second.obstacle == Obstacle::FixedElement ||
@@ -651,6 +615,7 @@ RankUntangleResult RankUntangler::run()
 RankUntangleResult untangleOnRanks(
   DistributedMesh& mesh, bool mirrored, const UntangleOptions& options)
 {
+  RankUntangleResult result;
   mesh.group().together(
     [&]
     {
@@ -659,7 +624,8 @@ RankUntangleResult untangleOnRanks(
         throw Error(
           "The fixed points of a mesh on several ranks must be given, see rankBoundary().");
       }
+      result = RankUntangler(mesh, mirrored, options).run();
     });
-  return RankUntangler(mesh, mirrored, options).run();
+  return result;
 }
 }

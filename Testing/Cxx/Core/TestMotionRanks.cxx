@@ -9,13 +9,18 @@
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshUntangler.h"
 
+#include "vtkCallbackCommand.h"
 #include "vtkInformation.h"
 #include "vtkMultiBlockDataSet.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTable.h"
 
 #include <cmath>
+#include <functional>
 #include <numeric>
+#include <set>
+#include <string>
+#include <utility>
 
 using namespace tautline;
 
@@ -426,6 +431,101 @@ void testMostlyInverted(vtkMPIController* controller)
   }
 }
 
+/// Keeps the texts of a filter's progress, and stops it on the first process at one that begins so.
+struct ProgressTexts
+{
+  ProgressTexts(vtkAlgorithm* filter, std::string stopAt, bool stops)
+    : stopAt(std::move(stopAt))
+    , stops(stops)
+  {
+    vtkNew<vtkCallbackCommand> command;
+    command->SetClientData(this);
+    command->SetCallback(
+      [](vtkObject* caller, unsigned long, void* data, void*)
+      {
+        auto* filter = static_cast<vtkAlgorithm*>(caller);
+        auto* self = static_cast<ProgressTexts*>(data);
+        const std::string text = filter->GetProgressText() ? filter->GetProgressText() : "";
+        self->found = self->found || text.rfind(self->stopAt, 0) == 0;
+        filter->SetAbortExecute(self->found && self->stops ? 1 : 0);
+      });
+    filter->AddObserver(vtkCommand::ProgressEvent, command);
+  }
+
+  std::string stopAt;
+  bool stops, found = false;
+};
+
+/// Shows iterations, can be stopped, and says why no point is free, as one process does.
+void testAsOneProcess(vtkMPIController* controller)
+{
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const MeshData tangled = jittered(CellType::Tetrahedron, 5, 0.45);
+  const auto pieceOf = [&](const MeshData& whole)
+  { return gridOf(partOf(whole, rank, cutBy(whole, Cut::Slabs, size))); };
+  {
+    const Context context("iterations");
+    vtkNew<vtkMeshUntangler> filter;
+    filter->SetInputData(pieceOf(tangled));
+    const ProgressTexts texts(filter, "Untangle Mesh: iteration 1, objective ", false);
+    filter->Update();
+    TAUTLINE_CHECK(texts.found);
+  }
+  {
+    const Context context("stopped while it untangles first");
+    vtkNew<vtkMeshOptimizer> filter;
+    filter->SetInputData(pieceOf(tangled));
+    const ProgressTexts texts(filter, "Optimize Mesh: iteration 1", rank == 0);
+    Messages messages(filter);
+    filter->Update();
+    TAUTLINE_CHECK(texts.found);
+    TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), static_cast<int>(StopReason::Aborted));
+    TAUTLINE_CHECK(filter->GetInvertedAfter() > 0); // it would have been valid
+    TAUTLINE_CHECK_EQUAL(filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL),
+      filter->GetInputDataObject(0, 0)->GetNumberOfElements(vtkDataObject::CELL));
+  }
+  const MeshData small = jittered(CellType::Tetrahedron, 1, 0.0);
+  const auto summaryOf = [&](bool alone, const std::function<void(vtkMeshOptimizer*)>& set)
+  {
+    vtkNew<vtkMeshOptimizer> filter;
+    vtkMultiProcessController::SetGlobalController(alone ? nullptr : controller);
+    const auto grid = alone ? gridOf(partOf(small, 0, [](Index) { return 0; })) : pieceOf(small);
+    vtkNew<vtkDoubleArray> all;
+    all->SetName("all");
+    all->SetNumberOfTuples(grid->GetNumberOfPoints());
+    all->Fill(1.0);
+    grid->GetPointData()->AddArray(all);
+    filter->SetInputData(grid);
+    set(filter);
+    filter->Update();
+    vtkMultiProcessController::SetGlobalController(controller);
+    const std::string text = filter->GetSummary();
+    const std::size_t begin = text.find(wording("every-point-is"));
+    return begin == std::string::npos ? "" : text.substr(begin, text.find('\n', begin) - begin);
+  };
+  std::set<std::string> reasons;
+  for (const int boundary :
+    { vtkMeshOptimizer::FIXED, vtkMeshOptimizer::SLIDING, vtkMeshOptimizer::FREE })
+  {
+    const Context context("boundary " + std::to_string(boundary));
+    const auto set = [boundary](vtkMeshOptimizer* filter)
+    {
+      filter->SetBoundary(boundary);
+      if (boundary == vtkMeshOptimizer::FREE)
+      {
+        constexpr int fixedPoints = 2; // index of the array
+        filter->SetInputArrayToProcess(
+          fixedPoints, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "all");
+      }
+    };
+    const std::string expected = summaryOf(true, set);
+    TAUTLINE_CHECK(!expected.empty());
+    TAUTLINE_CHECK_EQUAL(summaryOf(false, set), expected);
+    reasons.insert(expected);
+  }
+  TAUTLINE_CHECK_EQUAL(reasons.size(), std::size_t(3));
+}
+
 /// Blocks are gathered: one with a part on each process, and one on the last process only.
 void testBlocks(vtkMPIController* controller)
 {
@@ -613,6 +713,7 @@ TAUTLINE_TEST(TestMotionRanks)
   TAUTLINE_RUN(testElementArrays(controller));
   TAUTLINE_RUN(testWholeMeshes(controller));
   TAUTLINE_RUN(testUntangler(controller));
+  TAUTLINE_RUN(testAsOneProcess(controller));
   TAUTLINE_RUN(testMostlyInverted(controller));
   TAUTLINE_RUN(testAnimation(controller));
   TAUTLINE_RUN(testRefusals(controller));

@@ -176,7 +176,7 @@ void testSpanned(vtkMPIController* controller, const MeshData& whole)
     options.automaticSolver = false;
     options.solver.method = KrylovMethod::ConjugateGradient;
     options.solver.preconditioner = Preconditioner::Jacobi;
-    Warper warper(spread, false, spread.numbers(), Processes().communicator(), options);
+    Warper warper(spread, false, spread.numbers(), group->communicator(), options);
     std::vector<int> iterations;
     // No affine motions, which are split off: the third is the sum of the others.
     for (const Vec3& factors : { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0.5, 0.25, 0 } })
@@ -243,7 +243,7 @@ void testConverged(vtkMPIController* controller, const MeshData& whole, double d
   const std::vector<unsigned char> boundary = rankBoundary(spread);
   options.prescribed = boundary.data();
   const std::vector<double> before = spread.points();
-  Warper warper(spread, false, spread.numbers(), Processes().communicator(), options);
+  Warper warper(spread, false, spread.numbers(), group->communicator(), options);
   const WarpResult found = warper.warp(displacementsOf(spread.view()).data());
   TAUTLINE_CHECK(before == spread.points()); // bitwise, as they were
   TAUTLINE_CHECK_EQUAL(found.invertedAfter, 0);

@@ -365,7 +365,9 @@ class AbsurdRank : public ThreadRank
 {
 public:
   using ThreadRank::ThreadRank;
-  void start(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override
+
+protected:
+  void sendAll(const std::vector<RankMessage>& sent, std::vector<RankMessage>& received) override
   {
     std::vector<RankMessage> messages = sent;
     for (RankMessage& message : messages)
@@ -377,7 +379,7 @@ public:
         message.bytes = bytesOf(std::vector<Index>(message.bytes.size() / sizeof(Index), length));
       }
     }
-    ThreadRank::start(messages, received);
+    ThreadRank::sendAll(messages, received);
   }
 };
 
@@ -390,11 +392,11 @@ void testMemoryOfMessages()
     const Context context(std::to_string(ranks) + " ranks");
     int errors = 0, items = 0;
     std::mutex mutex;
-    const auto count = [&](int& number, const auto& work)
+    const auto count = [&](RankGroup& group, int& number, const auto& work)
     {
       try
       {
-        work();
+        group.together(work);
       }
       catch (const Error& error)
       {
@@ -404,12 +406,12 @@ void testMemoryOfMessages()
     };
     onRanks<AbsurdRank>(ranks,
       [&](RankGroup& group)
-      { count(errors, [&] { group.exchange(std::vector<Bytes>(ranks, Bytes(1))); }); });
+      { count(group, errors, [&] { group.exchange(std::vector<Bytes>(ranks, Bytes(1))); }); });
     onRanks<AbsurdRank>(ranks,
       [&](RankGroup& group)
       {
-        count(
-          items, [&] { group.exchangeItems(std::vector<std::vector<double>>(ranks, { 1.0 })); });
+        count(group, items,
+          [&] { group.exchangeItems(std::vector<std::vector<double>>(ranks, { 1.0 })); });
         // They still work together.
         TAUTLINE_CHECK_EQUAL(group.sum(Index(1)), Index(ranks));
       });

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plane and the orientation of a mesh in pieces are those of the whole, however it is cut, and
-// points of a mesh are found in another one that is cut otherwise.
+// The plane and the orientation of a mesh in pieces are those of the whole, however it is cut.
 #include "Blocks.h"
 #include "Registry.h"
 #include "ThreadRanks.h"
@@ -234,113 +233,6 @@ void testSpaces()
   volume.addCell(CellType::Triangle, std::vector<Index>{ 0, 1, p });
   testOrientation("a volume with a triangle", volume, Orientation::Consistent);
 }
-
-Vec3 moved(const Vec3& p)
-{
-  return { 2 * p[1], -p[0] * p[0], p[2] + 0.5 };
-}
-
-std::string problemOf(const std::function<void()>& work)
-{
-  try
-  {
-    work();
-  }
-  catch (const Error& error)
-  {
-    return error.what();
-  }
-  return "";
-}
-
-/// Pieces of a mesh whose points have moved, against pieces that are cut otherwise.
-void testMatch(CellType type)
-{
-  const Context context(topology(type).name);
-  const MeshData first = jittered(type, 3, 0.2);
-  MeshData second = first;
-  second.transform(moved);
-  for (int ranks = 1; ranks <= MostRanks; ++ranks)
-  {
-    const auto slabs = cutBy(first, Cut::Slabs, ranks), random = cutBy(first, Cut::Random, ranks);
-    onRanks(ranks,
-      [&](RankGroup& group)
-      {
-        const RankPart a = partOf(first, group.rank(), slabs, true);
-        const RankPart b = partOf(second, group.rank(), random, ranks % 2 == 1);
-        const class Mesh was(a.data.view()), is(b.data.view());
-        const RankPiece before = { &was, a.ghosts.data(), a.pointOf.data() };
-        const RankPiece after = { &is, b.ghosts.data(), b.pointOf.data() };
-        const auto found = pointsInOther(group, { after }, { before });
-        TAUTLINE_CHECK_EQUAL(found.size(), std::size_t(1));
-        for (std::size_t p = 0; p < b.pointOf.size(); ++p)
-        {
-          const Vec3 place = first.point(b.pointOf[p]);
-          TAUTLINE_CHECK(std::equal(place.begin(), place.end(), &found[0][3 * p]));
-        }
-        // Without ids, points that have not moved are found.
-        const RankPart c = partOf(first, group.rank(), random, false);
-        const class Mesh same(c.data.view());
-        const auto unmoved = pointsInOther(
-          group, { { &same, nullptr, nullptr } }, { { &was, a.ghosts.data(), nullptr } });
-        TAUTLINE_CHECK(unmoved[0] == c.data.points);
-        const auto problem = [&](const RankPiece& one, const RankPiece& other)
-        { return problemOf([&] { pointsInOther(group, { one }, { other }); }); };
-        const std::string lacking =
-          problem({ &is, b.ghosts.data(), nullptr }, { &was, a.ghosts.data(), nullptr });
-        TAUTLINE_CHECK(lacking.find(wording("generate-global-ids")) != std::string::npos);
-        // An id that the other mesh has not, on one rank: an error on all.
-        std::vector<Index> wrong = b.pointOf;
-        const bool here = std::find(wrong.begin(), wrong.end(), Index(5)) != wrong.end();
-        std::replace(wrong.begin(), wrong.end(), Index(5), Index(50000));
-        TAUTLINE_CHECK(group.any(here));
-        const std::string unknown = problem({ &is, b.ghosts.data(), wrong.data() }, before);
-        TAUTLINE_CHECK(
-          unknown.find(wording("global-id-50000-the-first-has-not")) != std::string::npos);
-        // A cell that lists its points in another order, on one rank.
-        RankPart turned = b;
-        if (group.rank() == ranks - 1 && turned.data.numberOfCells() > 0)
-        {
-          flip(turned.data, turned.data.numberOfCells() - 1);
-        }
-        const bool any = group.any(group.rank() == ranks - 1 && b.data.numberOfCells() > 0);
-        const class Mesh other(turned.data.view());
-        const std::string order = problem({ &other, b.ghosts.data(), b.pointOf.data() }, before);
-        TAUTLINE_CHECK_EQUAL(order.find(wording("in-this-order")) != std::string::npos, any);
-        // An id that is at two places, in either mesh.
-        RankPart shifted = b;
-        const auto place = std::find(b.pointOf.begin(), b.pointOf.end(), Index(5));
-        const bool has = place != b.pointOf.end();
-        const bool shared = group.sum(static_cast<Index>(has)) > 1;
-        TAUTLINE_CHECK(shared || ranks < MostRanks);
-        const auto owner = -group.maximum(has ? -static_cast<Index>(group.rank()) : Index(-ranks));
-        if (has && owner == group.rank())
-        {
-          shifted.data.points[3 * (place - b.pointOf.begin())] += 0.1;
-        }
-        const class Mesh apart(shifted.data.view());
-        const RankPiece torn = { &apart, b.ghosts.data(), b.pointOf.data() };
-        for (const std::string& text : { problem(torn, before), problem(before, torn) })
-        {
-          TAUTLINE_CHECK_EQUAL(
-            text.find(wording("have-the-global-id-5")) != std::string::npos, shared);
-        }
-        // Cells that one mesh has twice, as they are not marked as ghosts.
-        const std::string twice = problem(after, { &was, nullptr, a.pointOf.data() });
-        TAUTLINE_CHECK_EQUAL(
-          twice.find(wording("cells-the-second")) != std::string::npos, ranks > 1);
-        const RankPiece unmarked = { &was, nullptr, a.pointOf.data() };
-        const std::string copies = problem(unmarked, unmarked);
-        TAUTLINE_CHECK_EQUAL(
-          copies.find(wording("are-not-marked-as-ghost-cells")) != std::string::npos, ranks > 1);
-        // Without ids, rather than that points have moved.
-        const std::string more =
-          problem({ &is, b.ghosts.data(), nullptr }, { &was, nullptr, nullptr });
-        TAUTLINE_CHECK_EQUAL(
-          more.find(wording("cells-the-second")) != std::string::npos, ranks > 1);
-      });
-  }
-}
 }
 
 TAUTLINE_TEST(TestRankPieces)
@@ -351,6 +243,4 @@ TAUTLINE_TEST(TestRankPieces)
     TAUTLINE_RUN(testOverlap(t.type));
   }
   TAUTLINE_RUN(testSpaces());
-  TAUTLINE_RUN(testMatch(CellType::Triangle));
-  TAUTLINE_RUN(testMatch(CellType::Hexahedron));
 }

@@ -142,7 +142,7 @@ TAUTLINE_TEST(TestPointPartition)
   vtkMultiProcessController::SetGlobalController(controller);
   {
     const auto group = makeProcessGroup();
-    const Communicator communicator = Processes().communicator();
+    const Communicator communicator = group->communicator();
     for (const Cut cut : { Cut::FirstOnly, Cut::Slabs, Cut::Random })
     {
       TAUTLINE_RUN(testDivision(*group, communicator, CellType::Tetrahedron, cut));

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What fails on one rank, wherever it does, ends on all of them, and they work together afterwards.
+#include "Registry.h"
+#include "ThreadRanks.h"
+#include "tautline/Core/Interruption.h"
+#include "tautline/Core/Memory.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+using namespace tautline;
+
+namespace
+{
+constexpr int ranks = 3, failing = 1;
+
+/// How work ends on each rank: the message of the error, "memory", "interrupted", or "".
+std::vector<std::string> endsOf(const std::function<void(RankGroup&)>& work)
+{
+  std::vector<std::string> ends(ranks);
+  onRanks(ranks,
+    [&](RankGroup& group)
+    {
+      std::string& end = ends[group.rank()];
+      try
+      {
+        group.together([&] { work(group); });
+      }
+      catch (const MemoryError&)
+      {
+        end = "memory";
+      }
+      catch (const Error& error)
+      {
+        end = error.what();
+      }
+      catch (const Interrupted&)
+      {
+        end = "interrupted";
+      }
+      // They are in step.
+      TAUTLINE_CHECK_EQUAL(group.sum(Index(group.rank())), Index(3));
+      TAUTLINE_CHECK_EQUAL(group.fromFirst(std::to_string(group.rank())), "0");
+    });
+  return ends;
+}
+
+std::vector<std::string> onAll(const std::string& end)
+{
+  return std::vector<std::string>(ranks, end);
+}
+
+/// The collectives that the others are in when one fails.
+void testWaiting()
+{
+  const std::vector<std::function<void(RankGroup&)>> collectives = {
+    [](RankGroup& group) { group.sum(Index(1)); }, [](RankGroup& group) { group.sum(1.0); },
+    [](RankGroup& group) { group.maximum(1.0); }, [](RankGroup& group) { group.any(true); },
+    [](RankGroup& group) { group.orderlessSum({ 1.0 }); },
+    [](RankGroup& group) { group.gatherItems(std::vector<int>(group.rank())); },
+    [](RankGroup& group)
+    { group.exchangeItems(std::vector<std::vector<int>>(ranks, { group.rank() })); },
+    [](RankGroup& group) { group.transpose(std::vector<Index>(ranks, 1)); },
+    [](RankGroup& group) { group.fromFirst("text"); }, [](RankGroup& group) { group.agree(); },
+    [](RankGroup& group) { group.together([&group] { group.sum(Index(1)); }); },
+    [](RankGroup&) {}, // nothing more
+  };
+  for (std::size_t before = 0; before < 3; ++before)
+  {
+    for (std::size_t i = 0; i < collectives.size(); ++i)
+    {
+      const Context context(
+        "collective " + std::to_string(i) + " after " + std::to_string(before) + " others");
+      const auto ends = endsOf(
+        [&](RankGroup& group)
+        {
+          for (std::size_t k = 0; k < before; ++k)
+          {
+            collectives[k](group);
+          }
+          if (group.rank() == failing)
+          {
+            throw Error("The disk is full.");
+          }
+          collectives[i](group);
+        });
+      TAUTLINE_CHECK(ends == onAll("In process 1: The disk is full."));
+    }
+  }
+}
+
+/// Calls within calls, at other depths on the rank that fails.
+void testNested()
+{
+  const auto deep = [](RankGroup& group, int depth, const std::function<void()>& last)
+  {
+    std::function<void(int)> go = [&](int left)
+    { left > 0 ? group.together([&, left] { go(left - 1); }) : last(); };
+    go(depth);
+  };
+  for (const int depth : { 0, 1, 3 })
+  {
+    const Context context("depth " + std::to_string(depth));
+    const auto ends = endsOf(
+      [&](RankGroup& group)
+      {
+        group.rank() == failing ? deep(group, depth, [] { throw Error("Too deep."); })
+                                : deep(group, 1, [&group] { group.sum(Index(1)); });
+      });
+    TAUTLINE_CHECK(ends == onAll("In process 1: Too deep."));
+    // The same text from several depths is still one failure.
+    const auto all = endsOf([&](RankGroup& group)
+      { deep(group, group.rank() * depth, [] { throw MemoryError("Not enough."); }); });
+    TAUTLINE_CHECK(all == onAll(depth == 0 ? "memory" : "Not enough."));
+  }
+}
+
+/// What all throw alike is what they get; an interruption is one on its own rank.
+void testKinds()
+{
+  TAUTLINE_CHECK(endsOf([](RankGroup&) { throw MemoryError("Not enough."); }) == onAll("memory"));
+  TAUTLINE_CHECK(endsOf([](RankGroup&) { throw Error("Wrong."); }) == onAll("Wrong."));
+  const auto ends = endsOf(
+    [](RankGroup& group)
+    {
+      group.together(
+        [&group]
+        {
+          if (group.rank() == failing)
+          {
+            throw Interrupted();
+          }
+          group.sum(Index(1));
+        });
+    });
+  TAUTLINE_CHECK_EQUAL(ends[failing], "interrupted");
+  TAUTLINE_CHECK_EQUAL(ends[0], "In process 1: the computation was interrupted");
+  TAUTLINE_CHECK_EQUAL(ends[2], ends[0]);
+  // Of two failures, the one of the lower rank.
+  const auto two = endsOf(
+    [](RankGroup& group)
+    {
+      if (group.rank() > 0)
+      {
+        throw Error("Of rank " + std::to_string(group.rank()));
+      }
+      group.sum(Index(1));
+    });
+  TAUTLINE_CHECK(two == onAll("In process 1: Of rank 1"));
+  TAUTLINE_CHECK(endsOf([](RankGroup& group) { group.sum(Index(1)); }) == onAll(""));
+}
+}
+
+//------------------------------------------------------------------------------
+TAUTLINE_TEST(TestRankGroup)
+{
+  TAUTLINE_RUN(testWaiting());
+  TAUTLINE_RUN(testNested());
+  TAUTLINE_RUN(testKinds());
+}
