@@ -80,11 +80,10 @@ std::int32_t HessianMatrix::place(std::int32_t row, std::int32_t column) const
                                           : -1;
 }
 
-void HessianMatrix::findPattern()
+/// Where the cells at the point of each row begin, and these.
+std::pair<std::vector<Index>, std::vector<Index>> HessianMatrix::cellsOfRows() const
 {
   const MeshView& view = this->TheMesh.view();
-  const bool full = this->ThePattern == Pattern::Full;
-  // The cells of each row.
   std::vector<Index> cellStarts(this->Rows + 1, 0);
   std::vector<Index> cells;
   const auto forEachNode = [&](const auto& visit)
@@ -110,6 +109,23 @@ void HessianMatrix::findPattern()
       }
     }
   };
+  forEachNode([&](std::int32_t row, Index) { ++cellStarts[row + 1]; });
+  for (Index row = 0; row < this->Rows; ++row)
+  {
+    cellStarts[row + 1] += cellStarts[row];
+  }
+  cells.resize(cellStarts[this->Rows]);
+  std::vector<Index> next(cellStarts.begin(), cellStarts.end() - 1);
+  forEachNode([&](std::int32_t row, Index cell) { cells[next[row]++] = cell; });
+  return { std::move(cellStarts), std::move(cells) };
+}
+
+void HessianMatrix::findPattern()
+{
+  const MeshView& view = this->TheMesh.view();
+  const bool full = this->ThePattern == Pattern::Full;
+  const std::pair<std::vector<Index>, std::vector<Index>> ofRows = this->cellsOfRows();
+  const std::vector<Index>&cellStarts = ofRows.first, &cells = ofRows.second;
   this->PlaceStarts.assign(view.numberOfCells + 1, 0);
   for (const CellBlock& block : this->TheMesh.blocks())
   {
@@ -123,14 +139,6 @@ void HessianMatrix::findPattern()
   {
     this->PlaceStarts[cell + 1] += this->PlaceStarts[cell];
   }
-  forEachNode([&](std::int32_t row, Index) { ++cellStarts[row + 1]; });
-  for (Index row = 0; row < this->Rows; ++row)
-  {
-    cellStarts[row + 1] += cellStarts[row];
-  }
-  cells.resize(cellStarts[this->Rows]);
-  std::vector<Index> next(cellStarts.begin(), cellStarts.end() - 1);
-  forEachNode([&](std::int32_t row, Index cell) { cells[next[row]++] = cell; });
 
   // The neighbours of each row, chunk by chunk.
   std::vector<std::vector<std::int32_t>> columns(numberOfChunks(this->Rows));

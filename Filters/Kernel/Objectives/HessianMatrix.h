@@ -112,6 +112,7 @@ private:
   void applyDiagonal(const double* r, double* z) const;
   template <int Dim>
   void sweep(const double* r, double* z) const;
+  std::pair<std::vector<Index>, std::vector<Index>> cellsOfRows() const;
   void findPattern();
   void require(Index blocks) const;
   std::int32_t place(std::int32_t row, std::int32_t column) const;
