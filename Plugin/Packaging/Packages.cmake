@@ -3,7 +3,8 @@
 # libtautline-dev and tautline-doc, one for each install component.
 install(DIRECTORY Data/ DESTINATION "${CMAKE_INSTALL_DATADIR}/tautline/samples" COMPONENT doc
   PATTERN "*.py" EXCLUDE)
-install(DIRECTORY python/examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT doc)
+install(DIRECTORY python/examples python/studies DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT doc
+  PATTERN "__pycache__" EXCLUDE)
 install(FILES CHANGELOG.md SECURITY.md DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT doc)
 
 set(CPACK_GENERATOR DEB)
@@ -72,7 +73,7 @@ The package tautline-doc has a tutorial: /usr/share/doc/tautline/help/tutorial.h
 tautline_package(development libtautline-dev "measures, repairs, deforms and matches meshes - development files"
   "Headers and CMake files, for find_package(Tautline)." "${library}, paraview-dev, ${headers}")
 tautline_package(doc tautline-doc "measures, repairs, deforms and matches meshes - documentation"
-  "Help pages, tutorial, sample meshes and example scripts." "")
+  "Help pages, tutorial, sample meshes, example scripts and the studies of the dissertation." "")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "tautline-doc")
 set(CPACK_DEBIAN_PLUGIN_PACKAGE_RECOMMENDS "tautline-doc, python3-tautline")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
@@ -84,7 +85,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/triggers")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
   "${CMAKE_CURRENT_LIST_DIR}/postinst;${CMAKE_CURRENT_LIST_DIR}/prerm")
-set(CPACK_DEBIAN_DOC_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/prerm") # examples import a module beside them
+set(CPACK_DEBIAN_DOC_PACKAGE_CONTROL_EXTRA "${CMAKE_CURRENT_LIST_DIR}/prerm") # Python compiles examples and studies
 
 # ParaView reads paraview.conf, a list of files that name plugins: on Debian 12, whose ParaView has none, beside its program.
 # Debian 13's ParaView reads its own one in its directory of libraries, and no other; its second line names a file that no

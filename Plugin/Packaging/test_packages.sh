@@ -100,6 +100,13 @@ for file in share/doc/tautline/help/index.html share/tautline/samples/bracket.vt
   [[ -s $root/usr/$file ]] || fail "no /usr/$file"
 done
 
+echo "--- the studies are part of the documentation package"
+[[ $(inside 'tautline study list') == *peridynamics_kernel* ]] || fail "no studies"
+inside "apt-get purge -y -q tautline-doc" >>"$root/apt.log" 2>&1 || fail "apt-get: $root/apt.log"
+code=0
+inside 'tautline study list' || code=$?
+((code == 2)) || fail "tautline study without tautline-doc exits with $code"
+
 echo "--- removed, nothing is left"
 inside "apt-get purge -y -q ${names[*]}" >>"$root/apt.log" 2>&1 || fail "apt-get: $root/apt.log"
 left="$(comm -13 "$root/before.txt" <(files))"

@@ -69,6 +69,14 @@ import tautline
 assert tautline.__file__.startswith(sys.argv[1]), tautline.__file__
 print(tautline.vtkElementQuality().GetClassName(), tautline.__file__)
 PYTHON
+
+  echo "--- the studies are part of the documents, not of the package"
+  study() { PYTHONPATH="$tree/lib/python3/dist-packages" "$python" -m tautline study list; }
+  if [[ $(study) != *peridynamics_kernel* ]]; then echo "the studies are not listed" >&2; exit 1; fi
+  rm -r "$tree"/share/doc/*/studies
+  code=0
+  study 2>"$work/study.log" || code=$?
+  if ((code != 2)); then echo "study list without studies exits with $code" >&2; exit 1; fi
 fi
 
 plugin="$(find "$tree" -name Tautline.so -path '*plugins*')"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The version stands in one place; a Python that cannot use the compiled modules gets one sentence; the command works.
+"""The version stands in one place; a Python that cannot use the compiled modules gets one sentence; the command works;
+the studies are part of the documentation package.
 
 test_build.py VERSION COMMAND MANUAL: the project's version, the command tautline, the directory of its manual.
 """
@@ -43,26 +44,39 @@ def check_sentences() -> None:
     assert f"use {sys.executable} or pvpython" in _build.problem(dict(build, vtk="1.2.3"))
 
 
-def copy_for_another_python() -> Path:
-    """The package with the record of a build for another Python."""
-    package = OUT / "another" / "tautline"
+def copy_of_package(name: str, **record: str) -> Path:
+    """The package as it is installed, without studies, with entries of its record of the build changed; its folder."""
+    package = OUT / name / "tautline"
     package.mkdir(parents=True, exist_ok=True)
     for source in [*PACKAGE.glob("*.py"), *PACKAGE.glob("*.so")]:
         (package / source.name).unlink(missing_ok=True)
         (package / source.name).symlink_to(source)
     build = json.loads((PACKAGE / "build.json").read_text())
-    (package / "build.json").write_text(json.dumps(dict(build, python="2.1")))
-    return package
+    (package / "build.json").write_text(json.dumps(dict(build, **record)))
+    return package.parent
 
 
 def check_wrong_python() -> None:
     """One line on standard error from the command, an ImportError with the same sentence from import."""
-    path = str(copy_for_another_python().parent)
+    path = str(copy_of_package("another", python="2.1"))
     done = run(sys.executable, "-m", "tautline", "metrics", PYTHONPATH=path)
     assert done.returncode == 1 and done.stdout == "", done
     assert re.fullmatch(r"tautline: .*built for Python 2\.1.*\n", done.stderr), done.stderr
     done = run(sys.executable, "-c", "import tautline", PYTHONPATH=path)
     assert wording("importerror-tautline-was-built-for-python-2") in done.stderr, done.stderr
+
+
+def check_studies() -> None:
+    """The studies run where the documentation package is installed; exit code 2 without it."""
+    documents = OUT / "documents"
+    (documents / "studies").unlink(missing_ok=True)
+    path = str(copy_of_package("installed", documents="../../documents"))
+    done = run(sys.executable, "-m", "tautline", "study", "list", PYTHONPATH=path)
+    assert done.returncode == 2 and wording("the-studies-are-not-installed") in done.stderr, done
+    documents.mkdir(exist_ok=True)
+    (documents / "studies").symlink_to(PACKAGE / "studies")
+    done = run(sys.executable, "-m", "tautline", "study", "list", PYTHONPATH=path)
+    assert done.returncode == 0 and "peridynamics_kernel" in done.stdout, done
 
 
 def check_python_without_vtk() -> None:
@@ -89,5 +103,6 @@ if __name__ == "__main__":
     check_version()
     check_sentences()
     check_wrong_python()
+    check_studies()
     check_python_without_vtk()
     check_manual()

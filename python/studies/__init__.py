@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Studies that regenerate the tables and figures of the dissertation: python3 -m tautline study NAME.
 
-A study is a module of this package with `main(arguments)`; its name is that of the module, and the first line of its
-docstring describes it.
+Python imports them as tautline.studies. A build tree and the documentation package have them, the installed package
+does not. A study is a module of this package with `main(arguments)`; its name is the module's name, and the first line
+of its docstring describes it.
 """
 
 from __future__ import annotations
 
-import sys
 from importlib import import_module
 from pkgutil import iter_modules
 
-from .._errors import Error
+from tautline._errors import Error
 
 
 def names() -> list[str]:
@@ -29,7 +29,3 @@ def main(arguments: list[str]) -> int:
     if arguments[0] not in names():
         raise Error(f"there is no study '{arguments[0]}'; there are {', '.join(names())}")
     return import_module(f"{__name__}.{arguments[0]}").main(arguments[1:]) or 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

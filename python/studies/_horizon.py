@@ -10,8 +10,8 @@ from typing import Any, Sequence
 import numpy as np
 
 import tautline
+from tautline._files import save_figure
 
-from .._files import save_figure
 from . import _common
 
 #: Tables 4.1 to 4.3 as printed: (aspect ratio, n = 1 / h, delta) and the condition numbers.

@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 
 import tautline
-
-from .._errors import Error
+from tautline._errors import Error
 
 _NOTE = (
     "The dissertation's set are the 99 silhouettes of T. Sebastian, P. Klein and B. Kimia (Brown University). Give a "

@@ -13,8 +13,9 @@ import time
 from importlib import import_module
 from pathlib import Path
 
-from .._errors import Error
-from .._files import make_folder, replace_text
+from tautline._errors import Error
+from tautline._files import make_folder, replace_text
+
 from ._page import Study, page
 
 #: Pixels, of the pictures in the report.

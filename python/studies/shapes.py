@@ -12,8 +12,8 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkImageData, vtkMultiBlockDataSet
 
 import tautline as tl
+from tautline._files import replace_bytes
 
-from .._files import replace_bytes
 from . import _silhouettes
 from ._common import Report, parser
 

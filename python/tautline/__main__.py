@@ -7,10 +7,11 @@ import argparse
 import sys
 import warnings
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from . import _build, _start, _vtk
+from . import __path__ as _folders, _build, _start, _vtk
 from ._commands import EXIT_CODES, Parser, check_outputs, standard_input
 from ._errors import Error
 from ._interrupts import reporting
@@ -48,6 +49,13 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _run_study(arguments: argparse.Namespace) -> int:
+    """Run a study: a build tree has them in the package, an installation in the folder of the documentation package."""
+    if _build.DOCUMENTS not in _folders:
+        _folders.append(_build.DOCUMENTS)
+    if find_spec(".studies", __package__) is None:
+        print("tautline: the studies are not installed: install the documentation package (Debian: tautline-doc), or "
+              "run the command in a checkout, after ./run build", file=sys.stderr)  # fmt: skip
+        return 2
     return int(import_module(".studies", __package__).main(arguments.arguments))
 
 

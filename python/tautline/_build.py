@@ -10,11 +10,15 @@ import os
 import sys
 from typing import Dict
 
-_FILE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "build.json")
+_FOLDER = os.path.dirname(os.path.abspath(__file__))
+_FILE = os.path.join(_FOLDER, "build.json")
 
 
 def _read() -> Dict[str, str]:
-    """The keys version, python (3.11), vtk (9.2.1) and interpreter (a path). Empty in a source tree."""
+    """The keys version, python (3.11), vtk (9.2.1), interpreter (a path) and documents (see below).
+
+    Empty in a source tree.
+    """
     if not os.path.exists(_FILE):
         return {}
     with open(_FILE, encoding="utf-8") as file:
@@ -56,3 +60,5 @@ _BUILD = _read()
 
 #: The version of the package.
 VERSION = _BUILD.get("version", "")
+#: The directory of the documentation package, whether it is installed or not; build.json has it relative to this one.
+DOCUMENTS = os.path.normpath(os.path.join(_FOLDER, _BUILD.get("documents", "")))
