@@ -11,6 +11,7 @@
 #ifndef tautline_MeshPicture_h
 #define tautline_MeshPicture_h
 
+#include "TautlineQualityModule.h" // for export macro
 #include "tautline/Mesh/Mesh.h"
 
 #include <array>
@@ -44,7 +45,7 @@ struct Picture
  * Without a cell the picture is white. The result does not depend on the number of threads. Throws
  * Error for another size, and for a part without a mesh or with another number of colours.
  */
-TAUTLINE_KERNEL_EXPORT Picture drawMeshes(
+TAUTLINEQUALITY_EXPORT Picture drawMeshes(
   const std::vector<PicturePart>& parts, int width, int height);
 }
 #endif

@@ -4,9 +4,9 @@
 #include "Blocks.h"
 #include "ColorMaps.h"
 #include "MeshAdapter.h"
+#include "MeshPicture.h"
 #include "MetricHistogram.h"
 #include "tautline/Quality/Criteria.h"
-#include "tautline/Quality/MeshPicture.h"
 
 #include "vtkBase64Utilities.h"
 #include "vtkCellData.h"

@@ -69,7 +69,7 @@ public:
 
   ///@{
   /**
-   * A picture of a mesh measured by vtkElementQuality, see tautline/Quality/MeshPicture.h: coloured
+   * A picture of a mesh measured by vtkElementQuality, see MeshPicture.h: coloured
    * by a metric, the inverted and degenerate elements and those that fail the criteria visible
    * through the others, with the colours of the metric below. It needs no display. Of two meshes
    * the pictures are beside each other, with the same colours for the same values.
