@@ -70,12 +70,14 @@ def check_studies() -> None:
     """The studies run where the documentation package is installed; exit code 2 without it."""
     documents = OUT / "documents"
     (documents / "studies").unlink(missing_ok=True)
-    path = str(copy_of_package("installed", documents="../../documents"))
-    done = run(sys.executable, "-m", "tautline", "study", "list", PYTHONPATH=path)
+    command = (sys.executable, "-m", "tautline", "study", "list")
+    path = dict(PYTHONPATH=str(copy_of_package("installed", documents="../../documents")),
+                LD_LIBRARY_PATH=str(PACKAGE.parents[2]))  # fmt: skip
+    done = run(*command, **path)
     assert done.returncode == 2 and wording("the-studies-are-not-installed") in done.stderr, done
     documents.mkdir(exist_ok=True)
     (documents / "studies").symlink_to(PACKAGE / "studies")
-    done = run(sys.executable, "-m", "tautline", "study", "list", PYTHONPATH=path)
+    done = run(*command, **path)
     assert done.returncode == 0 and "peridynamics_kernel" in done.stdout, done
 
 
