@@ -19,12 +19,16 @@ def names() -> list[str]:
     return sorted(found.name for found in iter_modules(__path__) if not found.name.startswith("_"))
 
 
+def described(name: str) -> str:
+    """What a study regenerates."""
+    return (import_module(f"{__name__}.{name}").__doc__ or "").strip().split("\n")[0]
+
+
 def main(arguments: list[str]) -> int:
     """Run a study with its own arguments; `list` prints the names and descriptions."""
     if not arguments or arguments[0] in ("list", "-h", "--help"):
         for name in names():
-            text = (import_module(f"{__name__}.{name}").__doc__ or "").strip().split("\n")[0]
-            print(f"{name:22} {text}")
+            print(f"{name:22} {described(name)}")
         return 0
     if arguments[0] not in names():
         raise Error(f"there is no study '{arguments[0]}'; there are {', '.join(names())}")

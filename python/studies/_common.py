@@ -42,6 +42,8 @@ TYPICAL_C = 1e6
 BEYOND = 3.0
 #: From this number of cells on, progress is printed.
 LARGE = 200_000
+#: The names of the methods of several objectives.
+MULTI = ("exponential-sum", "objective-product", "equal-sum")
 OPTIMIZERS = {"nlcg": "local conjugate gradient", "newton": "local newton"}
 
 
@@ -286,6 +288,15 @@ def sizes_of(mesh: vtkDataSet) -> np.ndarray:
     return np.einsum("ij,ij->i", np.cross(a, b), p[cells[:, 3]] - p[cells[:, 0]]) / 6
 
 
+def right_triangles(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The points, n x 2, and the triangles of a grid with these coordinates; each of its cells is two triangles."""
+    columns = len(x)
+    corner = (np.arange(len(y) - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    right, above = corner + 1, corner + columns
+    cells = np.stack([corner, right, above + 1, corner, above + 1, above], axis=1).reshape(-1, 3)
+    return np.column_stack([c.ravel() for c in np.meshgrid(x, y)]), cells
+
+
 def scaled(mesh: vtkDataSet, factor: float) -> vtkDataSet:
     """The mesh in another unit of length."""
     return with_points(mesh, factor * points_of(mesh))
@@ -294,8 +305,12 @@ def scaled(mesh: vtkDataSet, factor: float) -> vtkDataSet:
 # --- reports --------------------------------------------------------------------------------------------
 
 
-def parser(name: str, text: str | None, cells: int = 0, threads: int | None = 1, repeats: int = 0) -> Options:
-    """The options every study has. threads: the default, None for studies that always use one. repeats: see below."""
+def parser(name: str, text: str | None, cells: int = 0, threads: int | None = 1, repeats: int = 0,
+           steps: bool = False) -> Options:
+    """The options every study has.
+
+    threads: the default, None for studies that always use one. cells, repeats, steps: further options, see below.
+    """
     made = Options(prog=f"python3 -m tautline study {name}", description=(text or "").split("\n")[0])
     made.add_argument("--small", action="store_true", help="a small mesh, for a test: seconds; without verdicts")
     made.add_argument(
@@ -309,6 +324,9 @@ def parser(name: str, text: str | None, cells: int = 0, threads: int | None = 1,
                           help="runs of what is timed; a verdict on times needs several (default: %(default)s)")
     if cells:
         made.add_argument("--cells", type=int, default=0, help=f"approximate number (default: {cells:,})")
+    if steps:
+        made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
+                          help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
     return made
 
 

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import time
 from dataclasses import dataclass
 from typing import Sequence
 
@@ -15,7 +14,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 import tautline
 
 from ._common import Report, cells_of, parser, points_of, sizes_of
-from ._verdicts import Times
+from ._verdicts import Times, timed
 
 
 @dataclass(frozen=True)
@@ -132,14 +131,10 @@ def similarity(initial: vtkDataSet, points: np.ndarray) -> np.ndarray:
 def deform(initial: vtkDataSet, displacement: np.ndarray, method: str, *, repeats: int = 1, **more) -> Deformed:
     """The initial mesh with its boundary moved by a method of METHODS, by one thread."""
     options = {"threads": 1, **METHODS[method][1], **more}
-    seconds = []
-    for _ in range(repeats):
-        began = time.process_time()
-        result = tautline.warp(initial, displacement, **options)
-        seconds.append(time.process_time() - began)
+    result, times = timed(repeats, lambda: tautline.warp(initial, displacement, **options))
     known = result.statistics
     return Deformed(
-        result.mesh, result.inverted, result.impossible, Times(tuple(seconds)), known["amount"],
+        result.mesh, result.inverted, result.impossible, times, known["amount"],
         tuple(known[f"c{k}{k}"] for k in "xyz"), similarity(initial, points_of(result.mesh)),
     )
 

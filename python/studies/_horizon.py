@@ -50,12 +50,7 @@ def square(n: int, aspect_ratio: float, delta: float, extra: int = 0, aligned: b
         else:
             return None
         axes.append(first + step * np.arange(count + 1))
-    x, y = np.meshgrid(*axes)
-    points = np.column_stack([x.ravel(), y.ravel()])
-    columns = len(axes[0])
-    corner = (np.arange(len(axes[1]) - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
-    right, above = corner + 1, corner + columns
-    cells = np.stack([corner, right, above + 1, corner, above + 1, above], axis=1).reshape(-1, 3)
+    points, cells = _common.right_triangles(*axes)
     inside = lambda p: ((p > 1e-9) & (p < 1 - 1e-9)).all(axis=1)  # noqa: E731
     region = np.where(inside(points[cells].mean(axis=1)), 1, 2)
     return tautline.from_arrays(points, {"triangle": cells}), region, np.where(inside(points), 0.0, 1.0)

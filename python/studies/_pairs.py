@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, improve, measure, methods, parser, scaled
+from ._common import TYPICAL_C, Report, Run, improve, measure, methods, parser, scaled
 
 DOMAINS = ("disk3d", "disk2d", "barrier2d", "barrier3d")  # Figure 3.3; the first is that of tables and figures
 ITERATIONS = 20
@@ -40,10 +40,8 @@ class Goals:
 
 
 def options(goals: Goals, text: str | None, arguments: Sequence[str]) -> argparse.Namespace:
-    made = parser(goals.name, text, CELLS, repeats=REPEATS)
+    made = parser(goals.name, text, CELLS, repeats=REPEATS, steps=True)
     made.add_argument("--iterations", type=int, default=ITERATIONS, help="sweeps (default: %(default)s)")
-    made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
-                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
     made.add_argument("--domains", nargs="+", choices=DOMAINS, default=list(DOMAINS), help="default: all four")
     given = made.parse_args(arguments)
     given.cells = given.cells or (SMALL_CELLS if given.small else CELLS)
@@ -143,8 +141,5 @@ def everywhere(others: dict[str, dict[str, Run]], test) -> tuple[bool, str]:
     failed = [domain for domain, runs in others.items() if not test(runs)]
     held = [domain for domain in others if domain not in failed]
     return not failed, f"holds on {', '.join(held) or 'none'}" + (f", not on {', '.join(failed)}" if failed else "")
-
-
-MULTI = ("exponential-sum", "objective-product", "equal-sum")
 
 

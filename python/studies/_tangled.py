@@ -15,6 +15,8 @@ from ._common import TYPICAL_C, Method, Report, Run, cells_of, improve, measure,
 #: Over the mean size: the size below which the untangling metric (3.3) counts an element. The dissertation has no
 #: value.
 BETA = 0.01
+#: Mean sizes of the elements in which the methods are compared.
+UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)
 LABELS = {"si": "SI", "size": "size", "untangle_beta": "untangling"}
 NOTE = (
     "Objectives: sum of 1 / SI over the elements valid at the start of an iteration, sum of the squared untangling "

@@ -4,9 +4,11 @@
 from __future__ import annotations
 
 import math
+import time
 from dataclasses import dataclass
-from typing import Iterable, Optional, Sequence
+from typing import Callable, Iterable, Optional, Sequence, TypeVar
 
+T = TypeVar("T")
 #: True: the finding holds; False: it does not; None: the numbers do not decide it.
 Verdict = Optional[bool]
 
@@ -65,6 +67,16 @@ class Times:
     def __str__(self) -> str:
         spread = f" to {self.worst:.3g}" if self.worst > self.best else ""
         return f"{self.best:.3g}{spread} s"
+
+
+def timed(repeats: int, work: Callable[[], T]) -> tuple[T, Times]:
+    """The last result of work that is repeated, and the CPU seconds of all threads of each run."""
+    runs = []
+    for _ in range(repeats):
+        began = time.process_time()
+        result = work()
+        runs.append(time.process_time() - began)
+    return result, Times(tuple(runs))
 
 
 def faster(one: Times, other: Times) -> Verdict:

@@ -13,16 +13,13 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 import tautline
 from tautline._errors import Error
 
-from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, parser
-from ._common import points_of, sizes_of, with_points
-from ._tangled import NOTE, by_unit, counts, diverged, tangled_methods, untangle
+from ._common import TYPICAL_C, Report, Run, parser, points_of, sizes_of, with_points
+from ._tangled import NOTE, UNITS, by_unit, counts, diverged, tangled_methods, untangle
 
 QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst")
-MULTI = ("exponential-sum", "objective-product", "equal-sum")
 ABOUT = (
     "Only the motion of the boundary is given; interior vertices follow by one step of FEMWARP."
 )
-UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)  # mean sizes of the elements
 _BISECTIONS = 60
 
 
@@ -55,10 +52,7 @@ def warp(
 
 
 def options(name: str, text: str | None, arguments: Sequence[str]) -> argparse.Namespace:
-    made = parser(name, text)
-    made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
-                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
-    return made.parse_args(arguments)
+    return parser(name, text, steps=True).parse_args(arguments)
 
 
 def experiment(report: Report, mesh: vtkDataSet, motion: str, unit: str, iterations: int, steps: Sequence[int],

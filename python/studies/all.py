@@ -16,6 +16,7 @@ from pathlib import Path
 from tautline._errors import Error
 from tautline._files import make_folder, replace_text
 
+from . import described, names
 from ._page import Study, page
 
 #: Pixels, of the pictures in the report.
@@ -48,15 +49,13 @@ def main(arguments: list[str]) -> int:
 
 def studies() -> list[str]:
     """The names of the other studies."""
-    from . import names
-
     return [name for name in names() if name != "all"]
 
 
 def result(name: str, given: argparse.Namespace) -> Study:
     """Run a study, unless its results are to be reused, and read what it wrote; an error is part of the report."""
     folder = given.out / name
-    text = (import_module(f".{name}", __package__).__doc__ or "").strip().split("\n")[0]
+    text = described(name)
     if given.reuse and (folder / "findings.csv").is_file():
         return Study(name, text, folder, findings(folder))
     options = ["--out", str(folder)] + (["--small"] if given.small else [])

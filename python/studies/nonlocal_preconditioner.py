@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any, NamedTuple, Sequence
 
 import numpy as np
@@ -13,7 +12,7 @@ import tautline
 from . import _horizon
 from ._common import parser, sizes_of
 from ._horizon import Report, exponent
-from ._verdicts import Times, below
+from ._verdicts import Times, below, timed
 
 #: Names in the tables by the names of peridynamics().
 PRECONDITIONERS = {"jacobi": "Jacobi", "local amg": "AMG of the local limit", "two-level": "two-level"}
@@ -68,15 +67,10 @@ def unstructured(domain: str, cells: int, p: float, threads: int) -> tuple[float
                                                      preconditioner=name, threads=threads)) for name in PRECONDITIONERS}
 
 
-def timed(n: int, delta: float, name: str, given: Any) -> Times:
+def times_of(n: int, delta: float, name: str, given: Any) -> Times:
     """CPU seconds of all threads of an assembly and a solution, p = 1, linear basis."""
-    runs = []
-    for _ in range(given.repeats):
-        began = time.process_time()
-        _horizon.solve(n, 1, delta, "linear", 1.0, "exact", given.threads, spectrum=False, solve=True,
-                       preconditioner=name)
-        runs.append(time.process_time() - began)
-    return Times(tuple(runs))
+    return timed(given.repeats, lambda: _horizon.solve(
+        n, 1, delta, "linear", 1.0, "exact", given.threads, spectrum=False, solve=True, preconditioner=name))[1]
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -116,7 +110,7 @@ def main(arguments: Sequence[str]) -> int:
     shown(report, "unstructured", f"Unstructured triangles, delta = {_ELEMENTS_UNSTRUCTURED} elements",
           ["domain", "p", "cells", "delta"], meshes)  # fmt: skip
     mesh_findings(report, {key[:3]: row for key, row in meshes.items()})
-    times = {name: timed(sizes[-1], _DELTAS[0], name, given) for name in PRECONDITIONERS}
+    times = {name: times_of(sizes[-1], _DELTAS[0], name, given) for name in PRECONDITIONERS}
     report.table("seconds", f"CPU seconds of assembly and solution, 1/h = {sizes[-1]}, delta = {_DELTAS[0]}, p = 1",
                  ["preconditioner", "CPU s"], [[PRECONDITIONERS[name], t.best] for name, t in times.items()])
     time_findings(report, times)

@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import Sequence
 
 import numpy as np
 
 import tautline
 
-from ._common import parser
+from ._common import parser, right_triangles
 from ._horizon import Report, condition, exponent
-from ._verdicts import Times, faster
+from ._verdicts import Times, faster, timed
 
 _SIZES = (10, 20, 40)
 _DELTA = 0.2
@@ -34,12 +33,8 @@ _REPEATS = 3
 def grid(n: int, aspect_ratio: float):
     """The unit square of right triangles with legs sqrt(AR) / n and 1 / (n sqrt(AR)), as the nonlocal ones."""
     counts = [round(n / math.sqrt(aspect_ratio)), round(n * math.sqrt(aspect_ratio))]
-    x, y = np.meshgrid(*(np.linspace(0.0, 1.0, c + 1) for c in counts))
-    columns = counts[0] + 1
-    corner = (np.arange(counts[1])[:, None] * columns + np.arange(counts[0])).ravel()
-    right, above = corner + 1, corner + columns
-    cells = np.stack([corner, right, above + 1, corner, above + 1, above], axis=1).reshape(-1, 3)
-    return tautline.from_arrays(np.column_stack([x.ravel(), y.ravel()]), {"triangle": cells})
+    points, cells = right_triangles(*(np.linspace(0.0, 1.0, c + 1) for c in counts))
+    return tautline.from_arrays(points, {"triangle": cells})
 
 
 def sine(aspect_ratio: float) -> float:
@@ -56,14 +51,9 @@ def value(model: str, n: int, aspect_ratio: float, threads: int) -> float:
     return condition(n, aspect_ratio, _DELTA, *chosen, "exact", threads)
 
 
-def timed(n: int, basis: str, discretization: str, given) -> Times:
+def times_of(n: int, basis: str, discretization: str, given) -> Times:
     """CPU seconds of all threads for a condition number with p = 1."""
-    runs = []
-    for _ in range(given.repeats):
-        began = time.process_time()
-        condition(n, 1, _DELTA, basis, 1.0, discretization, given.threads)
-        runs.append(time.process_time() - began)
-    return Times(tuple(runs))
+    return timed(given.repeats, lambda: condition(n, 1, _DELTA, basis, 1.0, discretization, given.threads))[1]
 
 
 def main(arguments: Sequence[str]) -> int:
@@ -91,7 +81,7 @@ def main(arguments: Sequence[str]) -> int:
         {"title": f"1/h = {count}", "x": "aspect ratio", "xscale": "log", "yscale": "log",
          "lines": {m: (list(row), list(row.values())) for m, row in by_ratio.items()}},
     ])  # fmt: skip
-    times = {(b, d): {n: timed(n, b, d, given) for n in sizes} for b in PRINTED for d in ("dissertation", "exact")}
+    times = {(b, d): {n: times_of(n, b, d, given) for n in sizes} for b in PRINTED for d in ("dissertation", "exact")}
     report.table("times", f"CPU seconds for cond(A), delta = {_DELTA}, p = 1",
                  ["basis", "discretization", *(f"{what} 1/h = {n}" for n in sizes for what in ("ours,", "printed,"))],
                  [[b, d, *(v for n in sizes for v in (row[n].best, PRINTED[b][n]))] for (b, d), row in times.items()])

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from ._common import Report, compare, percent
-from ._pairs import Outcome, MULTI, Goals, everywhere, experiment, options
+from ._common import MULTI, Report, compare, percent
+from ._pairs import Outcome, Goals, everywhere, experiment, options
 from ._verdicts import Verdict, all_of, below, quickest, slowest
 
 # Table 3.2, seconds after 1, 5, 10 and 20 iterations.

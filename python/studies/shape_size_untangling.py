@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, compare, measure, parser, scaled
-from ._tangled import NOTE, after, by_unit, counts, diverged, tangled_methods, untangle, untangled_after
+from ._common import MULTI, TYPICAL_C, Report, Run, compare, measure, parser, scaled
+from ._tangled import NOTE, UNITS, after, by_unit, counts, diverged, tangled_methods, untangle, untangled_after
 from .shape_untangling import CELLS_3D, INVERTED_3D, tangled
 
 ITERATIONS = (0, 1, 2, 5, 10)
@@ -17,17 +17,12 @@ TABLE_3_6 = {
     "equal-sum": (111, 1, 0, 0, 0),
 }
 OBJECTIVES = ("si", "size", "untangle_beta")
-UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)  # mean sizes of the elements
 SIZE_RMS = 2.7e-3  # the start of Figure 3.10 (b)
 QUANTITIES = ("si_mean", "size_rms", "si_worst", "imr_mean")
-MULTI = ("exponential-sum", "objective-product", "equal-sum")
 
 
 def main(arguments: list[str]) -> int:
-    made = parser("shape_size_untangling", __doc__, CELLS_3D)
-    made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
-                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
-    given = made.parse_args(arguments)
+    given = parser("shape_size_untangling", __doc__, CELLS_3D, steps=True).parse_args(arguments)
     report = Report("shape_size_untangling", "Shape, size and untangling (section 3.4.4)", given.out, given.small)
     cells = given.cells or (3_000 if given.small else CELLS_3D)
     mesh = tangled("disk3d", cells, INVERTED_3D if cells == CELLS_3D else INVERTED_3D / CELLS_3D)

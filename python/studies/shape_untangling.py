@@ -8,7 +8,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, Run, measure, parser
+from ._common import MULTI, TYPICAL_C, Report, Run, measure, parser
 from ._common import cells_of, points_of, scaled, sizes_of
 from ._tangled import BETA, NOTE, after, counts, diverged, tangled_methods, untangle, untangled_after
 
@@ -34,7 +34,6 @@ ITERATIONS = 20
 SUS = "Simultaneous untangling and smoothing"
 LARGEST_UNTANGLING = 3.8103  # the largest value of the untangling metric at the start, which fixes the unit of length
 QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst")
-MULTI = ("exponential-sum", "objective-product", "equal-sum")
 INVERTED_2D, INVERTED_3D, CELLS_2D, CELLS_3D = 543, 111, 54_300, 50_000  # 1 % of the former are 543
 LARGE, LARGE_FRACTION = 1_000_000, 0.01
 
@@ -82,9 +81,7 @@ def around_inverted(mesh: vtkDataSet, side: float) -> list[float]:
 
 
 def main(arguments: list[str]) -> int:
-    made = parser("shape_untangling", __doc__)
-    made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
-                      help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
+    made = parser("shape_untangling", __doc__, steps=True)
     made.add_argument("--no-large", action="store_true", help=f"leave out the mesh of {LARGE:,} triangles")
     given = made.parse_args(arguments)
     report = Report("shape_untangling", "Shape and untangling (section 3.4.3)", given.out, given.small)

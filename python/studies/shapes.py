@@ -73,6 +73,21 @@ def _images(shapes: Any) -> list[vtkImageData]:
     return [tl._shapes.as_image(shape) for shape in shapes]
 
 
+def _add_actor(renderer: Any, mesh: Any, color: tuple[float, float, float]) -> Any:
+    """A mesh in one color, without light."""
+    from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
+
+    mapper = vtkDataSetMapper()
+    mapper.SetInputData(mesh)
+    mapper.ScalarVisibilityOff()
+    actor = vtkActor()
+    actor.SetMapper(mapper)
+    actor.GetProperty().SetColor(*color)
+    actor.GetProperty().LightingOff()
+    renderer.AddActor(actor)
+    return actor
+
+
 class Canvas:
     """Pictures of silhouettes and detected meshes side by side, drawn off screen."""
 
@@ -97,31 +112,15 @@ class Canvas:
         return renderer
 
     def draw(self, column: int, row: int, image: vtkImageData, mesh: Any = None, frame: str = "") -> None:
-        from vtkmodules.vtkRenderingCore import vtkActor, vtkDataSetMapper
-
         colours = {"right": (0.80, 0.92, 0.80), "wrong": (0.98, 0.78, 0.74), "": (1.0, 1.0, 1.0)}
         renderer = self._renderer(column, row, colours[frame])
         shape = tl.silhouette(image, 6.0)
-        mapper = vtkDataSetMapper()
-        mapper.SetInputData(shape.mesh)
-        mapper.ScalarVisibilityOff()
-        actor = vtkActor()
-        actor.SetMapper(mapper)
-        actor.GetProperty().SetColor(0.35, 0.38, 0.42)
-        actor.GetProperty().LightingOff()
-        renderer.AddActor(actor)
+        _add_actor(renderer, shape.mesh, (0.35, 0.38, 0.42))
         if mesh is not None:
-            mapper = vtkDataSetMapper()
-            mapper.SetInputData(mesh)
-            mapper.ScalarVisibilityOff()
-            actor = vtkActor()
-            actor.SetMapper(mapper)
+            actor = _add_actor(renderer, mesh, (0.85, 0.25, 0.05))
             actor.SetPosition(0, 0, 1)
             actor.GetProperty().SetRepresentationToWireframe()
-            actor.GetProperty().SetColor(0.85, 0.25, 0.05)
             actor.GetProperty().SetLineWidth(1.6)
-            actor.GetProperty().LightingOff()
-            renderer.AddActor(actor)
         x0, x1, y0, y1, z0, z1 = image.GetBounds()
         camera = renderer.GetActiveCamera()
         camera.ParallelProjectionOn()

@@ -11,9 +11,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 import tautline
 
 from ._common import Method, Report, Run, cells_of, improve, parser, points_of
+from ._solver_tables import METRICS
 from ._verdicts import Times, all_of, below, quickest, slowest
 
-METRICS = ("imr", "rr", "si", "ss")
 LABELS = ("IMR", "RR", "SI", "SS")
 DOMAINS = ("wrench", "hinge")
 CELLS, SMALL_CELLS = 995_000, 4_000

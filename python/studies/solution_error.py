@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import math
-import time
 from typing import Any, Callable, NamedTuple
 
 import numpy as np
@@ -12,10 +11,10 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report, cells_of, parser, points_of
+from ._common import Report, cells_of, parser, points_of, right_triangles
 from ._solver_tables import METRICS
 from ._solvers import order, smoothing
-from ._verdicts import Times, Verdict, all_of, below
+from ._verdicts import Times, Verdict, all_of, below, timed
 
 REPEATS = 3
 #: Numbers of cells along the sides of the meshes; of the finest one all metrics and combinations.
@@ -115,10 +114,7 @@ def main(arguments: list[str]) -> int:
 def initial(problem: Problem, n: int) -> vtkDataSet:
     """A perturbed mesh of right triangles with n cells along a side."""
     x = np.linspace(-1.0 if problem.corner else 0.0, 1.0, n + 1)
-    x, y = np.meshgrid(x, x)
-    first = (np.arange(n)[:, None] * (n + 1) + np.arange(n)).ravel()
-    cells = np.stack([first, first + 1, first + n + 2, first, first + n + 2, first + n + 1], axis=1).reshape(-1, 3)
-    points = np.column_stack([x.ravel(), y.ravel()])
+    points, cells = right_triangles(x, x)
     if problem.corner:
         centres = points[cells].mean(axis=1)
         cells = cells[~((centres[:, 0] > 0) & (centres[:, 1] < 0))]
@@ -133,14 +129,10 @@ def solved(mesh: vtkDataSet, problem: Problem, given: Any, solver: str = "cg", p
     """Solve, and measure the errors; those of a solver that does not converge are of its best solution."""
     x, y = points_of(mesh)[:, :2].T
     exact = problem.value(x, y)
-    runs = []
-    for _ in range(given.repeats):
-        began = time.process_time()
-        found = tautline.solve(mesh, solver=solver, preconditioner=preconditioner, relative_tolerance=tolerance,
-                               source=problem.source, given=exact, gradient=False, threads=given.threads,
-                               **problem.options)
-        runs.append(time.process_time() - began)
-    return Result(*errors(mesh, found.solution, problem), Times(tuple(runs)), found.iterations)
+    found, times = timed(given.repeats, lambda: tautline.solve(
+        mesh, solver=solver, preconditioner=preconditioner, relative_tolerance=tolerance, source=problem.source,
+        given=exact, gradient=False, threads=given.threads, **problem.options))
+    return Result(*errors(mesh, found.solution, problem), times, found.iterations)
 
 
 def errors(mesh: vtkDataSet, solution: np.ndarray, problem: Problem) -> tuple[float, float]:

@@ -8,7 +8,7 @@ from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 import tautline
 
-from ._common import MESQUITE_PATCH_ITERATIONS, Report, Run, parser, points_of
+from ._common import MESQUITE_PATCH_ITERATIONS, MULTI, Report, Run, parser, points_of
 from ._tangled import NOTE, tangled_methods, untangle
 
 SQUARES = 6  # along each side of the mesh
@@ -17,7 +17,6 @@ EDGE = 1.0  # not known from the figure, which has no axes
 CONVERGED = 100  # iterations
 UNITS = (0.1, 1.0, 10.0, 20.0, 100.0)
 QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst", "size_rms")
-MULTI = ("exponential-sum", "objective-product", "equal-sum")
 
 
 def structured(edge: float, shift: float) -> vtkUnstructuredGrid:
