@@ -75,7 +75,9 @@ void fillStartVector(Vec vector, std::uint64_t seed = 0);
 /**
  * @brief Lanczos' method for P^-1 A in the inner product of P, without reorthogonalisation, in two
  * passes: the first finds the weights of the two eigenvectors, the second sums up the eigenvectors.
- * Needs five vectors, whatever the number of steps.
+ * Needs five vectors, whatever the number of steps. (SLEPc's Krylov-Schur for the same operator, in
+ * the inner product of A, needs 16; for the Laplacian on a grid of 60 x 60 points it takes 4 times
+ * as long with SSOR, ILU(0) and ICC(0), 1.4 times with BoomerAMG.)
  *
  * For each of the two eigenvalues the tridiagonal matrix of the step at which it converged is
  * taken, before rounding makes copies of it. With y gathered and x = P^-1 y, the value is the
