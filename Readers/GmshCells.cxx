@@ -133,7 +133,7 @@ void GmshInput::addElement(const GmshCell& cell, const Index* tags, const char* 
   for (int i = 0; i < size; ++i)
   {
     const Index tag = tags[cell.order ? cell.order[i] : i];
-    ids[static_cast<std::size_t>(i)] = this->keepsTags ? tag : this->nodes.find(tag);
+    ids[static_cast<std::size_t>(i)] = this->nodes.find(tag);
     if (ids[static_cast<std::size_t>(i)] < 0)
     {
       this->cursor.failAt(
@@ -144,10 +144,6 @@ void GmshInput::addElement(const GmshCell& cell, const Index* tags, const char* 
   if (!cell.onlyCorners)
   {
     return;
-  }
-  if (this->keepsTags)
-  {
-    this->cursor.failAt(place, "the nodes that are no corners must be known");
   }
   ++this->elementsOfHighOrder;
   this->inner.resize(static_cast<std::size_t>(this->mesh.numberOfPoints()), 0);

@@ -27,22 +27,7 @@ namespace tautline
 /// Of the numbers and counts in a file.
 constexpr Index LargestGmshNumber = std::numeric_limits<Index>::max();
 
-class FileRanges;
-struct MeshShare;
-
 TAUTLINEREADERS_EXPORT MeshFile readGmsh(const std::string& name, bool lowerCells);
-
-/**
- * @brief A rank's share of what readGmsh() reads of text of versions 2 to 4.1. Collective; throws
- * UnusualFile on all ranks for small files, binary files, version 1 and FreeFem++'s files, elements
- * of third and fourth order, names of groups without their dimension, text without a record per
- * line, and all errors.
- *
- * Numbers of nodes and elements that are not consecutive are looked up on the ranks among which
- * they are divided.
- */
-TAUTLINEREADERS_EXPORT MeshShare shareGmsh(
-  const FileRanges& ranges, const std::string& name, bool lowerCells);
 
 /// Writes version 4.1, text or binary.
 TAUTLINEREADERS_EXPORT std::vector<std::string> writeGmsh(
@@ -113,7 +98,6 @@ struct GmshInput
   double version = 0.0;
   Index elementsOfHighOrder = 0;
   std::vector<unsigned char> inner; ///< per point: a node of such an element, but no corner
-  bool keepsTags = false;           ///< whether cells have numbers of nodes as they are in the file
 
   Index integer(const char* what, Index low, Index high); ///< text: in any line
   double coordinate(const char* what);
@@ -128,62 +112,12 @@ struct GmshInput
 /// The tag of the physical group that an entity is in, per dimension.
 using GmshPhysical = std::vector<std::unordered_map<Index, Index>>;
 
-/// A physical group whose dimension a file does not give.
-constexpr Index UnknownGmshDimension = -1;
-
-/// The sections, from the line after their names on. A count is the first thing in some of them.
-double readGmshFormat(GmshInput& input);
-void readGmshPhysicalNames(GmshInput& input);
 void readGmshNodes2(GmshInput& input);
 void readGmshElements2(GmshInput& input);
-Index readGmshCount2(GmshInput& input, const char* what);
-/// As many nodes; numbers are appended.
-void readGmshNodeRecords2(GmshInput& input, Index count, std::vector<Index>& tags);
-void readGmshElementRecords2(GmshInput& input, Index count);
 /// $ELM of version 1.
 void readGmshElements1(GmshInput& input);
-
-/// What $NodeData and $ElementData begin with.
-struct GmshDataHeader
-{
-  std::string name;
-  Index components = 0, count = 0;
-  const char* place = nullptr; ///< for messages
-};
-GmshDataHeader readGmshDataHeader(GmshInput& input);
-/// An array without values; takes its bytes from the budget, or fails.
-MeshArray makeGmshData(GmshInput& input, const GmshDataHeader& header, Index tuples);
-/// The number of a node or element, then its values.
-Index readGmshDataNumber(GmshInput& input);
-void readGmshDataValues(GmshInput& input, Index components, double* values);
-/// Adds the array, instead of one of the same name.
-void setGmshData(std::vector<MeshArray>& arrays, MeshArray array);
-
 void readGmshEntities4(GmshInput& input, GmshPhysical& physical);
 void readGmshNodes4(GmshInput& input);
 void readGmshElements4(GmshInput& input, const GmshPhysical& physical);
-
-/// What $Nodes and $Elements of version 4 begin with.
-struct GmshHeader4
-{
-  Index blocks, count;
-};
-GmshHeader4 readGmshHeader4(GmshInput& input, bool nodes);
-/// What a block of nodes or elements begins with.
-struct GmshBlock4
-{
-  Index dimension, entity;
-  Index kind; ///< of nodes 1 if they have parameters, of elements their type
-  Index size; ///< nodes or elements
-};
-GmshBlock4 readGmshBlock4(GmshInput& input, bool nodes);
-/// Whether a block has all numbers of nodes first, rather than each before its coordinates.
-bool gmshNumbersAreApart(const GmshInput& input);
-void readGmshNodeNumbers4(GmshInput& input, Index count, std::vector<Index>& tags);
-/// Also reads the numbers where they are not apart.
-void readGmshNodePoints4(
-  GmshInput& input, const GmshBlock4& block, Index count, std::vector<Index>& tags);
-void readGmshElementRecords4(
-  GmshInput& input, const GmshBlock4& block, Index count, const GmshPhysical& physical);
 }
 #endif

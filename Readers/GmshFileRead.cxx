@@ -8,6 +8,7 @@ namespace tautline
 {
 namespace
 {
+constexpr Index UnknownDimension = -1; // of a physical group
 
 /// Moves behind the line that ends a section.
 void expectEnd(TextCursor& cursor, const std::string& section)
@@ -43,13 +44,95 @@ void finishLine(TextCursor& cursor)
   }
 }
 
+double readFormat(GmshInput& input)
+{
+  TextCursor& cursor = input.cursor;
+  cursor.skipToToken();
+  const double version = cursor.real("version");
+  const Index type = cursor.integer("file type", 0, 1);
+  const Index size = cursor.integer("size of numbers", 4, 8);
+  constexpr double known[] = { 2.0, 2.1, 2.2, 4.0, 4.1 };
+  if (std::find(std::begin(known), std::end(known), version) == std::end(known))
+  {
+    cursor.fail("version " + std::to_string(version).substr(0, 4) +
+      " of the format cannot be read; 1, 2, 4.0 and 4.1 can: gmsh -save -format msh41 FILE");
+  }
+  if (type == 1 && size != 8)
+  {
+    cursor.fail("numbers of " + std::to_string(size) + " bytes; 8 are expected");
+  }
+  input.binary = type == 1;
+  finishLine(cursor);
+  if (input.binary)
+  {
+    const auto one = cursor.binary<std::int32_t>("the byte order");
+    cursor.setSwap(one != 1);
+  }
+  expectEnd(cursor, "MeshFormat");
+  return version;
+}
+
+void readPhysicalNames(GmshInput& input)
+{
+  TextCursor& cursor = input.cursor;
+  cursor.skipToToken();
+  MeshArray groups{ "PhysicalGroups", 2, MeshArray::Integers() };
+  MeshStrings names{ "PhysicalNames", {} };
+  for (Index count = cursor.count("number of names", 7); count > 0; --count)
+  {
+    cursor.skipToToken();
+    auto& numbers = std::get<MeshArray::Integers>(groups.values);
+    const char* place = cursor.place();
+    const Index first = cursor.integer("dimension or physical tag");
+    cursor.skipBlanks();
+    const bool onlyTag = *cursor.place() == '"'; // as in old files
+    if (!onlyTag && (first < 0 || first > 3))
+    {
+      cursor.failAt(place, "dimension is " + std::to_string(first) + ", 0 to 3 is allowed");
+    }
+    numbers.push_back(onlyTag ? UnknownDimension : first);
+    numbers.push_back(onlyTag ? first : cursor.integer("physical tag"));
+    names.values.push_back(cursor.quoted("name of a group"));
+  }
+  expectEnd(cursor, "PhysicalNames");
+  input.mesh.fieldArrays.push_back(std::move(groups));
+  input.mesh.fieldStrings.push_back(std::move(names));
+}
+
 /// $NodeData or $ElementData.
 void readData(GmshInput& input, bool points)
 {
   TextCursor& cursor = input.cursor;
-  const GmshDataHeader header = readGmshDataHeader(input);
-  const Index components = header.components;
-  cursor.expectRoom(header.count,
+  cursor.skipToToken();
+  std::string name;
+  const Index strings = cursor.integer("number of strings", 0, 100);
+  for (Index i = 0; i < strings; ++i)
+  {
+    cursor.skipToToken();
+    const std::string text = cursor.quoted("string");
+    name = i == 0 ? text : name;
+  }
+  for (Index reals = input.cursor.skipToToken() ? cursor.integer("number of reals", 0, 100) : 0;
+       reals > 0; --reals)
+  {
+    cursor.skipToToken();
+    cursor.real("real tag");
+  }
+  cursor.skipToToken();
+  std::vector<Index> tags(static_cast<std::size_t>(cursor.integer("number of integers", 3, 100)));
+  for (Index& tag : tags)
+  {
+    cursor.skipToToken();
+    tag = cursor.integer("integer tag");
+  }
+  const char* place = cursor.place();
+  const Index components = tags[1], count = tags[2];
+  if (components < 1 || components > 1000)
+  {
+    cursor.failAt(place, "data with " + std::to_string(components) + " components");
+  }
+  finishLine(cursor);
+  cursor.expectRoom(count,
     input.binary ? static_cast<std::size_t>(4 + 8 * components)
                  : static_cast<std::size_t>(2 + 2 * components),
     "number of values");
@@ -59,23 +142,39 @@ void readData(GmshInput& input, bool points)
     elements.assign(input.elementTags);
   }
   const GmshTags& known = points ? input.nodes : elements;
-  MeshArray array =
-    makeGmshData(input, header, points ? input.mesh.numberOfPoints() : input.mesh.numberOfCells());
-  auto& values = std::get<MeshArray::Doubles>(array.values);
-  for (Index i = 0; i < header.count; ++i)
+  const Index tuples = points ? input.mesh.numberOfPoints() : input.mesh.numberOfCells();
+  const auto size = static_cast<std::size_t>(tuples * components);
+  if (sizeof(double) * size > input.dataBudget)
   {
-    const char* place = cursor.place();
-    const Index tag = readGmshDataNumber(input);
+    cursor.failAt(place, "the arrays of this file would be far larger than the file");
+  }
+  input.dataBudget -= sizeof(double) * size;
+  MeshArray array{ name.empty() ? "Data" : name, static_cast<int>(components),
+    MeshArray::Doubles(size, std::numeric_limits<double>::quiet_NaN()) };
+  auto& values = std::get<MeshArray::Doubles>(array.values);
+  for (Index i = 0; i < count; ++i)
+  {
+    place = cursor.place();
+    const Index tag = input.binary ? cursor.binary<std::int32_t>("a node or element number")
+                                   : input.integer("node or element number", 0, LargestGmshNumber);
     const Index at = known.find(tag);
     if (at < 0)
     {
       cursor.failAt(place,
         "data of the unknown " + std::string(points ? "node " : "element ") + std::to_string(tag));
     }
-    readGmshDataValues(input, components, &values[static_cast<std::size_t>(at * components)]);
+    for (Index c = 0; c < components; ++c)
+    {
+      values[static_cast<std::size_t>(at * components + c)] =
+        input.binary ? cursor.binary<double>("a value") : cursor.real("value");
+    }
   }
   expectEnd(cursor, points ? "NodeData" : "ElementData");
-  setGmshData(points ? input.mesh.pointArrays : input.mesh.cellArrays, std::move(array));
+  std::vector<MeshArray>& arrays = points ? input.mesh.pointArrays : input.mesh.cellArrays;
+  arrays.erase(std::remove_if(arrays.begin(), arrays.end(),
+                 [&](const MeshArray& other) { return other.name == array.name; }),
+    arrays.end());
+  arrays.push_back(std::move(array));
 }
 
 /// Gives physical groups of a file without their dimensions that of their elements.
@@ -90,14 +189,14 @@ void findDimensions(GmshInput& input)
   auto& numbers = std::get<MeshArray::Integers>(groups->values);
   for (std::size_t i = 0; i < numbers.size(); i += 2)
   {
-    for (std::size_t c = 0; numbers[i] == UnknownGmshDimension && c < input.references.size(); ++c)
+    for (std::size_t c = 0; numbers[i] == UnknownDimension && c < input.references.size(); ++c)
     {
       if (input.references[c] == numbers[i + 1])
       {
         numbers[i] = cellDimension(input.mesh.cellTypes[c]);
       }
     }
-    numbers[i] = numbers[i] == UnknownGmshDimension ? 3 : numbers[i];
+    numbers[i] = numbers[i] == UnknownDimension ? 3 : numbers[i];
   }
 }
 
@@ -188,11 +287,11 @@ void readSections(GmshInput& input)
     finishLine(cursor);
     if (section == "MeshFormat")
     {
-      version = readGmshFormat(input);
+      version = readFormat(input);
     }
     else if (section == "PhysicalNames")
     {
-      readGmshPhysicalNames(input);
+      readPhysicalNames(input);
     }
     else if (section == "Entities" && version >= 4.0)
     {
@@ -244,138 +343,6 @@ void readSections(GmshInput& input)
 }
 
 //------------------------------------------------------------------------------
-double readGmshFormat(GmshInput& input)
-{
-  TextCursor& cursor = input.cursor;
-  cursor.skipToToken();
-  const double version = cursor.real("version");
-  const Index type = cursor.integer("file type", 0, 1);
-  const Index size = cursor.integer("size of numbers", 4, 8);
-  constexpr double known[] = { 2.0, 2.1, 2.2, 4.0, 4.1 };
-  if (std::find(std::begin(known), std::end(known), version) == std::end(known))
-  {
-    cursor.fail("version " + std::to_string(version).substr(0, 4) +
-      " of the format cannot be read; 1, 2, 4.0 and 4.1 can: gmsh -save -format msh41 FILE");
-  }
-  if (type == 1 && size != 8)
-  {
-    cursor.fail("numbers of " + std::to_string(size) + " bytes; 8 are expected");
-  }
-  input.binary = type == 1;
-  finishLine(cursor);
-  if (input.binary)
-  {
-    const auto one = cursor.binary<std::int32_t>("the byte order");
-    cursor.setSwap(one != 1);
-  }
-  expectEnd(cursor, "MeshFormat");
-  return version;
-}
-
-//------------------------------------------------------------------------------
-void readGmshPhysicalNames(GmshInput& input)
-{
-  TextCursor& cursor = input.cursor;
-  cursor.skipToToken();
-  MeshArray groups{ "PhysicalGroups", 2, MeshArray::Integers() };
-  MeshStrings names{ "PhysicalNames", {} };
-  for (Index count = cursor.count("number of names", 7); count > 0; --count)
-  {
-    cursor.skipToToken();
-    auto& numbers = std::get<MeshArray::Integers>(groups.values);
-    const char* place = cursor.place();
-    const Index first = cursor.integer("dimension or physical tag");
-    cursor.skipBlanks();
-    const bool onlyTag = *cursor.place() == '"'; // as in old files
-    if (!onlyTag && (first < 0 || first > 3))
-    {
-      cursor.failAt(place, "dimension is " + std::to_string(first) + ", 0 to 3 is allowed");
-    }
-    numbers.push_back(onlyTag ? UnknownGmshDimension : first);
-    numbers.push_back(onlyTag ? first : cursor.integer("physical tag"));
-    names.values.push_back(cursor.quoted("name of a group"));
-  }
-  expectEnd(cursor, "PhysicalNames");
-  input.mesh.fieldArrays.push_back(std::move(groups));
-  input.mesh.fieldStrings.push_back(std::move(names));
-}
-
-//------------------------------------------------------------------------------
-GmshDataHeader readGmshDataHeader(GmshInput& input)
-{
-  TextCursor& cursor = input.cursor;
-  GmshDataHeader header;
-  cursor.skipToToken();
-  const Index strings = cursor.integer("number of strings", 0, 100);
-  for (Index i = 0; i < strings; ++i)
-  {
-    cursor.skipToToken();
-    const std::string text = cursor.quoted("string");
-    header.name = i == 0 ? text : header.name;
-  }
-  for (Index reals = input.cursor.skipToToken() ? cursor.integer("number of reals", 0, 100) : 0;
-       reals > 0; --reals)
-  {
-    cursor.skipToToken();
-    cursor.real("real tag");
-  }
-  cursor.skipToToken();
-  std::vector<Index> tags(static_cast<std::size_t>(cursor.integer("number of integers", 3, 100)));
-  for (Index& tag : tags)
-  {
-    cursor.skipToToken();
-    tag = cursor.integer("integer tag");
-  }
-  header.place = cursor.place();
-  header.components = tags[1];
-  header.count = tags[2];
-  if (header.components < 1 || header.components > 1000)
-  {
-    cursor.fail("data with " + std::to_string(header.components) + " components");
-  }
-  finishLine(cursor);
-  return header;
-}
-
-//------------------------------------------------------------------------------
-MeshArray makeGmshData(GmshInput& input, const GmshDataHeader& header, Index tuples)
-{
-  const auto size = static_cast<std::size_t>(tuples * header.components);
-  if (sizeof(double) * size > input.dataBudget)
-  {
-    input.cursor.failAt(header.place, "the arrays of this file would be far larger than the file");
-  }
-  input.dataBudget -= sizeof(double) * size;
-  return { header.name.empty() ? "Data" : header.name, static_cast<int>(header.components),
-    MeshArray::Doubles(size, std::numeric_limits<double>::quiet_NaN()) };
-}
-
-//------------------------------------------------------------------------------
-Index readGmshDataNumber(GmshInput& input)
-{
-  return input.binary ? input.cursor.binary<std::int32_t>("a node or element number")
-                      : input.integer("node or element number", 0, LargestGmshNumber);
-}
-
-//------------------------------------------------------------------------------
-void readGmshDataValues(GmshInput& input, Index components, double* values)
-{
-  for (Index c = 0; c < components; ++c)
-  {
-    values[c] = input.binary ? input.cursor.binary<double>("a value") : input.cursor.real("value");
-  }
-}
-
-//------------------------------------------------------------------------------
-void setGmshData(std::vector<MeshArray>& arrays, MeshArray array)
-{
-  arrays.erase(std::remove_if(arrays.begin(), arrays.end(),
-                 [&](const MeshArray& other) { return other.name == array.name; }),
-    arrays.end());
-  arrays.push_back(std::move(array));
-}
-
-//------------------------------------------------------------------------------
 Index GmshInput::integer(const char* what, Index low, Index high)
 {
   this->cursor.skipToToken();
@@ -399,18 +366,13 @@ double GmshInput::coordinate(const char* what)
 }
 
 //------------------------------------------------------------------------------
-Index readGmshCount2(GmshInput& input, const char* what)
-{
-  const Index count = input.integer(what, 0, LargestGmshNumber);
-  finishLine(input.cursor);
-  return count;
-}
-
-//------------------------------------------------------------------------------
-void readGmshNodeRecords2(GmshInput& input, Index count, std::vector<Index>& tags)
+void readGmshNodes2(GmshInput& input)
 {
   TextCursor& cursor = input.cursor;
-  tags.resize(static_cast<std::size_t>(count));
+  const Index count = input.integer("number of nodes", 0, LargestGmshNumber);
+  finishLine(cursor);
+  cursor.expectRoom(count, input.binary ? 28 : 8, "number of nodes");
+  std::vector<Index> tags(static_cast<std::size_t>(count));
   input.mesh.points.resize(static_cast<std::size_t>(3 * count));
   for (std::size_t i = 0; i < tags.size(); ++i)
   {
@@ -422,22 +384,16 @@ void readGmshNodeRecords2(GmshInput& input, Index count, std::vector<Index>& tag
     }
     cursor.countRecord();
   }
-}
-
-//------------------------------------------------------------------------------
-void readGmshNodes2(GmshInput& input)
-{
-  const Index count = readGmshCount2(input, "number of nodes");
-  input.cursor.expectRoom(count, input.binary ? 28 : 8, "number of nodes");
-  std::vector<Index> tags;
-  readGmshNodeRecords2(input, count, tags);
   input.setNodes(std::move(tags));
 }
 
 //------------------------------------------------------------------------------
-void readGmshElementRecords2(GmshInput& input, Index count)
+void readGmshElements2(GmshInput& input)
 {
   TextCursor& cursor = input.cursor;
+  const Index count = input.integer("number of elements", 0, LargestGmshNumber);
+  finishLine(cursor);
+  cursor.expectRoom(count, input.binary ? 8 : 6, "number of elements");
   const auto next = [&](const char* what) -> Index
   { return input.binary ? cursor.binary<std::int32_t>(what) : cursor.integer(what); };
   input.reserveElements(static_cast<std::size_t>(count));
@@ -489,14 +445,6 @@ void readGmshElementRecords2(GmshInput& input, Index count)
 }
 
 //------------------------------------------------------------------------------
-void readGmshElements2(GmshInput& input)
-{
-  const Index count = readGmshCount2(input, "number of elements");
-  input.cursor.expectRoom(count, input.binary ? 8 : 6, "number of elements");
-  readGmshElementRecords2(input, count);
-}
-
-//------------------------------------------------------------------------------
 void readGmshElements1(GmshInput& input)
 {
   TextCursor& cursor = input.cursor;
@@ -536,7 +484,7 @@ MeshFile readGmsh(const std::string& name, bool lowerCells)
   const FileContent file(name);
   // values for a few nodes only make arrays larger than the file; nothing sensible makes them huge
   const std::size_t budget = 1048576 + 64 * static_cast<std::size_t>(file.end() - file.begin());
-  GmshInput input{ TextCursor(file), false, {}, {}, {}, {}, {}, budget, 0.0, 0, {}, false };
+  GmshInput input{ TextCursor(file), false, {}, {}, {}, {}, {}, budget, 0.0, 0, {} };
   if (!input.cursor.skipToToken())
   {
     input.cursor.fail("the file is empty");

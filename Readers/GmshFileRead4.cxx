@@ -128,90 +128,46 @@ void readGmshEntities4(GmshInput& input, GmshPhysical& physical)
 }
 
 //------------------------------------------------------------------------------
-GmshHeader4 readGmshHeader4(GmshInput& input, bool nodes)
-{
-  GmshHeader4 header{};
-  header.blocks = readSize(input, nodes ? "number of node blocks" : "number of element blocks");
-  header.count = readSize(input, nodes ? "number of nodes" : "number of elements");
-  skipRange(input, nodes ? "range of node numbers" : "range of element numbers");
-  return header;
-}
-
-//------------------------------------------------------------------------------
-GmshBlock4 readGmshBlock4(GmshInput& input, bool nodes)
-{
-  const auto [dimension, entity] = readEntity(input);
-  GmshBlock4 block{ dimension, entity, 0, 0 };
-  block.kind = nodes ? readInt(input, "parametric flag", 0, 1)
-                     : readInt(input, "type of an element", AnyLow, AnyHigh);
-  block.size = readSize(input, nodes ? "nodes in a block" : "elements in a block");
-  if (!nodes && !gmshCellByCode(block.kind))
-  {
-    input.cursor.fail("elements of type " + std::to_string(block.kind) +
-      " cannot be read; elements up to fourth order can");
-  }
-  return block;
-}
-
-//------------------------------------------------------------------------------
-bool gmshNumbersAreApart(const GmshInput& input)
-{
-  return input.version >= NewBlocks;
-}
-
-//------------------------------------------------------------------------------
-void readGmshNodeNumbers4(GmshInput& input, Index count, std::vector<Index>& tags)
-{
-  for (Index i = 0; i < count; ++i)
-  {
-    tags.push_back(readNumber(input, "node number"));
-  }
-}
-
-//------------------------------------------------------------------------------
-void readGmshNodePoints4(
-  GmshInput& input, const GmshBlock4& block, Index count, std::vector<Index>& tags)
-{
-  const bool together = !gmshNumbersAreApart(input);
-  for (Index i = 0; i < count; ++i)
-  {
-    if (together)
-    {
-      tags.push_back(readNumber(input, "node number"));
-    }
-    for (int c = 0; c < 3; ++c)
-    {
-      input.mesh.points.push_back(input.coordinate("coordinate"));
-    }
-    for (Index c = 0; block.kind == 1 && c < block.dimension; ++c)
-    {
-      readReal(input, "parameter");
-    }
-    input.cursor.countRecord();
-  }
-}
-
-//------------------------------------------------------------------------------
 void readGmshNodes4(GmshInput& input)
 {
-  const auto [blocks, count] = readGmshHeader4(input, true);
+  const Index blocks = readSize(input, "number of node blocks");
+  const Index count = readSize(input, "number of nodes");
+  skipRange(input, "range of node numbers");
+  const bool together = input.version < NewBlocks; // each number before its point
   input.cursor.expectRoom(count, input.binary ? 28 : 8, "number of nodes");
   std::vector<Index> tags;
   reserveLarge(tags, static_cast<std::size_t>(count));
   reserveLarge(input.mesh.points, static_cast<std::size_t>(3 * count));
-  for (Index i = 0; i < blocks; ++i)
+  for (Index block = 0; block < blocks; ++block)
   {
-    const GmshBlock4 block = readGmshBlock4(input, true);
-    if (block.size > count - static_cast<Index>(tags.size()))
+    const Index dimension = readEntity(input).dimension;
+    const bool parametric = readInt(input, "parametric flag", 0, 1) == 1;
+    const Index size = readSize(input, "nodes in a block");
+    if (size > count - static_cast<Index>(tags.size()))
     {
       input.cursor.fail("the blocks have more nodes than the header of $Nodes announces (" +
         std::to_string(count) + ")");
     }
-    if (gmshNumbersAreApart(input))
+    for (Index i = 0; !together && i < size; ++i)
     {
-      readGmshNodeNumbers4(input, block.size, tags);
+      tags.push_back(readNumber(input, "node number"));
     }
-    readGmshNodePoints4(input, block, block.size, tags);
+    for (Index i = 0; i < size; ++i)
+    {
+      if (together)
+      {
+        tags.push_back(readNumber(input, "node number"));
+      }
+      for (int c = 0; c < 3; ++c)
+      {
+        input.mesh.points.push_back(input.coordinate("coordinate"));
+      }
+      for (Index c = 0; parametric && c < dimension; ++c)
+      {
+        readReal(input, "parameter");
+      }
+      input.cursor.countRecord();
+    }
   }
   if (static_cast<Index>(tags.size()) != count)
   {
@@ -222,44 +178,46 @@ void readGmshNodes4(GmshInput& input)
 }
 
 //------------------------------------------------------------------------------
-void readGmshElementRecords4(
-  GmshInput& input, const GmshBlock4& block, Index count, const GmshPhysical& physical)
-{
-  const GmshCell* cell = gmshCellByCode(block.kind);
-  const auto& groups = physical[static_cast<std::size_t>(block.dimension)];
-  const auto group = groups.find(block.entity);
-  const auto total = static_cast<std::size_t>(input.mesh.numberOfCells() + count);
-  input.references.resize(total, group == groups.end() ? 0 : group->second);
-  input.entities.resize(total, block.entity);
-  for (Index i = 0; i < count; ++i)
-  {
-    const char* place = input.cursor.place();
-    input.elementTags.push_back(readNumber(input, "element number"));
-    Index nodes[MaxGmshNodes];
-    for (int n = 0; n < cell->nodes; ++n)
-    {
-      nodes[n] = readNumber(input, "node");
-    }
-    input.addElement(*cell, nodes, place);
-    input.cursor.countRecord();
-  }
-}
-
-//------------------------------------------------------------------------------
 void readGmshElements4(GmshInput& input, const GmshPhysical& physical)
 {
-  const auto [blocks, count] = readGmshHeader4(input, false);
+  const Index blocks = readSize(input, "number of element blocks");
+  const Index count = readSize(input, "number of elements");
+  skipRange(input, "range of element numbers");
   input.cursor.expectRoom(count, input.binary ? 8 : 4, "number of elements");
   input.reserveElements(static_cast<std::size_t>(count));
-  for (Index i = 0; i < blocks; ++i)
+  for (Index block = 0; block < blocks; ++block)
   {
-    const GmshBlock4 block = readGmshBlock4(input, false);
-    if (block.size > count - input.mesh.numberOfCells())
+    const auto [dimension, entity] = readEntity(input);
+    const Index code = readInt(input, "type of an element", AnyLow, AnyHigh);
+    const Index size = readSize(input, "elements in a block");
+    const GmshCell* cell = gmshCellByCode(code);
+    if (!cell)
+    {
+      input.cursor.fail("elements of type " + std::to_string(code) +
+        " cannot be read; elements up to fourth order can");
+    }
+    if (size > count - input.mesh.numberOfCells())
     {
       input.cursor.fail("the blocks have more elements than the header of $Elements announces (" +
         std::to_string(count) + ")");
     }
-    readGmshElementRecords4(input, block, block.size, physical);
+    const auto& groups = physical[static_cast<std::size_t>(dimension)];
+    const auto group = groups.find(entity);
+    const auto total = static_cast<std::size_t>(input.mesh.numberOfCells() + size);
+    input.references.resize(total, group == groups.end() ? 0 : group->second);
+    input.entities.resize(total, entity);
+    for (Index i = 0; i < size; ++i)
+    {
+      const char* place = input.cursor.place();
+      input.elementTags.push_back(readNumber(input, "element number"));
+      Index nodes[MaxGmshNodes];
+      for (int n = 0; n < cell->nodes; ++n)
+      {
+        nodes[n] = readNumber(input, "node");
+      }
+      input.addElement(*cell, nodes, place);
+      input.cursor.countRecord();
+    }
   }
   if (input.mesh.numberOfCells() != count)
   {

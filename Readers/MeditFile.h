@@ -19,18 +19,9 @@
 namespace tautline
 {
 class FileContent;
-class FileRanges;
-struct MeshShare;
 
 /// Reads a .mesh with its .sol companion, or a .sol with its .mesh.
 TAUTLINEREADERS_EXPORT MeshFile readMedit(const std::string& name, bool lowerCells);
-
-/**
- * @brief A rank's share of what readMedit() reads. Collective; throws UnusualFile on all ranks for
- * small files, sections that come twice, text without a record per line, and all errors.
- */
-TAUTLINEREADERS_EXPORT MeshShare shareMedit(
-  const FileRanges& ranges, const std::string& name, bool lowerCells);
 
 /**
  * @brief Writes a .mesh and, when there are arrays a .mesh cannot hold, the .sol beside it.

@@ -3,7 +3,7 @@
 
 #include "FileNames.h"
 #include "FileSet.h"
-#include "MeditRecords.h"
+#include "TextCursor.h"
 
 #include <algorithm>
 #include <cstring>
@@ -12,10 +12,20 @@
 
 namespace tautline
 {
-using namespace medit;
-
-namespace medit
+namespace
 {
+/// The sections of a file as they come.
+struct Contents
+{
+  int dimension = 0;
+  Index points = -1;
+  std::vector<double> coordinates;
+  std::vector<Index> pointReferences;
+  std::map<unsigned char, std::vector<Index>> nodes;      ///< by type of cell
+  std::map<unsigned char, std::vector<Index>> references; ///< by type of cell
+  std::map<std::string, std::vector<Index>> lists;        ///< Corners, Ridges, ... as ids
+};
+
 std::string nextWord(TextCursor& cursor, const char* what)
 {
   if (!cursor.skipToToken())
@@ -44,10 +54,20 @@ Index sectionSize(TextCursor& cursor, const std::string& section, std::size_t nu
   return count;
 }
 
-void readVertexRecords(TextCursor& cursor, Index count, Contents& contents)
+void readVertices(TextCursor& cursor, Contents& contents)
 {
-  resizeLarge(contents.coordinates, static_cast<std::size_t>(3 * count));
-  contents.pointReferences.resize(static_cast<std::size_t>(count));
+  if (contents.dimension == 0)
+  {
+    cursor.fail("Vertices come before Dimension");
+  }
+  if (contents.points >= 0)
+  {
+    cursor.fail("a second section Vertices");
+  }
+  contents.points =
+    sectionSize(cursor, "Vertices", static_cast<std::size_t>(contents.dimension + 1));
+  resizeLarge(contents.coordinates, static_cast<std::size_t>(3 * contents.points));
+  contents.pointReferences.resize(static_cast<std::size_t>(contents.points));
   for (std::size_t i = 0; i < contents.pointReferences.size(); ++i)
   {
     for (int c = 0; c < contents.dimension; ++c)
@@ -61,25 +81,14 @@ void readVertexRecords(TextCursor& cursor, Index count, Contents& contents)
   }
 }
 
-void readVertices(TextCursor& cursor, Contents& contents)
+void readCells(TextCursor& cursor, const MeditSection& section, Contents& contents)
 {
-  if (contents.dimension == 0)
+  if (contents.points < 0)
   {
-    cursor.fail("Vertices come before Dimension");
+    cursor.fail(std::string(section.name) + " come before Vertices");
   }
-  if (contents.points >= 0)
-  {
-    cursor.fail("a second section Vertices");
-  }
-  contents.points =
-    sectionSize(cursor, "Vertices", static_cast<std::size_t>(contents.dimension + 1));
-  readVertexRecords(cursor, contents.points, contents);
-}
-
-void readCellRecords(
-  TextCursor& cursor, const MeditSection& section, std::size_t count, Contents& contents)
-{
   const auto size = static_cast<std::size_t>(cellNodes(section.type));
+  const auto count = static_cast<std::size_t>(sectionSize(cursor, section.name, size + 1));
   std::vector<Index>& nodes = contents.nodes[section.type];
   std::vector<Index>& references = contents.references[section.type];
   std::size_t node = nodes.size(), reference = references.size();
@@ -103,46 +112,18 @@ void readCellRecords(
   }
 }
 
-void readCells(TextCursor& cursor, const MeditSection& section, Contents& contents)
-{
-  if (contents.points < 0)
-  {
-    cursor.fail(std::string(section.name) + " come before Vertices");
-  }
-  const auto size = static_cast<std::size_t>(cellNodes(section.type));
-  const Index count = sectionSize(cursor, section.name, size + 1);
-  readCellRecords(cursor, section, static_cast<std::size_t>(count), contents);
-}
-
-Index readListRecord(TextCursor& cursor, const std::string& section)
-{
-  cursor.skipToToken();
-  return cursor.integer(section.c_str(), 1, Largest) - 1;
-}
-
 /// Corners, RequiredVertices, Ridges, RequiredEdges, RequiredTriangles: lists of numbers.
 void readList(TextCursor& cursor, const std::string& section, Contents& contents)
 {
   std::vector<Index>& ids = contents.lists[section];
   for (Index count = sectionSize(cursor, section, 1); count > 0; --count)
   {
-    ids.push_back(readListRecord(cursor, section));
+    cursor.skipToToken();
+    ids.push_back(cursor.integer(section.c_str(), 1, std::numeric_limits<Index>::max()) - 1);
   }
 }
 
-const MeditSection* findCells(const std::string& name)
-{
-  const auto* found = std::find_if(std::begin(MeditSections), std::end(MeditSections),
-    [&](const MeditSection& section) { return name == section.name; });
-  return found == std::end(MeditSections) ? nullptr : found;
-}
-
-bool isList(const std::string& name)
-{
-  return name == "Corners" || name == "RequiredVertices" || name == "Ridges" ||
-    name == "RequiredEdges" || name == "RequiredTriangles";
-}
-
+/// Everything up to the next keyword.
 void skipSection(TextCursor& cursor)
 {
   while (cursor.skipToToken() && !std::isalpha(static_cast<unsigned char>(*cursor.place())))
@@ -157,7 +138,10 @@ void readSections(TextCursor& cursor, Contents& contents)
   {
     const char* place = cursor.place();
     const std::string word(cursor.word());
-    const MeditSection* section = findCells(word);
+    const auto* section = std::find_if(std::begin(MeditSections), std::end(MeditSections),
+      [&](const MeditSection& s) { return word == s.name; });
+    const bool list = word == "Corners" || word == "RequiredVertices" || word == "Ridges" ||
+      word == "RequiredEdges" || word == "RequiredTriangles";
     if (word == "End")
     {
       return;
@@ -170,11 +154,11 @@ void readSections(TextCursor& cursor, Contents& contents)
     {
       readVertices(cursor, contents);
     }
-    else if (section)
+    else if (section != std::end(MeditSections))
     {
       readCells(cursor, *section, contents);
     }
-    else if (isList(word))
+    else if (list)
     {
       readList(cursor, word, contents);
     }
@@ -192,11 +176,11 @@ void readSections(TextCursor& cursor, Contents& contents)
   cursor.fail("the file ends without the keyword End");
 }
 
-/// A 0/1 array from a list of ids, or the one given if it has a name.
+/// A 0/1 array from a list of ids.
 MeshArray flags(const TextCursor& cursor, const char* name, const std::vector<Index>& ids,
   std::size_t begin, std::size_t count, MeshArray array)
 {
-  if (array.name.empty())
+  if (array.size() == 0)
   {
     array = MeshArray::make(name, 1, 'u', count);
   }
@@ -212,7 +196,7 @@ MeshArray flags(const TextCursor& cursor, const char* name, const std::vector<In
   return array;
 }
 
-MeshFile assemble(const TextCursor& cursor, Contents contents, bool empty)
+MeshFile assemble(const TextCursor& cursor, Contents contents)
 {
   MeshFile mesh;
   mesh.points = std::move(contents.coordinates);
@@ -255,7 +239,7 @@ MeshFile assemble(const TextCursor& cursor, Contents contents, bool empty)
   }
   for (MeshArray* array : { &fixed, &corner, &ridge, &required })
   {
-    if (array->size() > 0 || (empty && !array->name.empty()))
+    if (array->size() > 0)
     {
       const bool onPoints = array == &fixed || array == &corner;
       (onPoints ? mesh.pointArrays : mesh.cellArrays).push_back(std::move(*array));
@@ -279,6 +263,23 @@ void readHeader(TextCursor& cursor)
   }
   nextInteger(cursor, "version", 0, 4); // 0: bamg
 }
+
+/// One field of a .sol section.
+struct Field
+{
+  Index type; ///< 1 scalar, 2 vector, 3 symmetric tensor
+  int values(int dimension) const
+  {
+    return type == 1 ? 1 : type == 2 ? dimension : dimension * (dimension + 1) / 2;
+  }
+};
+
+/// The arrays of a section's fields: named in a comment that Tautline wrote, or Solution1, ...
+struct SolutionArrays
+{
+  std::vector<MeshArray> arrays;
+  std::vector<std::pair<std::size_t, int>> places; ///< array and component of each field
+};
 
 SolutionArrays solutionArrays(
   const FileContent& file, const std::vector<Field>& fields, const char* title, std::size_t tuples)
@@ -359,45 +360,6 @@ std::vector<Field> readFields(TextCursor& cursor)
   return fields;
 }
 
-void continueArrays(SolutionArrays& result, std::vector<MeshArray>& to)
-{
-  for (MeshArray& array : result.arrays)
-  {
-    const auto same = std::find_if(to.begin(), to.end(),
-      [&](const MeshArray& other)
-      {
-        return other.name == array.name && other.components == array.components &&
-          other.code() == array.code();
-      });
-    if (same != to.end())
-    {
-      array = std::move(*same);
-      to.erase(same);
-    }
-  }
-}
-
-void readSolutionRecords(TextCursor& cursor, const std::vector<Field>& fields, int dimension,
-  std::size_t begin, Index count, SolutionArrays& to)
-{
-  for (Index i = 0; i < count; ++i)
-  {
-    for (std::size_t f = 0; f < fields.size(); ++f)
-    {
-      MeshArray& array = to.arrays[to.places[f].first];
-      const std::size_t tuple = begin + static_cast<std::size_t>(i);
-      readField(cursor, fields[f], dimension, array,
-        tuple * static_cast<std::size_t>(array.components) +
-          static_cast<std::size_t>(to.places[f].second));
-    }
-  }
-}
-
-const char* arrayTitle(bool points)
-{
-  return points ? "Tautline point arrays:" : "Tautline cell arrays:";
-}
-
 /// A section SolAt...: values for `count` tuples from `begin` on, in arrays of `tuples` tuples.
 void readSolutionSection(TextCursor& cursor, const FileContent& file, const std::string& section,
   int dimension, Index count, std::size_t begin, std::size_t tuples, std::vector<MeshArray>& to)
@@ -411,25 +373,42 @@ void readSolutionSection(TextCursor& cursor, const FileContent& file, const std:
       section + " has " + std::to_string(values) + " values, the mesh has " +
         std::to_string(count) + " of these");
   }
-  SolutionArrays result =
-    solutionArrays(file, fields, arrayTitle(section == "SolAtVertices"), tuples);
-  continueArrays(result, to);
-  readSolutionRecords(cursor, fields, dimension, begin, count, result);
+  const bool points = section == "SolAtVertices";
+  SolutionArrays result = solutionArrays(
+    file, fields, points ? "Tautline point arrays:" : "Tautline cell arrays:", tuples);
+  for (MeshArray& array : result.arrays)
+  {
+    const auto same = std::find_if(to.begin(), to.end(),
+      [&](const MeshArray& other)
+      {
+        return other.name == array.name && other.components == array.components &&
+          other.code() == array.code();
+      });
+    if (same != to.end())
+    {
+      array = std::move(*same); // begun by another section
+      to.erase(same);
+    }
+  }
+  for (Index i = 0; i < count; ++i)
+  {
+    for (std::size_t f = 0; f < fields.size(); ++f)
+    {
+      MeshArray& array = result.arrays[result.places[f].first];
+      const std::size_t tuple = begin + static_cast<std::size_t>(i);
+      readField(cursor, fields[f], dimension, array,
+        tuple * static_cast<std::size_t>(array.components) +
+          static_cast<std::size_t>(result.places[f].second));
+    }
+  }
   std::move(result.arrays.begin(), result.arrays.end(), std::back_inserter(to));
-}
-
-const MeditSection* findSolution(const std::string& name)
-{
-  constexpr std::string_view prefix = "SolAt";
-  return name.compare(0, prefix.size(), prefix) == 0 ? findCells(name.substr(prefix.size()))
-                                                     : nullptr;
 }
 }
 
 //------------------------------------------------------------------------------
 void readMeditSolution(const FileContent& file, MeshFile& mesh)
 {
-  TextCursor cursor(file, Comment);
+  TextCursor cursor(file, '#');
   readHeader(cursor);
   int dimension = 0;
   std::vector<MeshArray> pointArrays, cellArrays;
@@ -445,13 +424,14 @@ void readMeditSolution(const FileContent& file, MeshFile& mesh)
     {
       cursor.fail("expected Dimension, found '" + word.substr(0, 20) + "'");
     }
-    const MeditSection* section = findSolution(word);
+    const auto* section = std::find_if(std::begin(MeditSections), std::end(MeditSections),
+      [&](const MeditSection& s) { return word == std::string("SolAt") + s.name; });
     if (word == "SolAtVertices")
     {
       readSolutionSection(cursor, file, word, dimension, mesh.numberOfPoints(), 0,
         static_cast<std::size_t>(mesh.numberOfPoints()), pointArrays);
     }
-    else if (section)
+    else if (section != std::end(MeditSections))
     {
       const auto [first, last] =
         std::pair(std::find(mesh.cellTypes.begin(), mesh.cellTypes.end(), section->type),
@@ -474,16 +454,6 @@ void readMeditSolution(const FileContent& file, MeshFile& mesh)
   std::move(cellArrays.begin(), cellArrays.end(), std::back_inserter(mesh.cellArrays));
 }
 
-namespace medit
-{
-bool isUnused(const MeshArray& array)
-{
-  const auto* flags = std::get_if<MeshArray::Bytes>(&array.values);
-  return (array.name == "Ridge" || array.name == "Required") && flags &&
-    std::find(flags->begin(), flags->end(), 1) == flags->end();
-}
-}
-
 //------------------------------------------------------------------------------
 MeshFile readMedit(const std::string& name, bool lowerCells)
 {
@@ -493,11 +463,11 @@ MeshFile readMedit(const std::string& name, bool lowerCells)
   const FileContent file(meshName, solution ? "the mesh of " + name : std::string());
   SetCheck set;
   set.add(file);
-  TextCursor cursor(file, Comment);
+  TextCursor cursor(file, '#');
   readHeader(cursor);
   Contents contents;
   readSections(cursor, contents);
-  MeshFile mesh = assemble(cursor, std::move(contents), false);
+  MeshFile mesh = assemble(cursor, std::move(contents));
   const std::string solutionName = stem + ".sol";
   if (solution || fileExists(solutionName))
   {
@@ -507,8 +477,14 @@ MeshFile readMedit(const std::string& name, bool lowerCells)
   {
     mesh.keepHighestDimension();
   }
-  mesh.cellArrays.erase(std::remove_if(mesh.cellArrays.begin(), mesh.cellArrays.end(), isUnused),
-    mesh.cellArrays.end());
+  const auto unused = [](const MeshArray& array)
+  {
+    const auto* flags = std::get_if<MeshArray::Bytes>(&array.values);
+    return (array.name == "Ridge" || array.name == "Required") && flags &&
+      std::find(flags->begin(), flags->end(), 1) == flags->end();
+  };
+  mesh.cellArrays.erase(
+    std::remove_if(mesh.cellArrays.begin(), mesh.cellArrays.end(), unused), mesh.cellArrays.end());
   return mesh;
 }
 }

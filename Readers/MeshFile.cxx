@@ -180,21 +180,15 @@ bool MeshFile::planar() const
 //------------------------------------------------------------------------------
 void MeshFile::keepHighestDimension()
 {
-  this->keepDimension(this->dimension());
-}
-
-//------------------------------------------------------------------------------
-void MeshFile::keepDimension(int kept)
-{
   const auto [smallest, largest] = dimensionRange(this->cellTypes);
-  if (smallest == kept && largest == kept)
+  if (smallest == largest)
   {
     return;
   }
   std::vector<char> keep(this->cellTypes.size());
   for (std::size_t cell = 0; cell < keep.size(); ++cell)
   {
-    keep[cell] = cellDimension(this->cellTypes[cell]) == kept;
+    keep[cell] = cellDimension(this->cellTypes[cell]) == largest;
   }
   std::vector<Index> ends = { 0 };
   std::size_t to = 0;

@@ -120,8 +120,6 @@ struct TAUTLINEREADERS_EXPORT MeshFile
   bool planar() const;
   /// Removes the cells of a dimension below the largest.
   void keepHighestDimension();
-  /// Removes the cells of other dimensions.
-  void keepDimension(int kept);
   /// Appends cells of one type, nodes one cell after the other.
   void addCells(unsigned char type, std::vector<Index> nodes);
   /// Appends one cell.

@@ -9,19 +9,30 @@ namespace tautline
 {
 namespace
 {
+constexpr unsigned char Duplicate = 1; // vtkDataSetAttributes::DUPLICATECELL and DUPLICATEPOINT
+
 /// A cell and its centre along an axis; cells at the same place are ordered by their numbers.
 using PlacedCell = std::pair<double, Index>;
+
+std::size_t at(Index i)
+{
+  return static_cast<std::size_t>(i);
+}
 
 /// The mean of a cell's nodes along an axis.
 double centre(const MeshFile& mesh, Index cell, int axis)
 {
-  const Index* nodes = mesh.connectivity.data();
-  return cellCentre(
-    mesh.points, nodes + mesh.offsets[at(cell)], nodes + mesh.offsets[at(cell) + 1], axis);
+  double sum = 0.0;
+  const Index begin = mesh.offsets[at(cell)], end = mesh.offsets[at(cell) + 1];
+  for (Index i = begin; i < end; ++i)
+  {
+    sum += mesh.points[at(3 * mesh.connectivity[at(i)] + axis)];
+  }
+  return sum / static_cast<double>(std::max<Index>(end - begin, 1));
 }
 
 /// The axis along which the centres of the cells are spread farthest.
-int widestAxis(const MeshFile& mesh, const std::vector<PlacedCell>& cells)
+int longestAxis(const MeshFile& mesh, const std::vector<PlacedCell>& cells)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<double, 3> low{ infinity, infinity, infinity };
@@ -35,7 +46,13 @@ int widestAxis(const MeshFile& mesh, const std::vector<PlacedCell>& cells)
       high[axis] = std::max(high[axis], place);
     }
   }
-  return longestAxis(low, high);
+  int longest = 0;
+  for (int axis = 1; axis < 3; ++axis)
+  {
+    const auto a = static_cast<std::size_t>(axis), l = static_cast<std::size_t>(longest);
+    longest = high[a] - low[a] > high[l] - low[l] ? axis : longest;
+  }
+  return longest;
 }
 
 /// The cells of a part, in the order of the file. Only the halves that contain the part are divided
@@ -49,12 +66,14 @@ std::vector<Index> ownCells(const MeshFile& mesh, int part, int parts)
   }
   while (parts > 1)
   {
-    const int axis = widestAxis(mesh, cells);
+    const int axis = longestAxis(mesh, cells);
     for (PlacedCell& cell : cells)
     {
       cell.first = centre(mesh, cell.second, axis);
     }
-    const auto [lowParts, cut] = PartHalves(parts, static_cast<Index>(cells.size()));
+    const int lowParts = parts / 2;
+    const auto cut = static_cast<std::ptrdiff_t>(
+      cells.size() * static_cast<std::size_t>(lowParts) / static_cast<std::size_t>(parts));
     std::nth_element(cells.begin(), cells.begin() + cut, cells.end());
     if (part < lowParts)
     {
@@ -88,7 +107,7 @@ void markNodes(const MeshFile& mesh, const std::vector<Index>& cells, std::vecto
 }
 
 /// The cells of other parts within some layers, in the order of the file.
-std::vector<Index> cellsAround(
+std::vector<Index> ghostCells(
   const MeshFile& mesh, const std::vector<Index>& own, std::vector<char> reached, int layers)
 {
   std::vector<char> taken(mesh.cellTypes.size());
@@ -116,21 +135,9 @@ std::vector<Index> cellsAround(
   std::sort(ghosts.begin(), ghosts.end());
   return ghosts;
 }
-}
 
-//------------------------------------------------------------------------------
-int longestAxis(const std::array<double, 3>& low, const std::array<double, 3>& high)
-{
-  std::size_t longest = 0;
-  for (std::size_t axis = 1; axis < 3; ++axis)
-  {
-    longest = high[axis] - low[axis] > high[longest] - low[longest] ? axis : longest;
-  }
-  return static_cast<int>(longest);
-}
-
-//------------------------------------------------------------------------------
-MeshArray gatherTuples(const MeshArray& array, const std::vector<Index>& ids)
+/// The tuples of an array in the order of `ids`.
+MeshArray gather(const MeshArray& array, const std::vector<Index>& ids)
 {
   MeshArray result{ array.name, array.components, {} };
   std::visit(
@@ -149,22 +156,37 @@ MeshArray gatherTuples(const MeshArray& array, const std::vector<Index>& ids)
   return result;
 }
 
-//------------------------------------------------------------------------------
-void addPartArrays(std::vector<MeshArray>& arrays, const char* idName, std::vector<Index> ids,
-  std::optional<MeshArray::Bytes> ghosts)
+/// Replaces the array of that name or appends it.
+void setArray(std::vector<MeshArray>& arrays, MeshArray array)
 {
-  const auto set = [&](MeshArray array)
+  arrays.erase(std::remove_if(arrays.begin(), arrays.end(),
+                 [&](const MeshArray& other) { return other.name == array.name; }),
+    arrays.end());
+  arrays.push_back(std::move(array));
+}
+
+/// The arrays of the chosen points or cells; `own` tells which are no ghosts.
+template <class Own>
+std::vector<MeshArray> partArrays(const std::vector<MeshArray>& arrays,
+  const std::vector<Index>& ids, const char* idName, bool withGhosts, const Own& own)
+{
+  std::vector<MeshArray> result;
+  for (const MeshArray& array : arrays)
   {
-    arrays.erase(std::remove_if(arrays.begin(), arrays.end(),
-                   [&](const MeshArray& other) { return other.name == array.name; }),
-      arrays.end());
-    arrays.push_back(std::move(array));
-  };
-  set({ idName, 1, MeshArray::Integers(std::move(ids)) });
-  if (ghosts)
-  {
-    set({ PartGhosts, 1, std::move(*ghosts) });
+    result.push_back(gather(array, ids));
   }
+  setArray(result, { idName, 1, MeshArray::Integers(ids) });
+  if (withGhosts)
+  {
+    MeshArray::Bytes flags(ids.size());
+    for (std::size_t i = 0; i < ids.size(); ++i)
+    {
+      flags[i] = own(i) ? 0 : Duplicate;
+    }
+    setArray(result, { PartGhosts, 1, std::move(flags) });
+  }
+  return result;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -177,7 +199,7 @@ MeshFile partOf(const MeshFile& mesh, const PartRequest& request)
   std::vector<char> used = ownPoint;
   if (request.ghostLayers > 0)
   {
-    const std::vector<Index> ghosts = cellsAround(mesh, cells, ownPoint, request.ghostLayers);
+    const std::vector<Index> ghosts = ghostCells(mesh, cells, ownPoint, request.ghostLayers);
     markNodes(mesh, ghosts, used);
     cells.insert(cells.end(), ghosts.begin(), ghosts.end());
   }
@@ -215,27 +237,11 @@ MeshFile partOf(const MeshFile& mesh, const PartRequest& request)
     }
     part.offsets.push_back(static_cast<Index>(part.connectivity.size()));
   }
-  std::optional<MeshArray::Bytes> ghostPoints, ghostCells;
-  if (request.ghostLayers > 0)
-  {
-    ghostPoints.emplace();
-    for (const Index point : points)
-    {
-      ghostPoints->push_back(ghostFlag(!ownPoint[at(point)]));
-    }
-    ghostCells.emplace(cells.size(), ghostFlag(true));
-    std::fill_n(ghostCells->begin(), owned, ghostFlag(false));
-  }
-  for (const MeshArray& array : mesh.pointArrays)
-  {
-    part.pointArrays.push_back(gatherTuples(array, points));
-  }
-  for (const MeshArray& array : mesh.cellArrays)
-  {
-    part.cellArrays.push_back(gatherTuples(array, cells));
-  }
-  addPartArrays(part.pointArrays, PartPointIds, std::move(points), std::move(ghostPoints));
-  addPartArrays(part.cellArrays, PartCellIds, std::move(cells), std::move(ghostCells));
+  const bool withGhosts = request.ghostLayers > 0;
+  part.pointArrays = partArrays(mesh.pointArrays, points, PartPointIds, withGhosts,
+    [&](std::size_t i) { return ownPoint[at(points[i])] != 0; });
+  part.cellArrays = partArrays(
+    mesh.cellArrays, cells, PartCellIds, withGhosts, [&](std::size_t i) { return i < owned; });
   part.fieldArrays = mesh.fieldArrays;
   part.fieldStrings = mesh.fieldStrings;
   part.warnings = mesh.warnings;

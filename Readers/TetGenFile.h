@@ -13,9 +13,6 @@
 
 namespace tautline
 {
-class FileRanges;
-struct MeshShare;
-
 /**
  * @brief Reads the set that a file belongs to.
  *
@@ -28,13 +25,6 @@ struct MeshShare;
  * @param lowerCells false leaves .face and .edge files of a set with elements unread
  */
 TAUTLINEREADERS_EXPORT MeshFile readTetGen(const std::string& name, bool lowerCells);
-
-/**
- * @brief A rank's share of what readTetGen() reads of a set of .node, .ele, .face and .edge files.
- * Collective; throws UnusualFile on all ranks for other files, small sets and all errors.
- */
-TAUTLINEREADERS_EXPORT MeshShare shareTetGen(
-  const FileRanges& ranges, const std::string& name, bool lowerCells);
 
 /**
  * @brief Writes the set of files a mesh needs, or one .poly or .smesh file when the name ends so.

@@ -3,24 +3,35 @@
 
 #include "FileNames.h"
 #include "FileSet.h"
-#include "TetGenRecords.h"
+#include "TextCursor.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
-#include <numeric>
 
 namespace tautline
-{
-using namespace tetgen;
-
-namespace tetgen
 {
 namespace
 {
 constexpr Index LargestMarker = std::numeric_limits<int>::max();
 constexpr Index SmallestMarker = std::numeric_limits<int>::min();
-}
+
+/// The header of the vertices.
+struct NodeHeader
+{
+  Index count = 0;
+  int dimension = 3;
+  Index attributes = 0;
+  bool markers = false;
+};
+
+/// Vertices and how other files number them.
+struct NodeList
+{
+  NodeHeader header;
+  Index base = 0; ///< number of the first vertex, 0 or 1
+  Index last() const { return this->base + this->header.count - 1; }
+};
 
 NodeHeader readNodeHeader(TextCursor& cursor)
 {
@@ -77,34 +88,16 @@ void readAttributes(TextCursor& cursor, std::vector<MeshArray>& arrays, Index tu
   }
 }
 
-/// Whether these are references that are all whole numbers, as doubles.
-bool isIntegral(const MeshArray& array)
+/// A reference is a whole number where all of its values are.
+void makeIntegral(MeshArray& array)
 {
   constexpr double Exact = 9007199254740992.0; // 2^53
   const auto* doubles = std::get_if<MeshArray::Doubles>(&array.values);
-  return doubles && array.name == "Reference" &&
+  if (doubles && array.name == "Reference" &&
     std::all_of(doubles->begin(), doubles->end(),
-      [](double v) { return std::abs(v) < Exact && v == std::floor(v); });
-}
-
-void makeIntegral(std::vector<MeshArray>& arrays, const FileRanges* ranges)
-{
-  for (MeshArray& array : arrays)
+      [](double v) { return std::abs(v) < Exact && v == std::floor(v); }))
   {
-    const bool integral = isIntegral(array);
-    const auto convert = [&]
-    {
-      const auto& doubles = std::get<MeshArray::Doubles>(array.values);
-      array.values = MeshArray::Integers(doubles.begin(), doubles.end());
-    };
-    if (ranges && !ranges->group().any(!integral))
-    {
-      ranges->together(convert);
-    }
-    else if (!ranges && integral)
-    {
-      convert();
-    }
+    array.values = MeshArray::Integers(doubles->begin(), doubles->end());
   }
 }
 
@@ -125,6 +118,7 @@ void readNumber(TextCursor& cursor, const char* what, Index expected)
   }
 }
 
+/// The number of the first record, 0 or 1; leaves the cursor before it.
 Index peekBase(TextCursor& cursor, const char* what)
 {
   const char* start = cursor.place();
@@ -137,18 +131,26 @@ Index peekBase(TextCursor& cursor, const char* what)
   return base;
 }
 
-void readNodeRecords(TextCursor& cursor, const FileContent& file, const NodeList& nodes,
-  Index first, Index count, MeshFile& mesh)
+NodeList readNodes(TextCursor& cursor, const FileContent& file, MeshFile& mesh)
 {
+  NodeList nodes;
+  nodes.header = readNodeHeader(cursor);
   const NodeHeader& header = nodes.header;
-  resizeLarge(mesh.points, static_cast<std::size_t>(3 * count));
-  mesh.pointArrays = attributeArrays(file, header.attributes, count, false);
-  MeshArray markers =
-    MeshArray::make("BoundaryMarker", 1, 'i', header.markers ? static_cast<std::size_t>(count) : 0);
-  auto& marker = std::get<MeshArray::Integers>(markers.values);
-  for (Index i = 0; i < count; ++i)
+  if (header.count == 0)
   {
-    readNumber(cursor, "vertex", nodes.base + first + i);
+    return nodes;
+  }
+  const Index columns = 1 + header.dimension + header.attributes + header.markers;
+  cursor.expectRoom(header.count, static_cast<std::size_t>(2 * columns), "number of vertices");
+  nodes.base = peekBase(cursor, "vertex number");
+  resizeLarge(mesh.points, static_cast<std::size_t>(3 * header.count));
+  mesh.pointArrays = attributeArrays(file, header.attributes, header.count, false);
+  MeshArray markers = MeshArray::make(
+    "BoundaryMarker", 1, 'i', header.markers ? static_cast<std::size_t>(header.count) : 0);
+  auto& marker = std::get<MeshArray::Integers>(markers.values);
+  for (Index i = 0; i < header.count; ++i)
+  {
+    readNumber(cursor, "vertex", nodes.base + i);
     for (int c = 0; c < header.dimension; ++c)
     {
       mesh.points[static_cast<std::size_t>(3 * i + c)] = cursor.coordinate("coordinate");
@@ -165,21 +167,6 @@ void readNodeRecords(TextCursor& cursor, const FileContent& file, const NodeList
   {
     mesh.pointArrays.push_back(std::move(markers));
   }
-}
-
-NodeList readNodes(TextCursor& cursor, const FileContent& file, MeshFile& mesh)
-{
-  NodeList nodes;
-  nodes.header = readNodeHeader(cursor);
-  const NodeHeader& header = nodes.header;
-  if (header.count == 0)
-  {
-    return nodes;
-  }
-  const Index columns = 1 + header.dimension + header.attributes + header.markers;
-  cursor.expectRoom(header.count, static_cast<std::size_t>(2 * columns), "number of vertices");
-  nodes.base = peekBase(cursor, "vertex number");
-  readNodeRecords(cursor, file, nodes, 0, header.count, mesh);
   return nodes;
 }
 
@@ -188,7 +175,7 @@ NodeList readNodeFile(
 {
   const FileContent file(name, why);
   set.add(file);
-  TextCursor cursor(file, Comment);
+  TextCursor cursor(file, '#');
   const NodeList nodes = readNodes(cursor, file, mesh);
   cursor.expectFileEnd("vertex");
   return nodes;
@@ -236,50 +223,39 @@ void readCorners(
   }
 }
 
-ElementHeader readElementHeader(TextCursor& cursor, const NodeHeader& nodes)
+void readElements(const FileContent& file, const NodeList& nodes, MeshFile& mesh)
 {
-  ElementHeader header;
+  TextCursor cursor(file, '#');
   if (!cursor.skipToToken())
   {
     cursor.fail("no header (number of elements, nodes of each, attributes)");
   }
-  header.count = cursor.integer("number of elements", 0, std::numeric_limits<Index>::max());
+  const Index count = cursor.integer("number of elements", 0, std::numeric_limits<Index>::max());
   const char* place = cursor.place();
-  header.nodes = cursor.lineIsOver() ? nodes.dimension + 1 : cursor.integer("nodes per element");
-  header.attributes = cursor.lineIsOver() ? 0 : cursor.integer("number of attributes", 0, 10000);
+  const Index size =
+    cursor.lineIsOver() ? nodes.header.dimension + 1 : cursor.integer("nodes per element");
+  const Index attributes =
+    cursor.lineIsOver() ? 0 : cursor.integer("number of attributes", 0, 10000);
   cursor.expectLineEnd();
-  header.type = elementType(cursor, place, header.nodes, nodes.dimension);
-  return header;
-}
-
-void readElementRecords(TextCursor& cursor, const FileContent& file, const ElementHeader& header,
-  const NodeList& nodes, Index first, Index count, MeshFile& mesh)
-{
-  std::vector<MeshArray> arrays = attributeArrays(file, header.attributes, count, true);
+  const unsigned char type = elementType(cursor, place, size, nodes.header.dimension);
+  cursor.expectRoom(
+    count, static_cast<std::size_t>(2 * (1 + size + attributes)), "number of elements");
+  std::vector<MeshArray> arrays = attributeArrays(file, attributes, count, true);
   std::vector<Index> connectivity;
-  resizeLarge(connectivity, static_cast<std::size_t>(count * header.nodes));
-  const std::vector<int> places = vtkPlaces(header.type);
+  resizeLarge(connectivity, static_cast<std::size_t>(count * size));
+  const std::vector<int> places = vtkPlaces(type);
+  const Index base = count > 0 ? peekBase(cursor, "element number") : 0;
   for (Index i = 0; i < count; ++i)
   {
-    readNumber(cursor, "element", header.base + first + i);
-    readCorners(cursor, nodes, places, header.nodes, connectivity.data() + i * header.nodes);
+    readNumber(cursor, "element", base + i);
+    readCorners(cursor, nodes, places, size, connectivity.data() + i * size);
     readAttributes(cursor, arrays, i);
     cursor.expectLineEnd();
   }
   cursor.expectFileEnd("element");
-  mesh.addCells(header.type, std::move(connectivity));
+  mesh.addCells(type, std::move(connectivity));
+  std::for_each(arrays.begin(), arrays.end(), makeIntegral);
   mesh.cellArrays = std::move(arrays);
-}
-
-void readElements(const FileContent& file, const NodeList& nodes, MeshFile& mesh)
-{
-  TextCursor cursor(file, Comment);
-  ElementHeader header = readElementHeader(cursor, nodes.header);
-  cursor.expectRoom(header.count,
-    static_cast<std::size_t>(2 * (1 + header.nodes + header.attributes)), "number of elements");
-  header.base = header.count > 0 ? peekBase(cursor, "element number") : 0;
-  readElementRecords(cursor, file, header, nodes, 0, header.count, mesh);
-  makeIntegral(mesh.cellArrays, nullptr);
 }
 
 /// Appends the markers of the cells just added; earlier cells without one get 0, arrays of earlier
@@ -306,79 +282,55 @@ void addMarkers(MeshFile& mesh, std::vector<Index> markers, bool present)
   }
 }
 
-BoundaryHeader readBoundaryHeader(TextCursor& cursor, bool faces, bool quadraticMesh)
+/// Faces (3 or 6 nodes) or edges (2 or 3) with an optional marker; numbers of neighbours are
+/// skipped.
+void readBoundary(const FileContent& file, const NodeList& nodes, bool faces, MeshFile& mesh)
 {
-  BoundaryHeader header;
-  header.faces = faces;
+  TextCursor cursor(file, '#');
   if (!cursor.skipToToken())
   {
     cursor.fail(faces ? "no header (number of faces, marker flag)"
                       : "no header (number of edges, marker flag)");
   }
-  header.count = cursor.integer("number of faces or edges", 0, std::numeric_limits<Index>::max());
-  header.markers = !cursor.lineIsOver() && cursor.integer("marker flag", 0, 1) == 1;
+  const Index count =
+    cursor.integer("number of faces or edges", 0, std::numeric_limits<Index>::max());
+  const bool markers = !cursor.lineIsOver() && cursor.integer("marker flag", 0, 1) == 1;
   cursor.expectLineEnd();
-  const char* end = cursor.place();
-  header.type = faces ? FileTriangle : FileLine;
+  const bool quadraticMesh = !mesh.cellTypes.empty() && cellNodes(mesh.cellTypes[0]) > 4;
+  unsigned char type = faces ? FileTriangle : FileLine;
   cursor.skipToToken();
-  const int columns = cursor.tokensInLine() - header.markers;
-  if (faces ? columns == 7 || columns == 9 : quadraticMesh && columns >= 4)
+  const int columns = cursor.tokensInLine();
+  if (faces ? (columns - markers == 7 || columns - markers == 9)
+            : quadraticMesh && columns - markers >= 4)
   {
-    header.type = faces ? FileTriangle6 : FileLine3;
+    type = faces ? FileTriangle6 : FileLine3;
   }
-  cursor.moveTo(end);
-  return header;
-}
-
-void readBoundaryRecords(TextCursor& cursor, const BoundaryHeader& header, const NodeList& nodes,
-  Index first, Index count, MeshFile& mesh)
-{
-  const Index size = header.nodes();
+  const Index size = cellNodes(type);
+  cursor.expectRoom(
+    count, static_cast<std::size_t>(2 * (1 + size + markers)), "number of faces or edges");
   std::vector<Index> connectivity(static_cast<std::size_t>(count * size)),
-    values(header.markers ? count : 0);
-  const std::vector<int> places = vtkPlaces(header.type);
+    values(markers ? count : 0);
+  const std::vector<int> places = vtkPlaces(type);
+  const Index base = count > 0 ? peekBase(cursor, "number") : 0;
   for (Index i = 0; i < count; ++i)
   {
-    readNumber(cursor, header.faces ? "face" : "edge", header.base + first + i);
+    readNumber(cursor, faces ? "face" : "edge", base + i);
     readCorners(cursor, nodes, places, size, connectivity.data() + i * size);
-    if (header.markers)
+    if (markers)
     {
       values[static_cast<std::size_t>(i)] =
         cursor.integer("boundary marker", SmallestMarker, LargestMarker);
     }
     cursor.skipRestOfLine();
   }
-  cursor.expectFileEnd(header.faces ? "face" : "edge");
-  mesh.addCells(header.type, std::move(connectivity));
-  addMarkers(mesh, std::move(values), header.markers);
-}
-
-void readBoundary(const FileContent& file, const NodeList& nodes, bool faces, MeshFile& mesh)
-{
-  TextCursor cursor(file, Comment);
-  const bool quadraticMesh = !mesh.cellTypes.empty() && cellNodes(mesh.cellTypes[0]) > 4;
-  BoundaryHeader header = readBoundaryHeader(cursor, faces, quadraticMesh);
-  cursor.skipToToken();
-  cursor.expectRoom(header.count,
-    static_cast<std::size_t>(2 * (1 + header.nodes() + header.markers)),
-    "number of faces or edges");
-  header.base = header.count > 0 ? peekBase(cursor, "number") : 0;
-  readBoundaryRecords(cursor, header, nodes, 0, header.count, mesh);
+  cursor.expectFileEnd(faces ? "face" : "edge");
+  mesh.addCells(type, std::move(connectivity));
+  addMarkers(mesh, std::move(values), markers);
 }
 }
 
 //------------------------------------------------------------------------------
 MeshFile readTetGenComplex(const FileContent& file, const std::string& stem, bool smesh);
-
-namespace tetgen
-{
-void addVertexCells(MeshFile& mesh, Index first, Index count)
-{
-  std::vector<Index> all(static_cast<std::size_t>(count));
-  std::iota(all.begin(), all.end(), first);
-  mesh.addCells(FileVertex, std::move(all));
-}
-}
 
 //------------------------------------------------------------------------------
 MeshFile readTetGen(const std::string& name, bool lowerCells)
@@ -414,7 +366,12 @@ MeshFile readTetGen(const std::string& name, bool lowerCells)
   }
   else if (!elements && !faces)
   {
-    addVertexCells(mesh, 0, nodes.header.count);
+    std::vector<Index> all(static_cast<std::size_t>(nodes.header.count));
+    for (std::size_t i = 0; i < all.size(); ++i)
+    {
+      all[i] = static_cast<Index>(i);
+    }
+    mesh.addCells(FileVertex, all);
   }
   if (!lowerCells)
   {
@@ -576,7 +533,7 @@ struct FacetReader
 MeshFile readTetGenComplex(const FileContent& file, const std::string& stem, bool smesh)
 {
   MeshFile mesh;
-  TextCursor cursor(file, Comment);
+  TextCursor cursor(file, '#');
   NodeList nodes = readNodes(cursor, file, mesh);
   if (nodes.header.count == 0)
   {

@@ -103,22 +103,6 @@ void FileContent::allocate()
 }
 
 //------------------------------------------------------------------------------
-FileContent::FileContent(const std::string& name, Index begin, Index end)
-  : Name(name)
-  , Size(static_cast<std::size_t>(end - begin))
-{
-  const OpenFile file = openFile(name);
-  this->allocate();
-  std::memset(this->Bytes.get() + this->Size, 0, Padding);
-  if (!file || fseeko(file.get(), static_cast<off_t>(begin), SEEK_SET) != 0 ||
-    std::fread(this->Bytes.get(), 1, this->Size, file.get()) != this->Size)
-  {
-    throw FileError(
-      name + ": bytes " + std::to_string(begin) + " to " + std::to_string(end) + " cannot be read");
-  }
-}
-
-//------------------------------------------------------------------------------
 FileContent::FileContent(std::string name, std::string_view bytes)
   : Name(std::move(name))
   , Size(bytes.size())

@@ -26,15 +26,13 @@ using OpenFile = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 /// The file opened for reading, or null; never waits, whatever kind of file it is.
 OpenFile openFile(const std::string& name);
 
-/// The bytes of a file or of a range of it, read at once.
+/// The bytes of a file, read at once.
 class FileContent
 {
 public:
   /// Throws FileError when the file cannot be read; `why` is the purpose ("the companion of
   /// ...").
   explicit FileContent(const std::string& name, const std::string& why = std::string());
-  /// The bytes from `begin` to `end`, which must be there.
-  FileContent(const std::string& name, Index begin, Index end);
   /// The bytes of a string.
   FileContent(std::string name, std::string_view bytes);
 
@@ -282,6 +280,6 @@ std::vector<ColumnName> readColumnNames(const FileContent& file, std::string_vie
 /// The line for readColumnNames(), with its line end.
 std::string writeColumnNames(std::string_view title, const std::vector<ColumnName>& columns);
 /// Puts a number into an array of any type.
-TAUTLINEREADERS_EXPORT void setValue(MeshArray& array, std::size_t i, double value);
+void setValue(MeshArray& array, std::size_t i, double value);
 }
 #endif

@@ -3,7 +3,6 @@
 
 #include "FileNames.h"
 #include "GmshFile.h"
-#include "PartExchange.h"
 #include "TextCursor.h"
 
 #include "vtkObjectFactory.h"
@@ -14,18 +13,6 @@ vtkStandardNewMacro(vtkGmshReader);
 tautline::MeshFile vtkGmshReader::ReadMesh()
 {
   return tautline::readGmsh(this->FileName, this->LowerCells);
-}
-
-//------------------------------------------------------------------------------
-tautline::MeshShare vtkGmshReader::ReadShare(const tautline::FileRanges& ranges)
-{
-  return tautline::shareGmsh(ranges, this->FileName, this->LowerCells);
-}
-
-//------------------------------------------------------------------------------
-bool vtkGmshReader::HasRanges(const std::string& extension) const
-{
-  return extension.empty() || extension == "msh";
 }
 
 //------------------------------------------------------------------------------

@@ -7,8 +7,6 @@
  * and $ElementData come as arrays of their names. Elements up to second order; those of third and
  * fourth order become linear ones, without the other nodes, with a warning.
  *
- * MPI ranks read text of versions 2 to 4.1 by ranges, other files whole.
- *
  * Limits: periodic, ghost and partition data are skipped; of a field with several time steps the
  * last is kept.
  *
@@ -31,8 +29,6 @@ protected:
   vtkGmshReader() = default;
   ~vtkGmshReader() override = default;
   tautline::MeshFile ReadMesh() override;
-  tautline::MeshShare ReadShare(const tautline::FileRanges& ranges) override;
-  bool HasRanges(const std::string& extension) const override;
 
 private:
   vtkGmshReader(const vtkGmshReader&) = delete;

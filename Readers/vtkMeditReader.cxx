@@ -3,7 +3,6 @@
 
 #include "FileNames.h"
 #include "MeditFile.h"
-#include "PartExchange.h"
 #include "TextCursor.h"
 
 #include "vtkObjectFactory.h"
@@ -14,18 +13,6 @@ vtkStandardNewMacro(vtkMeditReader);
 tautline::MeshFile vtkMeditReader::ReadMesh()
 {
   return tautline::readMedit(this->FileName, this->LowerCells);
-}
-
-//------------------------------------------------------------------------------
-tautline::MeshShare vtkMeditReader::ReadShare(const tautline::FileRanges& ranges)
-{
-  return tautline::shareMedit(ranges, this->FileName, this->LowerCells);
-}
-
-//------------------------------------------------------------------------------
-bool vtkMeditReader::HasRanges(const std::string& extension) const
-{
-  return extension.empty() || extension == "mesh" || extension == "sol";
 }
 
 //------------------------------------------------------------------------------

@@ -8,8 +8,6 @@
  * `Required`. Tensors of a .sol become 3 x 3 matrices, row by row, the format of the metric-tensor
  * targets.
  *
- * MPI ranks read by ranges where each record has a line of its own.
- *
  * Limits: .meshb (binary) and curved (P2) cells are not read; normals and tangents are skipped.
  *
  * @sa vtkMeshFileReader vtkMeditWriter tautline::readMedit
@@ -31,8 +29,6 @@ protected:
   vtkMeditReader() = default;
   ~vtkMeditReader() override = default;
   tautline::MeshFile ReadMesh() override;
-  tautline::MeshShare ReadShare(const tautline::FileRanges& ranges) override;
-  bool HasRanges(const std::string& extension) const override;
 
 private:
   vtkMeditReader(const vtkMeditReader&) = delete;

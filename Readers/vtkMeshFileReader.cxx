@@ -2,11 +2,8 @@
 #include "vtkMeshFileReader.h"
 
 #include "ExecutionScope.h"
-#include "FileNames.h"
-#include "FileRanges.h"
 #include "MeshFileAdapter.h"
 #include "MeshPart.h"
-#include "PartExchange.h"
 #include "ProcessGroup.h"
 #include "ProgressStep.h"
 #include "tautline/Core/Memory.h"
@@ -40,12 +37,6 @@ tautline::PartRequest requestedPart(vtkInformation* info)
     request.ghostLayers = std::max(info->Get(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS()), 0);
   }
   return request;
-}
-
-std::string noMemory(const std::string& file, const std::bad_alloc& error)
-{
-  return file + ": " +
-    tautline::errorText(error, "read it where there is more, or a part of the mesh");
 }
 }
 
@@ -94,42 +85,7 @@ vtkTypeBool vtkMeshFileReader::ProcessRequest(
 }
 
 //------------------------------------------------------------------------------
-tautline::MeshShare vtkMeshFileReader::ReadShare(const tautline::FileRanges&)
-{
-  throw tautline::UnusualFile();
-}
-
-//------------------------------------------------------------------------------
-bool vtkMeshFileReader::HasRanges(const std::string&) const
-{
-  return false;
-}
-
-//------------------------------------------------------------------------------
-/// Without a file name a rank does not know, and takes part.
-bool vtkMeshFileReader::MayHaveRanges() const
-{
-  return this->HasRanges(
-    this->FileName ? tautline::splitExtension(this->FileName).second : std::string());
-}
-
-//------------------------------------------------------------------------------
-bool vtkMeshFileReader::Agrees(
-  tautline::RankGroup& group, const tautline::PartRequest& request) const
-{
-  const std::string asked = std::string(this->GetClassName()) + "\n" +
-    (this->FileName ? this->FileName : "") + "\n" + std::to_string(this->LowerCells) +
-    std::to_string(request.ghostLayers);
-  const std::vector<tautline::Bytes> all =
-    group.allGather(tautline::Bytes(asked.begin(), asked.end()));
-  const bool same = std::all_of(
-    all.begin(), all.end(), [&](const tautline::Bytes& other) { return other == all[0]; });
-  const bool named = this->FileName && this->FileName[0];
-  return !group.any(!same || !named || request.part != group.rank());
-}
-
-//------------------------------------------------------------------------------
-tautline::MeshFile vtkMeshFileReader::ReadPartOfWhole(const tautline::PartRequest& request)
+void vtkMeshFileReader::ReadPart(const tautline::PartRequest& request, vtkDataObject* output)
 {
   constexpr double readingShare = 0.8;
   if (!this->FileName || !this->FileName[0])
@@ -143,56 +99,10 @@ tautline::MeshFile vtkMeshFileReader::ReadPartOfWhole(const tautline::PartReques
       const tautline::ProgressStep progress(this, 0.0, readingShare);
       return this->ReadMesh();
     }();
-    return request.parts > 1 ? tautline::partOf(mesh, request) : mesh;
-  }
-  catch (const std::bad_alloc& error)
-  {
-    throw tautline::Error(noMemory(this->FileName, error));
-  }
-}
-
-//------------------------------------------------------------------------------
-tautline::MeshFile vtkMeshFileReader::ReadPart(const tautline::PartRequest& request)
-{
-  const std::unique_ptr<tautline::RankGroup> group =
-    request.parts > 1 && this->MayHaveRanges() ? tautline::tryProcessGroup() : nullptr;
-  if (!group || group->size() != request.parts || !this->Agrees(*group, request))
-  {
-    return this->ReadPartOfWhole(request);
-  }
-  try
-  {
-    constexpr double readingShare = 0.6;
-    const tautline::FileRanges ranges(*group);
-    tautline::MeshShare share = [&]
+    if (request.parts > 1)
     {
-      const tautline::ProgressStep progress(this, 0.0, readingShare);
-      return this->ReadShare(ranges);
-    }();
-    tautline::MeshFile part =
-      tautline::exchangeParts(ranges, std::move(share), request.ghostLayers);
-    this->ReadByRanges = true;
-    return part;
-  }
-  catch (const tautline::UnusualFile&)
-  {
-    tautline::MeshFile part;
-    group->together([&] { part = this->ReadPartOfWhole(request); });
-    return part;
-  }
-}
-
-//------------------------------------------------------------------------------
-int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
-{
-  this->ErrorText.clear();
-  this->ReadByRanges = false;
-  this->SetErrorCode(vtkErrorCode::NoError);
-  vtkDataObject* output = vtkDataObject::GetData(outputs);
-  output->Initialize();
-  try
-  {
-    tautline::MeshFile mesh = this->ReadPart(requestedPart(outputs->GetInformationObject(0)));
+      mesh = tautline::partOf(mesh, request);
+    }
     for (const std::string& warning : mesh.warnings)
     {
       vtkWarningMacro(<< this->FileName << ": " << warning);
@@ -206,17 +116,33 @@ int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
       tautline::toGrid(std::move(mesh), vtkUnstructuredGrid::SafeDownCast(output));
     }
   }
-  catch (const tautline::Error& error)
-  {
-    this->ErrorText = error.what();
-  }
   catch (const std::bad_alloc& error)
   {
-    this->ErrorText = noMemory(this->FileName, error);
+    throw tautline::Error(std::string(this->FileName) + ": " +
+      tautline::errorText(error, "read it where there is more, or a part of the mesh"));
   }
-  if (!this->ErrorText.empty())
+}
+
+//------------------------------------------------------------------------------
+int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
+{
+  this->ErrorText.clear();
+  this->SetErrorCode(vtkErrorCode::NoError);
+  vtkDataObject* output = vtkDataObject::GetData(outputs);
+  output->Initialize();
+  const tautline::PartRequest request = requestedPart(outputs->GetInformationObject(0));
+  try
+  {
+    const std::unique_ptr<tautline::RankGroup> ranks =
+      request.parts > 1 ? tautline::tryProcessGroup() : nullptr;
+    tautline::SingleRank alone;
+    tautline::RankGroup& group = ranks && ranks->size() == request.parts ? *ranks : alone;
+    group.together([&] { this->ReadPart(request, output); });
+  }
+  catch (const tautline::Error& error)
   {
     output->Initialize();
+    this->ErrorText = error.what();
     this->SetErrorCode(vtkErrorCode::FileFormatError);
     vtkErrorMacro(<< this->ErrorText);
     return 0;
@@ -230,5 +156,4 @@ void vtkMeshFileReader::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "FileName: " << (this->FileName ? this->FileName : "(none)") << "\n";
   os << indent << "LowerCells: " << this->LowerCells << "\n";
-  os << indent << "ReadByRanges: " << this->ReadByRanges << "\n";
 }

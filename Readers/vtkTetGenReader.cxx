@@ -2,7 +2,6 @@
 #include "vtkTetGenReader.h"
 
 #include "FileNames.h"
-#include "PartExchange.h"
 #include "TetGenFile.h"
 
 #include "vtkObjectFactory.h"
@@ -13,19 +12,6 @@ vtkStandardNewMacro(vtkTetGenReader);
 tautline::MeshFile vtkTetGenReader::ReadMesh()
 {
   return tautline::readTetGen(this->FileName, this->LowerCells);
-}
-
-//------------------------------------------------------------------------------
-tautline::MeshShare vtkTetGenReader::ReadShare(const tautline::FileRanges& ranges)
-{
-  return tautline::shareTetGen(ranges, this->FileName, this->LowerCells);
-}
-
-//------------------------------------------------------------------------------
-bool vtkTetGenReader::HasRanges(const std::string& extension) const
-{
-  return extension.empty() || extension == "node" || extension == "ele" || extension == "face" ||
-    extension == "edge";
 }
 
 //------------------------------------------------------------------------------

@@ -11,8 +11,6 @@
  * Point arrays: `BoundaryMarker`, attributes. Cell arrays: `Reference` (the first attribute of the
  * elements), further attributes, `BoundaryMarker` of faces and edges.
  *
- * MPI ranks read .node, .ele, .face and .edge files by ranges, and other files whole.
- *
  * Limits: .neigh, .vol, .mtr, .var, .b.node are not read; neighbours behind a face are skipped.
  *
  * @sa vtkMeshFileReader vtkTetGenWriter tautline::readTetGen
@@ -34,8 +32,6 @@ protected:
   vtkTetGenReader() = default;
   ~vtkTetGenReader() override = default;
   tautline::MeshFile ReadMesh() override;
-  tautline::MeshShare ReadShare(const tautline::FileRanges& ranges) override;
-  bool HasRanges(const std::string& extension) const override;
 
 private:
   vtkTetGenReader(const vtkTetGenReader&) = delete;

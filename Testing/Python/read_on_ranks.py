@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""read_on_ranks.py FILE DATA LARGE: for pvbatch on any number of MPI ranks, see test_read_on_ranks.py.
+"""read_on_ranks.py FILE DATA FORMATS: for pvbatch on any number of MPI ranks, see test_read_on_ranks.py.
 
 Reads files of each format on all ranks, measures them and optimizes one, and writes counts, statistics and points to
-FILE as JSON. Files in the folder LARGE are read by ranges; of these, also check sums of all points and arrays.
+FILE as JSON; of the files in the folder FORMATS, also check sums of all points and arrays.
 """
 
 import hashlib
@@ -15,7 +15,7 @@ from paraview import servermanager, simple
 from parallel_tools import RANKS, parts, update
 
 simple.LoadPlugin(os.environ["TAUTLINE_PLUGIN"], ns=globals())
-FILE, DATA, LARGE = sys.argv[1:4]
+FILE, DATA, FORMATS = sys.argv[1:4]
 results = {"ranks": RANKS}
 
 
@@ -38,7 +38,6 @@ for name in ("cube.1.ele", "part.msh", "cylinder.msh", "house.off"):
     results[name] = {"cells": cells, "parts": len(found), "mean": mean_quality(mesh)}
 
 
-
 def whole(found: list, name: str, ids: str):
     """An array of the mesh, from parts that may share some of its points or cells."""
     values = np.concatenate([part[name] for part in found])
@@ -52,10 +51,10 @@ def whole(found: list, name: str, ids: str):
     return result
 
 
-for name in sorted(os.listdir(LARGE)):
+for name in sorted(os.listdir(FORMATS)):
     if name.endswith((".node", ".sol")):
         continue
-    mesh = update(simple.OpenDataFile(os.path.join(LARGE, name)))
+    mesh = update(simple.OpenDataFile(os.path.join(FORMATS, name)))
     found = parts(mesh, FILE)
     if not found:  # the file is damaged
         results[name] = {"parts": 0}

@@ -10,7 +10,9 @@
 #include "vtkGmshReader.h"
 #include "vtkIdTypeArray.h"
 #include "vtkInformation.h"
+#include "vtkMeshFileReader.h"
 #include "vtkNew.h"
+#include "vtkObjectFactory.h"
 #include "vtkOffReader.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
@@ -18,6 +20,7 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <new>
 #include <set>
 
 using namespace tautline;
@@ -224,6 +227,29 @@ void testReader(const std::string& name, vtkIdType cells)
   }
   TAUTLINE_CHECK(static_cast<vtkIdType>(all.size()) == cells);
 }
+
+/// A reader without memory for its file.
+class ReaderWithoutMemory : public vtkMeshFileReader
+{
+public:
+  static ReaderWithoutMemory* New() { VTK_STANDARD_NEW_BODY(ReaderWithoutMemory); }
+  int CanReadFile(const char*) override { return 1; }
+
+protected:
+  MeshFile ReadMesh() override { throw std::bad_alloc(); }
+};
+
+void testMemory()
+{
+  vtkNew<ReaderWithoutMemory> reader;
+  reader->SetFileName("some.mesh");
+  vtkObject::GlobalWarningDisplayOff();
+  reader->UpdatePiece(1, 3, 1);
+  vtkObject::GlobalWarningDisplayOn();
+  const std::string message = reader->GetErrorText();
+  TAUTLINE_CHECK(message.find("some.mesh") == 0);
+  TAUTLINE_CHECK(message.find(wording("not-enough-memory")) != message.npos);
+}
 }
 
 TAUTLINE_TEST(TestMeshPart)
@@ -246,6 +272,7 @@ TAUTLINE_TEST(TestMeshPart)
   }
   TAUTLINE_RUN(testCompact());
   TAUTLINE_RUN(checkParts(MeshFile(), 3, 1));
+  TAUTLINE_RUN(testMemory());
   TAUTLINE_RUN(testReader<vtkGmshReader, vtkUnstructuredGrid>(data + "/cylinder.msh", 487));
   TAUTLINE_RUN(testReader<vtkOffReader, vtkPolyData>(data + "/house.off", 7));
 }
