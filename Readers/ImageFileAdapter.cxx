@@ -1,44 +1,239 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ImageFileAdapter.h"
 
-#include "ImageFile.h"
+#include "TextCursor.h"
 
 #include "vtkBMPReader.h"
 #include "vtkCallbackCommand.h"
 #include "vtkCommand.h"
-#include "vtkDataArray.h"
+#include "vtkErrorCode.h"
 #include "vtkExecutive.h"
 #include "vtkImageData.h"
+#include "vtkImageFlip.h"
 #include "vtkJPEGReader.h"
 #include "vtkNew.h"
+#include "vtkObject.h"
 #include "vtkPNGReader.h"
 #include "vtkPNMReader.h"
-#include "vtkPointData.h"
 #include "vtkTIFFReader.h"
+#include "vtk_zlib.h"
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+#include <string_view>
+
+#include <sys/stat.h>
 
 namespace tautline
 {
 namespace
 {
-vtkSmartPointer<vtkImageReader2> makeReader(const ImageHeader& header)
+constexpr std::string_view PngStart("\x89PNG\r\n\x1a\n", 8);
+
+[[noreturn]] void failImage(const std::string& name, const std::string& problem)
 {
-  switch (header.format)
+  throw FileError(name + ": the image cannot be read: " + problem);
+}
+
+/// VTK's reader of the format with these first bytes; null if there is none.
+vtkSmartPointer<vtkImageReader2> makeReader(std::string_view start)
+{
+  const auto begins = [start](std::string_view with)
+  { return start.substr(0, with.size()) == with; };
+  if (begins(PngStart))
   {
-    case ImageFormat::Png:
-      return vtkSmartPointer<vtkPNGReader>::New();
-    case ImageFormat::Jpeg:
-      return vtkSmartPointer<vtkJPEGReader>::New();
-    case ImageFormat::Tiff:
-      return vtkSmartPointer<vtkTIFFReader>::New();
-    case ImageFormat::Bmp:
+    return vtkSmartPointer<vtkPNGReader>::New();
+  }
+  if (begins("\xff\xd8\xff"))
+  {
+    return vtkSmartPointer<vtkJPEGReader>::New();
+  }
+  if (begins(std::string_view("II\x2a\0", 4)) || begins(std::string_view("MM\0\x2a", 4)))
+  {
+    return vtkSmartPointer<vtkTIFFReader>::New();
+  }
+  if (begins("BM"))
+  {
+    return vtkSmartPointer<vtkBMPReader>::New();
+  }
+  if ((begins("P5") || begins("P6")) && start.size() > 2 &&
+    (std::isspace(static_cast<unsigned char>(start[2])) || start[2] == '#'))
+  {
+    return vtkSmartPointer<vtkPNMReader>::New();
+  }
+  return nullptr;
+}
+
+/// The bytes of a file; what is read beyond the end is an error.
+class ImageBytes
+{
+public:
+  explicit ImageBytes(const FileContent& file)
+    : Name(file.name())
+    , Content(file.begin(), static_cast<std::size_t>(file.end() - file.begin()))
+  {
+  }
+  [[noreturn]] void fail(const std::string& problem) const { failImage(this->Name, problem); }
+
+  std::string_view part(std::size_t at, std::size_t count) const
+  {
+    if (at > this->Content.size() || count > this->Content.size() - at)
     {
-      // VTK would take the end of the file for the end of the pixels.
-      auto reader = vtkSmartPointer<vtkBMPReader>::New();
-      reader->SetHeaderSize(header.dataOffset);
-      return reader;
+      this->fail("the file is truncated");
     }
-    default:
-      return vtkSmartPointer<vtkPNMReader>::New();
+    return this->Content.substr(at, count);
+  }
+  /// An unsigned number of some bytes.
+  std::size_t number(std::size_t at, std::size_t count, bool bigEndian) const
+  {
+    const std::string_view bytes = this->part(at, count);
+    std::size_t value = 0;
+    for (std::size_t i = 0; i < count; ++i)
+    {
+      value = value << 8 | static_cast<unsigned char>(bytes[bigEndian ? i : count - 1 - i]);
+    }
+    return value;
+  }
+
+private:
+  std::string Name;
+  std::string_view Content;
+};
+
+/// Throws unless all chunks of a PNG file are there, undamaged: VTK's reader crashes on others,
+/// since it returns from the function to which libpng jumps after an error.
+void checkPng(const ImageBytes& image)
+{
+  // a chunk: 4 bytes length, 4 bytes name, data, 4 bytes check sum of name and data
+  bool data = false;
+  for (std::size_t at = PngStart.size();;)
+  {
+    const std::size_t length = image.number(at, 4, true);
+    const std::string_view named = image.part(at + 4, length + 4);
+    const auto sum =
+      crc32(0, reinterpret_cast<const Bytef*>(named.data()), static_cast<uInt>(named.size()));
+    if (image.number(at + 8 + length, 4, true) != sum)
+    {
+      image.fail("the check sum of a chunk is wrong: the file is damaged");
+    }
+    data = data || named.substr(0, 4) == "IDAT";
+    if (named.substr(0, 4) == "IEND")
+    {
+      if (!data)
+      {
+        image.fail("it has no pixels");
+      }
+      return;
+    }
+    at += 12 + length;
+  }
+}
+
+/// A tag of a TIFF file that decides on how the pixels are stored.
+struct TiffTag
+{
+  std::size_t tag, missing; ///< the value of a missing tag
+  const char* name;
+  std::vector<std::size_t> allowed;
+};
+
+/// Throws unless VTK's reader reads this kind of TIFF file correctly, or notices what is wrong.
+void checkTiff(const ImageBytes& image)
+{
+  enum : std::size_t
+  {
+    Bits = 258,
+    Compression = 259,
+    Photometric = 262,
+    Orientation = 274,
+    Samples = 277,
+    Planes = 284,
+    TileWidth = 322
+  };
+  static const TiffTag tags[] = { { Bits, 1, "number of bits per sample", { 8, 16 } },
+    { Compression, 1, "compression", { 1, 5, 32773 } }, // none, LZW, PackBits
+    { Photometric, 1, "photometric interpretation", { 0, 1, 2, 3 } },
+    { Orientation, 1, "orientation", { 1 } }, // the first row is the top one
+    { Samples, 1, "number of samples per pixel", { 1, 2, 3, 4 } },
+    { Planes, 1, "planar configuration", { 1 } }, // all samples of a pixel together
+    { TileWidth, 0, "width of a tile", { 0 } } };
+  const bool bigEndian = image.part(0, 1) == "M";
+  const auto number = [&](std::size_t at, std::size_t count)
+  { return image.number(at, count, bigEndian); };
+  const auto valueOf = [&](std::size_t tag, std::size_t value)
+  {
+    constexpr std::size_t entrySize = 12, shortType = 3, longType = 4;
+    const std::size_t directory = number(4, 4), entries = number(directory, 2);
+    for (std::size_t i = 0; i < entries; ++i)
+    {
+      const std::size_t entry = directory + 2 + entrySize * i;
+      if (number(entry, 2) == tag)
+      {
+        const std::size_t type = number(entry + 2, 2), count = number(entry + 4, 4);
+        const std::size_t size = type == shortType ? 2 : type == longType ? 4 : 1;
+        value = number(count * size <= 4 ? entry + 8 : number(entry + 8, 4), size);
+      }
+    }
+    return value;
+  };
+  for (const TiffTag& tag : tags)
+  {
+    const std::size_t value = valueOf(tag.tag, tag.missing);
+    if (std::find(tag.allowed.begin(), tag.allowed.end(), value) == tag.allowed.end())
+    {
+      std::string allowed;
+      for (const std::size_t other : tag.allowed)
+      {
+        allowed += (allowed.empty() ? "" : ", ") + std::to_string(other);
+      }
+      image.fail("its " + std::string(tag.name) + " (TIFF tag " + std::to_string(tag.tag) +
+        ") is " + std::to_string(value) + "; allowed: " + allowed);
+    }
+  }
+  constexpr std::size_t rgb = 2;
+  if (valueOf(Photometric, 1) == rgb && valueOf(Samples, 1) < 3)
+  {
+    image.fail("its pixels are RGB, with fewer than 3 samples");
+  }
+}
+
+/// Where the pixels of a BMP file begin: VTK would take the end of the file for their end.
+std::size_t checkBmp(const ImageBytes& image)
+{
+  constexpr std::size_t longInfo = 40;
+  if (image.number(14, 4, false) == longInfo && image.number(30, 4, false) != 0)
+  {
+    image.fail("only BMP files that are not compressed can be read");
+  }
+  return image.number(10, 4, false);
+}
+
+/// Throws unless a PNM file has all its numbers and, of an image of a size that is allowed, as many
+/// bytes.
+void checkPnm(const FileContent& file)
+{
+  TextCursor cursor(file, '#');
+  const Index samples = file.begin()[1] == '5' ? 1 : 3;
+  cursor.moveTo(file.begin() + 2);
+  Index pixels = 1;
+  try
+  {
+    for (const char* what : { "width", "height" })
+    {
+      cursor.skipToToken();
+      pixels *= cursor.integer(what, 1, MaxPixels);
+    }
+    cursor.skipToToken();
+    cursor.integer("largest value", 1, 255);
+  }
+  catch (const FileError& error) // "file:line: problem"
+  {
+    failImage(file.name(), "line " + std::string(error.what()).substr(file.name().size() + 1));
+  }
+  if (pixels <= MaxPixels && cursor.bytesLeft() < static_cast<std::size_t>(pixels * samples) + 1)
+  {
+    failImage(file.name(), "the file is truncated");
   }
 }
 
@@ -55,32 +250,25 @@ void keepMessage(vtkObject*, unsigned long, void* kept, void* message)
     text.erase(0, object == text.npos ? 0 : object + 3);
   }
 }
-/// The rows in the opposite order: VTK has the first row of a TIFF file, the top one, at y = 0, and
-/// the rows of all other formats from the bottom up.
-vtkSmartPointer<vtkImageData> flipped(vtkImageData* image)
-{
-  auto made = vtkSmartPointer<vtkImageData>::New();
-  made->CopyStructure(image);
-  vtkDataArray* from = image->GetPointData()->GetScalars();
-  const auto to = vtkSmartPointer<vtkDataArray>::Take(from->NewInstance());
-  to->SetName(from->GetName());
-  to->SetNumberOfComponents(from->GetNumberOfComponents());
-  to->SetNumberOfTuples(from->GetNumberOfTuples());
-  const vtkIdType width = image->GetDimensions()[0], height = image->GetDimensions()[1];
-  for (vtkIdType row = 0; row < height; ++row)
-  {
-    to->InsertTuples(row * width, width, (height - 1 - row) * width, from);
-  }
-  made->GetPointData()->SetScalars(to);
-  return made;
-}
-}
 
-//------------------------------------------------------------------------------
-vtkSmartPointer<vtkImageData> readImage(const std::string& name)
+/// While it exists, VTK reports errors; else observers get none where messages are switched off.
+class Reporting
 {
-  const ImageHeader header = checkImage(name);
-  const vtkSmartPointer<vtkImageReader2> reader = makeReader(header);
+public:
+  Reporting() { vtkObject::GlobalWarningDisplayOn(); }
+  ~Reporting() { vtkObject::SetGlobalWarningDisplay(this->Before); }
+  Reporting(const Reporting&) = delete;
+  Reporting& operator=(const Reporting&) = delete;
+
+private:
+  const int Before = vtkObject::GetGlobalWarningDisplay();
+};
+
+/// Lets a reader work; throws if it reports anything.
+void expectSilent(
+  vtkImageReader2* reader, const std::string& name, const std::function<void()>& work)
+{
+  const Reporting reporting;
   std::string message;
   vtkNew<vtkCallbackCommand> keep;
   keep->SetCallback(keepMessage);
@@ -88,19 +276,99 @@ vtkSmartPointer<vtkImageData> readImage(const std::string& name)
   reader->AddObserver(vtkCommand::ErrorEvent, keep);
   reader->AddObserver(vtkCommand::WarningEvent, keep);
   reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, keep);
-  reader->SetFileName(name.c_str());
-  reader->Update();
-  vtkSmartPointer<vtkImageData> image = reader->GetOutput();
-  const int* size = image->GetDimensions();
-  if (message.empty() &&
-    (size[0] != static_cast<int>(header.width) || size[1] != static_cast<int>(header.height)))
+  work();
+  reader->RemoveObserver(keep);
+  reader->GetExecutive()->RemoveObserver(keep);
+  if (message.empty() && reader->GetErrorCode() != vtkErrorCode::NoError)
   {
-    message = "the pixels do not have the size of the header";
+    message = vtkErrorCode::GetStringFromErrorCode(reader->GetErrorCode());
   }
   if (!message.empty())
   {
-    throw FileError(name + ": the image cannot be read: " + message);
+    failImage(name, message);
   }
-  return header.format == ImageFormat::Tiff ? flipped(image) : image;
+}
+}
+
+//------------------------------------------------------------------------------
+bool isImageFile(const std::string& name)
+{
+  struct stat status;
+  const OpenFile file = openFile(name);
+  if (!file || fstat(fileno(file.get()), &status) != 0 || !S_ISREG(status.st_mode))
+  {
+    return false;
+  }
+  char start[PngStart.size()];
+  const std::size_t size = std::fread(start, 1, sizeof(start), file.get());
+  return makeReader(std::string_view(start, size)) != nullptr;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageReader2> openImage(const std::string& name)
+{
+  const FileContent file(name);
+  const ImageBytes image(file);
+  const vtkSmartPointer<vtkImageReader2> reader =
+    makeReader(std::string_view(file.begin(), static_cast<std::size_t>(file.end() - file.begin())));
+  if (!reader)
+  {
+    image.fail(std::string("it is none of ") + ImageFormats);
+  }
+  if (vtkPNGReader::SafeDownCast(reader))
+  {
+    checkPng(image);
+  }
+  else if (vtkPNMReader::SafeDownCast(reader))
+  {
+    checkPnm(file);
+  }
+  else if (auto* tiff = vtkTIFFReader::SafeDownCast(reader))
+  {
+    checkTiff(image);
+    tiff->SetOrientationType(1); // rows in the order of the file
+  }
+  else if (auto* bmp = vtkBMPReader::SafeDownCast(reader))
+  {
+    bmp->SetHeaderSize(checkBmp(image));
+  }
+  // (That of PNM files takes none with a blank or a comment after P5.)
+  if (!vtkPNMReader::SafeDownCast(reader) && !reader->CanReadFile(name.c_str()))
+  {
+    image.fail("its header is damaged");
+  }
+  reader->SetFileName(name.c_str());
+  expectSilent(reader, name, [&] { reader->UpdateInformation(); });
+  const int* extent = reader->GetDataExtent();
+  const auto side = [&](int axis) -> vtkIdType
+  { return vtkIdType(extent[2 * axis + 1]) - extent[2 * axis] + 1; };
+  if (side(0) < 1 || side(1) < 1 || side(2) != 1 || side(0) > MaxPixels / side(1))
+  {
+    image.fail("its size is " + std::to_string(side(0)) + " x " + std::to_string(side(1)) + " x " +
+      std::to_string(side(2)) + "; one page of 1 to " + std::to_string(MaxPixels) +
+      " pixels is allowed");
+  }
+  if (vtkJPEGReader::SafeDownCast(reader) && reader->GetNumberOfScalarComponents() > 3)
+  {
+    image.fail("only JPEG of 1 or 3 components can be read");
+  }
+  return reader;
+}
+
+//------------------------------------------------------------------------------
+vtkSmartPointer<vtkImageData> readImage(const std::string& name)
+{
+  const vtkSmartPointer<vtkImageReader2> reader = openImage(name);
+  expectSilent(reader, name, [&] { reader->Update(); });
+  if (!vtkTIFFReader::SafeDownCast(reader))
+  {
+    return reader->GetOutput();
+  }
+  // VTK has the first row of a TIFF file at y = 0, and that of other formats at the top.
+  vtkNew<vtkImageFlip> flip;
+  flip->SetInputData(reader->GetOutput());
+  flip->SetFilteredAxis(1);
+  flip->Update();
+  return flip->GetOutput();
 }
 }

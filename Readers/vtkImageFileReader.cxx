@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkImageFileReader.h"
 
-#include "ImageFile.h"
 #include "ImageFileAdapter.h"
+#include "tautline/Core/Types.h"
 
 #include "vtkImageData.h"
+#include "vtkImageReader2.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
@@ -29,7 +30,7 @@ vtkImageFileReader::~vtkImageFileReader()
 //------------------------------------------------------------------------------
 bool vtkImageFileReader::CanReadFile(const char* name)
 {
-  return name && tautline::findImageFormat(name) != tautline::ImageFormat::None;
+  return name && tautline::isImageFile(name);
 }
 
 //------------------------------------------------------------------------------
@@ -39,11 +40,8 @@ int vtkImageFileReader::RequestInformation(
   return this->Guarded(
     [&](const std::string& name)
     {
-      const tautline::ImageHeader header = tautline::checkImage(name);
-      const int extent[6] = { 0, static_cast<int>(header.width) - 1, 0,
-        static_cast<int>(header.height) - 1, 0, 0 };
-      outputVector->GetInformationObject(0)->Set(
-        vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent, 6);
+      outputVector->GetInformationObject(0)->Set(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(),
+        tautline::openImage(name)->GetDataExtent(), 6);
     });
 }
 

@@ -3,10 +3,10 @@
  * @class vtkImageFileReader
  * @brief Reads one image: PNG, JPEG, TIFF, BMP, binary PGM or PPM.
  *
- * The format is found by the content of the file. Before VTK's reader of the format gets the file,
- * its header is compared with its content: a file that is truncated, damaged or of another kind is
- * an error that names the file (ImageFile.h lists the kinds). Every message of VTK's reader is an
- * error, too. An image has at most 100 million pixels.
+ * The format is found by the content of the file, and VTK's reader of the format reads it. A file
+ * that is truncated, damaged or of another kind is an error that names the file
+ * (ImageFileAdapter.h lists the kinds); so is every message of VTK's reader. An image has at most
+ * 100 million pixels.
  *
  * The output is vtkImageData in the plane z = 0.
  *

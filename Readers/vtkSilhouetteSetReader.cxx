@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSilhouetteSetReader.h"
 
-#include "ImageFile.h"
 #include "ImageFileAdapter.h"
 #include "MenuNames.h"
 #include "tautline/Core/Memory.h"
@@ -134,7 +133,7 @@ std::vector<Entry> readFolder(const fs::path& folder)
   std::vector<Entry> entries;
   for (const fs::directory_entry& item : fs::directory_iterator(folder))
   {
-    if (tautline::findImageFormat(item.path().string()) != tautline::ImageFormat::None)
+    if (tautline::isImageFile(item.path().string()))
     {
       const std::string name = item.path().stem().string();
       entries.push_back({ item.path(), name.substr(0, name.find_first_of("0123456789 ")) });

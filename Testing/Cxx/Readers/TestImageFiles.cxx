@@ -19,6 +19,7 @@
 #include "vtkTestErrorObserver.h"
 
 #include <filesystem>
+#include <map>
 
 #include <sys/stat.h>
 
@@ -118,6 +119,58 @@ void testDamage()
   }
 }
 
+/// A grey TIFF file of 2 x 2 pixels, 1 2 in the first row and 3 4 below, with other values of tags.
+std::string tiff(const std::map<int, int>& changed, int nextDirectory = 0)
+{
+  std::map<int, int> tags = { { 256, 2 }, { 257, 2 }, { 258, 8 }, { 259, 1 }, { 262, 1 },
+    { 273, 8 }, { 277, 1 }, { 278, 2 }, { 279, 4 } };
+  for (const auto& [tag, value] : changed)
+  {
+    tags[tag] = value;
+  }
+  const auto number = [](int value, int bytes)
+  {
+    std::string text;
+    for (int i = 0; i < bytes; ++i)
+    {
+      text += static_cast<char>(value >> 8 * i & 0xff);
+    }
+    return text;
+  };
+  std::string text = "II*" + number(0, 1) + number(12, 4) + "\1\2\3\4";
+  text += number(static_cast<int>(tags.size()), 2);
+  for (const auto& [tag, value] : tags)
+  {
+    constexpr int shortType = 3;
+    text += number(tag, 2) + number(shortType, 2) + number(1, 4) + number(value, 4);
+  }
+  return text + number(nextDirectory, 4);
+}
+
+void testTiff()
+{
+  for (const bool oriented : { false, true })
+  {
+    TAUTLINE_CHECK_EQUAL(complaintOf(oriented ? tiff({ { 274, 1 } }) : tiff({})), std::string());
+    vtkNew<vtkImageFileReader> reader;
+    reader->SetFileName((folder / "image").string().c_str());
+    reader->Update();
+    vtkDataArray* values = reader->GetOutput()->GetPointData()->GetScalars();
+    for (vtkIdType i = 0; i < 4; ++i) // the first row is the top one
+    {
+      TAUTLINE_CHECK_EQUAL(values->GetComponent(i, 0), static_cast<double>((i + 2) % 4 + 1));
+    }
+  }
+  expect(tiff({ { 259, 8 } }), wording("its-compression-tiff-tag"));
+  expect(tiff({ { 284, 2 }, { 277, 3 } }), wording("its-planar-configuration"));
+  expect(tiff({ { 322, 16 }, { 323, 16 } }), wording("its-width-of-a-tile"));
+  expect(tiff({ { 262, 2 } }), wording("fewer-than-3-samples"));
+  // a second page with the same pixels
+  const std::string first = tiff({}), page = first.substr(12);
+  const auto begin = static_cast<int>(first.size());
+  expect(tiff({}, begin) + page, wording("its-size-is-2-x-2-x-2"));
+}
+
 void testMessages()
 {
   const auto text = [](const char* name) { return readText((corpus / name).string()); };
@@ -125,13 +178,20 @@ void testMessages()
   expect("no picture", wording("it-is-none-of-png-jpeg-tiff"));
   expect(text("short.tga"), wording("it-is-none-of-png"));
   expect(with(text("grey.png"), 20, "\x01"), wording("the-check-sum-of-a-chunk-is"));
-  expect("P5\n4 3\n65535\n" + std::string(24, 'x'), wording("its-largest-value-is-65535"));
-  expect("P5\n0 3\n255\n", wording("its-size-is-0-x-3"));
+  expect("P5\n4 3\n65535\n" + std::string(24, 'x'), wording("largest-value-is-65535"));
+  expect("P5\n0 3\n255\n", wording("width-is-0"));
   expect("P5\n99999 99999\n255\n", wording("its-size-is-99999-x-99999"));
   expect("P5\n4 3\n255\nabc", wording("the-file-is-truncated"));
   expect("P2\n1 1\n255\n7\n", wording("it-is-none-of"));
   expect(with(text("colour.bmp"), 30, "\x01"), wording("not-compressed"));
-  expect(with(text("colour.bmp"), 28, "\x04"), wording("8-or-24-bits-per-pixel"));
+  expect(with(text("colour.bmp"), 28, "\x04"), wording("only-bmp-depths"));
+  // Damage is noticed also where messages are switched off.
+  vtkObject::GlobalWarningDisplayOff();
+  vtkNew<vtkImageFileReader> quiet;
+  quiet->SetFileName((folder / "image").string().c_str()); // the last one
+  quiet->Update();
+  TAUTLINE_CHECK_EQUAL(quiet->GetOutput()->GetNumberOfPoints(), vtkIdType{ 0 });
+  vtkObject::GlobalWarningDisplayOn();
   TAUTLINE_CHECK_EQUAL(complaintOf("P5 # a comment\n2 1 # another\n255\nab"), std::string());
 }
 
@@ -186,6 +246,7 @@ TAUTLINE_TEST(TestImageFiles)
   fs::create_directories(folder);
   TAUTLINE_RUN(testPixels());
   TAUTLINE_RUN(testDamage());
+  TAUTLINE_RUN(testTiff());
   TAUTLINE_RUN(testMessages());
   TAUTLINE_RUN(testFolder());
 }
