@@ -355,7 +355,7 @@ int vtkTautlineAlgorithm::UpdateInputs(vtkInformation* request)
 tautline::GatheredRules vtkTautlineAlgorithm::GetGatheredRules()
 {
   tautline::GatheredRules rules;
-  rules.onAll = this->TakesComposite(MeshPort);
+  rules.onAll = this->GetNumberOfInputPorts() > 0 && this->TakesComposite(MeshPort);
   return rules;
 }
 

@@ -66,8 +66,8 @@
  * ids.
  *
  * A motion to a target gathers both on the first process. Their points correspond as on one
- * process, in the order of the global ids of mesh and target, which have to be those of one mesh; without
- * ids, what corresponds by its order is an error, unless all of both is on one process.
+ * process, in the order of the global ids of mesh and target, which have to be those of one mesh;
+ * without ids, what corresponds by its order is an error, unless all of both is on one process.
  *
  * With blocks, inclined planes, cells that list their points in opposite orders and coordinates of
  * extreme size, the first process has the whole mesh while it computes and sends the results to the

@@ -43,7 +43,7 @@
  * The first process has both meshes while it computes, and the pieces of the second one get the
  * results; the table is on the first process. The meshes may be cut differently: their points and
  * cells are then matched by the global ids of the points (Generate Global Ids), or else by the
- * order of the coordinates, if the points have not moved. Ghost cells are copies, which do not count.
+ * order of the coordinates, if the points have not moved. Ghost cells do not count.
  *
  * @par Example:
  * @code
