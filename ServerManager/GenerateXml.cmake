@@ -9,6 +9,7 @@
 # Attributes of the root element <Snippet> are the parameters that may be left out, with their defaults. An attribute
 # that is nothing but a parameter, as in panel_visibility="@visibility@", is left out where the parameter is empty.
 # Templates and snippets are well-formed XML. A parameter that is missing or unknown stops the configuration.
+# Attributes that begin with python or shell are for the Python package, see python/generator; ParaView ignores them.
 
 set(TAUTLINE_SERVER_MANAGER_DIR "${CMAKE_CURRENT_LIST_DIR}")
 
@@ -92,13 +93,10 @@ function (_tautline_expand_xml out file arguments)
   set(${out} "${text}" PARENT_SCOPE)
 endfunction ()
 
-# tautline_add_server_manager_xmls(XMLS name...): the proxies of a module, from ServerManager/<name>.xml.in. Without
-# ParaView there is nothing to do.
+# tautline_add_server_manager_xmls(XMLS name...): the proxies of a module, from ServerManager/<name>.xml.in. The Python
+# package is generated from them, too (python/generator).
 function (tautline_add_server_manager_xmls)
   cmake_parse_arguments(PARSE_ARGV 0 arg "" "" "XMLS")
-  if (NOT COMMAND paraview_add_server_manager_xmls)
-    return ()
-  endif ()
   set(xmls)
   foreach (name IN LISTS arg_XMLS)
     _tautline_expand_xml(text "${TAUTLINE_SERVER_MANAGER_DIR}/${name}.xml.in" "")

@@ -153,7 +153,7 @@ def test_refused():
     refused(wording("no-point-array-d"), tl.warp, PLATE, "d")
     refused(wording("has-the-shape-3-3"), tl.warp, PLATE, np.zeros((3, 3)))
     refused(wording("amount-is-1"), tl.warp, PLATE, amount=-1)
-    refused(wording("no-option-speed"), tl.warp, PLATE, speed=3)
+    refused(wording("argument-of-warp-speed"), tl.warp, PLATE, speed=3)
     refused(wording("transform-has-to-have-one-of"), tl.warp, PLATE, transform={"turn": 30})
     refused(wording("no-center"), tl.warp, PLATE, transform={"translate": (1, 0, 0), "center": (0, 0, 0)})
     refused(wording("rotate-is-far"), tl.warp, PLATE, transform={"rotate": "far"})

@@ -15,10 +15,11 @@ from tautline import _vtk
 PACKAGE = Path(tautline.__file__).parent
 LIBRARIES = PACKAGE.parents[2]  # lib/ of lib/python3/dist-packages/tautline: the compiled modules need its libraries
 LIST = "import tautline; print(*(n for n in ('warp', 'match', 'vtkShapeMatcher', 'quality') if hasattr(tautline, n)))"
+PARTS = tuple(path.stem for path in PACKAGE.glob("_*_parts.py"))
 #: The floors of the package below the capabilities, which do not import each other; _metrics serves three of them.
 FLOORS = (
     ("_build", "_start"),
-    ("_vtk",),
+    ("_choices", "_vtk"),
     ("_classes", "_interrupts", "_names"),
     ("_errors",),
     ("_arrays", "_files", "_formats", "_tables"),
@@ -28,6 +29,7 @@ FLOORS = (
     ("_io", "_results"),
     ("_commands",),
     ("_html", "_metrics", "_state", "_state_runner"),  # the runner is a script that imports the whole package
+    PARTS,
     ("_quality",),
 )
 TYPE_CHECKING = re.compile(r"^if TYPE_CHECKING:\n(    .*\n)+", re.MULTILINE)

@@ -1,79 +1,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Names of methods and presets: in any case, as ParaView's labels have them, with the nearest one if they are wrong.
-
-test_names.py SERVER_MANAGER_XML...
-"""
+"""Names of methods and presets: in any case, with the nearest one if they are wrong. See also test_properties.py."""
 
 import argparse
 import inspect
-import sys
-import xml.etree.ElementTree as ElementTree
 
 import tautline as tl
 from checks import DATA, OUT, refused, run_tests, shell, wording
-from tautline import (
-    _arguments,
-    _deformation,
-    _elliptic,
-    _names,
-    _optimization,
-    _peridynamics,
-    _quality,
-    _reconnection,
-    _shapes,
-    _untangling,
-)
 from tautline.__main__ import _parser
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 TANGLED, PLATE = DATA / "bracket-tangled.vtu", DATA / "plate.vtu"
-#: The names in Python of the labels of a property, by proxy and property.
-LABELLED = {
-    ("MeshOptimizer", "Preset"): _optimization.PRESETS,
-    ("MeshOptimizer", "Scalarization"): _optimization.SCALARIZATIONS,
-    ("MeshOptimizer", "Optimizer"): _optimization.OPTIMIZERS,
-    ("MeshOptimizer", "Boundary"): _optimization.BOUNDARIES,
-    ("MeshImprover", "Preset"): _reconnection.PRESETS,
-    ("MeshImprover", "Boundary"): _reconnection.BOUNDARIES,
-    ("MeshImprover", "CellTransfer"): _reconnection.CELL_TRANSFERS,
-    ("MeshUntangler", "Effort"): _untangling.EFFORTS,
-    ("MeshUntangler", "Method"): _untangling.METHODS,
-    ("ElementQuality", "TargetType"): _arguments.TARGETS,
-    ("ElementQuality", "Combination"): _arguments.COMBINATIONS,
-    ("ElementQuality", "ReversedMesh"): _quality.REVERSED,
-    ("MeshWarp", "Method"): _deformation.METHODS,
-    ("MeshWarp", "Correspondence"): _deformation.CORRESPONDENCES,
-    ("MeshWarp", "Solver"): _deformation.SOLVERS[1:],
-    ("MeshWarp", "Preconditioner"): _arguments.PRECONDITIONERS,
-    ("EllipticSolver", "Equation"): _elliptic.PDES,
-    ("EllipticSolver", "PlaneState"): _elliptic.PLANES,
-    ("EllipticSolver", "Solver"): _elliptic.SOLVERS,
-    ("EllipticSolver", "Preconditioner"): _arguments.PRECONDITIONERS,
-    ("ConditionEstimator", "Method"): _elliptic.METHODS,
-    ("PeridynamicCondition", "Basis"): _peridynamics.BASES,
-    ("PeridynamicCondition", "Kernel"): _peridynamics.KERNELS,
-    ("PeridynamicCondition", "Discretization"): _peridynamics.DISCRETIZATIONS,
-    ("PeridynamicCondition", "Rules"): _peridynamics.RULES,
-    ("MatchShape", "Locations"): _shapes.LOCATIONS,
-    ("MatchShape", "Reflection"): _shapes.REFLECTIONS,
-    ("MatchShape", "Foreground"): _shapes.FOREGROUNDS,
-    ("ShapeRetrieval", "Setting"): _shapes.SETTINGS,
-}
-
-
-def test_labels():
-    """Each label of an enumeration in ParaView's panels means the name of its number."""
-    proxies = {proxy.get("name"): proxy for xml in sys.argv[1:] for proxy in ElementTree.parse(xml).iter()
-               if proxy.tag.endswith("Proxy")}  # fmt: skip
-    checked = 0
-    for (proxy, name), names in LABELLED.items() if proxies else ():
-        prop = next(p for p in proxies[proxy].iter() if p.get("name") == name)
-        for entry in prop.iter("Entry"):
-            number, label = int(entry.get("value")), entry.get("text")
-            assert _names.find_name(label, names) == names[number], (proxy, name, label, names)
-            assert _names.find_name(label.upper().replace(" ", "_"), names) == names[number], label
-            checked += 1
-    assert checked > 100 or not proxies, checked
 
 
 def test_functions():
@@ -118,14 +54,6 @@ def test_shell():
 #: and motion under other names.
 NOT_IN_SHELL = {"progress", "redistribute", "gather_below", "rounds", "file", "outline", "surface", "transform",
                 "series", "sparsity", "target"}  # fmt: skip
-#: The keywords of a command that its function takes as **options.
-TABLES = {
-    "optimize": _optimization._OPTIONS,
-    "warp": _deformation._OPTIONS,
-    "match": _shapes._OPTIONS,
-    "retrieval": _shapes._OPTIONS,
-    "improve": _reconnection._OPERATIONS,
-}
 
 
 def test_shell_has_all():
@@ -137,7 +65,7 @@ def test_shell_has_all():
             continue
         parameters = inspect.signature(function).parameters.values()
         names = {p.name for p in parameters if p.kind not in (p.VAR_KEYWORD, p.VAR_POSITIONAL)}
-        missing = (names | set(TABLES.get(name, ()))) - {action.dest for action in commands[name]._actions}
+        missing = names - {action.dest for action in commands[name]._actions}
         # By region is a table of numbers for each value of an array, which a shell has no option for.
         missing -= NOT_IN_SHELL | ({"regions"} if name == "warp" else set())
         assert not missing, (name, missing)

@@ -353,7 +353,7 @@ def test_refused():
         ("needs a reference", {"preset": "preserve shape"}),
         ("scalarization is 'x'", {"scalarization": "x"}),
         ("optimizer is 'x'", {"optimizer": "x"}),
-        ("no option 'speed'", {"speed": 1}),
+        ("argument of optimize() 'speed'", {"speed": 1}),
         ("maximum_iterations is -1", {"maximum_iterations": -1}),
         ("boundary is 'x'", {"boundary": "x"}),
         ("time_limit is -1", {"time_limit": -1}),

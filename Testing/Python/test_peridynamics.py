@@ -8,7 +8,7 @@ import numpy as np
 import tautline as tl
 from checks import points, refused, run_tests, shell, square, wording
 from study_checks import Studies
-from tautline import _peridynamics
+from tautline._choices import PERIDYNAMICS_PRECONDITIONERS
 from tautline.studies import _horizon, names, nonlocal_preconditioner, state_based
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from wrong_data import verdicts
@@ -63,7 +63,7 @@ def test_preconditioners():
     """The same solution with each; the condition number from the iterations is that of the spectrum."""
     mesh = tl.interaction_layer(square(20), 0.2)
     found = {name: tl.peridynamics(mesh, 0.2, 2.5, solve=True, preconditioner=name)
-             for name in _peridynamics.PRECONDITIONERS}  # fmt: skip
+             for name in PERIDYNAMICS_PRECONDITIONERS}  # fmt: skip
     expected = found["jacobi"]
     for name, result in found.items():
         assert np.abs(result.solution - expected.solution).max() < 1e-8 * expected.solution.max(), name

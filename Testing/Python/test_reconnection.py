@@ -337,7 +337,7 @@ def test_refused():
         ("flat_angle is 2", {"flat_angle": 2}),
         ("rounds is 0", {"rounds": 0}),
         ("gather_below is -1", {"gather_below": -1}),
-        ("no option 'speed'", {"speed": 1}),
+        ("argument of improve() 'speed'", {"speed": 1}),
         ("with preset='custom' only", {"swap": False}),
         ("no cell array 'x'", {"regions": "x"}),
         ("no point array 'x'", {"fixed": "x"}),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import tautline as tl
 from checks import DATA, OUT, points, refused, run_tests, shell, wording
-from tautline._optimization import PRESETS
+from tautline._choices import OPTIMIZE_PRESETS as PRESETS
 
 os.environ["PV_PLUGIN_PATH"] = str(Path(os.environ["TAUTLINE_PLUGIN"]).parent.parent)
 os.environ.pop("DISPLAY", None)  # views of the state are not made

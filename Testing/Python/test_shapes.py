@@ -25,7 +25,7 @@ def write_png(file, image):
     from vtkmodules.vtkIOImage import vtkPNGWriter
 
     cast = vtkImageCast()
-    cast.SetInputData(tl._shapes.as_image(image))
+    cast.SetInputData(tl._shapes_parts.as_image(image))
     cast.SetOutputScalarTypeToUnsignedChar()
     writer = vtkPNGWriter()
     writer.SetInputConnection(cast.GetOutputPort())
@@ -67,8 +67,8 @@ def test_match():
     assert plain.energy < like.energy
     one, two = (tl.match(images[2], images[3], threads=threads, grid=(12, 12)) for threads in (1, 2))
     assert one.energy == two.energy and (one.points == two.points).all()
-    refused(wording("no-option-c"), tl.match, images[2], images[3], c=1)
-    refused("finite", tl.match, images[2], images[3], a=float("nan"))
+    refused(wording("argument-of-match-c"), tl.match, images[2], images[3], c=1)
+    refused(wording("a-is-nan"), tl.match, images[2], images[3], a=float("nan"))
     refused(wording("too-small"), tl.match, images[2], images[3], grid=(1, 1))
 
 
@@ -96,7 +96,7 @@ def test_retrieval():
     assert passed.distances.min() == 0 and passed.distances.max() <= 1
     refused("shortlist", tl.retrieval, images, labels, shortlist=-1)
     refused("neighbors", tl.retrieval, images, labels, neighbors=float("nan"))
-    refused("SheetSize", tl.retrieval, images, labels, sheet_size=0)
+    refused("sheet_size", tl.retrieval, images, labels, sheet_size=0)
     refused(wording("labels-for"), tl.retrieval, images, labels[:3])
     refused("setting", tl.retrieval, images, labels, setting="best")
 
@@ -118,7 +118,7 @@ def test_commands():
     told = run("retrieval", folder.parent, "--best", 1, "--csv", "best.csv", "--sheet", "sheet.png", "--neighbors", 0)
     assert wording("6-shapes-of-3-classes") in told, told
     expected = tl.retrieval(folder.parent, best=1).sheet
-    written = tl._shapes.as_image(OUTPUT / "sheet.png")
+    written = tl._shapes_parts.as_image(OUTPUT / "sheet.png")
     pixels = vtk_to_numpy(written.GetPointData().GetScalars()).reshape(expected.shape)
     assert np.array_equal(pixels[::-1], expected)
     assert wording("no-directory") in run("retrieval", folder.parent, "--sheet", "nowhere/sheet.png", code=1)

@@ -10,6 +10,7 @@ from checks import OUT, SKIPPED
 from tautline import _vtk
 
 SOURCE = Path(sys.argv[1])
+PACKAGE = Path(_vtk.__file__).parent  # with the modules that are generated
 USER = """\
 import numpy as np
 import tautline as tl
@@ -31,14 +32,13 @@ WRONG = {
 
 
 def mypy(*arguments) -> subprocess.CompletedProcess:
-    # Of the source tree: the build tree has links to it.
     command = ["mypy", "--strict", f"--cache-dir={OUT / 'mypy'}", *map(str, arguments)]
     return subprocess.run(command, cwd=SOURCE, capture_output=True, text=True, env={"PATH": "/usr/bin:/bin",
-                          "MYPYPATH": str(SOURCE / "python")})  # fmt: skip
+                          "MYPYPATH": str(PACKAGE.parent)})  # fmt: skip
 
 
 def test_package() -> None:
-    done = mypy("python/tautline")
+    done = mypy("-p", "tautline")
     assert done.returncode == 0, done.stdout + done.stderr
 
 
@@ -57,7 +57,7 @@ def test_users() -> None:
 
 def check_classes() -> None:
     """The list of the classes for type checkers is that of the classes that were built."""
-    text = (SOURCE / "python" / "tautline" / "_classes.py").read_text()
+    text = (PACKAGE / "_classes.py").read_text()
     listed = {line.split(" as ")[1] for line in text.splitlines() if line.startswith("from ._vtk")}
     assert set(_vtk.CLASSES) <= listed, set(_vtk.CLASSES) - listed
     assert "TautlineMeshing" not in _vtk.MODULES or set(_vtk.CLASSES) == listed, listed - set(_vtk.CLASSES)

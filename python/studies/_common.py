@@ -17,7 +17,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
-from tautline import _optimization
+from tautline._choices import OPTIMIZE_OPTIMIZERS, OPTIMIZE_SCALARIZATIONS, TEMPLATES
 from tautline._errors import Error, Messages, run, watch
 from tautline._arguments import pick
 from tautline._files import make_folder, replace_text, save_figure
@@ -210,12 +210,12 @@ def _configured(
     filter_ = tautline.vtkMeshOptimizer()
     messages = watch(filter_)
     for name in method.objectives:
-        filter_.AddObjectiveByName(name, pick("template", template, _optimization.TEMPLATES) - 1)
+        filter_.AddObjectiveByName(name, pick("template", template, TEMPLATES) - 1)
     for name, weight in weights:
         filter_.AddObjectiveByName(name, filter_.DEFAULT_TEMPLATE, weight)
     scalarization = "weighted sum" if weights else method.scalarization
-    filter_.SetScalarization(pick("scalarization", scalarization, _optimization.SCALARIZATIONS))
-    filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), _optimization.OPTIMIZERS))
+    filter_.SetScalarization(pick("scalarization", scalarization, OPTIMIZE_SCALARIZATIONS))
+    filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), OPTIMIZE_OPTIMIZERS))
     filter_.SetHoldWorst(False)  # the methods of the dissertation promise nothing about single elements
     filter_.SetMaximumIterations(iterations)
     filter_.SetPatchIterations(patch_iterations)

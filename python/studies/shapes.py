@@ -70,7 +70,7 @@ def _sweep(locations: str) -> list[tuple[str, dict[str, Any]]]:
 def _images(shapes: Any) -> list[vtkImageData]:
     if isinstance(shapes, vtkMultiBlockDataSet):
         return [shapes.GetBlock(i) for i in range(shapes.GetNumberOfBlocks())]
-    return [tl._shapes.as_image(shape) for shape in shapes]
+    return [tl._shapes_parts.as_image(shape) for shape in shapes]
 
 
 def _add_actor(renderer: Any, mesh: Any, color: tuple[float, float, float]) -> Any:

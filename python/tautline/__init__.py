@@ -23,15 +23,18 @@ if _start.is_command():
 _build.check()  # before the first compiled module
 
 from . import _vtk
-from ._comparison import CompareResult, compare
+from ._comparison import compare
+from ._comparison_parts import CompareResult
 from ._conversion import formats
 from ._errors import Aborted, Error
 from ._io import Mesh, read, times, to_meshio, write
 from ._mesh import from_arrays
-from ._metric_field import MetricFieldResult, metric_field
+from ._metric_field import metric_field
+from ._metric_field_parts import MetricFieldResult
 from ._metrics import load_metrics, metrics, register_metric, unregister_metric
 from ._pipeline import StepsResult, run_steps
-from ._quality import QualityResult, criteria, quality
+from ._quality import quality
+from ._quality_parts import QualityResult, criteria
 from ._report import report
 from ._state import StateResult, run_state
 
@@ -50,58 +53,46 @@ globals().update(_vtk.CLASSES)
 
 # What needs a compiled module that is optional. One that was built but cannot be imported raises ImportError.
 if _vtk.available("_optimization"):
-    from ._optimization import OptimizeResult, optimize
+    from ._optimization import optimize
+    from ._optimization_parts import OptimizeResult
     __all__ += ["OptimizeResult", "optimize"]
 if _vtk.available("_untangling"):
-    from ._untangling import UntangleResult, untangle
+    from ._untangling import untangle
+    from ._untangling_parts import UntangleResult
     __all__ += ["UntangleResult", "untangle"]
 if _vtk.available("_reconnection"):
-    from ._reconnection import ImproveResult, improve
+    from ._reconnection import improve
+    from ._reconnection_parts import ImproveResult
     __all__ += ["ImproveResult", "improve"]
 if _vtk.available("_perturbation"):
-    from ._perturbation import PerturbResult, perturb
+    from ._perturbation import perturb
+    from ._perturbation_parts import PerturbResult
     __all__ += ["PerturbResult", "perturb"]
 if _vtk.available("_domains"):
-    from ._domains import domain, domains
+    from ._domains import domain
+    from ._domains_parts import domains
     __all__ += ["domain", "domains"]
 if _vtk.available("_meshing"):
-    from ._meshing import MeshResult, tet_mesh, triangle_mesh
+    from ._meshing import tet_mesh, triangle_mesh
+    from ._meshing_parts import MeshResult
     __all__ += ["MeshResult", "tet_mesh", "triangle_mesh"]
 if _vtk.available("_deformation"):
-    from ._deformation import WarpResult, warp
+    from ._deformation import warp
+    from ._deformation_parts import WarpResult
     __all__ += ["WarpResult", "warp"]
 if _vtk.available("_shapes"):
-    from ._shapes import (
-        MatchResult,
-        RetrievalResult,
-        SilhouetteResult,
-        match,
-        read_silhouettes,
-        retrieval,
-        silhouette,
-    )
+    from ._shapes import match, retrieval, silhouette
+    from ._shapes_parts import MatchResult, RetrievalResult, SilhouetteResult, read_silhouettes
     __all__ += ["MatchResult", "RetrievalResult", "SilhouetteResult"]
     __all__ += ["match", "read_silhouettes", "retrieval", "silhouette"]
 if _vtk.available("_elliptic"):
-    from ._elliptic import (
-        ConditionResult,
-        SolveResult,
-        SolverStudyResult,
-        condition,
-        solve,
-        solver_combinations,
-        solver_study,
-    )
+    from ._elliptic import condition, solve, solver_study
+    from ._elliptic_parts import ConditionResult, SolveResult, SolverStudyResult, solver_combinations
     __all__ += ["ConditionResult", "SolveResult", "SolverStudyResult"]
     __all__ += ["condition", "solve", "solver_combinations", "solver_study"]
 if _vtk.available("_peridynamics"):
-    from ._peridynamics import (
-        HorizonResult,
-        PeridynamicsResult,
-        horizon_neighbors,
-        interaction_layer,
-        peridynamics,
-    )
+    from ._peridynamics import horizon_neighbors, interaction_layer, peridynamics
+    from ._peridynamics_parts import HorizonResult, PeridynamicsResult
     __all__ += ["HorizonResult", "PeridynamicsResult", "horizon_neighbors", "interaction_layer", "peridynamics"]
 
 globals()["__all__"] += sorted(_vtk.CLASSES)

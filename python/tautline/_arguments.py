@@ -1,37 +1,17 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Arguments of the functions: checks, enumerations, keyword options of filters."""
+"""Arguments of the functions: checks and choices."""
 
 from __future__ import annotations
 
-from typing import Any, Callable, Iterable, Literal, Mapping, Sequence, TypeVar, get_args
+from typing import Any, Callable, Sequence, TypeVar
 
 import numpy as np
 
-from ._arrays import snake
-from ._errors import Error, unknown
+from ._errors import Error
 from ._names import find_name, nearest_name
 
-#: How the values at the corners of a cell are combined, in the filters' numbering.
-Combination = Literal["mean", "worst", "power mean"]
-COMBINATIONS: tuple[Combination, ...] = get_args(Combination)
-#: What the target element is, in the filters' numbering.
-Target = Literal["ideal", "reference", "size", "tensor"]
-TARGETS: tuple[Target, ...] = get_args(Target)
-
-#: Preconditioners of linear systems, in the filters' numbering.
-Preconditioner = Literal["jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg", "none"]
-PRECONDITIONERS: tuple[Preconditioner, ...] = get_args(Preconditioner)
-
-#: How several processes divide a mesh anew, in the filters' numbering.
-Redistribution = Literal["off", "k-d tree", "pt-scotch"]
-REDISTRIBUTIONS: tuple[Redistribution, ...] = get_args(Redistribution)
-
-_MAX_THREADS = 1024
-
 Name = TypeVar("Name", bound=str)
-
-#: Sets an option of a filter from the value of a keyword.
-Setter = Callable[[Any, Any], None]
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 
 def pick(option: str, value: Any, allowed: Sequence[str]) -> int:
@@ -48,10 +28,14 @@ def picked(option: str, value: Any, allowed: Sequence[Name]) -> Name:
     return allowed[pick(option, value, allowed)]
 
 
-def set_redistribution(filter_: Any, value: Redistribution | bool) -> None:
-    """Set Redistribute of a filter; True is a k-d tree."""
-    name = ("off", "k-d tree")[value] if isinstance(value, bool) else value
-    filter_.SetRedistribute(pick("redistribute", name, REDISTRIBUTIONS))
+def flagged(value: str | bool, off: str, on: str) -> str:
+    """The name that True or False means; other values as they are."""
+    return (off, on)[value] if isinstance(value, bool) else value
+
+
+def sets(_functions: str, *_properties: str) -> Callable[[Function], Function]:
+    """For python/generator: the arguments of this setter are those of the functions, and set these properties."""
+    return lambda setter: setter
 
 
 def within(option: str, value: float, low: float, high: float) -> float:
@@ -76,45 +60,3 @@ def number(option: str, value: Any) -> float:
     if not np.isfinite(result):
         raise Error(f"{option} is {result}; it must be finite")
     return result
-
-
-def set_threads(algorithm: Any, threads: int) -> None:
-    """Set the number of threads; 0 is all cores."""
-    algorithm.SetThreads(int(within("threads", threads, 0, _MAX_THREADS)))
-
-
-def set_time_limit(algorithm: Any, seconds: float) -> None:
-    """Set the time limit; 0 is no limit."""
-    algorithm.SetTimeLimit(within("time_limit", seconds, 0, np.inf))
-
-
-def number_option(setter: str, low: float, high: float, kind: type = float) -> Setter:
-    """A setter of a filter for the numbers from low to high."""
-
-    def set_number(algorithm: Any, value: Any) -> None:
-        getattr(algorithm, setter)(kind(within(snake(setter[3:]), value, low, high)))
-
-    return set_number
-
-
-def flag_option(setter: str) -> Setter:
-    """A setter of a filter for True and False."""
-
-    def set_flag(algorithm: Any, value: Any) -> None:
-        getattr(algorithm, setter)(bool(value))
-
-    return set_flag
-
-
-def check_options(options: Mapping[str, Any], known: Iterable[str]) -> None:
-    """Raise Error for a keyword that is not known."""
-    for name in options:
-        if name not in known:
-            raise unknown("option", name, known)
-
-
-def set_options(algorithm: Any, options: Mapping[str, Any], known: Mapping[str, Setter]) -> None:
-    """Set keyword options on a filter by a table of setters."""
-    check_options(options, known)
-    for name, value in options.items():
-        known[name](algorithm, value)

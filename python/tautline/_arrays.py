@@ -95,6 +95,11 @@ def _array(found: Iterator[Any]) -> Array:
     return parts[0] if len(parts) == 1 else np.concatenate(parts) if parts else np.zeros(0)
 
 
+def is_number(value: Any) -> bool:
+    """Whether a value is one number, not an array nor the name of one."""
+    return value is not None and not isinstance(value, str) and np.ndim(value) == 0
+
+
 def has_array(data: vtkDataObject, name: str, on: str = ANY) -> bool:
     """Whether a block of the mesh has an array of this name."""
     return any(place.fields(leaf).GetArray(name) for leaf in leaves(data) for place in _PLACES if on in (ANY, place.on))
@@ -135,16 +140,18 @@ class InputArrays:
         self.algorithm, self.mesh = algorithm, mesh
         self._added: list[str] = []
 
-    def use(self, index: int, values: float | Values | None, name: str, on: str = ANY) -> None:
+    def use(
+        self, index: int, values: float | Values | None, name: str, on: str = ANY, *, scalar: bool = False
+    ) -> None:
         """Choose array number `index` of the filter; nothing is done for None.
 
         values: the name of an array of the mesh, or numbers, one row per cell or per point; see with_array().
         name: what the array is, for error messages and for its name in the copy.
-        on: POINTS or CELLS for arrays of points or cells only.
+        on: POINTS or CELLS for arrays of points or cells only. scalar: one number per row.
         """
         if values is None:
             return
-        self.mesh, association, found = with_array(self.mesh, values, name, on)
+        self.mesh, association, found = with_array(self.mesh, values, name, on, scalar=scalar)
         if not isinstance(values, str):
             self._added.append(found)
         self.algorithm.SetInputArrayToProcess(index, 0, 0, association, found)
@@ -159,13 +166,13 @@ class InputArrays:
 
 
 def with_array(
-    data: vtkDataObject, values: float | Values, name: str, on: str = ANY
+    data: vtkDataObject, values: float | Values, name: str, on: str = ANY, *, scalar: bool = False
 ) -> tuple[vtkDataObject, int, str]:
     """The mesh with an input array, its association (vtkDataObject.FIELD_ASSOCIATION_...) and its name.
 
     values: the name of an array of the mesh (if cells and points both have one, that of the cells is taken), or
         numbers, one row per cell or per point, which are added to a shallow copy of the mesh.
-    name, on: see InputArrays.use().
+    name, on, scalar: see InputArrays.use().
 
     Raises Error if there is no such array, or if the number of rows does not fit.
     """
@@ -182,6 +189,8 @@ def with_array(
         numbers = numbers.reshape(len(numbers), -1)
     except (TypeError, ValueError) as error:
         raise Error(f"{name}: not an array of numbers: {error}") from None
+    if scalar and numbers.shape[1] != 1:
+        raise Error(f"{name} has the shape {np.shape(values)}; one value per row is expected")
     for place in places:
         if len(numbers) == place.size(data):
             copy = data.NewInstance()

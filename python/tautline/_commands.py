@@ -10,7 +10,7 @@ import sys
 from contextlib import contextmanager
 from tempfile import TemporaryDirectory
 from textwrap import fill
-from typing import Any, Callable, Iterable, Iterator, Mapping, Tuple
+from typing import Any, Callable, Iterable, Iterator, Mapping
 
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
@@ -30,7 +30,7 @@ Run = Callable[[argparse.Namespace], "int | None"]
 STREAM = "-"
 _HELP_WIDTH = 100
 #: Arguments that are meshes to read.
-_INPUTS = ("mesh", "input", "before", "after", "reference", "target", "geometry")
+_INPUTS = ("mesh", "input", "before", "after", "reference", "target", "geometry", "outline", "surface")
 _STANDARD_INPUT = "standard-input.vtu"
 
 EXIT_CODES = """exit codes:
@@ -126,9 +126,12 @@ def add_merge_points(parser: argparse.ArgumentParser) -> None:
     add_flag(parser, "merge_coincident_points", "whether points at the same place on matching facets are one")
 
 
-def add_flag(parser: argparse.ArgumentParser, name: str, text: str, off: str | None = None) -> None:
+def add_flag(
+    parser: argparse.ArgumentParser, name: str, text: str, off: str | None = None, default: bool | None = True
+) -> None:
     """Add --name and --no-name for an argument that is True by default; `off` is an older name of the latter."""
-    parser.add_argument("--" + name.replace("_", "-"), action=argparse.BooleanOptionalAction, default=True, help=text)
+    flag = "--" + name.replace("_", "-")
+    parser.add_argument(flag, action=argparse.BooleanOptionalAction, default=default, help=text)
     if off:
         parser.add_argument(off, action="store_false", dest=name, help=argparse.SUPPRESS)
 
@@ -159,32 +162,6 @@ def numbers_or_text(text: str, kind: type = float) -> Any:
         return [kind(part) for part in text.split(",")]
     except ValueError:
         return text
-
-
-#: An option that a command passes on only if it is given: its name in Python; its type, the names to choose from, or
-#: bool for --name and --no-name; its help.
-Extra = Tuple[str, Any, str]
-
-
-def add_extras(parser: argparse.ArgumentParser, title: str, extras: Iterable[Extra]) -> None:
-    """Add a group of options that are passed on only if they are given; see given_extras()."""
-    group = parser.add_argument_group(title)
-    for name, kind, text in extras:
-        flags = ["--" + name.rstrip("_").replace("_", "-")]
-        flags += ["-" + name] if len(name) == 1 else []
-        if kind is bool:
-            group.add_argument(*flags, dest=name, action=argparse.BooleanOptionalAction, help=text)
-        elif isinstance(kind, tuple):
-            group.add_argument(*flags, dest=name, choices=kind, help=text)
-        else:
-            metavar = {int: "N", float: "X", str: "NAME"}.get(kind, "X,...")
-            group.add_argument(*flags, dest=name, type=kind, metavar=metavar, help=text)
-
-
-def given_extras(arguments: argparse.Namespace, extras: Iterable[Extra]) -> dict[str, Any]:
-    """The values of those of the options that were given, by name."""
-    values = given(arguments, [name for name, _, _ in extras])
-    return {name: value for name, value in values.items() if value is not None}
 
 
 def given(arguments: argparse.Namespace, names: Iterable[str]) -> dict[str, Any]:
@@ -288,18 +265,3 @@ def _write_stream(result: Any, groups: Groups | None) -> None:
         with open(file, "rb") as content:
             shutil.copyfileobj(content, sys.stdout.buffer)
     sys.stdout.flush()
-
-
-def add_reproducible_order(parser: argparse.ArgumentParser) -> None:
-    """Add --reproducible-order."""
-    parser.add_argument("--reproducible-order", action="store_true", help="work as several processes do")
-
-
-def add_moving_points(parser: argparse.ArgumentParser) -> None:
-    """Add what the commands share that move points."""
-    add_mesh(parser)
-    add_output(parser)
-    parser.add_argument("--csv", metavar="FILE", help="write the history, a row per iteration or pass")
-    parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
-    add_merge_points(parser)
-    add_time_limit(parser)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The function compare: the changes of quality between two meshes with the same cells."""
+"""Of compare(): its result, and arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -7,14 +7,11 @@ import argparse
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from . import _commands, _vtk
-from ._arguments import set_threads, set_time_limit, within
+from . import _commands
+from ._arguments import sets
 from ._arrays import Array, cell_array, columns, point_array, snake
-from ._errors import interruptible, run
-from ._interrupts import Progress
 from ._io import Mesh, as_mesh
 from ._metrics import Metrics, choose
 from ._results import Result
@@ -48,39 +45,26 @@ class CompareResult(Result):
         return comparison_rows(self)
 
 
-@interruptible
-def compare(
-    before: Mesh,
-    after: Mesh,
-    metrics: Metrics = ("imr",),
-    *,
-    tolerance: float = 1e-6,
-    time_limit: float = 0.0,
-    threads: int = 0,
-    progress: Progress | bool | None = None,
-) -> CompareResult:
-    """Compare the quality of two meshes with the same cells, element by element.
+def compare_input(filter_: Any, before: Mesh, after: Mesh) -> None:
+    """Set the meshes.
 
     before, after: each a vtkDataSet, a composite data set, a file name or (points, cells). Neither is changed.
-    metrics: see quality().
-    tolerance: relative difference up to which two values count as equal, 0 to 1.
-    time_limit: seconds; 0 is no limit.
-    threads: number of threads; 0 is all cores. The result does not depend on it.
-
-    Raises Error for wrong arguments and for meshes of different connectivity; the message has the first difference.
-
-    >>> result = tautline.compare("part.vtu", "better.vtu", ["imr", "size"])
-    >>> result.statistics["imr"]["better"], result.statistics["imr"]["worse"]
     """
-    filter_ = _vtk.vtkMeshComparison()
-    messages = choose(filter_, metrics)
-    filter_.SetTolerance(within("tolerance", tolerance, 0, 1))
-    set_time_limit(filter_, time_limit)
-    set_threads(filter_, threads)
     filter_.SetInputDataObject(0, as_mesh(before))
     filter_.SetInputDataObject(1, as_mesh(after))
-    run(filter_, messages)
-    mesh = filter_.GetOutputDataObject(0)
+
+
+@sets("compare", "Metrics")
+def choose_metrics(filter_: Any, metrics: Metrics = ("imr",)) -> None:
+    """Choose the metrics.
+
+    metrics: see quality().
+    """
+    choose(filter_, metrics).raise_errors()
+
+
+def compare_result(filter_: Any, mesh: vtkDataObject) -> CompareResult:
+    """The result of a filter that has run."""
     table = columns(filter_.GetOutputDataObject(1))
     rows = {name: row for row, name in enumerate(table.pop("Metric"))}
     return CompareResult(
@@ -96,24 +80,18 @@ def compare(
 # --- the shell ----------------------------------------------------------------------------------------------
 
 
-def add_commands(commands: Any) -> None:
-    """Add `compare` to the subparsers of the command line."""
-    parser = _commands.add_command(
-        commands, "compare", _run, "compare the quality of two meshes with the same cells, element by element",
-        example="part.vtu better.vtu --metrics imr,rr",
-        details="Prints how many elements became better and worse by each metric.",
-    )
+def add_compare_options(parser: argparse.ArgumentParser) -> None:
+    """Add the meshes, and the option of the metrics."""
     parser.add_argument("before", metavar="BEFORE")
     parser.add_argument("after", metavar="AFTER")
-    _commands.add_output(parser, "write the second mesh with the differences", False)
-    parser.add_argument("--csv", metavar="FILE", help="write the comparison, a row per metric")
     _commands.add_metrics(parser)
-    _commands.add_time_limit(parser)
-    parser.add_argument("--tolerance", type=float, default=1e-6,
-                        help="relative difference up to which values are equal (default: 1e-6)")  # fmt: skip
 
 
-def _run(arguments: argparse.Namespace) -> None:
-    options = _commands.given(arguments, ("tolerance", "time_limit", "threads"))
-    result = compare(arguments.before, arguments.after, arguments.metrics, **options)
+def compare_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The values of these options."""
+    return _commands.given(arguments, ("metrics",))
+
+
+def finish_compare(arguments: argparse.Namespace, result: CompareResult) -> None:
+    """Print the result of the command."""
     _commands.finish(arguments, result, comparison_text(result), comparison_rows(result))

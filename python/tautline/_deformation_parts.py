@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The function warp: deforms the interior of a mesh to follow a prescribed boundary motion."""
+"""Of warp(): its result, and arguments that are not one property each."""
 
 from __future__ import annotations
 
@@ -12,50 +12,21 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkCommonTransforms import vtkLinearTransform, vtkTransform
 
-from . import _commands, _vtk
-from ._arguments import (
-    PRECONDITIONERS,
-    Preconditioner,
-    Redistribution,
-    flag_option,
-    number_option,
-    pick,
-    set_options,
-    set_redistribution,
-    set_threads,
-    set_time_limit,
-    within,
-)
+from . import _commands
+from ._arguments import pick, sets
 from ._arrays import ANY, POINTS, Array, InputArrays, Values, cell_array, columns, point_array, table_rows, with_array
-from ._errors import Error, interruptible, run
-from ._interrupts import Progress
+from ._errors import Error
 from ._io import Mesh, as_mesh
 from ._names import find_name
 from ._results import Result
 
-Method = Literal[
-    "hybrid",
-    "femwarp",
-    "anisotropic femwarp",
-    "small-step femwarp",
-    "femwarp and untangling",
-    "iterative stiffening",
-    "jacobian stiffening",
-    "biharmonic",
-    "inverse distance",
-    "radial basis",
-    "weighted laplacian",
-]
-METHODS: tuple[Method, ...] = get_args(Method)
 #: Names of coefficients, and their numbers in vtkMeshWarp.
 COEFFICIENTS = {"displacement sums": 0, "principal directions": 1, "local gradients": 5}
-Correspondence = Literal["automatic", "same mesh", "same boundary", "point ids", "closest point"]
-CORRESPONDENCES: tuple[Correspondence, ...] = get_args(Correspondence)
 PARTS = ("automatic", "whole boundary", "inner boundaries")
 Solver = Literal["automatic", "cg", "gmres", "minres", "bicgstab", "direct"]
 SOLVERS: tuple[Solver, ...] = get_args(Solver)
 
-_DISPLACEMENT, _MOVED, _FIXED, _TENSORS, _REGIONS = range(5)  # input arrays of vtkMeshWarp
+_DISPLACEMENT, _MOVED, _TENSORS, _REGIONS = 0, 1, 3, 4  # input arrays of vtkMeshWarp
 _BY_ARRAY, _BY_TARGET, _BY_TRANSFORM = range(3)  # its motions
 _NUMBERED_PARTS, _ARRAY_VALUES = 3, 4  # its moved parts
 _MANUAL, _PER_CELL, _PER_REGION = 2, 3, 4  # its coefficients
@@ -108,140 +79,30 @@ class WarpResult(Result):
     summary: str
 
 
-@interruptible
-def warp(
-    mesh: Mesh,
-    displacement: Values | None = None,
-    method: Method = "hybrid",
-    amount: float = 1.0,
-    *,
-    target: Mesh | None = None,
-    transform: Transform | None = None,
-    correspondence: Correspondence = "automatic",
-    target_ids: Values | None = None,
-    moved: int | Values | None = None,
-    values: Sequence[float] = (),
-    fixed: Values | None = None,
-    coefficients: Values = "displacement sums",
-    regions: tuple[Values, Mapping[float, Sequence[float]]] | None = None,
-    solver: Solver = "automatic",
-    preconditioner: Preconditioner = "boomeramg",
-    time_limit: float = 0.0,
-    threads: int = 0,
-    merge_coincident_points: bool = True,
-    redistribute: Redistribution | bool = "off",
-    progress: Progress | bool | None = None,
-    **options: Any,
-) -> WarpResult:
-    """Deform the interior of a mesh to follow a prescribed boundary motion, with valid elements of similar shapes.
-
-    mesh: a vtkDataSet with explicit points, a composite data set, a file name or (points, cells), without inverted
-        elements. It is not changed.
-    displacement, target, transform: the motion of the boundary; exactly one is given.
-        displacement: the name of a point array, or n x 3 (in the plane n x 2) numbers; values at interior points are
-            ignored.
-        target: the mesh or its boundary in the new position, or any surface (in the plane a curve) to project it to.
-        transform: of the part `moved`: {"translate": (x, y, z)}, {"rotate": degrees, "axis": (0, 0, 1)}, {"scale":
-            factor or three of them}, {"bend": degrees, "axis": (0, 0, 1), "direction": (1, 0, 0)}, each about a
-            "center", by default that of the moved points; a 4 x 4 matrix; or a vtkLinearTransform.
-    method: "hybrid" (anisotropic FEMWARP, then an optimization of shape and validity), "femwarp", "anisotropic
-        femwarp", "small-step femwarp", "femwarp and untangling", "iterative stiffening", "jacobian stiffening",
-        "biharmonic", "inverse distance", "radial basis", "weighted laplacian".
-    amount: fraction of the motion along its path, from 0, the undeformed mesh; 1 is the whole motion.
-    correspondence: of points to those of the target: "automatic", "same mesh", "same boundary", "point ids", "closest
-        point".
-    target_ids: for "point ids": the name of a point array of the target, with values of the mesh's point array of the
-        same name or with point numbers of the mesh; or such point numbers, one per point of the target.
-    moved: the part that a transform or projection moves; the rest of the boundary stays in place. "automatic" (the
-        inner boundaries, or the whole boundary if there are none), "whole boundary", "inner boundaries"; numbers of
-        boundary parts, of which 1 is the largest; the name of a point or cell array; or one value per point.
-    values: values of the array `moved` on the moved part; the default is all but 0.
-    fixed: points that stay in place: one number or truth value per point, n, or the name of a point array.
-    coefficients: of "hybrid" and "anisotropic femwarp": "displacement sums", "principal directions", "local gradients"
-        (they vary in space, from the gradients of the displacements that FEMWARP gives), 3 or 6 numbers
-        (alpha beta gamma, or xx yy zz xy yz xz), the name of a cell array of tensors, or one row of 1, 3, 6 or 9
-        numbers per cell.
-    regions: (cell array, {value: (alpha, beta, gamma)}), the array by name or by one value per cell. Cells with other
-        values have the `coefficients`, if these are numbers.
-    solver: of the linear systems: "automatic", "cg", "gmres", "minres", "bicgstab", "direct".
-    preconditioner: of the linear systems: "jacobi", "ssor", "ilu", "boomeramg", "icc", "gamg", "none".
-    time_limit: seconds; 0 is no limit.
-    threads: number of threads; 0 is all cores. The result does not depend on it.
-    merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
-        of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
-    redistribute: on several processes (pvbatch --sym under MPI, where each calls this function with its piece): divide
-        the mesh anew among them, also where the first one has all of it; "off", "k-d tree" (or True), "pt-scotch".
-    options: properties of vtkMeshWarp: steps (1; 0: as many as needed), maximum_steps (100), tolerance (1e-10),
-        poisson_ratio (0.3), stiffening_power (1), stiffening_factor (2), maximum_stiffenings (50), distance_power (3),
-        support_radius (0: automatic), fit_tolerance (1e-3), untangle_first (True), untangling_beta (0),
-        maximum_iterations (50).
-
-    Raises Error for wrong arguments and for meshes that the filter refuses. Elements that remain inverted are not an
-    error: see inverted, impossible and summary of the result.
-
-    >>> result = tautline.warp("plate.vtu", transform={"rotate": 30})
-    >>> result.inverted, result.statistics["worst_shape"]
-    """
-    filter_ = _vtk.vtkMeshWarp()
-    inputs = InputArrays(filter_, as_mesh(mesh))
-    filter_.SetMethod(pick("method", method, METHODS))
-    filter_.SetAmount(within("amount", amount, 0, np.inf))
-    set_time_limit(filter_, time_limit)
-    set_threads(filter_, threads)
-    filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
-    set_redistribution(filter_, redistribute)
-    filter_.SetAutomaticSolver(pick("solver", solver, SOLVERS) == 0)
-    filter_.SetSolver(max(pick("solver", solver, SOLVERS) - 1, 0))
-    filter_.SetPreconditioner(pick("preconditioner", preconditioner, PRECONDITIONERS))
-    set_options(filter_, options, _OPTIONS)
-    _set_motion(filter_, inputs, displacement, target, transform, correspondence, target_ids)
-    _set_moved(filter_, inputs, moved, values)
-    inputs.use(_FIXED, fixed, "fixed", POINTS)
-    _set_coefficients(filter_, inputs, coefficients, regions)
-    filter_.SetInputDataObject(0, inputs.mesh)
-    run(filter_)
-    output = inputs.remove_from(filter_.GetOutputDataObject(0))
-    return WarpResult(
-        mesh=output,
-        inverted=filter_.GetInverted(),
-        inverted_after_warp=filter_.GetInvertedAfterWarp(),
-        impossible=filter_.GetImpossible(),
-        history=_history(filter_),
-        statistics=_statistics(filter_),
-        displacement=point_array(output, "Displacement"),
-        shape=cell_array(output, "TMP shape"),
-        validity=cell_array(output, "Validity"),
-        summary=filter_.GetSummary(),
-    )
-
-
-_OPTIONS = {
-    "steps": number_option("SetSteps", 0, 10000, int),
-    "maximum_steps": number_option("SetMaximumSteps", 1, 10000, int),
-    "tolerance": number_option("SetTolerance", np.nextafter(0, 1), 1),
-    "poisson_ratio": number_option("SetPoissonRatio", -1, 0.5),
-    "stiffening_power": number_option("SetStiffeningPower", 0, 10),
-    "stiffening_factor": number_option("SetStiffeningFactor", 1, 1e6),
-    "maximum_stiffenings": number_option("SetMaximumStiffenings", 0, 10000, int),
-    "distance_power": number_option("SetDistancePower", 0, 20),
-    "support_radius": number_option("SetSupportRadius", 0, np.inf),
-    "fit_tolerance": number_option("SetFitTolerance", 0, 1),
-    "untangle_first": flag_option("SetUntangleFirst"),
-    "untangling_beta": number_option("SetUntanglingBeta", 0, np.inf),
-    "maximum_iterations": number_option("SetMaximumIterations", 0, 1000000, int),
-}
-
-
-def _set_motion(
+@sets(
+    "warp", "Motion", "Displacement", "Target", "TargetIds", "TransformKind", "Transform", "Translation", "Angle",
+    "Axis", "ScaleFactors", "Direction", "OwnCenter", "Center",
+)  # fmt: skip
+def set_motion(
     filter_: Any,
     inputs: InputArrays,
-    displacement: Any,
-    target: Any,
-    transform: Any,
-    correspondence: str,
-    target_ids: Any,
+    displacement: Values | None = None,
+    target: Mesh | None = None,
+    transform: Transform | None = None,
+    target_ids: Values | None = None,
 ) -> None:
-    """Set the motion of the boundary, of which exactly one has to be given."""
+    """Set the motion of the boundary, of which exactly one has to be given.
+
+    displacement: the name of a point array, or n x 3 (in the plane n x 2) numbers; values at interior points are
+        ignored.
+    target: the mesh or its boundary in the new position, or any surface (in the plane a curve) to project it to.
+    transform: of the part `moved`: {"translate": (x, y, z)}, {"rotate": degrees, "axis": (0, 0, 1)}, {"scale":
+        factor or three of them}, {"bend": degrees, "axis": (0, 0, 1), "direction": (1, 0, 0)}, each about a
+        "center", by default that of the moved points; a 4 x 4 matrix; or a vtkLinearTransform.
+    target_ids: for the correspondence "point ids": the name of a point array of the target, with values of the mesh's
+        point array of the same name or with point numbers of the mesh; or such point numbers, one per point of the
+        target.
+    """
     given = {"displacement": displacement, "target": target, "transform": transform}
     chosen = [name for name, value in given.items() if value is not None]
     if len(chosen) != 1:
@@ -252,7 +113,6 @@ def _set_motion(
         inputs.use(_DISPLACEMENT, displacement, "displacement", POINTS)
     elif target is not None:
         filter_.SetMotion(_BY_TARGET)
-        filter_.SetCorrespondence(pick("correspondence", correspondence, CORRESPONDENCES))
         _set_target(filter_, as_mesh(target), target_ids)
     else:
         filter_.SetMotion(_BY_TRANSFORM)
@@ -318,9 +178,23 @@ def _flat(name: str, value: Any) -> list[float]:
     return numbers + [0.0] * (3 - len(numbers))
 
 
-def _set_moved(filter_: Any, inputs: InputArrays, moved: Any, values: Sequence[float]) -> None:
+@sets("warp", "MovedPart", "Parts", "MovedArray", "Values")
+def set_moved(
+    filter_: Any, inputs: InputArrays, moved: int | Values | None = None, values: Sequence[float] = ()
+) -> None:
+    """Set the part that moves.
+
+    moved: the part that a transform or projection moves; the rest of the boundary stays in place. "automatic" (the
+        inner boundaries, or the whole boundary if there are none), "whole boundary", "inner boundaries"; numbers of
+        boundary parts, of which 1 is the largest; the name of a point or cell array; or one value per point.
+    values: values of the array `moved` on the moved part; the default is all but 0.
+    """
     for value in values:
         filter_.AddValue(float(value))
+    _set_part(filter_, inputs, moved)
+
+
+def _set_part(filter_: Any, inputs: InputArrays, moved: Any) -> None:
     part = "automatic" if moved is None else find_name(moved, PARTS)
     if part is not None:
         filter_.SetMovedPart(PARTS.index(part))
@@ -338,7 +212,22 @@ def _set_moved(filter_: Any, inputs: InputArrays, moved: Any, values: Sequence[f
         filter_.AddPart(int(number))
 
 
-def _set_coefficients(filter_: Any, inputs: InputArrays, coefficients: Any, regions: Any) -> None:
+@sets("warp", "Coefficients", "Tensor", "CellTensors", "RegionArray", "Regions")
+def set_coefficients(
+    filter_: Any,
+    inputs: InputArrays,
+    coefficients: Values = "displacement sums",
+    regions: tuple[Values, Mapping[float, Sequence[float]]] | None = None,
+) -> None:
+    """Set the coefficients.
+
+    coefficients: of "hybrid" and "anisotropic femwarp": "displacement sums", "principal directions", "local gradients"
+        (they vary in space, from the gradients of the displacements that FEMWARP gives), 3 or 6 numbers
+        (alpha beta gamma, or xx yy zz xy yz xz), the name of a cell array of tensors, or one row of 1, 3, 6 or 9
+        numbers per cell.
+    regions: (cell array, {value: (alpha, beta, gamma)}), the array by name or by one value per cell. Cells with other
+        values have the `coefficients`, if these are numbers.
+    """
     if isinstance(coefficients, str) and coefficients in COEFFICIENTS:
         filter_.SetCoefficients(COEFFICIENTS[coefficients])
     elif isinstance(coefficients, str) or np.ndim(coefficients) > 1 or np.size(coefficients) not in (3, 6):
@@ -358,6 +247,33 @@ def _set_coefficients(filter_: Any, inputs: InputArrays, coefficients: Any, regi
         inputs.use(_REGIONS, array, "regions", ANY)
         for row in rows:
             filter_.AddRegion(*row)
+
+
+@sets("warp", "AutomaticSolver", "Solver")
+def set_solver(filter_: Any, solver: Solver = "automatic") -> None:
+    """Set the solver.
+
+    solver: of the linear systems: "automatic", "cg", "gmres", "minres", "bicgstab", "direct".
+    """
+    number = pick("solver", solver, SOLVERS)
+    filter_.SetAutomaticSolver(number == 0)
+    filter_.SetSolver(max(number - 1, 0))
+
+
+def warp_result(filter_: Any, output: vtkDataObject) -> WarpResult:
+    """The result of a filter that has run."""
+    return WarpResult(
+        mesh=output,
+        inverted=filter_.GetInverted(),
+        inverted_after_warp=filter_.GetInvertedAfterWarp(),
+        impossible=filter_.GetImpossible(),
+        history=_history(filter_),
+        statistics=_statistics(filter_),
+        displacement=point_array(output, "Displacement"),
+        shape=cell_array(output, "TMP shape"),
+        validity=cell_array(output, "Validity"),
+        summary=filter_.GetSummary(),
+    )
 
 
 def _key(name: str) -> str:
@@ -392,17 +308,9 @@ def _statistics(filter_: Any) -> dict[str, Any]:
 # --- the shell ----------------------------------------------------------------------------------------------
 
 
-def add_commands(commands: Any) -> None:
-    """Add `warp` to the subparsers of the command line."""
-    parser = _commands.add_command(
-        commands, "warp", _run, "deform the interior of a mesh to follow a prescribed boundary motion",
-        example="plate.vtu --rotate 30 -o turned.vtu",
-        details="The motion is an array, a target mesh or a transform; exits with 1 if elements are inverted.",
-    )
+def add_warp_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of these arguments."""
     numbers = _commands.numbers
-    _commands.add_mesh(parser)
-    _commands.add_output(parser)
-    parser.add_argument("--csv", metavar="FILE", help="write the history, a row per stage")
     motion = parser.add_mutually_exclusive_group(required=True)
     motion.add_argument("--displacement", metavar="ARRAY", help="point array with the motion of the boundary")
     motion.add_argument("--target", metavar="FILE", help="the boundary in its new position, or a surface")
@@ -416,43 +324,16 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--moved", metavar="PART", help="automatic (the default), 'whole boundary', 'inner "
                         "boundaries', numbers of boundary parts (1,3), or the name of an array")  # fmt: skip
     parser.add_argument("--values", metavar="V,...", type=numbers, default=(), help="of that array (default: not 0)")
-    parser.add_argument("--correspondence", choices=CORRESPONDENCES, default="automatic")
     parser.add_argument("--target-ids", metavar="ARRAY", help="point array of the target with point ids")
-    parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
-    parser.add_argument("--method", choices=METHODS, default="hybrid")
-    parser.add_argument("--amount", type=float, default=1.0, help="fraction of the motion (default: 1)")
     parser.add_argument("--coefficients", metavar="VALUES", default="displacement sums",
                         help="'displacement sums' (the default), 'principal directions', 'local gradients', "
                         "alpha,beta,gamma, six numbers of a tensor, or a cell array")  # fmt: skip
-    parser.add_argument("--steps", type=int, default=1, help="0: as many as are needed (default: 1)")
     parser.add_argument("--solver", choices=SOLVERS, default="automatic")
-    parser.add_argument("--preconditioner", choices=PRECONDITIONERS, default="boomeramg")
-    _commands.add_extras(parser, "of some methods", _EXTRAS)
-    _commands.add_merge_points(parser)
-    _commands.add_time_limit(parser)
 
 
-_EXTRAS: tuple[_commands.Extra, ...] = (
-    ("maximum_steps", int, "at most, of small-step femwarp and with --steps 0 (default: 100)"),
-    ("tolerance", float, "relative, of the linear systems (default: 1e-10)"),
-    ("poisson_ratio", float, "of the elastic methods (default: 0.3)"),
-    ("stiffening_power", float, "of jacobian stiffening (default: 1)"),
-    ("stiffening_factor", float, "of iterative stiffening (default: 2)"),
-    ("maximum_stiffenings", int, "of iterative stiffening (default: 50)"),
-    ("distance_power", float, "of inverse distance (default: 3)"),
-    ("support_radius", float, "of radial basis, in the unit of the mesh (default: 0, automatic)"),
-    ("fit_tolerance", float, "of radial basis, relative to the largest displacement (default: 1e-3)"),
-    ("untangle_first", bool, "whether hybrid untangles before it optimizes (default: yes)"),
-    ("untangling_beta", float, "beta of hybrid without untangling first, relative to the mean element (default: 0)"),
-    ("maximum_iterations", int, "of the optimization of hybrid (default: 50)"),
-)
-
-
-def _run(arguments: argparse.Namespace) -> int:
-    names = ("displacement", "target", "method", "amount", "correspondence", "target_ids", "values", "fixed", "steps",
-             "solver", "preconditioner", "time_limit", "threads", "merge_coincident_points")  # fmt: skip
-    options = _commands.given(arguments, names)
-    options |= _commands.given_extras(arguments, _EXTRAS)
+def warp_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The values of these options."""
+    options = _commands.given(arguments, ("displacement", "target", "target_ids", "values", "solver"))
     options["coefficients"] = _commands.numbers_or_text(arguments.coefficients)
     if arguments.moved:
         options["moved"] = _commands.numbers_or_text(arguments.moved, int)
@@ -463,6 +344,10 @@ def _run(arguments: argparse.Namespace) -> int:
         options["transform"].update({name: value for name, value in details.items() if value is not None})
     elif any(value is not None for value in details.values()):
         raise Error("axis, direction and center belong to a transform: add --rotate, --scale or --bend")
-    result = warp(arguments.mesh, **options)
+    return options
+
+
+def finish_warp(arguments: argparse.Namespace, result: WarpResult) -> int:
+    """Print the result of the command."""
     _commands.finish(arguments, result, result.summary, table_rows(result.history))
     return 1 if result.inverted else 0

@@ -7,49 +7,12 @@ import re
 from difflib import get_close_matches
 from typing import Any, Iterable
 
-# Names by other ones: the labels of ParaView's panels where they differ, and older names. As in folded().
+from ._choices import LABELS
+
+# Names by older ones, and by labels of warp()'s solver, which is not one property. As in folded().
 _LABELS = {
     "amg": ("boomeramg",),
     "conjugategradients": ("cg",),
-    "ilu(0)": ("ilu",),
-    "icc(0)": ("icc",),
-    "incompletecholesky": ("icc",),
-    "conjugategradient(fletcherreeves)": ("fletcher-reeves",),
-    "conjugategradient(polakribiere)": ("polak-ribiere",),
-    "fliptheoutput": ("flip output",),
-    "meanofthecorners": ("mean",),
-    "powermeanofthecorners": ("power mean",),
-    "worstcorner": ("worst",),
-    "asusualforthemetric": ("default",),
-    "maximum(smooth)": ("maximum",),
-    "idealelement": ("ideal",),
-    "elementofareferencemesh": ("reference",),
-    "elementofthereferencemesh": ("reference",),
-    "sizefromanarray": ("size",),
-    "metrictensorfromanarray": ("tensor",),
-    "slideonflatparts": ("sliding",),
-    "slideonsmoothparts": ("on surface",),
-    "simultaneousuntanglingandsmoothing": ("simultaneous",),
-    "elasticity,iterativestiffening": ("iterative stiffening",),
-    "elasticity,jacobianbasedstiffening": ("jacobian stiffening",),
-    "inversedistanceweighting": ("inverse distance",),
-    "radialbasisfunctions": ("radial basis",),
-    "linearelasticity": ("elasticity",),
-    "generalsecondorder": ("elliptic",),
-    "planestrain": ("strain",),
-    "planestress": ("stress",),
-    "ritzvalues": ("ritz",),
-    "piecewiseconstant": ("constant",),
-    "piecewiselinear": ("linear",),
-    "asthetables": ("tables",),
-    "asthetext:1outer,3inner": ("literal",),
-    "1outer,1inner": ("1/1",),
-    "3outer,3inner": ("3/3",),
-    "3outer,1inner": ("3/1",),
-    "highestrate": ("highest",),
-    "wholeshape": ("whole",),
-    "gridneartheoutline": ("near grid",),
-    "pointsontheoutline": ("contour",),
 }
 
 
@@ -62,7 +25,7 @@ def find_name(value: Any, allowed: Iterable[str]) -> str | None:
         return None
     names = {folded(name): name for name in allowed}
     key = folded(value)
-    keys = [key, *map(folded, _LABELS.get(key, ()))]
+    keys = [key, *map(folded, LABELS.get(key, ()) + _LABELS.get(key, ()))]
     return next((names[key] for key in keys if key in names), None)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The function perturb: moves interior points at random."""
+"""The result of perturb()."""
 
 from __future__ import annotations
 
@@ -7,19 +7,11 @@ import argparse
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
-from . import _commands, _vtk
-from ._arguments import set_threads, set_time_limit, within
-from ._arrays import POINTS, Array, InputArrays, Values, point_array
-from ._errors import Error, interruptible, run
-from ._interrupts import Progress
-from ._io import Mesh, as_mesh
+from . import _commands
+from ._arrays import Array, point_array
 from ._results import Result
-
-_FIXED = 0  # input array of vtkMeshPerturbation
-_SEEDS = 2**31
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -47,54 +39,8 @@ class PerturbResult(Result):
     summary: str
 
 
-@interruptible
-def perturb(
-    mesh: Mesh,
-    fraction: float = 0.5,
-    percentage: float = 50.0,
-    seed: int = 1,
-    tangle: float = 0.0,
-    fixed: Values | None = None,
-    threads: int = 0,
-    merge_coincident_points: bool = True,
-    time_limit: float = 0.0,
-    *,
-    progress: Progress | bool | None = None,
-) -> PerturbResult:
-    """Move interior points at random, without inverting an element or until a fraction of the elements is inverted.
-
-    mesh: a vtkDataSet with explicit points, a composite data set, a file name or (points, cells). It is not changed.
-    fraction: largest displacement of a point, as a fraction of its distance to inversion, 0 to 1.
-    percentage: percentage of the interior points that move, 0 to 100.
-    seed: seed of the random numbers, -2^31 to 2^31 - 1; the same seed gives the same mesh.
-    tangle: fraction of the elements to invert, 0 to 1; with 0 no element becomes inverted.
-    fixed: points that stay in place besides the boundary: one number or truth value per point, n, or the name of a
-        point array; points with values other than 0 stay.
-    threads: number of threads; 0 is all cores. The result does not depend on it.
-    merge_coincident_points: whether points at the same place on facets that match are treated as one, as on the seams
-        of a mesh in pieces; the result keeps them all. False: they stay apart, as a crack or a contact needs it.
-    time_limit: seconds; 0 is no limit.
-
-    Raises Error for wrong arguments and for meshes that the filter refuses (quadratic cells, image data).
-
-    >>> worse = tautline.perturb("part.vtu", fraction=0.8, seed=3)
-    >>> worse.moved, worse.largest_displacement
-    """
-    filter_ = _vtk.vtkMeshPerturbation()
-    inputs = InputArrays(filter_, as_mesh(mesh))
-    filter_.SetFraction(within("fraction", fraction, 0, 1))
-    filter_.SetPercentage(within("percentage", percentage, 0, 100))
-    filter_.SetTangledFraction(within("tangle", tangle, 0, 1))
-    filter_.SetSeed(int(within("seed", seed, -_SEEDS, _SEEDS - 1)))
-    set_time_limit(filter_, time_limit)
-    set_threads(filter_, threads)
-    filter_.SetMergeCoincidentPoints(bool(merge_coincident_points))
-    if fixed is not None and not isinstance(fixed, str) and np.ndim(fixed) != 1:
-        raise Error(f"fixed has the shape {np.shape(fixed)}; one value for each point is expected")
-    inputs.use(_FIXED, fixed, "fixed", POINTS)
-    filter_.SetInputDataObject(inputs.mesh)
-    run(filter_)
-    output = inputs.remove_from(filter_.GetOutputDataObject(0))
+def perturb_result(filter_: Any, output: vtkDataObject) -> PerturbResult:
+    """The result of a filter that has run."""
     return PerturbResult(
         mesh=output,
         displacement=point_array(output, "Displacement"),
@@ -108,29 +54,6 @@ def perturb(
     )
 
 
-# --- the shell ----------------------------------------------------------------------------------------------
-
-
-def add_commands(commands: Any) -> None:
-    """Add `perturb` to the subparsers of the command line."""
-    parser = _commands.add_command(
-        commands, "perturb", _run, "move interior points at random",
-        example="part.vtu --fraction 0.8 --seed 3 -o worse.vtu",
-        details="For tests of methods that repair meshes.",
-    )
-    _commands.add_mesh(parser)
-    _commands.add_output(parser)
-    parser.add_argument("--fraction", type=float, default=0.5,
-                        help="largest displacement over the distance to inversion, 0 to 1 (default: 0.5)")  # fmt: skip
-    parser.add_argument("--percentage", type=float, default=50, help="of the points to move, 0 to 100 (default: 50)")
-    parser.add_argument("--seed", type=int, default=1, help="seed of the random numbers (default: 1)")
-    parser.add_argument("--tangle", type=float, default=0.0, help="fraction of elements to invert, 0 to 1 (default: 0)")
-    parser.add_argument("--fixed", metavar="ARRAY", help="point array, not 0 where points stay")
-    _commands.add_merge_points(parser)
-    _commands.add_time_limit(parser)
-
-
-def _run(arguments: argparse.Namespace) -> None:
-    names = ("fraction", "percentage", "seed", "tangle", "fixed", "time_limit", "threads", "merge_coincident_points")
-    result = perturb(arguments.mesh, **_commands.given(arguments, names))
+def finish_perturb(arguments: argparse.Namespace, result: PerturbResult) -> None:
+    """Print the result of the command."""
     _commands.finish(arguments, result, result.summary)

@@ -7,7 +7,7 @@ import argparse
 import os
 from dataclasses import dataclass
 from importlib import import_module
-from inspect import Parameter, signature
+from inspect import signature
 from os import PathLike
 from pathlib import Path
 from types import UnionType
@@ -22,7 +22,7 @@ from ._interrupts import Progress
 from ._io import check_output, read, write
 from ._metrics import choose
 from ._names import find_name, nearest_name
-from ._quality import _criteria_presets
+from ._quality_parts import criteria_presets
 from ._results import Result
 from ._state import STATE, run_state
 
@@ -184,12 +184,8 @@ def _check_arguments(do: str, step: Mapping[str, Any]) -> None:
     """Check names and types of arguments against the signature of the function."""
     function = _function(do)
     parameters = {n: p for n, p in signature(function).parameters.items() if n not in _NOT_IN_STEPS}
-    module = import_module(f".{_FUNCTIONS[do]}", __package__)
-    more = getattr(module, "_OPTIONS", getattr(module, "_OPERATIONS", {}))
-    known = [n for n, p in parameters.items() if p.kind is not Parameter.VAR_KEYWORD]
-    known += list(more) if len(known) < len(parameters) else []
-    _require(step, tuple(known), ("file",) if do == "report" else ())
-    hints = get_type_hints(_innermost(function), vars(module))
+    _require(step, tuple(parameters), ("file",) if do == "report" else ())
+    hints = get_type_hints(_innermost(function), vars(import_module(f".{_FUNCTIONS[do]}", __package__)))
     for key, value in step.items():
         _check_value(key, value, hints.get(key))
 
@@ -228,9 +224,9 @@ def _check_files(do: str, step: dict[str, Any], folder: Path, made: list[str]) -
         elif name not in made:
             check_input(name)
     chosen = step.get("criteria")
-    if isinstance(chosen, str) and find_name(chosen, _criteria_presets()) is None:
+    if isinstance(chosen, str) and find_name(chosen, criteria_presets()) is None:
         if not Path(chosen).suffix:
-            raise unknown("preset of quality criteria", chosen, _criteria_presets())
+            raise unknown("preset of quality criteria", chosen, criteria_presets())
         step["criteria"] = os.path.join(folder, chosen)
         check_input(step["criteria"])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The function quality: measures every element of a mesh."""
+"""Of quality(): its result, arguments that are not one property each, and the function criteria."""
 
 from __future__ import annotations
 
@@ -7,31 +7,27 @@ import argparse
 import json
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, ClassVar, Literal, get_args
+from typing import Any, ClassVar
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 
 from . import _commands, _vtk
-from ._arguments import COMBINATIONS, TARGETS, Combination, Target, pick, picked, set_threads, set_time_limit, within
-from ._arrays import Array, InputArrays, Values, cell_array, columns, point_array, snake
-from ._errors import Error, checked, interruptible, run, unknown
+from ._arguments import picked, sets
+from ._arrays import Array, InputArrays, Values, cell_array, columns, is_number, point_array, snake
+from ._choices import TARGETS, Target
+from ._errors import Error, checked, unknown
 from ._files import file_name, replace_text
-from ._interrupts import Progress
-from ._io import Mesh, as_mesh
+from ._html import html_report
 from ._metrics import Metrics, choose, metrics as known_metrics
 from ._names import find_name
-from ._html import html_report
 from ._results import Result
 from ._tables import quality_json, quality_rows, quality_text
-
-ReversedMesh = Literal["measure as given", "measure flipped", "flip output"]
-REVERSED: tuple[ReversedMesh, ...] = get_args(ReversedMesh)
 
 #: Exit code of the command for a mesh that fails its criteria.
 FAILED = 3
 
-_SIZE, _TENSOR = range(2)  # input arrays of vtkElementQuality
+_SIZE = 0  # input array of vtkElementQuality
 _NOT_NUMBERS = ("Metric", "WorstCells", "WorstPositions")  # columns of the statistics
 _INVERTED = -1  # of `validity`
 _WARNING_GRADE, _FAILED_GRADE = 1, 2
@@ -109,98 +105,56 @@ class QualityResult(Result):
         return text
 
 
-@interruptible
-def quality(
-    mesh: Mesh,
-    metrics: Metrics = ("imr",),
-    *,
-    combination: Combination = "mean",
-    power: float = 2.0,
-    target: Target = "ideal",
-    reference: Mesh | None = None,
-    size: float | Values | None = None,
-    tensor: Values | None = None,
-    beta: float = 0.0,
-    epsilon: float = 1e-4,
-    reversed_mesh: ReversedMesh = "measure flipped",
-    histogram_bins: int = 32,
-    criteria: str | PathLike[str] | dict[str, Any] | None = None,
-    time_limit: float = 0.0,
-    threads: int = 0,
-    progress: Progress | bool | None = None,
-) -> QualityResult:
-    """Measure every element of a mesh by one or several metrics.
+@sets("quality", "Metrics")
+def choose_metrics(filter_: Any, metrics: Metrics = ("imr",)) -> None:
+    """Choose the metrics.
 
-    mesh: a vtkDataSet, a composite data set, a file name or (points, cells), see from_arrays(). It is not changed.
     metrics: names, labels, symbols or aliases, see metrics(). The default is the inverse mean ratio.
-    combination: how target metrics combine the values at the corners of cells other than simplices: "mean", "worst" or
-        "power mean".
-    power: exponent of the power mean, 1 to 100.
-    target: the target element of target metrics: "ideal", "reference", "size" or "tensor". It follows from the next
-        three, of which at most one may be given.
-    reference: a mesh with the same cells: each cell is the target of the corresponding one.
-    size: target area or volume: a number, one per cell or point, or the name of an array.
-    tensor: metric tensor in which the edges of the target element have length 1: one row of 6 (xx yy zz xy yz xz) or 9
-        numbers per cell or point, or the name of an array.
-    beta: parameter of the untangling metric, the least area or volume of a valid element, in the mesh's unit.
-    epsilon: parameter of mu_211 and mu_311, above 0.
-    reversed_mesh: for a mesh whose cells all list their points in the opposite order: "measure as given" (all
-        inverted), "measure flipped" or "flip output".
-    histogram_bins: number of bins, 1 to 100000.
+    """
+    choose(filter_, metrics).raise_errors()
+
+
+@sets("quality", "Criteria")
+def set_criteria(
+    filter_: Any, criteria: str | PathLike[str] | dict[str, Any] | None = None
+) -> None:
+    """Set the criteria.
+
     criteria: limits that the elements are graded by: the name of a preset, a JSON file, or a dict as criteria() returns
         it. Their metrics are measured too.
-    time_limit: seconds; 0 is no limit.
-    threads: number of threads; 0 is all cores. The result does not depend on it.
-
-    Raises Error for wrong arguments and for meshes that the filter refuses.
-
-    >>> result = tautline.quality("part.vtu", ["imr", "scaled_jacobian"])
-    >>> result.statistics["imr"]["worst"], result.inverted
     """
-    filter_ = measure(
-        mesh, metrics, combination=combination, power=power, target=target, reference=reference, size=size,
-        tensor=tensor, beta=beta, epsilon=epsilon, reversed_mesh=reversed_mesh, histogram_bins=histogram_bins,
-        criteria=criteria, time_limit=time_limit, threads=threads,
-    )  # fmt: skip
-    return result_of(filter_)
-
-
-def measure(
-    mesh: Mesh,
-    metrics: Metrics,
-    *,
-    combination: Combination = "mean",
-    power: float = 2.0,
-    target: Target = "ideal",
-    reference: Mesh | None = None,
-    size: float | Values | None = None,
-    tensor: Values | None = None,
-    beta: float = 0.0,
-    epsilon: float = 1e-4,
-    reversed_mesh: ReversedMesh = "measure flipped",
-    histogram_bins: int = 32,
-    criteria: str | PathLike[str] | dict[str, Any] | None = None,
-    time_limit: float = 0.0,
-    threads: int = 0,
-) -> Any:
-    """The filter that has measured a mesh; the arguments are those of quality()."""
-    filter_ = _vtk.vtkElementQuality()
-    inputs = InputArrays(filter_, as_mesh(mesh))
-    messages = choose(filter_, metrics)
-    filter_.SetCombination(pick("combination", combination, COMBINATIONS))
-    filter_.SetPower(within("power", power, 1, 100))
-    filter_.SetBeta(within("beta", beta, -np.inf, np.inf))
-    filter_.SetEpsilon(within("epsilon", epsilon, np.nextafter(0, 1), np.inf))
-    filter_.SetReversedMesh(pick("reversed_mesh", reversed_mesh, REVERSED))
-    filter_.SetHistogramBins(int(within("histogram_bins", histogram_bins, 1, 100000)))
     filter_.SetCriteria(_criteria_text(criteria))
-    set_time_limit(filter_, time_limit)
-    set_threads(filter_, threads)
-    _set_target(filter_, inputs, target, {"reference": reference, "size": size, "tensor": tensor})
-    filter_.SetInputDataObject(0, inputs.mesh)
-    run(filter_, messages)
-    inputs.remove_from(filter_.GetOutputDataObject(0))
-    return filter_
+
+
+@sets("quality", "TargetType", "SizeArray")
+def set_target(
+    filter_: Any,
+    inputs: InputArrays,
+    target: Target = "ideal",
+    size: float | Values | None = None,
+    *,
+    reference: Any,
+    tensor: Any,
+) -> None:
+    """Set the type of the target.
+
+    target: the target element of target metrics: "ideal", "reference", "size" or "tensor". It follows from the
+        arguments of these names, of which at most one may be given.
+    size: target area or volume: a number, one per cell or point, or the name of an array.
+    """
+    target = picked("target", target, TARGETS)
+    given = {"reference": reference, "size": size, "tensor": tensor}
+    chosen = [name for name, value in given.items() if value is not None]
+    if len(chosen) > 1:
+        raise Error(f"only one target is possible, not {' and '.join(chosen)}")
+    if chosen and target not in ("ideal", chosen[0]):
+        raise Error(f"the target is {target!r} but {chosen[0]!r} is given")
+    if not chosen and target != "ideal":
+        raise Error(f"the target is {target!r} but {target!r} is not given")
+    filter_.SetTargetType(TARGETS.index(picked("target", chosen[0] if chosen else target, TARGETS)))
+    if is_number(size):
+        size = np.full(inputs.mesh.GetNumberOfCells(), size)
+    inputs.use(_SIZE, size, "target")
 
 
 @checked
@@ -216,7 +170,7 @@ def criteria(name: str) -> dict[str, Any]:
     >>> mine["criteria"][0]["limits"]["all"]["fail"] = 5
     >>> tautline.quality("part.vtu", criteria=mine).verdict
     """
-    known = _criteria_presets()
+    known = criteria_presets()
     found = find_name(name, known)
     if found is None:
         raise unknown("preset of quality criteria", str(name), known)
@@ -224,7 +178,7 @@ def criteria(name: str) -> dict[str, Any]:
     return preset
 
 
-def _criteria_presets() -> list[str]:
+def criteria_presets() -> list[str]:
     return str(_vtk.vtkElementQuality.GetCriteriaPresets()).split("\t")
 
 
@@ -234,34 +188,11 @@ def _criteria_text(chosen: str | PathLike[str] | dict[str, Any] | None) -> str:
             return json.dumps(chosen, allow_nan=False)
         except (TypeError, ValueError) as error:
             raise Error(f"the criteria cannot be written as JSON: {error}") from None
-    return "" if chosen is None else find_name(chosen, _criteria_presets()) or file_name(chosen)
+    return "" if chosen is None else find_name(chosen, criteria_presets()) or file_name(chosen)
 
 
-def _set_target(filter_: Any, inputs: InputArrays, target: str, given: dict[str, Any]) -> None:
-    """Set the type of the target and its mesh or array."""
-    target = picked("target", target, TARGETS)
-    chosen = [name for name, value in given.items() if value is not None]
-    if len(chosen) > 1:
-        raise Error(f"only one target is possible, not {' and '.join(chosen)}")
-    if chosen and target not in ("ideal", chosen[0]):
-        raise Error(f"the target is {target!r} but {chosen[0]!r} is given")
-    if not chosen and target != "ideal":
-        raise Error(f"the target is {target!r} but {target!r} is not given")
-    if not chosen:
-        return
-    kind, value = chosen[0], given[chosen[0]]
-    filter_.SetTargetType(TARGETS.index(kind))
-    if kind == "reference":
-        filter_.SetInputDataObject(1, as_mesh(value))
-        return
-    if kind == "size" and not isinstance(value, str) and np.ndim(value) == 0:
-        value = np.full(inputs.mesh.GetNumberOfCells(), value)
-    inputs.use(_SIZE if kind == "size" else _TENSOR, value, "target")
-
-
-def result_of(filter_: Any) -> QualityResult:
-    """The result of a filter that was executed."""
-    mesh = filter_.GetOutputDataObject(0)
+def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
+    """The result of a filter that has run."""
     worst = filter_.GetWorst()
     statistics = _statistics(columns(filter_.GetStatistics()), worst)
     bins = columns(filter_.GetDistribution())
@@ -321,68 +252,47 @@ def _plain(value: Any) -> Any:
 # --- the shell ----------------------------------------------------------------------------------------------
 
 
-def add_commands(commands: Any) -> None:
-    """Add `quality` to the subparsers of the command line."""
-    parser = _commands.add_command(
-        commands, "quality", _run, "measure every element of a mesh",
-        example="part.vtu --metrics imr,min_angle --worst 3 --csv quality.csv",
-        details="Prints counts, a row per metric and the distribution of angles.",
-    )
-    _commands.add_mesh(parser)
-    _commands.add_output(parser, "write the mesh with a cell array per metric", False)
-    parser.add_argument("--csv", metavar="FILE", help="write the statistics, a row per metric")
-    _commands.add_time_limit(parser)
+def add_quality_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of these arguments, and those of the output."""
     _commands.add_metrics(parser)
     parser.add_argument("--worst", type=int, choices=range(_MAX_WORST + 1), default=0, metavar=f"0..{_MAX_WORST}",
                         help="list this many of the worst elements (default: 0)")  # fmt: skip
-    parser.add_argument("--combination", choices=COMBINATIONS, default="mean", help="of the values at the corners")
-    parser.add_argument("--power", type=float, default=2.0, help="exponent of the power mean (default: 2)")
-    target = parser.add_mutually_exclusive_group()
-    target.add_argument("--reference", metavar="FILE", help="target: the same cells of this mesh")
-    target.add_argument("--size", metavar="VALUE|ARRAY", help="target: this area or volume, or that in an array")
-    target.add_argument("--tensor", metavar="ARRAY", help="target: the metric tensor in this array of the mesh")
-    parser.add_argument("--beta", type=float, default=0.0, help="parameter of the untangling metric (default: 0)")
-    parser.add_argument("--epsilon", type=float, default=1e-4, help="parameter of mu_211 and mu_311 (default: 1e-4)")
-    parser.add_argument("--reversed-mesh", choices=REVERSED, default="measure flipped",
-                        help="if all cells are of opposite orientation")  # fmt: skip
+    parser.add_argument("--target", choices=TARGETS, default="ideal", help="follows from the options of these names")
+    parser.add_argument("--size", metavar="VALUE|ARRAY", type=_commands.number_or_name,
+                        help="target: this area or volume, or that in an array")  # fmt: skip
     parser.add_argument("--criteria", metavar="NAME|FILE",
                         help="grade the elements by a preset or JSON file; exits with 3 if the mesh fails")  # fmt: skip
     parser.add_argument("--groups", action="store_true",
                         help="write the bad elements as groups (.inp, .med) or cell arrays")  # fmt: skip
     parser.add_argument("--report", metavar="FILE", help="write an HTML report, see the command report")
-    parser.add_argument("--histogram-bins", type=int, default=32, help=argparse.SUPPRESS)
 
 
+def quality_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The values of these options."""
+    return _commands.given(arguments, ("metrics", "target", "size", "criteria"))
+
+
+def finish_quality(arguments: argparse.Namespace, filter_: Any, options: dict[str, Any]) -> int:
+    """Print the result of the command."""
+    result = quality_result(filter_, filter_.GetOutputDataObject(0))
+    texts = {}
+    if arguments.report:
+        texts[arguments.report] = html_report(filter_, arguments.mesh, options)
+    rows, facts = quality_rows(result), json.loads(quality_json(result))
+    sets_ = {"groups": result.groups()} if arguments.groups else {}
+    _commands.finish(arguments, result, quality_text(result, arguments.worst), rows, texts, facts, **sets_)
+    return FAILED if result.verdict in ("failed", "none") else 0
+
+
+def add_own_commands(commands: Any) -> None:
+    """Add `criteria` to the subparsers of the command line."""
     preset = _commands.add_command(
         commands, "criteria", _run_criteria, "print preset quality criteria as JSON", threads=False,
         example="fem",
         details="The file can be changed and given to quality --criteria.",
-    )
+    )  # fmt: skip
     preset.add_argument("name", metavar="NAME", help="fem, skewness, optistruct, hypermesh, nastran or ansys")
 
 
 def _run_criteria(arguments: argparse.Namespace) -> None:
     print(json.dumps(criteria(arguments.name), indent=2))
-
-
-def _run(arguments: argparse.Namespace) -> int:
-    names = ("combination", "power", "reference", "tensor", "beta", "epsilon", "reversed_mesh", "histogram_bins",
-             "criteria", "time_limit", "threads")  # fmt: skip
-    options = _commands.given(arguments, names)
-    options["size"] = _number_or_name(arguments.size)
-    filter_ = measure(arguments.mesh, arguments.metrics, **options)
-    result = result_of(filter_)
-    texts = {}
-    if arguments.report:
-        texts[arguments.report] = html_report(filter_, arguments.mesh, {"metrics": arguments.metrics, **options})
-    rows, facts = quality_rows(result), json.loads(quality_json(result))
-    sets = {"groups": result.groups()} if arguments.groups else {}
-    _commands.finish(arguments, result, quality_text(result, arguments.worst), rows, texts, facts, **sets)
-    return FAILED if result.verdict in ("failed", "none") else 0
-
-
-def _number_or_name(text: str | None) -> float | str | None:
-    try:
-        return None if text is None else float(text)
-    except ValueError:
-        return text

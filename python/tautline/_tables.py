@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any, Iterable, Sequence
 import numpy as np
 
 if TYPE_CHECKING:
-    from ._comparison import CompareResult
-    from ._quality import QualityResult
+    from ._comparison_parts import CompareResult
+    from ._quality_parts import QualityResult
 
 _STATISTICS = ("minimum", "mean", "maximum", "standard_deviation", "outside_acceptable", "worst")
 _HEADINGS = {"standard_deviation": "std dev", "outside_acceptable": "unacceptable"}
