@@ -14,7 +14,7 @@ from texts import Failure, call, quoted, wrapped
 
 #: The last arguments of every function that has them.
 COMMON = ("time_limit", "threads", "merge_coincident_points", "reproducible_order", "redistribute")
-MESH = "{kind}, a composite data set, a file name or (points, cells). It is not changed."
+MESH = "Given as {kind}, a composite data set, a file name or (points, cells). It is not changed."
 
 
 class Function:
@@ -116,7 +116,7 @@ class Function:
             grid = type_ is None or type_.get("value") != "vtkPointSet"
             kind = MESH.format(kind="a vtkDataSet" if grid else "a vtkDataSet with explicit points")
             text = self.translated(self.input.element.findtext("Documentation", "")).removeprefix("The mesh: ")
-            entries.insert(0, wrapped(f"mesh: {text.rstrip('.')}: {kind}", 4, 8))
+            entries.insert(0, wrapped(f"mesh: {text} {kind}", 4, 8))
         blocks = [indent(block, "    ") for block in blocks]
         parts = [f'    """{head.get("short_help", "") if head is not None else ""}']
         parts += [*blocks[:after], "\n".join(entries), *blocks[after:]]

@@ -72,7 +72,8 @@ class Property:
         text = self.function.translated(self.element.findtext("Documentation", ""))
         for entry in self.element.iterfind("EnumerationDomain/Entry"):
             label = entry.get("text", "")
-            text = re.sub(rf"(^|(?<=\. )){re.escape(label)}:", f'"{entry.get("python", label.lower())}":', text)
+            start = rf"(?i:(^|(?<=\. )){re.escape(label)}:)"
+            text = re.sub(start, f'"{entry.get("python", label.lower())}":', text)
         return text
 
     @cached_property
@@ -99,7 +100,8 @@ class Property:
         made.custom = self.custom
         if (self.custom or self.element.get("python_default") == "None") and not made.type.endswith("None"):
             shown = quoted(self.default) if self.choices else made.default.removesuffix(".0")
-            made.entry += f" The default is {shown}." if made.default != "None" else ""
+            by = f'with {snake(self.function.hint.get("custom", ""))} "custom", the' if self.custom else "the"
+            made.entry += f" {by.capitalize()} default is {shown}." if made.default != "None" else ""
             made.type, made.default = f"{made.type} | None", "None"
             made.code = f"    if {made.name} is not None:\n{indent(made.code, '    ')}"
         made.entry = wrapped(f"{made.name}: {uncapitalized(made.entry)}", 4, 8)
