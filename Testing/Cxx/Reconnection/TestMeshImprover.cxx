@@ -138,6 +138,29 @@ void testKernel()
   }
 }
 
+/// No remedy is what the boundary does already.
+void testRemedies()
+{
+  constexpr double unreachable = 65; // degrees
+  for (const int boundary :
+    { vtkMeshImprover::FIXED, vtkMeshImprover::SLIDING, vtkMeshImprover::ON_SURFACE })
+  {
+    const Context context("boundary " + std::to_string(boundary));
+    vtkNew<vtkMeshImprover> filter;
+    filter->SetInputData(toGrid(sliverBlock(Cubes)));
+    filter->SetBoundary(boundary);
+    filter->SetTargetAngle(unreachable);
+    filter->Update();
+    const std::string text = filter->GetSummary();
+    TAUTLINE_CHECK(filter->GetRemaining() > 0);
+    TAUTLINE_CHECK(contains(text, wording("it-has-a-point-on-the-boundary")));
+    TAUTLINE_CHECK_EQUAL(
+      contains(text, wording("slide-on-flat-parts")), boundary == vtkMeshImprover::FIXED);
+    TAUTLINE_CHECK_EQUAL(
+      contains(text, wording("on-the-surface")), boundary != vtkMeshImprover::ON_SURFACE);
+  }
+}
+
 /// Points of the input keep their data, new ones interpolate a linear field exactly; cells have the
 /// data of the original one; regions keep their volumes.
 void testData()
@@ -502,6 +525,7 @@ void testStops()
 TAUTLINE_TEST(TestMeshImprover)
 {
   TAUTLINE_RUN(testKernel());
+  TAUTLINE_RUN(testRemedies());
   TAUTLINE_RUN(testData());
   TAUTLINE_RUN(testFixed());
   TAUTLINE_RUN(testRefusals());
