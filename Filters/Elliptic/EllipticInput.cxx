@@ -142,7 +142,8 @@ void EllipticInput::assemble(RankGroup& processes, int threads)
   catch (const Error&) // on all processes
   {
     // The message is to have the numbers of cells and points in the pieces.
-    processes.together([&] { requireSolvable(this->piece(), this->Problem, this->Part, threads); });
+    requireSolvable(this->piece(), this->Problem, this->Part, threads);
+    processes.agree();
     throw;
   }
   this->Values = Arrays(); // what Problem has of the pieces is not read any more
@@ -162,9 +163,13 @@ void EllipticInput::divide(Redistribution how, int threads)
   {
     try
     {
-      const JoinedCopies joined = joinCopies(group, view, ids);
-      view.points = joined.points.empty() ? view.points : joined.points.data();
-      owners = ownersByGraph(group, { view, ids, this->skipped() }, how, why);
+      group.together(
+        [&]
+        {
+          const JoinedCopies joined = joinCopies(group, view, ids);
+          view.points = joined.points.empty() ? view.points : joined.points.data();
+          owners = ownersByGraph(group, { view, ids, this->skipped() }, how, why);
+        });
     }
     catch (const Error& error) // on all processes: copies of cells or ids that a solver takes
     {

@@ -530,9 +530,9 @@ void forEachMesh(vtkDataObject* input, vtkDataObject* selected, vtkDataObject* o
     mesh.meshes = static_cast<int>(groups.size());
     try
     {
-      visitGroup(groups[g], mesh, mergePoints, processes, visit);
+      processes.together([&] { visitGroup(groups[g], mesh, mergePoints, processes, visit); });
     }
-    catch (const Error& error)
+    catch (const Error& error) // on all processes
     {
       throw Error((mesh.name.empty() ? "" : "In " + mesh.name + ": ") + error.what());
     }

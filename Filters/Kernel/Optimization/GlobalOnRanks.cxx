@@ -21,6 +21,15 @@ const RankRows& OptimizationOnRanks::rows()
 /// See optimizeGlobally() in Optimize.cxx.
 StopReason OptimizationOnRanks::minimizeAll(Optimizer method)
 {
+  StopReason reason = StopReason::NoProgress;
+  // The caller goes on where memory lacks on all ranks, and on all alike.
+  this->Group.together([&] { reason = this->minimizeTogether(method); });
+  return reason;
+}
+
+//------------------------------------------------------------------------------
+StopReason OptimizationOnRanks::minimizeTogether(Optimizer method)
+{
   const StoppingCriteria& stop = this->Options.stopping;
   std::vector<IterationRecord>& history = this->Result.history;
   StopReason reason = StopReason::NoProgress;

@@ -32,6 +32,7 @@ public:
   OptimizeResult run();
 
 private:
+  StopReason minimizeTogether(Optimizer method);
   void agree();
   bool untangle();
   bool stage();

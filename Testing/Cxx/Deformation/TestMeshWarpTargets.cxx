@@ -170,8 +170,8 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
     Messages messages(filter);
     filter->Update();
     TAUTLINE_CHECK(messages.has(way == Ids ? "has 1 values that are no values of the mesh's array"
-        : way == Torn ? "have the same global id: run Generate Global Ids again"
-                      : "coordinates that are NaN or infinite"));
+        : way == Torn                      ? "Points at different places have the global id"
+                                           : "coordinates that are NaN or infinite"));
     TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfPoints(), 0);
   }
 }
