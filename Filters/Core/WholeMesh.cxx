@@ -639,12 +639,19 @@ WholeMesh assemble(const std::vector<vtkDataSet*>& pieces, const WholeMesh* like
 //------------------------------------------------------------------------------
 bool matches(const std::vector<vtkDataSet*>& pieces, const WholeMesh& mesh)
 {
+  vtkDataArray* wanted = mesh.mesh->GetPointData()->GetGlobalIds();
   bool match = pieces.size() == mesh.pieces.size();
   for (std::size_t i = 0; match && i < pieces.size(); ++i)
   {
-    match =
-      pieces[i]->GetNumberOfPoints() == static_cast<vtkIdType>(mesh.pieces[i].points.size()) &&
+    const std::vector<vtkIdType>& points = mesh.pieces[i].points;
+    vtkDataArray* ids = pieces[i]->GetPointData()->GetGlobalIds();
+    match = pieces[i]->GetNumberOfPoints() == static_cast<vtkIdType>(points.size()) &&
       pieces[i]->GetNumberOfCells() == static_cast<vtkIdType>(mesh.pieces[i].cells.size());
+    for (std::size_t p = 0; match && wanted && ids && p < points.size(); ++p)
+    {
+      match = points[p] < 0 ||
+        wanted->GetComponent(points[p], 0) == ids->GetComponent(static_cast<vtkIdType>(p), 0);
+    }
   }
   return match;
 }

@@ -60,7 +60,8 @@ struct WholeMesh
 TAUTLINECORE_EXPORT WholeMesh assemble(
   const std::vector<vtkDataSet*>& pieces, const WholeMesh* like = nullptr);
 
-/// Whether the pieces have as many points and cells as those of a mesh.
+/// Whether the pieces have as many points and cells as those of a mesh and, where both have some,
+/// the same global ids of points.
 TAUTLINECORE_EXPORT bool matches(const std::vector<vtkDataSet*>& pieces, const WholeMesh& mesh);
 
 /**

@@ -58,10 +58,7 @@ for ranks in (2, 3, 4):
     check_table(found["blocks"][0], one["blocks"][0], f"{ranks} ranks, blocks")
     assert found["blocks"][1] == one["blocks"][1], found["blocks"][1]
     check_table(found["more blocks"][0], one["more blocks"][0], f"{ranks} ranks, more blocks")
-    # Each rank reports each error.
-    for problem in ("with these points in this order", "points, the second", "no global ids to match them",
-                    "and are not marked as ghost cells"):  # fmt: skip
-        assert text.count(problem) == ranks, (ranks, problem, text)
+    # An error on all ranks, and none waits.
     for case in ("order", "cells", "no ids", "copies"):
         assert found[f"refused {case}"] == [0, ""], found[f"refused {case}"]
     print(ranks, "ranks:", found["slabs, tree"][3].splitlines()[0])

