@@ -425,7 +425,7 @@ Origins numberGhosts(
 void numberCells(
   const Pieces& pieces, const std::vector<vtkIdType>& places, WholeMesh& whole, Origins& origins)
 {
-  const bool byId = haveIds(pieces, false);
+  bool byId = haveIds(pieces, false);
   const bool poly = std::all_of(
     pieces.begin(), pieces.end(), [](vtkDataSet* piece) { return piece->IsA("vtkPolyData") != 0; });
   Origins ghosts;
@@ -451,12 +451,21 @@ void numberCells(
   };
   const auto typeOf = [&](const Origin& cell)
   { return pieces[static_cast<std::size_t>(cell.piece)]->GetCellType(cell.id); };
-  std::stable_sort(origins.begin(), origins.end(),
-    [&](const Origin& a, const Origin& b)
-    {
-      const int listA = listOf(typeOf(a), poly), listB = listOf(typeOf(b), poly);
-      return listA != listB ? listA < listB : byId ? idOf(a) < idOf(b) : keys.less(a, b);
-    });
+  const auto inOrder = [&](const Origin& a, const Origin& b)
+  {
+    const int listA = listOf(typeOf(a), poly), listB = listOf(typeOf(b), poly);
+    return listA != listB ? listA < listB : byId ? idOf(a) < idOf(b) : keys.less(a, b);
+  };
+  std::stable_sort(origins.begin(), origins.end(), inOrder);
+  // Facets of an extracted surface have the ids of the cells inside.
+  const auto ofOneCell = [&](const Origin& a, const Origin& b)
+  { return idOf(a) == idOf(b) && (keys.less(a, b) || keys.less(b, a)); };
+  if (byId && poly &&
+    std::adjacent_find(origins.begin(), origins.end(), ofOneCell) != origins.end())
+  {
+    byId = false;
+    std::stable_sort(origins.begin(), origins.end(), inOrder);
+  }
   for (std::size_t c = 0; c < origins.size(); ++c)
   {
     const auto piece = static_cast<std::size_t>(origins[c].piece);
