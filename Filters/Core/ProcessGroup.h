@@ -22,7 +22,7 @@ TAUTLINECORE_EXPORT std::unique_ptr<RankGroup> tryProcessGroup();
 
 /**
  * @class tautline::Assistants
- * @brief On the first process: those that wait in vtkTautlineAlgorithm::Assist(). They are called,
+ * @brief On the first process: those that wait in GatheredRules::assist. They are called,
  * or else told by the destructor that there is nothing to do.
  */
 class TAUTLINECORE_EXPORT Assistants

@@ -8,12 +8,7 @@
 
 #include "TautlineCoreModule.h" // for export macro
 
-#include "tautline/Core/Communicator.h"
-#include "tautline/Core/Types.h"
-
-#include <functional>
 #include <string>
-#include <vector>
 
 class vtkAlgorithm;
 class vtkDataObject;
