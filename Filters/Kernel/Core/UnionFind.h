@@ -2,7 +2,7 @@
 /**
  * @file UnionFind.h
  * @brief Disjoint sets of the numbers 0 to n - 1 (R. E. Tarjan, "Efficiency of a good but not
- * linear set union algorithm", J. ACM 22, 1975). Internal: not installed.
+ * linear set union algorithm", J. ACM 22, 1975).
  */
 #ifndef tautline_UnionFind_h
 #define tautline_UnionFind_h

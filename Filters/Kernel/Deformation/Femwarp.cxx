@@ -59,7 +59,7 @@ SparseMatrix matrixOf(
 /// K M^-1 K: M is diagonal. Points outside all cells have empty rows. On several ranks the terms
 /// K_ij K_jk / M_jj of the own points j, whose rows of K are whole: those of all ranks are to be
 /// added up.
-SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass, const WarpRanks& ranks)
+SparseMatrix squared(const SparseMatrix& K, const std::vector<double>& mass, const Ranks& ranks)
 {
   SparseMatrix result;
   result.size = K.size;
@@ -203,7 +203,7 @@ void Femwarp::findDecoupled(const SparseMatrix& matrix, WarpControl& control)
   AssemblyOptions options;
   options.threads = control.options().threads;
   const SparseMatrix isotropic = matrixOf(this->Input, DiffusionOperator(), options);
-  const WarpRanks& ranks = this->Parts.ranks();
+  const Ranks& ranks = this->Parts.ranks();
   const Index n = matrix.size;
   double size = this->Pde.tensors ? 0.0 : largestOf(this->Pde.tensor);
   for (Index i = 0; this->Pde.tensors && i < this->Input.view().numberOfCells; ++i)

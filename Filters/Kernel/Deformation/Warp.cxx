@@ -19,7 +19,7 @@ std::string counted(Index count, const char* what)
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-void checkOptions(const Mesh& mesh, const WarpOptions& options, const WarpRanks& ranks)
+void checkOptions(const Mesh& mesh, const WarpOptions& options, const Ranks& ranks)
 {
   const auto refuse = [](bool wrong, const char* text)
   {
@@ -73,7 +73,7 @@ void checkOptions(const Mesh& mesh, const WarpOptions& options, const WarpRanks&
 
 void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& options)
 {
-  const WarpRanks& ranks = parts.ranks();
+  const Ranks& ranks = parts.ranks();
   if (parts.dimension() == Dimension::None)
   {
     throw Error("The mesh has no cells that can be warped: triangles, quadrilaterals, tetrahedra, "
@@ -139,7 +139,7 @@ struct BoundaryState
 //------------------------------------------------------------------------------
 struct Warper::Implementation
 {
-  Implementation(const Mesh& mesh, const WarpOptions& options, const WarpRanks& ranks = {})
+  Implementation(const Mesh& mesh, const WarpOptions& options, const Ranks& ranks = {})
     : Input(mesh)
     , Options(options)
     , Parts(mesh, options.prescribed, ranks)
@@ -156,7 +156,7 @@ struct Warper::Implementation
   BoundaryState examineBoundary(const double* points) const;
   void explain(WarpControl& control);
 
-  const WarpRanks& ranks() const { return this->Parts.ranks(); }
+  const Ranks& ranks() const { return this->Parts.ranks(); }
 
   const Mesh& Input;
   WarpOptions Options;
@@ -413,7 +413,7 @@ Warper::Warper(DistributedMesh& mesh, bool mirrored, std::vector<Index> ids,
   own.prescribed = options.prescribed ? options.prescribed : &none;
   own.tensors = options.tensors || mesh.view().numberOfCells > 0 ? options.tensors : &noTensor;
   this->Impl = std::make_unique<Implementation>(
-    this->Here->Part, own, WarpRanks(mesh, this->Here->Ids, communicator));
+    this->Here->Part, own, Ranks(mesh, this->Here->Ids, communicator));
 }
 
 Warper::~Warper() = default;

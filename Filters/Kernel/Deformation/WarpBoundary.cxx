@@ -10,9 +10,9 @@
 namespace tautline
 {
 WarpBoundary::WarpBoundary(
-  const Mesh& mesh, const std::vector<unsigned char>& prescribed, const WarpRanks& ranks)
+  const Mesh& mesh, const std::vector<unsigned char>& prescribed, const Ranks& ranks)
   : Input(mesh)
-  , Ranks(ranks)
+  , TheRanks(ranks)
   , Nodes(ranks.dimension(mesh) == Dimension::Volume ? 3 : 2)
 {
   // Equal facets have equal keys: their sorted nodes.
@@ -245,7 +245,7 @@ bool triangleEdgesPierce(const std::array<Vec3, 3>& s, const std::array<Vec3, 3>
 
 WarpBoundary::Crossing WarpBoundary::crossings(const double* points) const
 {
-  if (!this->Ranks.several())
+  if (!this->TheRanks.several())
   {
     return this->crossingsAmong(this->Facets, points);
   }
@@ -255,7 +255,7 @@ WarpBoundary::Crossing WarpBoundary::crossings(const double* points) const
     Index number;
     Vec3 place;
   };
-  const DistributedMesh& mesh = this->Ranks.mesh();
+  const DistributedMesh& mesh = this->TheRanks.mesh();
   RankGroup& group = mesh.group();
   const bool any = this->Input.dimension() != Dimension::None;
   const Index last = group.size() - 1;
@@ -275,7 +275,7 @@ WarpBoundary::Crossing WarpBoundary::crossings(const double* points) const
     corners.insert(corners.end(), list.begin(), list.end());
   }
   Crossing result;
-  this->Ranks.together(
+  this->TheRanks.together(
     [&]
     {
       std::map<Index, Index> known; // by number

@@ -6,7 +6,7 @@
 #ifndef tautline_WarpBoundary_h
 #define tautline_WarpBoundary_h
 
-#include "WarpRanks.h"
+#include "tautline/Mesh/Ranks.h"
 
 namespace tautline
 {
@@ -20,7 +20,7 @@ public:
   /// Finds the edges (2D) or faces (3D) of one cell alone whose points are all prescribed.
   /// On several ranks each facet is on that which owns its first point.
   WarpBoundary(
-    const Mesh& mesh, const std::vector<unsigned char>& prescribed, const WarpRanks& ranks = {});
+    const Mesh& mesh, const std::vector<unsigned char>& prescribed, const Ranks& ranks = {});
 
   struct Crossing
   {
@@ -40,7 +40,7 @@ private:
   Crossing crossingsAmong(const FacetList& facets, const double* points) const;
 
   const Mesh& Input;
-  WarpRanks Ranks;
+  Ranks TheRanks;
   int Nodes; ///< of a facet: 2 or 3
   FacetList Facets;
 };

@@ -63,7 +63,7 @@ struct CellMotion
 
 template <class Visit>
 void forEachPrescribed(const std::vector<unsigned char>& prescribed, const double* displacement,
-  const WarpRanks& ranks, const Visit& visit)
+  const Ranks& ranks, const Visit& visit)
 {
   for (std::size_t i = 0; i < prescribed.size(); ++i)
   {
@@ -92,7 +92,7 @@ bool normalize(Eigen::Vector3d& sums)
 
 //------------------------------------------------------------------------------
 SymmetricTensor displacementSums(
-  const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks)
+  const std::vector<unsigned char>& prescribed, const double* displacement, const Ranks& ranks)
 {
   Eigen::Vector3d sums = Eigen::Vector3d::Zero();
   forEachPrescribed(
@@ -103,7 +103,7 @@ SymmetricTensor displacementSums(
 
 //------------------------------------------------------------------------------
 SymmetricTensor principalDirections(
-  const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks)
+  const std::vector<unsigned char>& prescribed, const double* displacement, const Ranks& ranks)
 {
   // In units of the largest displacement, so that squares neither vanish nor overflow.
   double largest = 0;
@@ -164,7 +164,7 @@ SymmetricTensor principalDirections(
 
 //------------------------------------------------------------------------------
 std::vector<double> localGradients(
-  const MeshView& mesh, const double* displacement, const WarpRanks& ranks)
+  const MeshView& mesh, const double* displacement, const Ranks& ranks)
 {
   const Index n = mesh.numberOfCells;
   const Index all = ranks.several() ? ranks.mesh().globalCells() : n;

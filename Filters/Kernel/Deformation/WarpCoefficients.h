@@ -10,7 +10,7 @@
 #ifndef tautline_WarpCoefficients_h
 #define tautline_WarpCoefficients_h
 
-#include "WarpRanks.h"
+#include "tautline/Mesh/Ranks.h"
 
 #include "tautline/Elliptic/Materials.h"
 #include "tautline/Mesh/Mesh.h"
@@ -24,7 +24,7 @@ namespace tautline
  * largest scaled to 1. The identity where nothing moves.
  */
 SymmetricTensor displacementSums(
-  const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks);
+  const std::vector<unsigned char>& prescribed, const double* displacement, const Ranks& ranks);
 
 /**
  * @brief The same along the principal directions of the motion: the eigenvectors of the sum of d
@@ -33,7 +33,7 @@ SymmetricTensor displacementSums(
  * moves.
  */
 SymmetricTensor principalDirections(
-  const std::vector<unsigned char>& prescribed, const double* displacement, const WarpRanks& ranks);
+  const std::vector<unsigned char>& prescribed, const double* displacement, const Ranks& ranks);
 
 /**
  * @brief A tensor per cell, 6 numbers each, from the displacements u of all points, 3 each; on
@@ -46,6 +46,6 @@ SymmetricTensor principalDirections(
  * motion, and the motion spreads to those around them. The identity where nothing moves.
  */
 std::vector<double> localGradients(
-  const MeshView& mesh, const double* displacement, const WarpRanks& ranks);
+  const MeshView& mesh, const double* displacement, const Ranks& ranks);
 }
 #endif

@@ -9,7 +9,7 @@
 
 #include "tautline/Core/Stopwatch.h"
 #include "WarpOptions.h"
-#include "WarpRanks.h"
+#include "tautline/Mesh/Ranks.h"
 
 #include <algorithm>
 
@@ -24,10 +24,10 @@ class WarpControl
 {
 public:
   /// Both stay alive; the result gets the flags timeLimit and aborted, and the message.
-  WarpControl(const WarpOptions& options, WarpResult& result, const WarpRanks& ranks = {})
+  WarpControl(const WarpOptions& options, WarpResult& result, const Ranks& ranks = {})
     : Options(options)
     , Result(result)
-    , Ranks(ranks)
+    , TheRanks(ranks)
   {
   }
 
@@ -61,8 +61,8 @@ public:
   /// Whether to go on, after what a rank has watched: collective.
   bool agree()
   {
-    this->Result.timeLimit = this->Ranks.any(this->Result.timeLimit);
-    this->Result.aborted = this->Ranks.any(this->Result.aborted);
+    this->Result.timeLimit = this->TheRanks.any(this->Result.timeLimit);
+    this->Result.aborted = this->TheRanks.any(this->Result.aborted);
     return !this->stopped();
   }
   /// The same within work that does not communicate; proceed() or agree() follows on all ranks.
@@ -100,7 +100,7 @@ public:
 private:
   const WarpOptions& Options;
   WarpResult& Result;
-  WarpRanks Ranks;
+  Ranks TheRanks;
   Stopwatch Time;
   double From = 0, To = 1, Reported = 0;
   int Iterations = 0;

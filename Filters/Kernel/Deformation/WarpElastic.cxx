@@ -51,7 +51,7 @@ void ElasticWarp::assemble(WarpControl& control)
   pde.stiffening = this->Stiffening.data();
   AssemblyOptions options;
   options.threads = control.options().threads;
-  const WarpRanks& ranks = this->Parts.ranks();
+  const Ranks& ranks = this->Parts.ranks();
   SparseMatrix matrix;
   ranks.together(
     [&]

@@ -10,8 +10,8 @@
 
 namespace tautline
 {
-WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed, const WarpRanks& ranks)
-  : Ranks(ranks)
+WarpParts::WarpParts(const Mesh& mesh, const unsigned char* prescribed, const Ranks& ranks)
+  : TheRanks(ranks)
   , Dim(ranks.dimension(mesh))
 {
   const MeshView& view = mesh.view();
@@ -82,7 +82,7 @@ std::vector<char> WarpParts::moving(const double* displacement) const
       ++moving[this->Part[i]];
     }
   }
-  this->Ranks.sum(moving.data(), this->Count);
+  this->TheRanks.sum(moving.data(), this->Count);
   std::vector<char> moves(moving.size());
   std::transform(moving.begin(), moving.end(), moves.begin(), [](double n) { return n > 0; });
   return moves;
@@ -146,7 +146,7 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
   {
     for (std::size_t i = 0; i < this->Part.size(); ++i)
     {
-      if (this->Prescribed[i] && this->Part[i] >= 0 && this->Ranks.owns(static_cast<Index>(i)))
+      if (this->Prescribed[i] && this->Part[i] >= 0 && this->TheRanks.owns(static_cast<Index>(i)))
       {
         visit(fits[this->Part[i]], Eigen::Map<const Vector>(points + 3 * i),
           Eigen::Map<const Vector>(displacement + 3 * i));
@@ -159,7 +159,7 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
       ++fit.count;
       fit.center += x;
     });
-  addUp(this->Ranks, fits,
+  addUp(this->TheRanks, fits,
     [](Fit& fit) {
       return std::array<double*, 2>{ &fit.count, fit.center.data() };
     },
@@ -170,7 +170,7 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
   }
   forEach([](Fit& fit, const auto& x, const auto&)
     { fit.moments += (x - fit.center) * (x - fit.center).transpose(); });
-  addUp(this->Ranks, fits, [](Fit& fit) { return std::array<double*, 1>{ fit.moments.data() }; },
+  addUp(this->TheRanks, fits, [](Fit& fit) { return std::array<double*, 1>{ fit.moments.data() }; },
     { Components * Components });
   std::for_each(fits.begin(), fits.end(), invertMoments);
 
@@ -193,7 +193,7 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
         sum.rest += rest;
         sum.mixed += rest * y.transpose();
       });
-    addUp(this->Ranks, sums,
+    addUp(this->TheRanks, sums,
       [](Sums& sum) {
         return std::array<double*, 2>{ sum.rest.data(), sum.mixed.data() };
       },
@@ -207,5 +207,27 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
   std::vector<AffineMotion> motions(fits.size());
   std::transform(fits.begin(), fits.end(), motions.begin(), motionOf);
   return motions;
+}
+
+//------------------------------------------------------------------------------
+std::vector<PrescribedPoint> WarpParts::prescribedOfAll(
+  const MeshView& local, const double* displacement) const
+{
+  std::vector<PrescribedPoint> own, all;
+  for (Index i = 0; i < local.numberOfPoints; ++i)
+  {
+    if (this->Prescribed[i] && this->TheRanks.owns(i))
+    {
+      own.push_back({ this->TheRanks.id(i), pointOf(local, i), {} });
+      std::copy_n(displacement + 3 * i, 3, own.back().displacement.begin());
+    }
+  }
+  for (const std::vector<PrescribedPoint>& list : this->TheRanks.mesh().group().gatherItems(own))
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end(),
+    [](const PrescribedPoint& a, const PrescribedPoint& b) { return a.id < b.id; });
+  return all;
 }
 }

@@ -7,9 +7,9 @@
 #ifndef tautline_WarpParts_h
 #define tautline_WarpParts_h
 
-#include "WarpRanks.h"
+#include "tautline/Mesh/Ranks.h"
 
-#include "tautline/Mesh/Mesh.h"
+#include <array>
 
 namespace tautline
 {
@@ -27,6 +27,13 @@ struct AffineMotion
   }
 };
 
+/// A point with a given displacement.
+struct PrescribedPoint
+{
+  Index id;
+  std::array<double, 3> place, displacement;
+};
+
 /**
  * @class tautline::WarpParts
  * @brief Which points are prescribed, free or held, and which parts of the mesh they belong to.
@@ -39,9 +46,9 @@ public:
    * @param prescribed one flag per point; null, on one rank only: the points of the boundary
    * @param ranks what is counted here is that of all of them
    */
-  WarpParts(const Mesh& mesh, const unsigned char* prescribed, const WarpRanks& ranks = {});
+  WarpParts(const Mesh& mesh, const unsigned char* prescribed, const Ranks& ranks = {});
 
-  const WarpRanks& ranks() const { return this->Ranks; }
+  const Ranks& ranks() const { return this->TheRanks; }
   /// Of the whole mesh.
   Dimension dimension() const { return this->Dim; }
 
@@ -57,6 +64,10 @@ public:
   /// loose.
   const std::vector<unsigned char>& held() const { return this->Held; }
 
+  /// The prescribed points of several ranks, in the order of their ids. Collective.
+  std::vector<PrescribedPoint> prescribedOfAll(
+    const MeshView& local, const double* displacement) const;
+
   /// Whether each part has a prescribed point that moves at all.
   std::vector<char> moving(const double* displacement) const;
 
@@ -69,7 +80,7 @@ public:
   std::vector<AffineMotion> affine(const double* points, const double* displacement) const;
 
 private:
-  WarpRanks Ranks;
+  Ranks TheRanks;
   Dimension Dim;
   std::vector<unsigned char> Prescribed, Held;
   std::vector<Index> Part;

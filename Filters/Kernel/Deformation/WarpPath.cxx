@@ -73,7 +73,7 @@ struct PathMoments
 };
 
 std::vector<PathMoments> momentsOf(const MeshView& view, const std::vector<Index>& pieceOf,
-  std::size_t pieces, const double* displacement, const WarpRanks& ranks)
+  std::size_t pieces, const double* displacement, const Ranks& ranks)
 {
   std::vector<PathMoments> moments(pieces);
   const auto forEach = [&](const auto& visit)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WarpQuality.h"
 
-#include "WarpRanks.h"
+#include "tautline/Mesh/Ranks.h"
 
 #include "tautline/Core/Parallel.h"
 
@@ -106,11 +106,11 @@ std::vector<double> shapeSimilarity(const Mesh& mesh, const double* points, int 
 //------------------------------------------------------------------------------
 WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads)
 {
-  return qualityOf(mesh, points, threads, WarpRanks());
+  return qualityOf(mesh, points, threads, Ranks());
 }
 
 //------------------------------------------------------------------------------
-WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads, const WarpRanks& ranks)
+WarpQuality qualityOf(const Mesh& mesh, const double* points, int threads, const Ranks& ranks)
 {
   struct Part
   {

@@ -38,8 +38,8 @@ struct WarpQuality
 TAUTLINE_SOLVERS_EXPORT WarpQuality qualityOf(
   const Mesh& mesh, const double* points, int threads = 0);
 
-class WarpRanks;
+class Ranks;
 /// The same of the whole mesh, of which a rank has a part. Internal.
-WarpQuality qualityOf(const Mesh& local, const double* points, int threads, const WarpRanks& ranks);
+WarpQuality qualityOf(const Mesh& local, const double* points, int threads, const Ranks& ranks);
 }
 #endif

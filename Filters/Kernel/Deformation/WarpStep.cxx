@@ -163,13 +163,13 @@ std::vector<double> WarpStep::warpPointwise(
   PointwiseMethod method, const double* displacement, WarpControl& control) const
 {
   const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
-  const WarpRanks& ranks = this->Parts.ranks();
+  const Ranks& ranks = this->Parts.ranks();
   if (!ranks.several())
   {
     return method(this->From, prescribed, displacement, control);
   }
   const MeshView& local = this->From.view();
-  const std::vector<PrescribedPoint> given = ranks.prescribedOfAll(local, prescribed, displacement);
+  const std::vector<PrescribedPoint> given = this->Parts.prescribedOfAll(local, displacement);
   std::vector<double> moved;
   ranks.together(
     [&]
@@ -271,7 +271,7 @@ void WarpStep::improve(
     const Index part = this->Parts.part(static_cast<Index>(i));
     fixed[i] = fixed[i] || part < 0 || !moving[part];
   }
-  const WarpRanks& ranks = this->Parts.ranks();
+  const Ranks& ranks = this->Parts.ranks();
   if (!ranks.any(std::find(fixed.begin(), fixed.end(), 0) != fixed.end()))
   {
     return;
@@ -330,7 +330,7 @@ Mesh WarpStep::moved(const std::vector<double>& points, int threads) const
 int WarpStep::untangle(
   const std::vector<unsigned char>& fixed, WarpControl& control, std::vector<double>& points) const
 {
-  const WarpRanks& ranks = this->Parts.ranks();
+  const Ranks& ranks = this->Parts.ranks();
   UntangleOptions options;
   options.effort = this->Following ? Effort::Local : Effort::Normal;
   options.fixed = fixed.data();
@@ -368,7 +368,7 @@ int WarpStep::untangle(
 /// Of the elements of the whole initial mesh.
 double WarpStep::meanSize() const
 {
-  const WarpRanks& ranks = this->Parts.ranks();
+  const Ranks& ranks = this->Parts.ranks();
   const Index cells = this->Initial.view().numberOfCells;
   std::vector<double> sizes(cells), own;
   double sum = 0;
@@ -402,7 +402,7 @@ double WarpStep::meanSize() const
 int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,
   std::vector<double>& points) const
 {
-  const WarpRanks& ranks = this->Parts.ranks();
+  const Ranks& ranks = this->Parts.ranks();
   std::unique_ptr<Mesh> mesh;
   Targets targets;
   ranks.together(

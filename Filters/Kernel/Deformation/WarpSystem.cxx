@@ -56,9 +56,9 @@ void add(double s, const std::vector<double>& x, std::vector<double>& y, int thr
 
 //------------------------------------------------------------------------------
 WarpSystem::WarpSystem(const WarpMatrix& given, int block, const std::vector<unsigned char>& held,
-  const double* points, int dimension, const WarpOptions& options, const WarpRanks& ranks)
+  const double* points, int dimension, const WarpOptions& options, const Ranks& ranks)
   : Options(options)
-  , Ranks(ranks)
+  , TheRanks(ranks)
   , Block(block)
   , Symmetric(given.symmetric)
   , Shared(given.shared && ranks.several())
@@ -166,7 +166,7 @@ void WarpSystem::makeSolver(KrylovMethod method, WarpControl& control)
 /// Over the unknowns of all ranks; one of the vectors is 0 at those of other ranks.
 double WarpSystem::product(const std::vector<double>& a, const std::vector<double>& b) const
 {
-  return this->Ranks.sum(tautline::product(a, b, this->Options.threads));
+  return this->TheRanks.sum(tautline::product(a, b, this->Options.threads));
 }
 
 //------------------------------------------------------------------------------
@@ -323,7 +323,7 @@ bool WarpSystem::solve(std::vector<double>& values, WarpControl& control)
         this->makeSolver(KrylovMethod::Direct, control);
         good = this->runSolver(right, tolerance, y, control);
       }
-      const bool finite = !this->Ranks.any(
+      const bool finite = !this->TheRanks.any(
         !std::all_of(y.begin(), y.end(), [](double value) { return std::isfinite(value); }));
       if (finite)
       {

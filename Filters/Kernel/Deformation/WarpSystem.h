@@ -55,7 +55,7 @@ public:
    * @param dimension of the mesh, for the choice of the solver
    */
   WarpSystem(const WarpMatrix& all, int block, const std::vector<unsigned char>& held,
-    const double* points, int dimension, const WarpOptions& options, const WarpRanks& ranks);
+    const double* points, int dimension, const WarpOptions& options, const Ranks& ranks);
 
   /**
    * @brief Finds the values of the points that are not held from those that are; `values` has block
@@ -91,7 +91,7 @@ private:
   double product(const std::vector<double>& a, const std::vector<double>& b) const;
 
   const WarpOptions& Options;
-  WarpRanks Ranks;
+  Ranks TheRanks;
   std::unique_ptr<PointNumbering> Numbering; ///< of the free points of several ranks
   Index Unknowns = 0;                        ///< on all ranks
   int Block;

@@ -157,9 +157,9 @@ class Combinations
 {
 public:
   /// Neighbours are in the order of their ids, so that the weights do not depend on the ranks.
-  explicit Combinations(const Mesh& mesh, const WarpRanks& ranks = {})
+  explicit Combinations(const Mesh& mesh, const Ranks& ranks = {})
     : Input(mesh)
-    , Ranks(ranks)
+    , TheRanks(ranks)
     , Around(mesh.vertexCells())
   {
   }
@@ -187,7 +187,7 @@ public:
     }
     std::sort(result.neighbors.begin(), result.neighbors.end(),
       [this](Index a, Index b)
-      { return this->Ranks.several() ? this->Ranks.id(a) < this->Ranks.id(b) : a < b; });
+      { return this->TheRanks.several() ? this->TheRanks.id(a) < this->TheRanks.id(b) : a < b; });
     result.neighbors.erase(
       std::unique(result.neighbors.begin(), result.neighbors.end()), result.neighbors.end());
     result.neighbors.erase(
@@ -240,7 +240,7 @@ private:
   }
 
   const Mesh& Input;
-  WarpRanks Ranks;
+  Ranks TheRanks;
   VertexCells Around;
 };
 
@@ -409,7 +409,7 @@ bool affineOfAll(const std::vector<PrescribedPoint>& given, const MeshView& loca
 bool assembleOwn(
   const Mesh& mesh, const WarpParts& parts, WarpControl& control, SparseMatrix& matrix)
 {
-  const WarpRanks& ranks = parts.ranks();
+  const Ranks& ranks = parts.ranks();
   const Index n = mesh.view().numberOfPoints;
   std::vector<Index> unknowns;
   for (Index i = 0; i < n; ++i)
@@ -508,10 +508,10 @@ std::vector<double> warpByWeightedLaplacian(
   const Mesh& mesh, const WarpParts& parts, const double* displacement, WarpControl& control)
 {
   const WarpOptions& options = control.options();
-  const WarpRanks& ranks = parts.ranks();
+  const Ranks& ranks = parts.ranks();
   const std::vector<unsigned char>& prescribed = parts.prescribed();
   const MeshView& view = mesh.view();
-  const std::vector<PrescribedPoint> given = ranks.prescribedOfAll(view, prescribed, displacement);
+  const std::vector<PrescribedPoint> given = parts.prescribedOfAll(view, displacement);
   std::vector<double> moved;
   bool affine = false; // the same on all ranks
   SparseMatrix matrix;

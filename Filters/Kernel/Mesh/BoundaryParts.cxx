@@ -2,7 +2,7 @@
 #include "BoundaryParts.h"
 
 #include "FacetTable.h"
-#include "RankSets.h"
+#include "Ranks.h"
 
 #include <algorithm>
 #include <limits>
@@ -117,7 +117,7 @@ void uniteBoxes(RankGroup& group, std::vector<Box>& boxes)
 }
 
 //------------------------------------------------------------------------------
-BoundaryParts boundaryPartsOnRanks(const DistributedMesh& mesh)
+BoundaryParts boundaryPartsOnRanks(DistributedMesh& mesh)
 {
   RankGroup& group = mesh.group();
   const MeshView& view = mesh.view();
@@ -153,8 +153,9 @@ BoundaryParts boundaryPartsOnRanks(const DistributedMesh& mesh)
       });
   }
   Index count = 0, components = 0;
-  const std::vector<Index> setOf = numberSetsOnRanks(mesh, facets, onBoundary, count);
-  const std::vector<Index> componentOf = numberSetsOnRanks(mesh, pieces, used, components);
+  const Ranks ranks(mesh, mesh.numbers(), nullptr);
+  const std::vector<Index> setOf = ranks.numberSets(facets, onBoundary, count);
+  const std::vector<Index> componentOf = ranks.numberSets(pieces, used, components);
   std::vector<Box> boxes(count);
   std::vector<Index> componentOfSet(count, 0);
   for (Index p = 0; p < n; ++p)

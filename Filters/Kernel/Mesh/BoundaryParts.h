@@ -29,6 +29,6 @@ struct BoundaryParts
 TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryParts(const Mesh& mesh);
 
 /// The same of a mesh on several ranks, per local point. Collective.
-TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryPartsOnRanks(const DistributedMesh& mesh);
+TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryPartsOnRanks(DistributedMesh& mesh);
 }
 #endif

@@ -2,7 +2,7 @@
 #include "BoundaryShape.h"
 
 #include "FacetTable.h"
-#include "RankSets.h"
+#include "Ranks.h"
 #include "tautline/Core/UnionFind.h"
 
 #include <cmath>
@@ -390,7 +390,7 @@ BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle, double featureAn
 }
 
 //------------------------------------------------------------------------------
-BoundaryShape boundaryShapeOnRanks(const DistributedMesh& mesh, double flatAngle, int threads)
+BoundaryShape boundaryShapeOnRanks(DistributedMesh& mesh, double flatAngle, int threads)
 {
   RankGroup& group = mesh.group();
   const Index points = mesh.localPoints();
@@ -413,7 +413,8 @@ BoundaryShape boundaryShapeOnRanks(const DistributedMesh& mesh, double flatAngle
     slides[i] = norm(finder->directionOf(i)) > 0;
   }
   Index count = 0;
-  const std::vector<Index> part = numberSetsOnRanks(mesh, sets, slides, count);
+  const Ranks ranks(mesh, mesh.numbers(), nullptr);
+  const std::vector<Index> part = ranks.numberSets(sets, slides, count);
   std::vector<DirectionBox> boxes(count);
   for (Index i = 0; i < points; ++i)
   {

@@ -50,6 +50,6 @@ TAUTLINE_KERNEL_EXPORT BoundaryShape boundaryShape(
  * that others own, `fixed` is the owner's, planes and lines may lack.
  */
 TAUTLINE_KERNEL_EXPORT BoundaryShape boundaryShapeOnRanks(
-  const DistributedMesh& mesh, double flatAngle, int threads = 0);
+  DistributedMesh& mesh, double flatAngle, int threads = 0);
 }
 #endif

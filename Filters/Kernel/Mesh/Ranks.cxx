@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "WarpRanks.h"
+#include "Ranks.h"
 
 #include <algorithm>
 
 namespace tautline
 {
 //------------------------------------------------------------------------------
-void WarpRanks::sum(double* values, Index count) const
+void Ranks::sum(double* values, Index count) const
 {
   if (!this->Spread)
   {
@@ -21,7 +21,7 @@ void WarpRanks::sum(double* values, Index count) const
 }
 
 //------------------------------------------------------------------------------
-Dimension WarpRanks::dimension(const Mesh& local) const
+Dimension Ranks::dimension(const Mesh& local) const
 {
   return this->Spread
     ? static_cast<Dimension>(this->Spread->group().maximum(static_cast<Index>(local.dimension())))
@@ -29,7 +29,7 @@ Dimension WarpRanks::dimension(const Mesh& local) const
 }
 
 //------------------------------------------------------------------------------
-void WarpRanks::together(const std::function<void()>& work) const
+void Ranks::together(const std::function<void()>& work) const
 {
   if (this->Spread)
   {
@@ -42,7 +42,7 @@ void WarpRanks::together(const std::function<void()>& work) const
 }
 
 //------------------------------------------------------------------------------
-void WarpRanks::exchange(double* values, int components) const
+void Ranks::exchange(double* values, int components) const
 {
   if (this->Spread)
   {
@@ -51,7 +51,7 @@ void WarpRanks::exchange(double* values, int components) const
 }
 
 //------------------------------------------------------------------------------
-void WarpRanks::either(unsigned char* flags) const
+void Ranks::either(unsigned char* flags) const
 {
   if (this->Spread)
   {
@@ -60,14 +60,14 @@ void WarpRanks::either(unsigned char* flags) const
 }
 
 //------------------------------------------------------------------------------
-std::vector<Index> WarpRanks::numberSets(
+std::vector<Index> Ranks::numberSets(
   UnionFind& sets, const std::vector<unsigned char>& member, Index& count) const
 {
   const auto n = static_cast<Index>(member.size());
   std::vector<Index> numbers(member.size(), -1);
-  count = 0;
   if (!this->Spread)
   {
+    count = 0;
     for (Index i = 0; i < n; ++i)
     {
       const Index root = member[i] ? sets.find(i) : -1;
@@ -75,28 +75,54 @@ std::vector<Index> WarpRanks::numberSets(
     }
     return numbers;
   }
-  return numberSetsOnRanks(*this->Spread, sets, member, count);
-}
-
-//------------------------------------------------------------------------------
-std::vector<PrescribedPoint> WarpRanks::prescribedOfAll(const MeshView& local,
-  const std::vector<unsigned char>& prescribed, const double* displacement) const
-{
-  std::vector<PrescribedPoint> own, all;
-  for (Index i = 0; i < local.numberOfPoints; ++i)
+  const DistributedMesh& mesh = *this->Spread;
+  // The smallest number of a point spreads over the parts of its set, from rank to rank.
+  std::vector<double> least(member.size(), 0.0), values(member.size());
+  for (Index i = 0; i < n; ++i)
   {
-    if (prescribed[i] && this->owns(i))
+    least[i] = static_cast<double>(mesh.numbers()[i]);
+  }
+  for (bool changed = true; changed;)
+  {
+    changed = false;
+    for (Index i = 0; i < n; ++i)
     {
-      own.push_back({ this->id(i), pointOf(local, i), {} });
-      std::copy_n(displacement + 3 * i, 3, own.back().displacement.begin());
+      values[i] = least[sets.find(i)];
+    }
+    mesh.exchange(values.data(), 1);
+    for (Index i = 0; i < n; ++i)
+    {
+      double& root = least[sets.find(i)];
+      changed = changed || values[i] < root;
+      root = std::min(root, values[i]);
+    }
+    changed = mesh.group().any(changed);
+  }
+  std::vector<double> own, all;
+  for (Index i = 0; i < n; ++i)
+  {
+    if (member[i] && mesh.owned(i))
+    {
+      own.push_back(least[sets.find(i)]);
     }
   }
-  for (const std::vector<PrescribedPoint>& list : this->Spread->group().gatherItems(own))
+  const auto simplify = [](std::vector<double>& list)
+  {
+    std::sort(list.begin(), list.end());
+    list.erase(std::unique(list.begin(), list.end()), list.end());
+  };
+  simplify(own);
+  for (const std::vector<double>& list : mesh.group().gatherItems(own))
   {
     all.insert(all.end(), list.begin(), list.end());
   }
-  std::sort(all.begin(), all.end(),
-    [](const PrescribedPoint& a, const PrescribedPoint& b) { return a.id < b.id; });
-  return all;
+  simplify(all);
+  count = static_cast<Index>(all.size());
+  for (Index i = 0; i < n; ++i)
+  {
+    const auto at = std::lower_bound(all.begin(), all.end(), least[sets.find(i)]);
+    numbers[i] = member[i] ? static_cast<Index>(at - all.begin()) : -1;
+  }
+  return numbers;
 }
 }

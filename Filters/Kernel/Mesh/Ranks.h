@@ -1,44 +1,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file WarpRanks.h
- * @brief The ranks that deform a mesh together: sums over all of them, and who counts a point.
- * Internal: not installed.
+ * @file Ranks.h
+ * @brief The ranks that work on a mesh together: sums over all of them, and who counts a point.
  */
-#ifndef tautline_WarpRanks_h
-#define tautline_WarpRanks_h
+#ifndef tautline_Ranks_h
+#define tautline_Ranks_h
 
+#include "DistributedMesh.h"
 #include "tautline/Core/Communicator.h"
-#include "tautline/Mesh/RankSets.h"
+#include "tautline/Core/UnionFind.h"
 
 #include <algorithm>
-#include <array>
 #include <functional>
 #include <vector>
 
 namespace tautline
 {
-/// A point with a given displacement.
-struct PrescribedPoint
-{
-  Index id;
-  std::array<double, 3> place, displacement;
-};
-
 /**
- * @class tautline::WarpRanks
+ * @class tautline::Ranks
  * @brief The ranks of a distributed mesh; by default this process alone, where nothing is
- * communicated and every sum is that of the caller, bitwise.
+ * communicated and every sum is bitwise the caller's.
  *
- * The mesh of a deformation is then DistributedMesh::view(): about the points that a rank owns all
- * cells are there. What the methods return is bitwise the same on all ranks, so that they take the
- * same decisions. Methods are collective but for owns() and ownsCell().
+ * An algorithm takes the local mesh and the ranks. On several ranks the local mesh is
+ * DistributedMesh::view(), which has all cells around the points that a rank owns. What the methods
+ * return is bitwise the same on all ranks, so that they take the same decisions. All methods but
+ * owns() and ownsCell() are collective.
  */
-class WarpRanks
+class TAUTLINE_KERNEL_EXPORT Ranks
 {
 public:
-  WarpRanks() = default;
+  Ranks() = default;
   /// Mesh and ids, one per local point, stay alive; the communicator has the ranks of the mesh.
-  WarpRanks(DistributedMesh& mesh, const std::vector<Index>& ids, Communicator communicator)
+  Ranks(DistributedMesh& mesh, const std::vector<Index>& ids, Communicator communicator)
     : Spread(&mesh)
     , Ids(ids.data())
     , Comm(communicator)
@@ -77,16 +70,18 @@ public:
   /// Flags that are set on any rank.
   void either(unsigned char* flags) const;
 
-  /// numberSetsOnRanks(); on one rank in the order of the first members.
+  /**
+   * @brief Numbers sets of points, each of which may go on on other ranks: on several ranks in the
+   * order of their smallest points, on one in that of their first members. What joins two points
+   * must be known to the ranks that own them. Takes as many rounds as a set has ranks one after
+   * the other.
+   * @param sets of local points: the parts of the sets here
+   * @param member one flag per local point; the others get -1
+   * @param count the number of sets on all ranks
+   * @return the number per local point; the owner's counts
+   */
   std::vector<Index> numberSets(
     UnionFind& sets, const std::vector<unsigned char>& member, Index& count) const;
-
-  /**
-   * @brief The prescribed points of all ranks, in the order of their ids.
-   * @param local the part of the mesh here, with a flag and a displacement per point
-   */
-  std::vector<PrescribedPoint> prescribedOfAll(const MeshView& local,
-    const std::vector<unsigned char>& prescribed, const double* displacement) const;
 
 private:
   DistributedMesh* Spread = nullptr;
@@ -97,7 +92,7 @@ private:
 /// Replaces members of items by their sums over all ranks.
 /// @param members the addresses of an item's members @param sizes of these, in numbers
 template <class Item, class Members, std::size_t Count>
-void addUp(const WarpRanks& ranks, std::vector<Item>& items, const Members& members,
+void addUp(const Ranks& ranks, std::vector<Item>& items, const Members& members,
   const std::size_t (&sizes)[Count])
 {
   if (!ranks.several())

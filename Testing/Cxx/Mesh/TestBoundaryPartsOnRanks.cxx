@@ -70,7 +70,7 @@ void testCuts(const char* name, const MeshData& whole, int parts)
         [&](RankGroup& group)
         {
           const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
-          const DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
+          DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
           const BoundaryParts found = boundaryPartsOnRanks(mesh);
           TAUTLINE_CHECK_EQUAL(found.parts, one.parts);
           TAUTLINE_CHECK_EQUAL(found.outer.size(), one.outer.size());
@@ -134,7 +134,7 @@ void testShape(CellType type)
         [&](RankGroup& group)
         {
           const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
-          const DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
+          DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
           const BoundaryShape found = boundaryShapeOnRanks(mesh, 1);
           for (std::size_t p = 0; p < part.pointOf.size(); ++p)
           {
