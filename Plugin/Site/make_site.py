@@ -62,7 +62,7 @@ class Site:
         shutil.rmtree(work, ignore_errors=True)
         (work / "extra").mkdir(parents=True)
         for directory in (HELP, "Data", f"{GALLERY}/pictures"):
-            names = shutil.ignore_patterns("*.py", "*.in", "toc.xml", "*.cmake")
+            names = shutil.ignore_patterns("*.py", "*.in", "*.cmake")
             shutil.copytree(source / directory, work / "extra" / directory, ignore=names)
 
     def target(self, page: Path, link: str) -> str:
