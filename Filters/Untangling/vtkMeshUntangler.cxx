@@ -9,7 +9,6 @@
 #include "ProgressStep.h"
 #include "RankMesh.h"
 #include "tautline/Untangling/Untangle.h"
-#include "tautline/Untangling/UntangleOnRanks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -54,23 +53,39 @@ void addFlags(vtkDataSet* output, const char* name, const std::vector<signed cha
   output->GetCellData()->AddArray(array);
 }
 
-using Remaining = std::vector<std::pair<tautline::Index, tautline::CellType>>;
-
-/// The elements with an obstacle, by id.
-Remaining remainingOf(const tautline::UntangleResult& result, const tautline::Mesh& mesh)
+/// An element that is not valid.
+struct Remaining
 {
-  Remaining remaining;
-  for (const tautline::CellBlock& block : mesh.blocks())
+  std::string name; ///< "Element 5"; of a mesh on several processes "Element": these have no ids
+  tautline::Obstacle obstacle;
+  tautline::Vec3 center;
+};
+
+/// The elements with an obstacle, by id; on several processes by the numbers of their points.
+std::vector<Remaining> remainingOf(
+  const tautline::UntangleResult& result, const tautline::Mesh& moved)
+{
+  std::vector<Remaining> remaining;
+  for (std::size_t cell = 0; cell < result.obstacles.size(); ++cell)
   {
-    for (tautline::Index i = 0; i < block.count; ++i)
+    const auto obstacle = static_cast<tautline::Obstacle>(result.obstacles[cell]);
+    if (obstacle != tautline::Obstacle::None)
     {
-      if (result.obstacles[block.cell(i)] != static_cast<signed char>(tautline::Obstacle::None))
-      {
-        remaining.emplace_back(block.cell(i), block.type);
-      }
+      const auto id = static_cast<tautline::Index>(cell);
+      const auto type = tautline::cornerType(moved.view().cellTypes[cell]);
+      remaining.push_back({ "Element " + std::to_string(cell), obstacle, moved.center(id, type) });
     }
   }
-  std::sort(remaining.begin(), remaining.end());
+  return remaining;
+}
+
+std::vector<Remaining> remainingOf(const tautline::UntangleResult& result)
+{
+  std::vector<Remaining> remaining;
+  for (const auto& [numbers, element] : result.remaining)
+  {
+    remaining.push_back({ "Element", element.obstacle, element.center });
+  }
   return remaining;
 }
 
@@ -83,8 +98,7 @@ std::string newlySentence(tautline::Index newlyInvalid)
 }
 
 /// "All elements are valid", or how many are not, and for the first of them which, where and why.
-std::string verdict(
-  const tautline::UntangleResult& result, const Remaining& remaining, const tautline::Mesh& moved)
+std::string verdict(const tautline::UntangleResult& result, const std::vector<Remaining>& remaining)
 {
   std::ostringstream text;
   if (remaining.empty())
@@ -98,48 +112,15 @@ std::string verdict(
   const auto listed = std::min<std::size_t>(remaining.size(), ListedElements);
   for (std::size_t i = 0; i < listed; ++i)
   {
-    const auto [cell, type] = remaining[i];
-    const tautline::Vec3 at = moved.center(cell, type);
-    text << "\nElement " << cell << " at (" << at[0] << ", " << at[1] << ", " << at[2]
-         << "): " << reasons[result.obstacles[cell]] << ".";
+    const auto& [name, obstacle, at] = remaining[i];
+    text << "\n"
+         << name << " at (" << at[0] << ", " << at[1] << ", " << at[2]
+         << "): " << reasons[static_cast<std::size_t>(obstacle)] << ".";
   }
   if (remaining.size() > listed)
   {
     text << "\n... and " << remaining.size() - listed
          << " more: select the cells where the array Obstacle is not 0.";
-  }
-  return text.str();
-}
-}
-
-//------------------------------------------------------------------------------
-namespace
-{
-/// The same of a mesh on several processes, whose elements have no ids.
-std::string verdict(const tautline::RankUntangleResult& untangled)
-{
-  std::ostringstream text;
-  if (untangled.remaining.empty())
-  {
-    text << "All elements are valid; " << untangled.result.invertedBefore << " were not.";
-    return text.str();
-  }
-  text << untangled.remaining.size() << " elements are not valid, " << untangled.result.impossible
-       << " of them because of fixed points; " << untangled.result.invertedBefore
-       << " were inverted or degenerate before" << newlySentence(untangled.result.newlyInvalid)
-       << ".";
-  int listed = 0;
-  for (const auto& [numbers, element] : untangled.remaining)
-  {
-    if (++listed > ListedElements)
-    {
-      text << "\n... and " << untangled.remaining.size() - ListedElements
-           << " more: select the cells where the array Obstacle is not 0.";
-      break;
-    }
-    const tautline::Vec3& at = element.center;
-    text << "\nElement at (" << at[0] << ", " << at[1] << ", " << at[2]
-         << "): " << reasons[static_cast<std::size_t>(element.obstacle)] << ".";
   }
   return text.str();
 }
@@ -229,10 +210,10 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   this->Impossible += result.impossible;
   const std::vector<double> points = mesh.actual(result.points);
   const tautline::Mesh moved = mesh.actualMesh(points);
-  const Remaining remaining = remainingOf(result, moved);
+  const std::vector<Remaining> remaining = remainingOf(result, moved);
   this->NotValid += static_cast<vtkIdType>(remaining.size());
   this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
-    verdict(result, remaining, moved) +
+    verdict(result, remaining) +
     tautline::surfaceErrorSentence(mesh.frame().unit() * result.surfaceError));
   if (result.reason == tautline::StopReason::NoFreeVertices)
   {
@@ -317,17 +298,18 @@ void vtkMeshUntangler::UntangleOnRanks(
   const std::vector<unsigned char> fixed = mesh.fixed(this->FixBoundary);
   constexpr int onlyBlock = 0;
   const tautline::UntangleOptions options = this->GetOptions(fixed.data(), onlyBlock);
-  const tautline::RankUntangleResult untangled =
-    tautline::untangleOnRanks(mesh.mesh(), mesh.mirrored(), options);
-  const tautline::UntangleResult& result = untangled.result;
+  tautline::Mesh local(mesh.mesh().view(), this->Threads);
+  local.setMirrored(mesh.mirrored());
+  const tautline::UntangleResult result =
+    tautline::untangle(local, options, tautline::Ranks(mesh.mesh()));
   const std::string note = mesh.move(vtkPointSet::SafeDownCast(output), result.points);
   const std::vector<signed char> validity = mesh.validityAt(mesh.ofPiece(result.points));
   std::vector<signed char> obstacles(validity.size(), 0);
   for (std::size_t cell = 0; cell < validity.size(); ++cell)
   {
-    const auto found = untangled.remaining.find(mesh.numbersOf(static_cast<tautline::Index>(cell)));
+    const auto found = result.remaining.find(mesh.numbersOf(static_cast<tautline::Index>(cell)));
     obstacles[cell] =
-      found == untangled.remaining.end() ? 0 : static_cast<signed char>(found->second.obstacle);
+      found == result.remaining.end() ? 0 : static_cast<signed char>(found->second.obstacle);
   }
   auto* set = vtkDataSet::SafeDownCast(output);
   addFlags(set, "Validity", validity);
@@ -338,9 +320,9 @@ void vtkMeshUntangler::UntangleOnRanks(
   this->InvertedBefore = result.invertedBefore;
   this->InvertedAfter = result.invertedAfter;
   this->Impossible = result.impossible;
-  this->NotValid = static_cast<vtkIdType>(untangled.remaining.size());
-  this->AddToSummary(verdict(untangled));
-  this->AddToSummary(untangled.exceededMemory
+  this->NotValid = static_cast<vtkIdType>(result.remaining.size());
+  this->AddToSummary(verdict(result, remainingOf(result)));
+  this->AddToSummary(result.exceededMemory
       ? "The whole mesh did not fit into the memory of the first process, where the elements that "
         "are left would have been untangled: take fewer cells, or more memory."
       : "");

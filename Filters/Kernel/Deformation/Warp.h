@@ -42,7 +42,7 @@ public:
    * @brief The same for a mesh on several ranks. Collective, as warp() is then:
    * points, displacements and flags are those of the local points, and a prescribed point is one,
    * with the same displacement, on all ranks that have it. The numbers of the result are those of
-   * the whole mesh. Untangling and optimization are those of untangleOnRanks() and
+   * the whole mesh. Untangling and optimization are those of untangle() and
    * optimizeOnRanks(), whose order does not depend on the ranks.
    * @param mesh stays alive; volume, or planar at right angles to an axis; all cells of one
    * dimension. Its points are others within warp(), and as before when it returns.

@@ -3,7 +3,6 @@
 
 #include "tautline/Quality/Targets.h"
 #include "tautline/Untangling/Untangle.h"
-#include "tautline/Untangling/UntangleOnRanks.h"
 #include "WarpCoefficients.h"
 #include "WarpElastic.h"
 #include "WarpPointwise.h"
@@ -338,21 +337,12 @@ int WarpStep::untangle(
   options.maximumSeconds = control.secondsLeft();
   options.observer = [&control](const IterationState& state)
   { return control.watch(0.3 + 0.4 * state.progress); };
-  UntangleResult done;
-  if (ranks.several())
+  UntangleResult done =
+    tautline::untangle(this->moved(points, control.options().threads), options, ranks);
+  if (done.exceededMemory)
   {
-    const PlacedMesh placed(ranks.mesh(), points);
-    RankUntangleResult ofAll = untangleOnRanks(ranks.mesh(), this->Initial.mirrored(), options);
-    done = std::move(ofAll.result);
-    if (ofAll.exceededMemory)
-    {
-      control.addMessage("The whole mesh did not fit into the memory of the first process, where "
-                         "the elements that are left would have been untangled.");
-    }
-  }
-  else
-  {
-    done = tautline::untangle(this->moved(points, control.options().threads), options);
+    control.addMessage("The whole mesh did not fit into the memory of the first process, where the "
+                       "elements that are left would have been untangled.");
   }
   if (done.reason == StopReason::TimeLimit)
   {

@@ -137,7 +137,7 @@ public:
   Dimension dimension() const { return this->Dim; }
 
   MeshSpace space() const { return { this->Dim, this->Normal, this->Frame }; }
-  /// Makes the mesh a piece of one that fills a space, see spaceOnRanks(): cells of the piece are
+  /// Makes the mesh a piece of one that fills a space, see spaceOf(): cells of the piece are
   /// measured as they are in the whole, though they may lie in a plane and others not.
   void setSpace(const MeshSpace& space)
   {
@@ -179,6 +179,9 @@ public:
    * this limit is Degenerate.
    */
   void classifyCells(signed char* validity, int threads = 0) const;
+  /// The same of the cells with a point whose place, 3 coordinates per point of the view, is not
+  /// its place in the view; the others keep theirs.
+  void classifyMovedCells(const double* points, signed char* validity, int threads = 0) const;
   /**
    * @brief The same for one cell with the given vertices, which need not be those of the view.
    * @param against a unit normal that determines the sign of a cell of a surface, instead of its

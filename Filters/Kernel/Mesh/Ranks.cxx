@@ -51,6 +51,15 @@ void Ranks::exchange(double* values, int components) const
 }
 
 //------------------------------------------------------------------------------
+void Ranks::exchange(unsigned char* flags) const
+{
+  if (this->Spread)
+  {
+    this->Spread->exchange(flags);
+  }
+}
+
+//------------------------------------------------------------------------------
 void Ranks::either(unsigned char* flags) const
 {
   if (this->Spread)

@@ -37,6 +37,11 @@ public:
     , Comm(communicator)
   {
   }
+  /// Of a mesh by whose global numbers sums are ordered.
+  explicit Ranks(DistributedMesh& mesh)
+    : Ranks(mesh, mesh.numbers(), mesh.group().communicator())
+  {
+  }
 
   bool several() const { return this->Spread != nullptr; }
   /// Of several ranks.
@@ -67,6 +72,7 @@ public:
 
   /// The values of the points that this rank owns, to all that have them.
   void exchange(double* values, int components) const;
+  void exchange(unsigned char* flags) const;
   /// Flags that are set on any rank.
   void either(unsigned char* flags) const;
 

@@ -248,4 +248,34 @@ void Mesh::classifyCells(signed char* validity, int threads) const
       });
   }
 }
+
+//------------------------------------------------------------------------------
+void Mesh::classifyMovedCells(const double* points, signed char* validity, int threads) const
+{
+  for (const CellBlock& block : this->Blocks)
+  {
+    const CellTopology& t = topology(block.type);
+    forEachChunk(block.count, threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          const Index cell = block.cell(i);
+          const Index* node = this->View.connectivity + this->View.offsets[cell];
+          Vec3 p[MaxNodes];
+          bool moved = false;
+          for (int k = 0; k < t.nodes; ++k)
+          {
+            const double* to = points + 3 * node[k];
+            p[k] = { to[0], to[1], to[2] };
+            moved = moved || !std::equal(to, to + 3, this->View.points + 3 * node[k]);
+          }
+          if (moved)
+          {
+            validity[cell] = this->classifyCell(t, p);
+          }
+        }
+      });
+  }
+}
 }

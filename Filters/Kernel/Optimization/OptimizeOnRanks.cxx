@@ -9,7 +9,7 @@
 #include "tautline/Mesh/JacobianBounds.h"
 #include "tautline/Mesh/MeshElements.h"
 #include "tautline/Objectives/ObjectiveSumState.h"
-#include "tautline/Untangling/UntangleOnRanks.h"
+#include "tautline/Untangling/Untangle.h"
 
 #include <algorithm>
 #include <cctype>
@@ -411,7 +411,9 @@ bool OptimizationOnRanks::untangle()
     heldInUntangling(this->Options, static_cast<Index>(this->Points.size() / 3));
   bool proceed = true;
   const UntangleOptions options = untanglingFirst(this->Options, held, this->Clock, proceed);
-  UntangleResult found = untangleOnRanks(this->TheMesh, this->Mirrored, options).result;
+  Mesh local(this->TheMesh.view(), options.threads);
+  local.setMirrored(this->Mirrored);
+  UntangleResult found = tautline::untangle(local, options, Ranks(this->TheMesh));
   this->Points = std::move(found.points);
   this->Result.newlyInvalid = found.newlyInvalid;
   this->Result.untangled = true;

@@ -47,7 +47,7 @@ TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
  * rounding (1e-10 in the tests). Converged objectives are those of optimize() to 1e-6, in another
  * order of the vertices.
  *
- * Elements that are invalid and that no objective repairs are untangled first (untangleOnRanks());
+ * Elements that are invalid and that no objective repairs are untangled first (untangle());
  * those that stay invalid are left out. Unless allowInversion, the result of the whole mesh is
  * never worse than the input, as that of optimize(); where the worst element would be, it is
  * improved by the rules of optimize(), and where that does not do, points about it go back to the

@@ -2,6 +2,7 @@
 #include "Untangle.h"
 
 #include "Unfold.h"
+#include "UntangleRegions.h"
 #include "Untangler.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/JacobianBounds.h"
@@ -10,43 +11,6 @@ namespace tautline
 {
 namespace
 {
-Index countInvalid(const std::vector<signed char>& validity)
-{
-  return static_cast<Index>(std::count_if(validity.begin(), validity.end(), isInvalid));
-}
-
-//------------------------------------------------------------------------------
-/// The validity of the cells that have a moved point; the others keep theirs.
-void classifyMoved(const Mesh& mesh, const double* points, std::vector<signed char>& validity)
-{
-  const MeshView& view = mesh.view();
-  for (const CellBlock& block : mesh.blocks())
-  {
-    const CellTopology& t = topology(block.type);
-    forEachChunk(block.count, 1,
-      [&](Index, Index begin, Index end)
-      {
-        for (Index i = begin; i < end; ++i)
-        {
-          const Index cell = block.cell(i);
-          const Index* node = view.connectivity + view.offsets[cell];
-          Vec3 p[MaxNodes];
-          bool moved = false;
-          for (int k = 0; k < t.nodes; ++k)
-          {
-            const double* to = points + 3 * node[k];
-            p[k] = { to[0], to[1], to[2] };
-            moved = moved || !std::equal(to, to + 3, view.points + 3 * node[k]);
-          }
-          if (moved)
-          {
-            validity[cell] = mesh.classifyCell(t, p);
-          }
-        }
-      });
-  }
-}
-
 /// Writes the vertices that moved; the others stay bitwise what they were.
 void storeMoved(const SimplexMesh& simplices, const std::vector<double>& start, const double* x,
   int threads, std::vector<double>& points)
@@ -159,8 +123,8 @@ Index countInvalidCorners(
 }
 
 /// Makes cells valid that are so at the corners only, and adds a record.
-void unfoldCells(const Mesh& mesh, const SimplexMesh& simplices, const UntangleOptions& options,
-  const Stopwatch& clock, std::vector<signed char>& validity, UntangleResult& result)
+void unfoldCells(const Mesh& mesh, const SimplexMesh& simplices, UntangleProgress& progress,
+  std::vector<signed char>& validity, UntangleResult& result)
 {
   const bool inside = std::any_of(mesh.blocks().begin(), mesh.blocks().end(),
     [](const CellBlock& block) { return hasInside(block.type); });
@@ -173,36 +137,22 @@ void unfoldCells(const Mesh& mesh, const SimplexMesh& simplices, const UntangleO
   {
     free[simplices.point(v)] = 1;
   }
-  const auto inTime = [&] { return !clock.reached(options.maximumSeconds); };
-  unfold(mesh, free, result.points, validity, inTime);
+  unfold(mesh, free, result.points, validity, [&] { return !progress.late(); });
   result.invertedAfter = countInvalid(validity);
-  IterationRecord record = result.history.back();
-  record.iteration = static_cast<int>(result.history.size());
-  record.seconds = clock.seconds();
-  record.inverted = result.invertedAfter;
-  result.history.push_back(record);
-  const auto points = [&](double* to)
-  { std::copy(result.points.begin(), result.points.end(), to); };
-  if (options.observer && !options.observer({ record, 1.0, points }))
-  {
-    result.reason = StopReason::Aborted;
-  }
-  else if (!inTime())
-  {
-    result.reason = StopReason::TimeLimit;
-  }
+  progress.record(result.invertedAfter, result.history.back().objective, 1.0,
+    [&](double* to) { std::copy(result.points.begin(), result.points.end(), to); });
 }
 
 template <int Dim>
 void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
-  const std::vector<signed char>& before, const Stopwatch& clock, UntangleResult& result)
+  UntangleProgress& progress, std::vector<signed char>& validity, UntangleResult& result)
 {
   const std::vector<double> start(simplices.coordinates(),
     simplices.coordinates() + static_cast<std::size_t>(VertexStride) * simplices.vertices());
   const std::vector<double> input = result.points;
-  std::vector<signed char> validity = before;
+  const std::vector<signed char> before = validity;
   Index fewest = countInvalidCorners(mesh, input, before);
-  Untangler<Dim> untangler(mesh, simplices, options, clock, result);
+  Untangler<Dim> untangler(mesh, simplices, options, progress);
   // Coordinates are rounded to points: where cells lose their validity, again with a wider margin.
   for (const double margin : { 1e-12, 1e-9, 1e-6 })
   {
@@ -210,7 +160,7 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
     std::vector<double> points = input;
     storeMoved(simplices, start, x, options.threads, points);
     std::vector<signed char> after = before;
-    classifyMoved(mesh, points.data(), after);
+    mesh.classifyMovedCells(points.data(), after.data(), options.threads);
     const Index invalid = countInvalidCorners(mesh, points, after);
     if (invalid < fewest)
     {
@@ -224,64 +174,89 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
     }
   }
   result.invertedAfter = countInvalid(validity);
-  unfoldCells(mesh, simplices, options, clock, validity, result);
+  unfoldCells(mesh, simplices, progress, validity, result);
   if (result.invertedAfter > result.invertedBefore)
   {
     result.points = input;
     validity = before;
     result.invertedAfter = result.history.back().inverted = result.invertedBefore;
   }
-  for (std::size_t cell = 0; cell < validity.size(); ++cell)
-  {
-    result.newlyInvalid += before[cell] == Valid && isInvalid(validity[cell]);
-  }
   findObstacles(mesh, simplices, validity, untangler.infeasible(), result);
 }
-}
 
-//------------------------------------------------------------------------------
-UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options)
+/// Untangles a mesh of one process.
+void untangleHere(const Mesh& mesh, const UntangleOptions& options, UntangleProgress& progress,
+  std::vector<signed char>& validity, UntangleResult& result)
 {
-  const Stopwatch clock;
-  const MeshView& view = mesh.view();
-  UntangleResult result;
-  result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
-  result.obstacles.assign(view.numberOfCells, static_cast<signed char>(Obstacle::None));
-  std::vector<signed char> validity(view.numberOfCells);
-  mesh.classifyCells(validity.data(), options.threads);
-  result.invertedBefore = result.invertedAfter = countInvalid(validity);
-  if (result.invertedBefore > 0 && mesh.dimension() == Dimension::Surface)
-  {
-    throw Error(
-      "Untangling works on planar and volume meshes: this is a surface in space. Optimize its "
-      "shape, which keeps the tangent planes, or project it to a plane first.");
-  }
-  if (mesh.dimension() == Dimension::None || mesh.dimension() == Dimension::Surface)
-  {
-    return result;
-  }
-  requireOrdinaryScale(view, "Untangling");
-  // Nothing to do, or nothing that may move.
+  requireOrdinaryScale(mesh.view(), "Untangling");
   SimplexMesh simplices(mesh, options.fixed, nullptr, options.threads);
   if (result.invertedBefore == 0 || simplices.freeVertices() == 0)
   {
     findObstacles(mesh, simplices, validity, {}, result);
-    result.reason = result.invertedBefore == 0 ? StopReason::AllValid : StopReason::NoFreeVertices;
-    return result;
+    result.reason = StopReason::NoFreeVertices;
   }
-  result.reason = StopReason::NoProgress;
-  if (simplices.dimension() == 3)
+  else if (simplices.dimension() == 3)
   {
-    untangleSimplices<3>(mesh, simplices, options, validity, clock, result);
+    untangleSimplices<3>(mesh, simplices, options, progress, validity, result);
   }
   else
   {
-    untangleSimplices<2>(mesh, simplices, options, validity, clock, result);
+    untangleSimplices<2>(mesh, simplices, options, progress, validity, result);
   }
-  if (result.invertedAfter == 0)
-  {
-    result.reason = StopReason::AllValid;
-  }
+}
+}
+
+//------------------------------------------------------------------------------
+UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options, const Ranks& ranks)
+{
+  UntangleResult result;
+  UntangleProgress progress(options, ranks, result);
+  ranks.together(
+    [&]
+    {
+      const MeshView& view = mesh.view();
+      if (ranks.several() && !options.fixed && view.numberOfPoints > 0)
+      {
+        throw Error(
+          "The fixed points of a mesh on several ranks must be given, see rankBoundary().");
+      }
+      result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
+      result.obstacles.assign(view.numberOfCells, static_cast<signed char>(Obstacle::None));
+      std::vector<signed char> validity(view.numberOfCells);
+      mesh.classifyCells(validity.data(), options.threads);
+      const std::vector<signed char> before = validity;
+      result.invertedBefore = result.invertedAfter = countInvalid(validity, ranks);
+      const Dimension dimension = ranks.dimension(mesh);
+      if (result.invertedBefore > 0 && dimension == Dimension::Surface)
+      {
+        throw Error(
+          "Untangling works on planar and volume meshes: this is a surface in space. Optimize its "
+          "shape, which keeps the tangent planes, or project it to a plane first.");
+      }
+      if (dimension == Dimension::None || dimension == Dimension::Surface)
+      {
+        return;
+      }
+      result.reason = StopReason::NoProgress;
+      if (ranks.several())
+      {
+        untangleRegions(mesh, options, ranks, progress, validity, result);
+      }
+      else
+      {
+        untangleHere(mesh, options, progress, validity, result);
+      }
+      if (result.invertedAfter == 0)
+      {
+        result.reason = StopReason::AllValid;
+      }
+      for (std::size_t cell = 0; cell < before.size(); ++cell)
+      {
+        const bool owned = ranks.ownsCell(static_cast<Index>(cell));
+        result.newlyInvalid += owned && before[cell] == Valid && isInvalid(validity[cell]);
+      }
+      result.newlyInvalid = ranks.sum(result.newlyInvalid);
+    });
   return result;
 }
 }

@@ -21,7 +21,7 @@
 #define tautline_Untangle_h
 
 #include "UntangleOptions.h"
-#include "tautline/Mesh/Mesh.h"
+#include "tautline/Mesh/Ranks.h"
 
 namespace tautline
 {
@@ -29,9 +29,19 @@ namespace tautline
  * @brief Untangles. The result never has more inverted or degenerate elements than the input; fixed
  * points and, by the automatic method, points that need not move keep their bits. A valid mesh is
  * returned as it is.
- * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.
+ *
+ * On several ranks, which is collective, the cells within some rings of the invalid elements are
+ * gathered and their connected parts are untangled, each on one rank, with the points around held.
+ * Where elements stay invalid, wider rings follow, and, except with Effort::Local, the whole mesh
+ * on the first rank, if it fits into the memory there: Error if it does not and nothing was
+ * repaired before, else exceededMemory. UntangleMethod::Simultaneous, which moves all points, takes
+ * the whole mesh. The result depends neither on how the mesh is cut nor on how many ranks there
+ * are.
+ * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed. On
+ * several ranks the local mesh, see Ranks.
  * Throws Error for a surface mesh in space with inverted elements.
  */
-TAUTLINE_KERNEL_EXPORT UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options);
+TAUTLINE_KERNEL_EXPORT UntangleResult untangle(
+  const Mesh& mesh, const UntangleOptions& options, const Ranks& ranks = {});
 }
 #endif

@@ -8,6 +8,8 @@
 
 #include "tautline/Core/Iteration.h"
 
+#include <map>
+
 namespace tautline
 {
 /// How many iterations to spend. The numbers are stable: ParaView state files hold them.
@@ -33,10 +35,12 @@ struct UntangleOptions
   Effort effort = Effort::Normal; ///< of the automatic method
   /// Seconds of wall time; 0: no limit. Honoured within one iteration.
   double maximumSeconds = 0.0;
-  const unsigned char* fixed = nullptr; ///< as in OptimizeOptions
+  /// As in OptimizeOptions; on several ranks not null, the owner's flag counts.
+  const unsigned char* fixed = nullptr;
   SurfaceConstraint surface;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
-  /// Called after each iteration; return false to stop. Called from the calling thread.
+  /// Called after each iteration, on several ranks after each width of the rings on all of them;
+  /// return false to stop. Called from the calling thread.
   std::function<bool(const IterationState&)> observer;
 };
 
@@ -50,10 +54,24 @@ enum class Obstacle : signed char
   NonFinite = 4        ///< a coordinate of a fixed vertex is NaN or infinite
 };
 
+/// An element of a mesh on several ranks that is still not valid.
+struct TangledElement
+{
+  Obstacle obstacle = Obstacle::Unknown;
+  Vec3 center = { 0, 0, 0 };
+};
+
+/// On several ranks, points and obstacles are those of the local mesh, all else of the whole mesh.
 struct UntangleResult
 {
   std::vector<double> points; ///< 3 x numberOfPoints, the one with the fewest inverted elements
   std::vector<signed char> obstacles; ///< an Obstacle per cell
+  /// On several ranks: the invalid elements, by the global numbers of their points in increasing
+  /// order; the same on all ranks.
+  std::map<std::vector<Index>, TangledElement> remaining;
+  /// On several ranks: the whole mesh, which would have been next, does not fit into the memory of
+  /// the first rank.
+  bool exceededMemory = false;
   /**
    * @brief objective: the sum of -D over inverted simplices (corners of cells), D = det T with
    * targets as long as the mean edge, comparable between all phases; inverted: elements left. One

@@ -6,84 +6,59 @@
 
 namespace tautline
 {
-namespace
-{
-/// Iterations an effort allows, of all phases together.
-int iterationLimit(Effort effort)
-{
-  constexpr int local = 60, normal = 1500, thorough = 5000;
-  return effort == Effort::Local ? local : effort == Effort::Normal ? normal : thorough;
-}
-}
-
 //------------------------------------------------------------------------------
-UntangleProgress::UntangleProgress(const Mesh& mesh, const SimplexMesh& simplices,
-  const UntangleOptions& options, const Stopwatch& clock, UntangleResult& result)
-  : Input(mesh)
-  , Simplices(simplices)
-  , Options(options)
-  , Result(result)
-  , Clock(clock)
-  , Best(simplices.coordinates(),
-      simplices.coordinates() + static_cast<std::size_t>(VertexStride) * simplices.vertices())
+Index countInvalid(const std::vector<signed char>& validity, const Ranks& ranks)
 {
-}
-
-//------------------------------------------------------------------------------
-bool UntangleProgress::record(const double* x, Index invalidCells, double invertedVolume)
-{
-  if (this->Result.history.empty() || invalidCells < this->FewestInvalid)
+  Index count = 0;
+  for (std::size_t cell = 0; cell < validity.size(); ++cell)
   {
-    this->FewestInvalid = invalidCells;
-    std::copy_n(x, this->Best.size(), this->Best.begin());
+    count += isInvalid(validity[cell]) && ranks.ownsCell(static_cast<Index>(cell));
   }
+  return ranks.sum(count);
+}
+
+//------------------------------------------------------------------------------
+bool UntangleProgress::record(
+  Index inverted, double objective, double fraction, const std::function<void(double*)>& points)
+{
   IterationRecord record;
-  record.iteration = static_cast<int>(this->Result.history.size());
+  record.iteration = this->iteration();
   record.seconds = this->Clock.seconds();
-  record.objective = invertedVolume;
-  record.objectives = { invertedVolume };
-  record.inverted = invalidCells;
+  record.objective = objective;
+  record.objectives = { objective };
+  record.inverted = inverted;
   this->Result.history.push_back(record);
-  const int limit = iterationLimit(this->Options.effort);
   const double maximumSeconds = this->Options.maximumSeconds;
-  double fraction = static_cast<double>(record.iteration) / limit;
   if (maximumSeconds > 0)
   {
     fraction = std::max(fraction, record.seconds / maximumSeconds);
   }
-  if (this->Options.observer)
+  const bool aborted =
+    this->Options.observer && !this->Options.observer({ record, std::min(fraction, 1.0), points });
+  if (this->TheRanks.any(aborted))
   {
-    const auto points = [this, x](double* to)
-    {
-      const MeshView& view = this->Input.view();
-      std::copy_n(view.points, 3 * view.numberOfPoints, to);
-      this->Simplices.store(x, to, this->Options.threads);
-    };
-    if (!this->Options.observer({ record, std::min(fraction, 1.0), points }))
-    {
-      return this->stop(StopReason::Aborted);
-    }
+    this->stop(StopReason::Aborted);
   }
-  if (maximumSeconds > 0 && record.seconds >= maximumSeconds)
+  else if (this->TheRanks.any(maximumSeconds > 0 && record.seconds >= maximumSeconds))
   {
-    return this->stop(StopReason::TimeLimit);
+    this->stop(StopReason::TimeLimit);
   }
-  if (record.iteration >= limit)
-  {
-    return this->stop(StopReason::IterationLimit);
-  }
-  return true;
+  return !this->Stopped;
 }
 
-void UntangleProgress::forgetBest()
+//------------------------------------------------------------------------------
+double UntangleProgress::secondsLeft() const
 {
-  this->FewestInvalid = std::numeric_limits<Index>::max();
+  const double maximumSeconds = this->Options.maximumSeconds;
+  return maximumSeconds > 0
+    ? std::max(std::numeric_limits<double>::min(), maximumSeconds - this->Clock.seconds())
+    : 0.0;
 }
 
-bool UntangleProgress::stop(StopReason reason)
+//------------------------------------------------------------------------------
+void UntangleProgress::stop(StopReason reason)
 {
   this->Result.reason = reason;
   this->Stopped = true;
-  return false;
 }
 }

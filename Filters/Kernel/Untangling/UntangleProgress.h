@@ -1,54 +1,58 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UntangleProgress.h
- * @brief The history, the observer and the limits of an untangling. Internal: not installed.
+ * @brief The history, the observer and the time limit of an untangling. Internal: not installed.
  */
 #ifndef tautline_UntangleProgress_h
 #define tautline_UntangleProgress_h
 
-#include "tautline/Core/Stopwatch.h"
-#include "tautline/Patches/SimplexMesh.h"
 #include "UntangleOptions.h"
+#include "tautline/Core/Stopwatch.h"
+#include "tautline/Mesh/Ranks.h"
 
 namespace tautline
 {
-/// The history, the observer, the limits, and the best coordinates so far.
+/// Invalid elements of the whole mesh. @param validity of the local cells
+Index countInvalid(const std::vector<signed char>& validity, const Ranks& ranks = {});
+
+/// The history, the observer and the time limit; starts when it is made.
 class UntangleProgress
 {
 public:
-  /// The references have to live as long as this; `clock` started with the untangling.
-  UntangleProgress(const Mesh& mesh, const SimplexMesh& simplices, const UntangleOptions& options,
-    const Stopwatch& clock, UntangleResult& result);
+  /// The references have to live as long as this.
+  UntangleProgress(const UntangleOptions& options, const Ranks& ranks, UntangleResult& result)
+    : Options(options)
+    , TheRanks(ranks)
+    , Result(result)
+  {
+  }
+
+  /// Of the next record.
+  int iteration() const { return static_cast<int>(this->Result.history.size()); }
 
   /**
-   * @brief Records an iteration that led to x and calls the observer.
-   * @param x VertexStride coordinates per vertex of the SimplexMesh
-   * @param invertedVolume the sum of -D over the inverted simplices
+   * @brief Records an iteration and calls the observer. The ranks stop together: collective.
+   * @param inverted, objective as in UntangleResult::history
+   * @param fraction of the work that is done, at most
+   * @param points writes the coordinates, 3 per point of the local mesh
    * @return whether another iteration may follow
    */
-  bool record(const double* x, Index invalidCells, double invertedVolume);
+  bool record(
+    Index inverted, double objective, double fraction, const std::function<void(double*)>& points);
 
   /// Whether a limit or the observer has ended the untangling; the result holds the reason.
   bool stopped() const { return this->Stopped; }
-  /// Whether the time limit is reached, and ends the untangling there.
+  void stop(StopReason reason);
+  /// Whether the time limit is reached on this rank.
   bool late() const { return this->Clock.reached(this->Options.maximumSeconds); }
-  void stopLate() { this->stop(StopReason::TimeLimit); }
-  /// The coordinates with the fewest invalid cells, and the number of those.
-  const double* best() const { return this->Best.data(); }
-  Index fewestInvalid() const { return this->FewestInvalid; }
-  /// The next record becomes the best; the limits stay.
-  void forgetBest();
+  /// For another untangling; 0 where there is no limit, else above 0.
+  double secondsLeft() const;
 
 private:
-  bool stop(StopReason reason);
-
-  const Mesh& Input;
-  const SimplexMesh& Simplices;
   const UntangleOptions& Options;
+  const Ranks& TheRanks;
   UntangleResult& Result;
   Stopwatch Clock;
-  std::vector<double> Best;
-  Index FewestInvalid = 0;
   bool Stopped = false;
 };
 }

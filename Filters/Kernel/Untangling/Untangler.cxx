@@ -15,21 +15,30 @@ namespace
 {
 // Tolerances of the harmonic maps that are starts.
 constexpr double harmonicTolerance = 1e-3, tightHarmonicTolerance = 1e-6;
+
+/// Iterations an effort allows, of all phases together.
+int iterationLimit(Effort effort)
+{
+  constexpr int local = 60, normal = 1500, thorough = 5000;
+  return effort == Effort::Local ? local : effort == Effort::Normal ? normal : thorough;
+}
 }
 
 //------------------------------------------------------------------------------
 template <int Dim>
 Untangler<Dim>::Untangler(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
-  const Stopwatch& clock, UntangleResult& result)
-  : Simplices(simplices)
+  UntangleProgress& progress)
+  : View(mesh.view())
+  , Simplices(simplices)
   , Options(options)
   , Tangled(simplices, options.threads)
-  , Progress(mesh, simplices, options, clock, result)
+  , Progress(progress)
   , OnlySimplices(std::all_of(mesh.blocks().begin(), mesh.blocks().end(),
       [](const CellBlock& block)
       { return topology(block.type).dimension != Dim || topology(block.type).samples == 1; }))
   , Coordinates(static_cast<std::size_t>(VertexStride) * simplices.vertices())
   , Start(simplices.coordinates(), simplices.coordinates() + Coordinates)
+  , Best(Start)
   , Active(simplices.freeVertices())
 {
 }
@@ -38,14 +47,25 @@ template <int Dim>
 void Untangler<Dim>::record()
 {
   // While fixed vertices are elsewhere, no coordinates count as better.
-  if (this->Continuing)
+  const double* x = this->Continuing ? this->Best.data() : this->x();
+  const Index invalid = this->Continuing ? this->FewestInvalid : this->invalidCells();
+  const int iteration = this->Progress.iteration();
+  if (!this->Continuing && (iteration == 0 || invalid < this->FewestInvalid))
   {
-    this->Progress.record(
-      this->Progress.best(), this->Progress.fewestInvalid(), this->State.invertedVolume);
+    this->FewestInvalid = invalid;
+    std::copy_n(x, this->Coordinates, this->Best.begin());
   }
-  else
+  const auto points = [this, x](double* to)
   {
-    this->Progress.record(this->x(), this->invalidCells(), this->State.invertedVolume);
+    std::copy_n(this->View.points, 3 * this->View.numberOfPoints, to);
+    this->Simplices.store(x, to, this->Options.threads);
+  };
+  const int limit = iterationLimit(this->Options.effort);
+  const double fraction = static_cast<double>(iteration) / limit;
+  if (this->Progress.record(invalid, this->State.invertedVolume, fraction, points) &&
+    iteration >= limit)
+  {
+    this->Progress.stop(StopReason::IterationLimit);
   }
 }
 
@@ -242,7 +262,7 @@ void Untangler<Dim>::smoothAll()
 /// Minimizes the energy of the whole mesh for a falling sequence of regularizations. Between the
 /// solves the local sweeps try to finish; where they cannot, what they did is undone.
 template <int Dim>
-void Untangler<Dim>::descend(const Schedule& schedule)
+void Untangler<Dim>::descend(const Regularization& schedule)
 {
   constexpr double few = 0.02;
   GlobalDescent<Dim> descent(this->Tangled);
@@ -351,7 +371,7 @@ void Untangler<Dim>::untangleNearby()
 {
   constexpr double ofWorst = 0.3, minEps = 1e-3;
   this->sweepLocally(SweepLimits());
-  Schedule nearby;
+  Regularization nearby;
   nearby.eps = std::max(ofWorst * std::abs(this->State.minDeterminant), minEps);
   nearby.solves = 1;
   nearby.iterations = 6;
@@ -363,7 +383,7 @@ template <int Dim>
 void Untangler<Dim>::untangleAll()
 {
   this->sweepLocally(SweepLimits());
-  this->descend(Schedule());
+  this->descend(Regularization());
 }
 
 /// All vertices at once, from one start after the other.
@@ -377,7 +397,7 @@ void Untangler<Dim>::untangleGlobally()
   // A few invalid simplices: a short try that leaves the others about where they are.
   if (this->invalidFraction() < few)
   {
-    Schedule brief;
+    Regularization brief;
     brief.eps = std::max(relativeEps, this->Tangled.margin());
     brief.factor = 1.0;
     brief.solves = 2;
@@ -396,14 +416,14 @@ void Untangler<Dim>::untangleGlobally()
   if (!this->done())
   {
     this->setCoordinates(before);
-    Schedule usual;
+    Regularization usual;
     usual.eps = std::max(usual.eps, relativeEps);
     this->descend(usual);
   }
   if (this->Options.effort == Effort::Thorough)
   {
     constexpr double larger = 10.0;
-    this->untangleThoroughly(before, std::max(larger * Schedule().eps, relativeEps));
+    this->untangleThoroughly(before, std::max(larger * Regularization().eps, relativeEps));
   }
 }
 
@@ -411,17 +431,17 @@ void Untangler<Dim>::untangleGlobally()
 template <int Dim>
 void Untangler<Dim>::untangleThoroughly(const std::vector<double>& before, double firstEps)
 {
-  Schedule slow;
+  Regularization slow;
   slow.eps = firstEps;
   slow.factor = 0.7;
   slow.solves = 30;
-  Schedule slower;
+  Regularization slower;
   slower.eps = firstEps;
   slower.factor = 0.8;
   slower.tolerance = 1e-4;
   slower.solves = 40;
   slower.iterations = 60;
-  for (const Schedule& schedule : { slow, slower })
+  for (const Regularization& schedule : { slow, slower })
   {
     if (!this->done())
     {
@@ -443,7 +463,7 @@ const double* Untangler<Dim>::run(double margin)
 {
   this->Tangled.setMargin(margin);
   this->examine();
-  this->Progress.forgetBest();
+  this->forgetBest();
   this->record();
   // A sweep or a harmonic map of a large mesh ends where it polls.
   struct OutOfTime
@@ -470,11 +490,11 @@ const double* Untangler<Dim>::run(double margin)
   }
   catch (const OutOfTime&)
   {
-    this->Progress.stopLate();
+    this->Progress.stop(StopReason::TimeLimit);
     this->Continuing = false;
     this->Tangled.setMargin(margin);
   }
-  std::copy_n(this->Progress.best(), this->Coordinates, this->x());
+  std::copy(this->Best.begin(), this->Best.end(), this->x());
   this->examine();
   return this->x();
 }
@@ -495,7 +515,7 @@ void Untangler<Dim>::untangleSimultaneously()
     this->examine();
     if (this->untangled())
     {
-      this->Progress.forgetBest(); // the last of the valid ones is the smoothest
+      this->forgetBest(); // the last of the valid ones is the smoothest
     }
     this->record();
     if (this->untangled())
@@ -541,7 +561,7 @@ void Untangler<Dim>::untangleAutomatically()
   if (this->untangled() && !this->stopped())
   {
     this->smoothWorst();
-    this->Progress.forgetBest();
+    this->forgetBest();
     this->record();
   }
 }

@@ -9,11 +9,14 @@
 
 #include "TangledMesh.h"
 #include "UntangleProgress.h"
+#include "tautline/Patches/SimplexMesh.h"
+
+#include <limits>
 
 namespace tautline
 {
 /// A falling sequence of regularizations, with a minimization for each.
-struct Schedule
+struct Regularization
 {
   double eps = 1.0;        ///< the first; determinants are 1 for a simplex with mean edges
   double factor = 0.5;     ///< from each to the next
@@ -35,9 +38,9 @@ template <int Dim>
 class Untangler
 {
 public:
-  /// The references have to live as long as this; `clock` started with the untangling.
+  /// The references have to live as long as this.
   Untangler(const Mesh& mesh, SimplexMesh& simplices, const UntangleOptions& options,
-    const Stopwatch& clock, UntangleResult& result);
+    UntangleProgress& progress);
 
   /**
    * @brief Untangles until no simplex is invalid, or the effort is spent.
@@ -59,6 +62,8 @@ public:
 private:
   double* x() const { return this->Simplices.coordinates(); }
   void record();
+  /// The next record becomes the best; the limits stay.
+  void forgetBest() { this->FewestInvalid = std::numeric_limits<Index>::max(); }
   void examine() { this->State = this->Tangled.examine(this->x()); }
   void setCoordinates(const std::vector<double>& from);
   std::vector<double> coordinates() const;
@@ -71,7 +76,7 @@ private:
   void excludeInfeasible();
   void smoothWorst();
   void smoothAll();
-  void descend(const Schedule& schedule);
+  void descend(const Regularization& schedule);
   bool startHarmonic(double tolerance);
   void continueRotation(double tolerance);
   void untangleAll();
@@ -81,13 +86,16 @@ private:
   void untangleAutomatically();
   void untangleSimultaneously();
 
+  const MeshView View;
   SimplexMesh& Simplices;
   const UntangleOptions& Options;
   TangledMesh<Dim> Tangled;
-  UntangleProgress Progress;
+  UntangleProgress& Progress;
   bool OnlySimplices; ///< each cell is one simplex
   std::size_t Coordinates;
   std::vector<double> Start; ///< coordinates of the input
+  std::vector<double> Best;  ///< those with the fewest invalid cells
+  Index FewestInvalid = 0;
   std::vector<unsigned char> Active;
   std::vector<std::int32_t> Infeasible;
   MeshState State;

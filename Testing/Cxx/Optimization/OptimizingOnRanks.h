@@ -11,13 +11,13 @@
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Optimization/OptimizeOnRanks.h"
 #include "tautline/Quality/Targets.h"
-#include "tautline/Untangling/UntangleOnRanks.h"
+#include "tautline/Untangling/Untangle.h"
 
 #include <functional>
 
 namespace tautline
 {
-/** What a rank has found: the result of optimizeOnRanks() or of untangleOnRanks(). */
+/** What a rank has found: the result of optimizeOnRanks() or of untangle(). */
 struct Found : OptimizeResult
 {
   std::size_t remaining = 0;
@@ -38,7 +38,7 @@ enum class Constraint
   FixedBoundary,
   Sliding,
   Limits,
-  Untangle /**< untangleOnRanks() */
+  Untangle /**< untangle() */
 };
 
 inline void untangleInto(
@@ -46,12 +46,12 @@ inline void untangleInto(
 {
   UntangleOptions options;
   options.fixed = fixed.data();
-  RankUntangleResult untangled = untangleOnRanks(mesh, false, options);
-  result.points = untangled.result.points;
-  result.history = untangled.result.history;
-  result.reason = untangled.result.reason;
-  result.invertedBefore = untangled.result.invertedBefore;
-  result.invertedAfter = untangled.result.invertedAfter;
+  const UntangleResult untangled = untangle(Mesh(mesh.view()), options, Ranks(mesh));
+  result.points = untangled.points;
+  result.history = untangled.history;
+  result.reason = untangled.reason;
+  result.invertedBefore = untangled.invertedBefore;
+  result.invertedAfter = untangled.invertedAfter;
   result.remaining = untangled.remaining.size();
 }
 

@@ -33,7 +33,7 @@ std::vector<std::string> messagesOf(const Change& change, double memoryOfFirst =
       change(mesh, options);
       try
       {
-        untangleOnRanks(mesh, false, options);
+        untangle(Mesh(mesh.view()), options, Ranks(mesh));
       }
       catch (const Error& error)
       {
@@ -147,7 +147,7 @@ void testMemory()
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_TEST(TestUntangleOnRanks)
+TAUTLINE_TEST(TestUntangleRanks)
 {
   TAUTLINE_RUN(testFailures());
   TAUTLINE_RUN(testNotFinite());

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "UntangleOnRanks.h"
+#include "UntangleRegions.h"
 
 #include "Untangle.h"
 #include "tautline/Core/Memory.h"
-#include "tautline/Core/Stopwatch.h"
 #include "tautline/Core/UnionFind.h"
 
 #include <algorithm>
@@ -175,91 +174,72 @@ std::vector<std::vector<Index>> connectedParts(const Region& region)
   return result;
 }
 
-/**
- * @class RankUntangler
- * @brief The state of a run.
- */
-class RankUntangler
+/// The state of a run; the result has the points.
+class RegionUntangler
 {
 public:
-  RankUntangler(DistributedMesh& mesh, bool mirrored, const UntangleOptions& options);
-  RankUntangleResult run();
+  RegionUntangler(const Mesh& mesh, const UntangleOptions& options, const Ranks& ranks,
+    UntangleProgress& progress, std::vector<signed char>& validity, UntangleResult& result);
+  void run();
 
 private:
-  Index examine();
   bool fitsWhole();
   void untangleWithin(int width);
   void listNear(const std::vector<unsigned char>& near, std::vector<RegionPoint>& points,
     std::vector<Index>& cells) const;
   Region gather(int width);
-  void solve(const Region& region, int width);
+  double solve(const Region& region, int width);
   void note(const std::vector<std::vector<Index>>& lists, int width);
   void take(const std::vector<RegionPoint>& moved);
-  void listInvalid(std::vector<Index>& lists, std::vector<Vec3>& centers) const;
+  std::vector<Index> numbersOf(Index cell) const;
+  void findObstacles();
   void listRemaining();
-  bool report();
-  bool outOfTime() { return this->Group.any(this->Clock.reached(this->Options.maximumSeconds)); }
 
-  DistributedMesh& TheMesh;
-  RankGroup& Group;
-  bool Mirrored;
+  const Mesh& Local;
+  const MeshView& View;
   const UntangleOptions& Options;
-  Stopwatch Clock;
+  const Ranks& TheRanks;
+  DistributedMesh& Spread;
+  RankGroup& Group;
+  UntangleProgress& Progress;
+  UntangleResult& Result;
+  std::vector<signed char>& Validity; ///< of the local cells
+  const std::vector<signed char> Before;
   std::vector<unsigned char> Fixed;
-  std::vector<double> Points;
-  std::vector<signed char> Validity; ///< of the local cells
   std::map<std::vector<Index>, Obstacle> Obstacles;
-  double Objective = 0;
-  bool Stopped = false;
-  RankUntangleResult Result;
 };
 
 //------------------------------------------------------------------------------
-RankUntangler::RankUntangler(DistributedMesh& mesh, bool mirrored, const UntangleOptions& options)
-  : TheMesh(mesh)
-  , Group(mesh.group())
-  , Mirrored(mirrored)
+RegionUntangler::RegionUntangler(const Mesh& mesh, const UntangleOptions& options,
+  const Ranks& ranks, UntangleProgress& progress, std::vector<signed char>& validity,
+  UntangleResult& result)
+  : Local(mesh)
+  , View(mesh.view())
   , Options(options)
+  , TheRanks(ranks)
+  , Spread(ranks.mesh())
+  , Group(ranks.mesh().group())
+  , Progress(progress)
+  , Result(result)
+  , Validity(validity)
+  , Before(validity)
 {
-  this->Fixed.assign(options.fixed, options.fixed + mesh.localPoints());
-  this->Points = mesh.points();
-  mesh.exchange(this->Fixed.data());
-}
-
-//------------------------------------------------------------------------------
-/// Validity of the local cells; the number of invalid cells of the whole mesh.
-Index RankUntangler::examine()
-{
-  const MeshView& local = this->TheMesh.view();
-  Index count = 0;
-  this->Validity.assign(local.numberOfCells, Valid);
-  if (local.numberOfCells > 0)
-  {
-    MeshView view = local;
-    view.points = this->Points.data();
-    Mesh moved(view, this->Options.threads);
-    moved.setMirrored(this->Mirrored);
-    moved.classifyCells(this->Validity.data(), this->Options.threads);
-  }
-  for (Index cell = 0; cell < local.numberOfCells; ++cell)
-  {
-    count += this->TheMesh.ownedCells()[cell] && isInvalid(this->Validity[cell]);
-  }
-  return this->Group.sum(count);
+  this->Fixed.assign(options.fixed, options.fixed + this->View.numberOfPoints);
+  this->Spread.exchange(this->Fixed.data());
 }
 
 //------------------------------------------------------------------------------
 /// The owned cells with a free point that is marked: type, number of points, their numbers; and
 /// their points.
-void RankUntangler::listNear(const std::vector<unsigned char>& near,
+void RegionUntangler::listNear(const std::vector<unsigned char>& near,
   std::vector<RegionPoint>& points, std::vector<Index>& cells) const
 {
-  const MeshView& view = this->TheMesh.view();
+  const MeshView& view = this->View;
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     const Index* begin = view.connectivity + view.offsets[cell];
     const Index* end = view.connectivity + view.offsets[cell + 1];
-    if (!this->TheMesh.ownedCells()[cell] ||
+    if (!this->TheRanks.ownsCell(cell) ||
       !std::any_of(begin, end, [&](Index p) { return near[p] && !this->Fixed[p]; }))
     {
       continue;
@@ -268,9 +248,9 @@ void RankUntangler::listNear(const std::vector<unsigned char>& near,
     cells.push_back(end - begin);
     for (const Index* p = begin; p != end; ++p)
     {
-      cells.push_back(this->TheMesh.numbers()[*p]);
+      cells.push_back(this->Spread.numbers()[*p]);
       RegionPoint point = { cells.back(), { 0, 0, 0 }, near[*p] && !this->Fixed[*p] };
-      std::copy_n(&this->Points[3 * *p], 3, point.x);
+      std::copy_n(&this->Result.points[3 * *p], 3, point.x);
       points.push_back(point);
     }
   }
@@ -281,9 +261,9 @@ void RankUntangler::listNear(const std::vector<unsigned char>& near,
 /// The cells with a point within `width` cells of an invalid one that can be repaired, on all
 /// ranks; all cells if width is negative, on the first rank: they are one part as a rule, and each
 /// copy takes as much memory as the whole mesh.
-Region RankUntangler::gather(int width)
+Region RegionUntangler::gather(int width)
 {
-  const MeshView& view = this->TheMesh.view();
+  const MeshView& view = this->View;
   std::vector<unsigned char> near, next;
   const auto mark = [&](auto wanted)
   {
@@ -298,9 +278,9 @@ Region RankUntangler::gather(int width)
       }
     }
     near.swap(next);
-    this->TheMesh.exchange(near.data());
+    this->Spread.exchange(near.data());
   };
-  near.assign(this->TheMesh.localPoints(), width < 0);
+  near.assign(view.numberOfPoints, width < 0);
   mark(
     [&](Index cell, const Index* begin, const Index* end)
     {
@@ -328,14 +308,13 @@ Region RankUntangler::gather(int width)
   };
   const auto allPoints = collect(points);
   const auto allCells = collect(cells);
-  Region region;
-  region = makeRegion(allPoints, allCells);
-  return region;
+  return makeRegion(allPoints, allCells);
 }
 
 //------------------------------------------------------------------------------
 /// Untangles the parts of a region, each on one rank: those of the whole mesh on the first one.
-void RankUntangler::solve(const Region& region, int width)
+/// Returns the sum of their objectives.
+double RegionUntangler::solve(const Region& region, int width)
 {
   std::vector<RegionPoint> moved;
   std::vector<Index> obstacles; // of elements: the obstacle, how many points, their numbers
@@ -347,17 +326,13 @@ void RankUntangler::solve(const Region& region, int width)
   {
     const Part part = makePart(region, parts[i]);
     Mesh mesh(part.view(), this->Options.threads);
-    mesh.setMirrored(this->Mirrored);
+    mesh.setMirrored(this->Local.mirrored());
     UntangleOptions options;
     options.method = this->Options.method;
     options.effort = this->Options.effort;
     options.fixed = part.fixed.data();
     options.threads = this->Options.threads;
-    if (this->Options.maximumSeconds > 0)
-    {
-      options.maximumSeconds = std::max(
-        std::numeric_limits<double>::min(), this->Options.maximumSeconds - this->Clock.seconds());
-    }
+    options.maximumSeconds = this->Progress.secondsLeft();
     const UntangleResult result = tautline::untangle(mesh, options);
     objectives.push_back(result.history.empty() ? 0.0 : result.history.back().objective);
     for (std::size_t p = 0; p < part.pointOf.size(); ++p)
@@ -380,18 +355,18 @@ void RankUntangler::solve(const Region& region, int width)
       }
     }
   }
-  this->Objective = this->Group.orderlessSum(objectives);
+  const double objective = this->Group.orderlessSum(objectives);
   for (const auto& list : this->Group.gatherItems(moved))
   {
     this->take(list);
   }
-  const auto found = this->Group.gatherItems(obstacles);
-  this->note(found, width);
+  this->note(this->Group.gatherItems(obstacles), width);
+  return objective;
 }
 
 //------------------------------------------------------------------------------
 /// @param lists by ranks, of elements: the obstacle, how many points, their numbers
-void RankUntangler::note(const std::vector<std::vector<Index>>& lists, int width)
+void RegionUntangler::note(const std::vector<std::vector<Index>>& lists, int width)
 {
   for (const std::vector<Index>& list : lists)
   {
@@ -407,43 +382,24 @@ void RankUntangler::note(const std::vector<std::vector<Index>>& lists, int width
 }
 
 //------------------------------------------------------------------------------
-void RankUntangler::take(const std::vector<RegionPoint>& moved)
+void RegionUntangler::take(const std::vector<RegionPoint>& moved)
 {
-  const std::vector<Index>& numbers = this->TheMesh.numbers();
   for (const RegionPoint& point : moved)
   {
-    const auto at = std::lower_bound(numbers.begin(), numbers.end(), point.number);
-    if (at != numbers.end() && *at == point.number)
+    const Index p = this->Spread.local(point.number);
+    if (p >= 0)
     {
-      std::copy_n(point.x, 3, &this->Points[3 * (at - numbers.begin())]);
+      std::copy_n(point.x, 3, &this->Result.points[3 * p]);
     }
   }
 }
 
 //------------------------------------------------------------------------------
-/// Adds a record; false if an observer stops the run.
-bool RankUntangler::report()
-{
-  IterationRecord record;
-  record.iteration = static_cast<int>(this->Result.result.history.size());
-  record.seconds = this->Clock.seconds();
-  record.objective = this->Objective;
-  record.inverted = this->Result.result.invertedAfter;
-  this->Result.result.history.push_back(record);
-  constexpr double stages = 3.0;
-  const auto points = [&](double* to) { std::copy(this->Points.begin(), this->Points.end(), to); };
-  bool proceed = true;
-  proceed = !this->Options.observer ||
-    this->Options.observer({ record, std::min(1.0, record.iteration / stages), points });
-  return !this->Group.any(!proceed);
-}
-
-//------------------------------------------------------------------------------
 /// Whether the whole mesh can be untangled on the first rank. Where it cannot, what was repaired
 /// before is kept; Error if nothing was.
-bool RankUntangler::fitsWhole()
+bool RegionUntangler::fitsWhole()
 {
-  const double bytes = bytesPerCell * static_cast<double>(this->TheMesh.globalCells());
+  const double bytes = bytesPerCell * static_cast<double>(this->Spread.globalCells());
   std::string lack;
   try
   {
@@ -457,7 +413,7 @@ bool RankUntangler::fitsWhole()
     lack = error.what();
   }
   this->Result.exceededMemory = this->Group.any(!lack.empty());
-  if (!lack.empty() && this->Result.result.invertedAfter == this->Result.result.invertedBefore)
+  if (!lack.empty() && this->Result.invertedAfter == this->Result.invertedBefore)
   {
     throw MemoryError(lack);
   }
@@ -465,167 +421,144 @@ bool RankUntangler::fitsWhole()
 }
 
 //------------------------------------------------------------------------------
-void RankUntangler::untangleWithin(int width)
+/// @param width of the rings; negative: the whole mesh
+void RegionUntangler::untangleWithin(int width)
 {
-  UntangleResult& result = this->Result.result;
+  UntangleResult& result = this->Result;
   if (width < 0 && !this->fitsWhole())
   {
     return;
   }
   const Index before = result.invertedAfter;
-  std::vector<double> kept;
-  std::vector<signed char> validity;
-  kept = this->Points;
-  validity = this->Validity;
-  const Region region = this->gather(width);
-  this->solve(region, width);
-  result.invertedAfter = this->examine();
+  std::vector<double> kept = result.points;
+  std::vector<signed char> validity = this->Validity;
+  const double objective = this->solve(this->gather(width), width);
+  this->Validity = this->Before;
+  this->Local.classifyMovedCells(
+    result.points.data(), this->Validity.data(), this->Options.threads);
+  result.invertedAfter = countInvalid(this->Validity, this->TheRanks);
   if (result.invertedAfter > before)
   {
-    this->Points.swap(kept);
+    result.points.swap(kept);
     this->Validity.swap(validity);
     result.invertedAfter = before;
   }
-  if (!this->report())
-  {
-    result.reason = StopReason::Aborted;
-    this->Stopped = true;
-  }
-  else if (result.invertedAfter > 0 && this->outOfTime())
-  {
-    result.reason = StopReason::TimeLimit;
-    this->Stopped = true;
-  }
+  constexpr double stages = 3.0;
+  this->Progress.record(result.invertedAfter, objective, this->Progress.iteration() / stages,
+    [&](double* to) { std::copy(result.points.begin(), result.points.end(), to); });
 }
 
 //------------------------------------------------------------------------------
-/// The owned invalid elements: the obstacle, the type, how many points, their numbers; and their
-/// centers.
-void RankUntangler::listInvalid(std::vector<Index>& lists, std::vector<Vec3>& centers) const
+/// The numbers of the points of a cell in increasing order.
+std::vector<Index> RegionUntangler::numbersOf(Index cell) const
 {
-  const MeshView& view = this->TheMesh.view();
-  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  std::vector<Index> sorted;
+  for (Index n = this->View.offsets[cell]; n < this->View.offsets[cell + 1]; ++n)
   {
-    if (!this->TheMesh.ownedCells()[cell] || !isInvalid(this->Validity[cell]))
+    sorted.push_back(this->Spread.numbers()[this->View.connectivity[n]]);
+  }
+  std::sort(sorted.begin(), sorted.end());
+  return sorted;
+}
+
+//------------------------------------------------------------------------------
+/// Of the local cells.
+void RegionUntangler::findObstacles()
+{
+  for (Index cell = 0; cell < this->View.numberOfCells; ++cell)
+  {
+    if (isInvalid(this->Validity[cell]))
     {
-      continue;
+      const auto found = this->Obstacles.find(this->numbersOf(cell));
+      const bool allFixed = std::all_of(this->View.connectivity + this->View.offsets[cell],
+        this->View.connectivity + this->View.offsets[cell + 1],
+        [&](Index p) { return this->Fixed[p] != 0; });
+      this->Result.obstacles[cell] = static_cast<signed char>(allFixed ? Obstacle::FixedElement
+          : found == this->Obstacles.end()                             ? Obstacle::Unknown
+                                                                       : found->second);
     }
-    std::vector<Index> sorted;
-    bool allFixed = true;
-    Vec3 center = { 0, 0, 0 };
-    const Index begin = view.offsets[cell], end = view.offsets[cell + 1];
-    for (Index n = begin; n < end; ++n)
-    {
-      const Index p = view.connectivity[n];
-      sorted.push_back(this->TheMesh.numbers()[p]);
-      allFixed = allFixed && this->Fixed[p];
-      const double share = 1.0 / static_cast<double>(end - begin);
-      center +=
-        share * Vec3{ this->Points[3 * p], this->Points[3 * p + 1], this->Points[3 * p + 2] };
-    }
-    std::sort(sorted.begin(), sorted.end());
-    const auto found = this->Obstacles.find(sorted);
-    const Obstacle obstacle = allFixed ? Obstacle::FixedElement
-      : found == this->Obstacles.end() ? Obstacle::Unknown
-                                       : found->second;
-    lists.insert(lists.end(),
-      { static_cast<Index>(obstacle), static_cast<Index>(view.cellTypes[cell]), end - begin });
-    lists.insert(lists.end(), sorted.begin(), sorted.end());
-    centers.push_back(center);
   }
 }
 
 //------------------------------------------------------------------------------
 /// The invalid elements of the whole mesh with their obstacles.
-void RankUntangler::listRemaining()
+void RegionUntangler::listRemaining()
 {
-  std::vector<Index> lists;
-  std::vector<Vec3> centers;
-  this->listInvalid(lists, centers);
-  const auto allCenters = this->Group.gatherItems(centers);
-  const auto allLists = this->Group.gatherItems(lists);
-  for (std::size_t rank = 0; rank < allLists.size(); ++rank)
+  std::vector<Index> numbers; // of each element: how many points, their numbers
+  std::vector<TangledElement> elements;
+  for (Index cell = 0; cell < this->View.numberOfCells; ++cell)
   {
-    const std::vector<Index>& list = allLists[rank];
-    for (std::size_t i = 0, k = 0; i < list.size(); i += 3 + list[i + 2], ++k)
+    if (!this->TheRanks.ownsCell(cell) || !isInvalid(this->Validity[cell]))
     {
-      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 3;
-      const auto obstacle = static_cast<Obstacle>(list[i]);
-      this->Result.remaining[{ begin, begin + list[i + 2] }] = { obstacle,
-        static_cast<unsigned char>(list[i + 1]), allCenters[rank][k] };
+      continue;
     }
+    const std::vector<Index> sorted = this->numbersOf(cell);
+    numbers.push_back(static_cast<Index>(sorted.size()));
+    numbers.insert(numbers.end(), sorted.begin(), sorted.end());
+    TangledElement element;
+    element.obstacle = static_cast<Obstacle>(this->Result.obstacles[cell]);
+    const double part = 1.0 / static_cast<double>(sorted.size());
+    for (Index n = this->View.offsets[cell]; n < this->View.offsets[cell + 1]; ++n)
+    {
+      const double* x = &this->Result.points[3 * this->View.connectivity[n]];
+      element.center += part * Vec3{ x[0], x[1], x[2] };
+    }
+    elements.push_back(element);
+  }
+  const std::vector<Index> allNumbers = this->Group.gatherJoined(numbers);
+  auto next = allNumbers.begin();
+  for (const TangledElement& element : this->Group.gatherJoined(elements))
+  {
+    const auto begin = next + 1;
+    next = begin + *next;
+    this->Result.remaining[{ begin, next }] = element;
   }
   for (const auto& element : this->Result.remaining)
   {
-    this->Result.result.impossible += element.second.obstacle == Obstacle::FixedElement ||
+    this->Result.impossible += element.second.obstacle == Obstacle::FixedElement ||
       element.second.obstacle == Obstacle::FixedNeighbours;
   }
 }
 
 //------------------------------------------------------------------------------
-RankUntangleResult RankUntangler::run()
+void RegionUntangler::run()
 {
-  UntangleResult& result = this->Result.result;
-  result.points = this->Points;
-  result.invertedBefore = result.invertedAfter = this->examine();
-  const std::vector<signed char> before = this->Validity;
+  UntangleResult& result = this->Result;
   Index free = 0;
-  for (Index p = 0; p < this->TheMesh.localPoints(); ++p)
+  for (Index p = 0; p < this->View.numberOfPoints; ++p)
   {
-    free += this->TheMesh.owned(p) && !this->Fixed[p];
+    free += this->TheRanks.owns(p) && !this->Fixed[p];
   }
-  free = this->Group.sum(free);
-  if (result.invertedBefore > 0 && free > 0)
+  if (this->TheRanks.sum(free) == 0)
+  {
+    result.reason = StopReason::NoFreeVertices;
+  }
+  else if (result.invertedBefore > 0)
   {
     const bool whole = this->Options.method == UntangleMethod::Simultaneous;
-    result.reason = StopReason::NoProgress;
     for (const int width : widths)
     {
-      if (!whole && !this->Stopped && result.invertedAfter > 0)
+      if (!whole && !this->Progress.stopped() && result.invertedAfter > 0)
       {
         this->untangleWithin(width);
       }
     }
-    if (!this->Stopped && result.invertedAfter > 0 &&
+    if (!this->Progress.stopped() && result.invertedAfter > 0 &&
       (whole || this->Options.effort != Effort::Local))
     {
       this->untangleWithin(-1);
     }
-    this->TheMesh.exchange(this->Points.data(), 3);
-    result.points = this->Points;
+    this->TheRanks.exchange(result.points.data(), 3);
   }
-  else
-  {
-    result.reason = result.invertedBefore == 0 ? StopReason::AllValid : StopReason::NoFreeVertices;
-  }
-  result.reason = result.invertedAfter == 0 ? StopReason::AllValid : result.reason;
-  Index newly = 0;
-  for (std::size_t cell = 0; cell < before.size(); ++cell)
-  {
-    newly +=
-      this->TheMesh.ownedCells()[cell] && before[cell] == Valid && isInvalid(this->Validity[cell]);
-  }
-  result.newlyInvalid = this->Group.sum(newly);
+  this->findObstacles();
   this->listRemaining();
-  return this->Result;
 }
 }
 
 //------------------------------------------------------------------------------
-RankUntangleResult untangleOnRanks(
-  DistributedMesh& mesh, bool mirrored, const UntangleOptions& options)
+void untangleRegions(const Mesh& mesh, const UntangleOptions& options, const Ranks& ranks,
+  UntangleProgress& progress, std::vector<signed char>& validity, UntangleResult& result)
 {
-  RankUntangleResult result;
-  mesh.group().together(
-    [&]
-    {
-      if (!options.fixed && mesh.localPoints() > 0)
-      {
-        throw Error(
-          "The fixed points of a mesh on several ranks must be given, see rankBoundary().");
-      }
-      result = RankUntangler(mesh, mirrored, options).run();
-    });
-  return result;
+  RegionUntangler(mesh, options, ranks, progress, validity, result).run();
 }
 }
