@@ -257,8 +257,7 @@ std::string MeshAdapter::orient(signed char* validity, const RankOrder& found, s
 RankOrder MeshAdapter::findOrder(signed char* validity) const
 {
   SingleRank alone;
-  return consistentOrderOnRanks(
-    alone, { { this->TheMesh.get(), this->Ghosts, nullptr } }, { validity });
+  return consistentOrder(alone, { { this->TheMesh.get(), this->Ghosts, nullptr } }, { validity });
 }
 
 //------------------------------------------------------------------------------

@@ -82,7 +82,7 @@ public:
    * @param piece the number of this piece in `found`
    */
   std::string orient(signed char* validity, const RankOrder& found, std::size_t piece = 0);
-  /// What consistentOrderOnRanks() finds of this mesh alone.
+  /// What consistentOrder() finds of this mesh alone.
   RankOrder findOrder(signed char* validity) const;
   /// Lists the cells with nonzero flags (one per cell) in the opposite order in mesh().
   void reverseCells(const std::vector<unsigned char>& flags);

@@ -280,7 +280,7 @@ void RankMesh::checkOrder()
     pieces.push_back({ mesh.get(), copies.data(), this->TheMesh->numbers().data() });
     validities.push_back(validity.data());
   }
-  const Orientation found = orientationOnRanks(this->Group, pieces, validities);
+  const Orientation found = orientation(this->Group, pieces, validities);
   // As on one process: a mesh with more inverted elements than others is not reversed by that.
   this->Mirrored = found.state == Orientation::Reversed;
   this->InvertedElements = this->Mirrored ? found.positiveCells : found.negativeCells;

@@ -134,7 +134,8 @@ PointFlags PieceWarp::chosenToMove()
   BoundaryParts parts;
   if (choice.part == MovedPart::Inner || choice.part == MovedPart::Numbered)
   {
-    parts = boundaryPartsOnRanks(this->local());
+    DistributedMesh& mesh = this->local();
+    parts = boundaryParts(Mesh(mesh.view()), Ranks(mesh));
   }
   choice.parts = [&parts]() -> const BoundaryParts& { return parts; };
   if (!byPiece)

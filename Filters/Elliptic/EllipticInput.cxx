@@ -315,12 +315,12 @@ void EllipticInput::settleOrientation(RankGroup& processes, int threads)
     // As a part of the whole mesh: its plane, and the order of its cells.
     this->Group = makeProcessGroup();
     RankPiece part = { &this->piece(), this->skipped(), this->Local.globalIds.data() };
-    const MeshSpace whole = spaceOnRanks(*this->Group, { part });
+    const MeshSpace whole = spaceOf(*this->Group, { part });
     this->Adapter->mesh().setSpace(whole);
     validity.resize(static_cast<std::size_t>(this->piece().view().numberOfCells));
     this->piece().classifyCells(validity.data(), threads);
     part.ghosts = this->Adapter->ghostCells();
-    RankOrder order = consistentOrderOnRanks(*this->Group, { part }, { validity.data() });
+    RankOrder order = consistentOrder(*this->Group, { part }, { validity.data() });
     requireOrder(order, whole.dimension);
     text = this->Adapter->orient(validity.data(), order);
   }

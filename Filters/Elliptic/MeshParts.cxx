@@ -7,7 +7,7 @@
 #include "ProcessGroup.h"
 #include "SeamlessPieces.h"
 
-#include "tautline/Mesh/BlocksOnRanks.h"
+#include "tautline/Mesh/BlockPieces.h"
 
 #include "vtkBoundingBox.h"
 #include "vtkCellData.h"
@@ -458,7 +458,7 @@ std::vector<std::size_t> connectedOnAll(const std::vector<Group>& groups, RankGr
       pieces.push_back({ parts.back(), number, false });
     }
   }
-  const MeshSpace whole = spaceOnRanks(*group, parts);
+  const MeshSpace whole = spaceOf(*group, parts);
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
     Mesh& mesh = adapters[i]->mesh();

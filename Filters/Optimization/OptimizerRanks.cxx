@@ -293,8 +293,9 @@ PointOptions pointOptions(const tautline::OptimizerSettings& settings, tautline:
   }
   if (settings.boundary == tautline::BoundaryMotion::Sliding)
   {
+    const tautline::Mesh local(mesh.mesh().view(), settings.options.threads);
     result.shape =
-      tautline::boundaryShapeOnRanks(mesh.mesh(), settings.flatAngle, settings.options.threads);
+      tautline::boundaryShape(local, settings.flatAngle, 0.0, tautline::Ranks(mesh.mesh()));
     for (std::size_t p = 0; p < result.fixed.size(); ++p)
     {
       result.fixed[p] |= result.shape.fixed[p];

@@ -81,7 +81,7 @@ void PieceOrientations::findMesh(
       ids[i].empty() ? nullptr : ids[i].data() });
     this->Pieces[data[i]] = { &whole, i };
   }
-  whole.space = spaceOnRanks(group, pieces);
+  whole.space = spaceOf(group, pieces);
   const bool lacking =
     group.any(std::any_of(ids.begin(), ids.end(), [](const auto& list) { return list.empty(); }));
   std::vector<std::vector<signed char>> validity(count);
@@ -96,7 +96,7 @@ void PieceOrientations::findMesh(
     pieces[i].ghosts = adapters[i]->ghostCells();
     pieces[i].globalIds = lacking ? nullptr : pieces[i].globalIds;
   }
-  whole.order = consistentOrderOnRanks(group, pieces, validities);
+  whole.order = consistentOrder(group, pieces, validities);
   std::vector<PieceFindings> findings;
   const bool reversed = whole.order.order.reversed > 0;
   for (std::size_t i = 0; i < count; ++i)

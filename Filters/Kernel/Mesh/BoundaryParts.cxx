@@ -2,11 +2,9 @@
 #include "BoundaryParts.h"
 
 #include "FacetTable.h"
-#include "Ranks.h"
 
 #include <algorithm>
 #include <limits>
-#include <map>
 
 namespace tautline
 {
@@ -30,76 +28,11 @@ struct Box
 
 struct Part
 {
-  Index root;
+  Index set;
   double size;
 };
-}
 
-//------------------------------------------------------------------------------
-BoundaryParts boundaryParts(const Mesh& mesh)
-{
-  const MeshView& view = mesh.view();
-  BoundaryParts result;
-  result.part.assign(view.numberOfPoints, 0);
-  // Parts are points joined by boundary facets; components of the mesh, those joined by any facet.
-  UnionFind facets(view.numberOfPoints), pieces(view.numberOfPoints);
-  std::vector<char> onBoundary(view.numberOfPoints, 0);
-  FacetTable table(mesh);
-  table.forEachFacet(
-    [&](Index first, const FacetUse* use, Index count)
-    {
-      for (Index other : use->others)
-      {
-        if (other >= 0)
-        {
-          pieces.join(first, other);
-        }
-        if (other >= 0 && count == 1)
-        {
-          facets.join(first, other);
-          onBoundary[first] = onBoundary[other] = 1;
-        }
-      }
-    });
-
-  // Parts are numbered by the diagonal of their boxes, the largest first.
-  std::map<Index, Box> boxes;
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    if (onBoundary[p])
-    {
-      boxes[facets.find(p)].add(pointOf(view, p));
-    }
-  }
-  std::vector<Part> parts;
-  for (const auto& [root, box] : boxes)
-  {
-    parts.push_back({ root, box.diagonal() });
-  }
-  std::stable_sort(
-    parts.begin(), parts.end(), [](const Part& a, const Part& b) { return a.size > b.size; });
-
-  // The first part of a component is its outer one.
-  std::map<Index, int> number;
-  std::map<Index, bool> seen; // components of the mesh whose largest part has been met
-  for (const Part& part : parts)
-  {
-    number[part.root] = ++result.parts;
-    bool& met = seen[pieces.find(part.root)];
-    result.outer.push_back(!met);
-    met = true;
-  }
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    result.part[p] = onBoundary[p] ? number[facets.find(p)] : 0;
-  }
-  return result;
-}
-
-//------------------------------------------------------------------------------
-namespace
-{
-/// The boxes of the parts on all ranks: replaced, the same everywhere.
+/// Replaces the boxes of the parts by those of all ranks.
 void uniteBoxes(RankGroup& group, std::vector<Box>& boxes)
 {
   for (const std::vector<Box>& list : group.gatherItems(boxes))
@@ -117,61 +50,61 @@ void uniteBoxes(RankGroup& group, std::vector<Box>& boxes)
 }
 
 //------------------------------------------------------------------------------
-BoundaryParts boundaryPartsOnRanks(DistributedMesh& mesh)
+BoundaryParts boundaryParts(const Mesh& mesh, const Ranks& ranks)
 {
-  RankGroup& group = mesh.group();
   const MeshView& view = mesh.view();
-  const Index n = mesh.localPoints();
+  const Index n = view.numberOfPoints;
+  // Parts are points joined by boundary facets; components of the mesh, those joined by any facet.
   UnionFind facets(n), pieces(n);
   std::vector<unsigned char> onBoundary(n, 0), used(n, 0);
-  if (view.numberOfCells > 0)
-  {
-    const Mesh local(view);
-    FacetTable table(local);
-    table.forEachFacet(
-      [&](Index first, const FacetUse* use, Index count)
+  FacetTable(mesh).forEachFacet(
+    [&](Index first, const FacetUse* use, Index count)
+    {
+      // All cells are here only of the facets at an own point.
+      bool own = ranks.owns(first);
+      for (const Index other : use->others)
       {
-        // Only of the facets at an own point all cells are here.
-        bool own = mesh.owned(first);
-        for (const Index other : use->others)
+        own = own || (other >= 0 && ranks.owns(other));
+      }
+      for (const Index other : use->others)
+      {
+        if (other >= 0)
         {
-          own = own || (other >= 0 && mesh.owned(other));
+          pieces.join(first, other);
+          used[first] = used[other] = 1;
         }
-        for (const Index other : use->others)
+        if (other >= 0 && count == 1 && own)
         {
-          if (other >= 0)
-          {
-            pieces.join(first, other);
-            used[first] = used[other] = 1;
-          }
-          if (other >= 0 && count == 1 && own)
-          {
-            facets.join(first, other);
-            onBoundary[first] = onBoundary[other] = 1;
-          }
+          facets.join(first, other);
+          onBoundary[first] = onBoundary[other] = 1;
         }
-      });
-  }
+      }
+    });
   Index count = 0, components = 0;
-  const Ranks ranks(mesh, mesh.numbers(), nullptr);
   const std::vector<Index> setOf = ranks.numberSets(facets, onBoundary, count);
   const std::vector<Index> componentOf = ranks.numberSets(pieces, used, components);
   std::vector<Box> boxes(count);
   std::vector<Index> componentOfSet(count, 0);
   for (Index p = 0; p < n; ++p)
   {
-    if (setOf[p] >= 0 && mesh.owned(p))
+    if (setOf[p] >= 0 && ranks.owns(p))
     {
       boxes[setOf[p]].add(pointOf(view, p));
       componentOfSet[setOf[p]] = componentOf[p];
     }
   }
-  uniteBoxes(group, boxes);
-  for (const std::vector<Index>& list : group.gatherItems(componentOfSet))
+  if (ranks.several())
   {
-    std::transform(list.begin(), list.end(), componentOfSet.begin(), componentOfSet.begin(),
-      [](Index a, Index b) { return std::max(a, b); });
+    RankGroup& group = ranks.mesh().group();
+    uniteBoxes(group, boxes);
+    for (const std::vector<Index>& list : group.gatherItems(componentOfSet))
+    {
+      std::transform(list.begin(), list.end(), componentOfSet.begin(), componentOfSet.begin(),
+        [](Index a, Index b) { return std::max(a, b); });
+    }
   }
+
+  // Parts are numbered by the diagonal of their boxes, the largest first.
   std::vector<Part> parts;
   for (Index set = 0; set < count; ++set)
   {
@@ -184,8 +117,8 @@ BoundaryParts boundaryPartsOnRanks(DistributedMesh& mesh)
   std::vector<double> number(count, 0.0);
   for (const Part& part : parts)
   {
-    number[part.root] = ++result.parts;
-    char& met = seen[componentOfSet[part.root]];
+    number[part.set] = ++result.parts;
+    char& met = seen[componentOfSet[part.set]];
     result.outer.push_back(!met);
     met = 1;
   }
@@ -194,7 +127,7 @@ BoundaryParts boundaryPartsOnRanks(DistributedMesh& mesh)
   {
     local[p] = setOf[p] >= 0 ? number[setOf[p]] : 0.0;
   }
-  mesh.exchange(local.data(), 1);
+  ranks.exchange(local.data(), 1);
   result.part.assign(local.begin(), local.end());
   return result;
 }

@@ -6,7 +6,7 @@
 #ifndef tautline_BoundaryParts_h
 #define tautline_BoundaryParts_h
 
-#include "DistributedMesh.h"
+#include "Ranks.h"
 
 namespace tautline
 {
@@ -24,11 +24,8 @@ struct BoundaryParts
 /**
  * @brief Parts are connected by the facets (edges of 2D cells, faces of 3D cells) that one cell
  * uses. Of two of the same size the one with the smallest point number is first. Cells of lower
- * dimension than others do not count.
+ * dimension than others do not count. On several ranks, which is collective, per local point.
  */
-TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryParts(const Mesh& mesh);
-
-/// The same of a mesh on several ranks, per local point. Collective.
-TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryPartsOnRanks(DistributedMesh& mesh);
+TAUTLINE_KERNEL_EXPORT BoundaryParts boundaryParts(const Mesh& mesh, const Ranks& ranks = {});
 }
 #endif

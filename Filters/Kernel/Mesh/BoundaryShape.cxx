@@ -2,13 +2,10 @@
 #include "BoundaryShape.h"
 
 #include "FacetTable.h"
-#include "Ranks.h"
-#include "tautline/Core/UnionFind.h"
 
 #include <cmath>
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <string>
 
 namespace tautline
@@ -357,7 +354,8 @@ void ShapeFinder::holdBent(const std::vector<unsigned char>& bent, const std::ve
 }
 
 //------------------------------------------------------------------------------
-BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle, double featureAngle)
+BoundaryShape boundaryShape(
+  const Mesh& mesh, double flatAngle, double featureAngle, const Ranks& ranks)
 {
   if (!(flatAngle >= 0 && flatAngle <= 90))
   {
@@ -369,69 +367,42 @@ BoundaryShape boundaryShape(const Mesh& mesh, double flatAngle, double featureAn
     throw Error("The angle from which on an edge of the boundary is sharp is " +
       std::to_string(featureAngle) + " degrees; it must be between 0 and 180.");
   }
-  ShapeFinder finder(mesh, flatAngle, featureAngle);
-  UnionFind sets = finder.joined([](const Index*, int) { return true; });
   const Index points = mesh.view().numberOfPoints;
-  std::vector<Index> part(points, -1);
-  std::vector<DirectionBox> boxes;
-  for (Index i = 0; i < points; ++i)
-  {
-    if (const Vec3 d = finder.directionOf(i); norm(d) > 0)
-    {
-      // The smallest member of a set comes first.
-      const Index first = sets.find(i);
-      part[i] = first == i ? static_cast<Index>(boxes.size()) : part[first];
-      boxes.resize(std::max(boxes.size(), static_cast<std::size_t>(part[i]) + 1));
-      boxes[part[i]].add(d);
-    }
-  }
-  finder.holdBent(finder.bent(), part, boxes);
-  return finder.shape();
-}
-
-//------------------------------------------------------------------------------
-BoundaryShape boundaryShapeOnRanks(DistributedMesh& mesh, double flatAngle, int threads)
-{
-  RankGroup& group = mesh.group();
-  const Index points = mesh.localPoints();
-  std::unique_ptr<Mesh> local;
-  std::unique_ptr<ShapeFinder> finder;
-  std::vector<unsigned char> bent;
-  local = std::make_unique<Mesh>(mesh.view(), threads);
-  finder = std::make_unique<ShapeFinder>(*local, flatAngle, 0.0);
-  bent = finder->bent();
+  ShapeFinder finder(mesh, flatAngle, featureAngle);
   // Of the points that this rank owns all facets are here; the others are as their owners say.
-  BoundaryShape& shape = finder->shape();
-  mesh.exchange(shape.fixed.data());
-  mesh.exchange(shape.planes.data(), 3);
-  mesh.exchange(shape.lines.data(), 3);
-  UnionFind sets = finder->joined([&](const Index* nodes, int size)
-    { return std::any_of(nodes, nodes + size, [&](Index node) { return mesh.owned(node); }); });
+  BoundaryShape& shape = finder.shape();
+  ranks.exchange(shape.fixed.data());
+  ranks.exchange(shape.planes.data(), 3);
+  ranks.exchange(shape.lines.data(), 3);
+  UnionFind sets = finder.joined([&](const Index* nodes, int size)
+    { return std::any_of(nodes, nodes + size, [&](Index node) { return ranks.owns(node); }); });
   std::vector<unsigned char> slides(points, 0);
   for (Index i = 0; i < points; ++i)
   {
-    slides[i] = norm(finder->directionOf(i)) > 0;
+    slides[i] = norm(finder.directionOf(i)) > 0;
   }
   Index count = 0;
-  const Ranks ranks(mesh, mesh.numbers(), nullptr);
   const std::vector<Index> part = ranks.numberSets(sets, slides, count);
   std::vector<DirectionBox> boxes(count);
   for (Index i = 0; i < points; ++i)
   {
-    if (part[i] >= 0 && mesh.owned(i))
+    if (part[i] >= 0 && ranks.owns(i))
     {
-      boxes[part[i]].add(finder->directionOf(i));
+      boxes[part[i]].add(finder.directionOf(i));
     }
   }
-  for (const std::vector<DirectionBox>& list : group.gatherItems(boxes))
+  if (ranks.several())
   {
-    for (std::size_t k = 0; k < list.size(); ++k)
+    for (const std::vector<DirectionBox>& list : ranks.mesh().group().gatherItems(boxes))
     {
-      boxes[k].add(list[k].low, list[k].high);
+      for (std::size_t k = 0; k < list.size(); ++k)
+      {
+        boxes[k].add(list[k].low, list[k].high);
+      }
     }
   }
-  finder->holdBent(bent, part, boxes);
-  mesh.exchange(shape.fixed.data());
+  finder.holdBent(finder.bent(), part, boxes);
+  ranks.exchange(shape.fixed.data());
   return shape;
 }
 }

@@ -6,12 +6,10 @@
 #ifndef tautline_BoundaryShape_h
 #define tautline_BoundaryShape_h
 
-#include "Mesh.h"
+#include "Ranks.h"
 
 namespace tautline
 {
-class DistributedMesh;
-
 /// What each point of the boundary may do; made by boundaryShape().
 struct BoundaryShape
 {
@@ -41,15 +39,11 @@ struct BoundaryShape
  *
  * Connected points that slide in planes (lines) which differ by more than flatAngle in all are on a
  * curved part, such as a fine circle: those of them where it bends do not slide so.
+ *
+ * On several ranks, which is collective, without a feature angle; of local points that others own,
+ * `fixed` is the owner's, planes and lines may lack.
  */
 TAUTLINE_KERNEL_EXPORT BoundaryShape boundaryShape(
-  const Mesh& mesh, double flatAngle, double featureAngle = 0);
-
-/**
- * @brief The same of a mesh on several ranks, without a feature angle. Collective. Of local points
- * that others own, `fixed` is the owner's, planes and lines may lack.
- */
-TAUTLINE_KERNEL_EXPORT BoundaryShape boundaryShapeOnRanks(
-  DistributedMesh& mesh, double flatAngle, int threads = 0);
+  const Mesh& mesh, double flatAngle, double featureAngle = 0, const Ranks& ranks = {});
 }
 #endif

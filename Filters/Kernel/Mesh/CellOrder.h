@@ -37,7 +37,7 @@ struct CellOrder
  */
 TAUTLINE_KERNEL_EXPORT CellOrder consistentOrder(const Mesh& mesh, const signed char* validity);
 
-/// The order of the cells of a mesh in pieces on ranks; found by consistentOrderOnRanks().
+/// The order of the cells of a mesh in pieces on ranks; found by consistentOrder().
 struct RankOrder
 {
   Orientation orientation; ///< of the whole mesh
@@ -48,7 +48,7 @@ struct RankOrder
 };
 
 /**
- * @brief Mesh::orientation() and consistentOrder() of the whole mesh. Collective.
+ * @brief The orientation and the order of a mesh in pieces. Collective.
  *
  * Points of different pieces, or of one, are one as RankPiece has it where they make two boundary
  * facets one. Two cells that walk round such a facet in one sense are neighbours in opposite orders
@@ -62,7 +62,7 @@ struct RankOrder
  * @param pieces with Mesh::setSpace() of the whole
  * @param validity as Mesh::classifyCells() gives it, of each piece
  */
-TAUTLINE_KERNEL_EXPORT RankOrder consistentOrderOnRanks(RankGroup& group,
+TAUTLINE_KERNEL_EXPORT RankOrder consistentOrder(RankGroup& group,
   const std::vector<RankPiece>& pieces, const std::vector<const signed char*>& validity);
 
 /// Lists the corners of a cell in the order of its mirror image. Throws Error for

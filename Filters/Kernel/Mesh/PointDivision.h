@@ -7,20 +7,25 @@
 #define tautline_PointDivision_h
 
 #include "tautline/Core/RankGroup.h"
-#include "tautline/Core/VectorAlgebra.h"
-
-#include <vector>
+#include "tautline/Core/BisectionTree.h"
 
 namespace tautline
 {
+/// The axes. Places with the same coordinate along one are told apart by their others.
+struct AxisFrame
+{
+  bool before(int direction, const Vec3& a, const Vec3& b) const;
+  double extent(
+    int direction, std::vector<Vec3>::iterator from, std::vector<Vec3>::iterator to) const;
+};
+
 /**
  * @class tautline::PointDivision
- * @brief A tree of planes across the longest extents (recursive bisection), such that all ranks get
- * about as many of the points: within a few percent, as a sample decides.
+ * @brief A tree of planes such that all ranks get about as many of the points: within a few
+ * percent, as a sample decides.
  *
  * All ranks have the same tree, and a place is in one part, whichever ranks have points there.
- * Points with the same
- * coordinate across a plane are told apart by their others, so regular grids are divided as evenly.
+ * Regular grids are divided as evenly.
  */
 class TAUTLINE_KERNEL_EXPORT PointDivision
 {
@@ -29,19 +34,10 @@ public:
   PointDivision(RankGroup& group, const std::vector<Vec3>& points);
 
   /// The rank of a place.
-  int find(const Vec3& x) const;
+  int find(const Vec3& x) const { return this->Tree.find(x); }
 
 private:
-  struct Node
-  {
-    int rank = 0, direction = 0;
-    Vec3 place = { 0, 0, 0 };         ///< the first one above
-    std::size_t below = 0, above = 0; ///< 0: a leaf
-  };
-  using Iterator = std::vector<Vec3>::iterator;
-  std::size_t split(int first, int end, Iterator from, Iterator to);
-
-  std::vector<Node> Nodes;
+  BisectionTree<AxisFrame> Tree;
 };
 }
 #endif

@@ -31,8 +31,7 @@ struct RankPiece
  * A piece of a surface in space may be flat, and one of a volume mesh may have triangles only: with
  * Mesh::setSpace() it is measured as a part of the whole.
  */
-TAUTLINE_KERNEL_EXPORT MeshSpace spaceOnRanks(
-  RankGroup& group, const std::vector<RankPiece>& pieces);
+TAUTLINE_KERNEL_EXPORT MeshSpace spaceOf(RankGroup& group, const std::vector<RankPiece>& pieces);
 
 /**
  * @brief Mesh::orientation() of the whole mesh. Collective.
@@ -47,7 +46,7 @@ TAUTLINE_KERNEL_EXPORT MeshSpace spaceOnRanks(
  * @param pieces with Mesh::setSpace() of the whole
  * @param validity as Mesh::classifyCells() gives it, of each piece
  */
-TAUTLINE_KERNEL_EXPORT Orientation orientationOnRanks(RankGroup& group,
+TAUTLINE_KERNEL_EXPORT Orientation orientation(RankGroup& group,
   const std::vector<RankPiece>& pieces, const std::vector<const signed char*>& validity);
 }
 #endif

@@ -30,7 +30,7 @@ struct SharedFacet
 
 /// The items of a list of points, filed under ranks.
 template <class Item, class Get>
-RankLists<Item> filed(const RankOrder& order, const Get& get)
+RankLists<Item> filed(const ItemsByRank& order, const Get& get)
 {
   RankLists<Item> lists;
   lists.counts = order.counts;
@@ -102,7 +102,7 @@ std::vector<int> PointNumbering::Implementation::findOwners(
   {
     target[i] = directoryRank(ids[i], this->Ranks);
   }
-  const RankOrder order(target, this->Ranks);
+  const ItemsByRank order(target, this->Ranks);
   const RankLists<Index> asked =
     exchange(this->Comm, filed<Index>(order, [&](Index i) { return ids[i]; }));
   std::vector<Entry> entries;
@@ -228,7 +228,7 @@ void PointNumbering::Implementation::shareRows(
       sharedOwner.push_back(owners[i]);
     }
   }
-  const RankOrder order(sharedOwner, this->Ranks);
+  const ItemsByRank order(sharedOwner, this->Ranks);
   this->Lent = filed<Index>(order, [&](Index k) { return points[shared[k]]; });
   const RankLists<Index> asked =
     exchange(this->Comm, filed<Index>(order, [&](Index k) { return ids[shared[k]]; }));
@@ -381,7 +381,7 @@ std::vector<int> cellsOnAllRanks(MPI_Comm comm, int ranks, const std::vector<Sha
   {
     target.push_back(directoryRank(facet.ids.back(), ranks));
   }
-  const RankOrder order(target, ranks);
+  const ItemsByRank order(target, ranks);
   const RankLists<SharedFacet> asked =
     exchange(comm, filed<SharedFacet>(order, [&](Index i) { return facets[i]; }));
   // Equal facets stand together in this order.

@@ -53,12 +53,12 @@ struct RankLists
 };
 
 /// The order that files items 0 to n - 1 under their ranks, and how many each rank has.
-struct RankOrder
+struct ItemsByRank
 {
   std::vector<Index> order;
   std::vector<int> counts;
 
-  RankOrder(const std::vector<int>& rankOfItem, int ranks)
+  ItemsByRank(const std::vector<int>& rankOfItem, int ranks)
     : order(rankOfItem.size())
     , counts(ranks, 0)
   {

@@ -106,7 +106,7 @@ void testOrientation(const char* name, const MeshData& whole, Orientation::State
   forEachCut(whole,
     [&](RankGroup& group, const RankPart& part, class Mesh& own, const RankPiece& piece)
     {
-      const MeshSpace space = spaceOnRanks(group, { piece });
+      const MeshSpace space = spaceOf(group, { piece });
       TAUTLINE_CHECK_EQUAL(static_cast<int>(space.dimension), static_cast<int>(mesh.dimension()));
       TAUTLINE_CHECK(norm(space.normal - mesh.normal()) < 1e-12);
       TAUTLINE_CHECK(norm(space.frame[0] - mesh.frame()[0]) < 1e-12);
@@ -116,8 +116,8 @@ void testOrientation(const char* name, const MeshData& whole, Orientation::State
       {
         TAUTLINE_CHECK_EQUAL(here[cell], validity[part.cellOf[cell]]);
       }
-      checkOrientation(orientationOnRanks(group, { piece }, { here.data() }), one);
-      const RankOrder ordered = consistentOrderOnRanks(group, { piece }, { here.data() });
+      checkOrientation(orientation(group, { piece }, { here.data() }), one);
+      const RankOrder ordered = consistentOrder(group, { piece }, { here.data() });
       checkOrientation(ordered.orientation, one);
       if (one.state == Orientation::Mixed)
       {
@@ -163,7 +163,7 @@ void testOverlap(CellType type)
   TAUTLINE_CHECK(std::count(validity.begin(), validity.end(), Inverted) > 0);
   SingleRank alone;
   const RankOrder found =
-    consistentOrderOnRanks(alone, { { &mesh, nullptr, nullptr } }, { validity.data() });
+    consistentOrder(alone, { { &mesh, nullptr, nullptr } }, { validity.data() });
   TAUTLINE_CHECK_EQUAL(found.orientation.state, Orientation::Consistent);
   TAUTLINE_CHECK_EQUAL(found.orientation.disagreeing, 0);
 }

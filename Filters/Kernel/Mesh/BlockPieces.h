@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file BlocksOnRanks.h
+ * @file BlockPieces.h
  * @brief Which blocks in pieces on several ranks have a seam between them. Internal: not installed.
  */
-#ifndef tautline_BlocksOnRanks_h
-#define tautline_BlocksOnRanks_h
+#ifndef tautline_BlockPieces_h
+#define tautline_BlockPieces_h
 
 #include "RankPieces.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The orders of the cells of a mesh in pieces on ranks, and its orientation.
+// The orders of the cells of a mesh, also of one in pieces on ranks, and its orientation.
 #include "CellOrder.h"
 #include "SeamFacets.h"
 #include "tautline/Core/UnionFind.h"
@@ -104,7 +104,8 @@ public:
   {
   }
 
-  void find(const Vec3& origin);
+  /// @param facets whether to list those on the boundary
+  void find(const Vec3& origin, bool facets);
   std::vector<std::vector<unsigned char>> reverse(const std::vector<Turn>& turns) const;
 
   std::vector<PiecePart> Parts;
@@ -112,7 +113,7 @@ public:
   Index Disagreeing = 0;
 
 private:
-  void addPiece(std::size_t number, const Vec3& origin);
+  void addPiece(std::size_t number, const Vec3& origin, bool facets);
   void flagGhosts(const RankPiece& piece, std::vector<unsigned char>& flags) const;
 
   const std::vector<RankPiece>& Pieces;
@@ -124,16 +125,16 @@ private:
 };
 
 //------------------------------------------------------------------------------
-void PieceOrders::find(const Vec3& origin)
+void PieceOrders::find(const Vec3& origin, bool facets)
 {
   for (std::size_t i = 0; i < this->Pieces.size(); ++i)
   {
-    this->addPiece(i, origin);
+    this->addPiece(i, origin, facets);
   }
 }
 
 //------------------------------------------------------------------------------
-void PieceOrders::addPiece(std::size_t number, const Vec3& origin)
+void PieceOrders::addPiece(std::size_t number, const Vec3& origin, bool facets)
 {
   const RankPiece& piece = this->Pieces[number];
   const Mesh& mesh = *piece.mesh;
@@ -155,7 +156,7 @@ void PieceOrders::addPiece(std::size_t number, const Vec3& origin)
           this->Disagreeing += !agree;
           sets.join(uses[0].cell, uses[1].cell, agree);
         }
-        else if (count == 1)
+        else if (count == 1 && facets)
         {
           open.push_back({ smallest, uses[0] });
         }
@@ -428,24 +429,18 @@ std::vector<std::vector<Item>> onFirst(RankGroup& group, const std::vector<Item>
   return group.exchangeItems(sent);
 }
 
-/// The order of the whole mesh. Two cells on one side of a facet are neighbours in opposite orders;
-/// with `overlapping`, they may be cells that overlap instead.
-RankOrder orderOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
-  const std::vector<const signed char*>& validity, bool overlapping)
+/// What orderOf() looks for.
+enum class Search
 {
-  RankOrder result;
-  Orientation& found = result.orientation;
-  bool haveSigns = true, mirrored = false;
-  int dimension = 0;
-  for (const RankPiece& piece : pieces)
-  {
-    haveSigns = haveSigns && piece.mesh->dimension() != Dimension::Surface;
-    mirrored = mirrored || piece.mesh->mirrored();
-    dimension = std::max(dimension, piece.mesh->dimension() == Dimension::Volume ? 3 : 2);
-  }
-  haveSigns = !group.any(!haveSigns);
-  mirrored = group.any(mirrored);
-  dimension = static_cast<int>(group.maximum(static_cast<Index>(dimension)));
+  Orientation,    ///< two cells on one side of a facet are neighbours in opposite orders
+  OrderOnceMixed, ///< they may be cells that overlap instead; the order only of a mixed mesh
+  Order           ///< as Orientation; the order of any mesh
+};
+
+/// The valid and inverted cells of the whole mesh's dimension, without ghosts.
+void countSigns(const std::vector<RankPiece>& pieces,
+  const std::vector<const signed char*>& validity, int dimension, Orientation& found)
+{
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
     for (const CellBlock& block : pieces[i].mesh->blocks())
@@ -459,82 +454,171 @@ RankOrder orderOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
       }
     }
   }
-  found.positiveCells = group.sum(found.positiveCells);
-  found.negativeCells = group.sum(found.negativeCells);
-  if (haveSigns && (found.negativeCells == 0 || found.positiveCells == 0))
-  {
-    found.state = found.negativeCells > 0 ? Orientation::Reversed : Orientation::Consistent;
-    return result;
-  }
+}
 
-  // Signs differ (a tangled or a mixed mesh), or there are none (a surface): compare neighbours.
-  const Vec3 origin = commonOrigin(group, pieces);
-  PieceOrders own(pieces, validity, dimension, haveSigns);
+/// Adds what other ranks have found to the parts of one, and decides on the first rank.
+/// @param turns of the parts of this rank
+OrderTotals decideTogether(RankGroup& group, const PieceOrders& own, bool haveSigns,
+  bool overlapping, double sign, std::vector<Turn>& turns)
+{
   std::vector<std::vector<OrderFacet>> sent(group.size());
-  own.find(origin);
   for (const OrderFacet& facet : own.Facets)
   {
     sent[homeOf(facet.hash, group)].push_back(facet);
   }
   std::vector<Index> firsts = { 0 };
-  for (const auto& count : group.gatherItems(std::vector<std::size_t>{ own.Parts.size() }))
+  for (const std::size_t count : group.gatherJoined(std::vector<std::size_t>{ own.Parts.size() }))
   {
-    firsts.push_back(firsts.back() + static_cast<Index>(count[0]));
+    firsts.push_back(firsts.back() + static_cast<Index>(count));
   }
-  const std::vector<std::vector<OrderFacet>> received = group.exchangeItems(sent);
-  std::vector<PartPair> pairs;
-  pairs = pairsAt(received, firsts, haveSigns && overlapping);
+  std::vector<PartPair> pairs =
+    pairsAt(group.exchangeItems(sent), firsts, haveSigns && overlapping);
   unitePairs(pairs);
   const Index disagreeing = group.sum(own.Disagreeing);
   const auto allParts = onFirst(group, own.Parts);
   const auto allPairs = onFirst(group, pairs);
-  std::vector<std::vector<Turn>> turns(group.size());
+  std::vector<std::vector<Turn>> turnsOf(group.size());
   std::vector<OrderTotals> totals;
   if (group.rank() == 0)
   {
     std::vector<PartPair> merged = joined(allPairs);
     unitePairs(merged);
     std::vector<Turn> all;
-    totals.push_back(
-      decide(joined(allParts), merged, haveSigns, mirrored ? -1.0 : 1.0, disagreeing, all));
+    totals.push_back(decide(joined(allParts), merged, haveSigns, sign, disagreeing, all));
     for (int rank = 0; rank < group.size(); ++rank)
     {
-      turns[rank].assign(all.begin() + firsts[rank], all.begin() + firsts[rank + 1]);
+      turnsOf[rank].assign(all.begin() + firsts[rank], all.begin() + firsts[rank + 1]);
     }
   }
-  const OrderTotals all = group.gatherItems(totals)[0][0];
-  const std::vector<Turn> ownTurns = group.exchangeItems(turns)[0];
+  const OrderTotals all = group.gatherJoined(totals)[0];
+  turns = group.exchangeItems(turnsOf)[0];
+  return all;
+}
+
+/// The order of the whole mesh.
+/// @param group null: of one piece, whose points at the same place are not one
+RankOrder orderOf(RankGroup* group, const std::vector<RankPiece>& pieces,
+  const std::vector<const signed char*>& validity, Search search)
+{
+  RankOrder result;
+  Orientation& found = result.orientation;
+  bool haveSigns = true, mirrored = false;
+  int dimension = 0;
+  for (const RankPiece& piece : pieces)
+  {
+    haveSigns = haveSigns && piece.mesh->dimension() != Dimension::Surface;
+    mirrored = mirrored || piece.mesh->mirrored();
+    dimension = std::max(dimension, piece.mesh->dimension() == Dimension::Volume ? 3 : 2);
+  }
+  if (group)
+  {
+    haveSigns = group->everywhere(haveSigns);
+    mirrored = group->any(mirrored);
+    dimension = static_cast<int>(group->maximum(static_cast<Index>(dimension)));
+  }
+  countSigns(pieces, validity, dimension, found);
+  if (group)
+  {
+    found.positiveCells = group->sum(found.positiveCells);
+    found.negativeCells = group->sum(found.negativeCells);
+  }
+  const bool settled = haveSigns && (found.negativeCells == 0 || found.positiveCells == 0);
+  if (settled)
+  {
+    found.state = found.negativeCells > 0 ? Orientation::Reversed : Orientation::Consistent;
+  }
+  if (settled && search != Search::Order)
+  {
+    return result;
+  }
+
+  // Signs differ (a tangled or a mixed mesh), or there are none (a surface): compare neighbours.
+  const double sign = mirrored ? -1.0 : 1.0;
+  PieceOrders own(pieces, validity, dimension, haveSigns);
+  own.find(
+    group ? commonOrigin(*group, pieces) : finitePoint(pieces[0].mesh->view()), group != nullptr);
+  std::vector<Turn> turns;
+  const OrderTotals all = group
+    ? decideTogether(*group, own, haveSigns, search == Search::OrderOnceMixed, sign, turns)
+    : decide(own.Parts, {}, haveSigns, sign, own.Disagreeing, turns);
   found.disagreeing = all.disagreeing;
   found.parts = all.parts;
   found.reversedParts = all.reversedParts;
   if (found.disagreeing > 0 || (found.reversedParts > 0 && found.reversedParts < found.parts))
   {
     found.state = Orientation::Mixed;
-    result.order.reversed = all.reversed;
-    result.order.cells = all.cells;
-    result.order.ambiguous = all.ambiguous;
-    result.order.firstAmbiguous = group.size() == 1 ? all.firstAmbiguous : -1;
-    result.reverse = own.reverse(ownTurns);
   }
   else if (found.reversedParts > 0)
   {
     found.state = Orientation::Reversed;
+  }
+  if (search == Search::Order ||
+    (search == Search::OrderOnceMixed && found.state == Orientation::Mixed))
+  {
+    result.order.reversed = all.reversed;
+    result.order.cells = all.cells;
+    result.order.ambiguous = all.ambiguous;
+    result.order.firstAmbiguous = !group || group->size() == 1 ? all.firstAmbiguous : -1;
+    result.reverse = own.reverse(turns);
   }
   return result;
 }
 }
 
 //------------------------------------------------------------------------------
-RankOrder consistentOrderOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
-  const std::vector<const signed char*>& validity)
+Orientation Mesh::orientation(const signed char* validity) const
 {
-  return orderOnRanks(group, pieces, validity, true);
+  return orderOf(nullptr, { { this, nullptr, nullptr } }, { validity }, Search::Orientation)
+    .orientation;
 }
 
 //------------------------------------------------------------------------------
-Orientation orientationOnRanks(RankGroup& group, const std::vector<RankPiece>& pieces,
+Orientation orientation(RankGroup& group, const std::vector<RankPiece>& pieces,
   const std::vector<const signed char*>& validity)
 {
-  return orderOnRanks(group, pieces, validity, false).orientation;
+  return orderOf(&group, pieces, validity, Search::Orientation).orientation;
+}
+
+//------------------------------------------------------------------------------
+CellOrder consistentOrder(const Mesh& mesh, const signed char* validity)
+{
+  RankOrder found = orderOf(nullptr, { { &mesh, nullptr, nullptr } }, { validity }, Search::Order);
+  if (found.order.reversed > 0)
+  {
+    found.order.reverse = std::move(found.reverse[0]);
+  }
+  return found.order;
+}
+
+//------------------------------------------------------------------------------
+RankOrder consistentOrder(RankGroup& group, const std::vector<RankPiece>& pieces,
+  const std::vector<const signed char*>& validity)
+{
+  return orderOf(&group, pieces, validity, Search::OrderOnceMixed);
+}
+
+//------------------------------------------------------------------------------
+void reverseCell(CellType type, Index* nodes)
+{
+  switch (type)
+  {
+    case CellType::Triangle:
+    case CellType::Tetrahedron:
+      std::swap(nodes[1], nodes[2]);
+      return;
+    case CellType::Quadrilateral:
+    case CellType::Pyramid:
+      std::swap(nodes[1], nodes[3]);
+      return;
+    case CellType::Hexahedron:
+      std::swap_ranges(nodes, nodes + 4, nodes + 4);
+      return;
+    case CellType::Wedge:
+      std::swap_ranges(nodes, nodes + 3, nodes + 3);
+      return;
+    default:
+      throw Error("Only triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids can "
+                  "be listed in the opposite order.");
+  }
 }
 }

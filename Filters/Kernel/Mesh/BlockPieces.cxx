@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "BlocksOnRanks.h"
+#include "BlockPieces.h"
 
 #include "SeamFacets.h"
 #include "tautline/Core/UnionFind.h"

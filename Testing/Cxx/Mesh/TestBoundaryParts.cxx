@@ -71,7 +71,7 @@ void testCuts(const char* name, const MeshData& whole, int parts)
         {
           const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
           DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
-          const BoundaryParts found = boundaryPartsOnRanks(mesh);
+          const BoundaryParts found = boundaryParts(Mesh(mesh.view()), Ranks(mesh));
           TAUTLINE_CHECK_EQUAL(found.parts, one.parts);
           TAUTLINE_CHECK_EQUAL(found.outer.size(), one.outer.size());
           // Parts of the same size may be in another order: each has one number of the other.
@@ -135,7 +135,7 @@ void testShape(CellType type)
         {
           const RankPart part = partOf(whole, group.rank(), rankOf, cut == Cut::Slabs);
           DistributedMesh mesh(group, { part.data.view(), nullptr, part.ghosts.data() });
-          const BoundaryShape found = boundaryShapeOnRanks(mesh, 1);
+          const BoundaryShape found = boundaryShape(Mesh(mesh.view()), 1, 0, Ranks(mesh));
           for (std::size_t p = 0; p < part.pointOf.size(); ++p)
           {
             const Index here = mesh.localOfPiece()[p], there = part.pointOf[p];
@@ -149,7 +149,7 @@ void testShape(CellType type)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_TEST(TestBoundaryPartsOnRanks)
+TAUTLINE_TEST(TestBoundaryParts)
 {
   TAUTLINE_RUN(testCuts("triangles", holed(CellType::Triangle, 3), 6));
   TAUTLINE_RUN(testCuts("quadrilaterals", holed(CellType::Quadrilateral, 2), 3));
