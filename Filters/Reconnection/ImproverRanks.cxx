@@ -11,7 +11,7 @@
 #include "RankMesh.h"
 #include "ReconnectablePiece.h"
 #include "TableRows.h"
-#include "tautline/Reconnection/ReconnectOnRanks.h"
+#include "tautline/Reconnection/ReconnectionRounds.h"
 
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
@@ -137,7 +137,7 @@ void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkData
   constexpr double onlyBlock = 0.0, blocks = 1.0;
   this->PrepareOptions(options, onlyBlock, blocks);
   const tautline::RankReconnection result =
-    tautline::improveOnRanks(group, std::move(piece.mesh), options, this->Rounds);
+    tautline::improveConnectivity(group, std::move(piece.mesh), options, this->Rounds);
   const tautline::ImprovedCells cells =
     tautline::writePiece(group, piece, result, this->Threads, vtkPointSet::SafeDownCast(output));
   this->ReportOnRanks(result, cells, options.targetAngle, history, remaining);

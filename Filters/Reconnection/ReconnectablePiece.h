@@ -7,7 +7,7 @@
 #define tautline_ReconnectablePiece_h
 
 #include "CellKinds.h"
-#include "tautline/Reconnection/ReconnectOnRanks.h"
+#include "tautline/Reconnection/ReconnectionRounds.h"
 
 #include <string>
 #include <vector>

@@ -55,7 +55,7 @@
  * A mesh of at least GatherBelow tetrahedra, of which not only the first process has some, is
  * improved in parts: planes divide it among the processes, each improves its part up to the seams,
  * and then planes in other directions divide it anew, so that no facet stays because it was on a
- * seam but for a few where the seams of all Rounds meet (tautline/Reconnection/ReconnectOnRanks.h).
+ * seam but for a few where the seams of all Rounds meet (Kernel/Reconnection/ReconnectionRounds.h).
  * The result depends on the number of processes, but not on how the mesh was cut, to the order of
  * points and cells. Ghost cells are left out as copies. A cell goes to the process that has its
  * original one; `OriginalCellId` counts through the cells of the pieces, one process after the

@@ -22,17 +22,9 @@ namespace tautline
  */
 class CuttingFrame
 {
-private:
-  auto before(int k) const
-  {
-    return [this, k](const Vec3& a, const Vec3& b)
-    { return this->along(k, a) < this->along(k, b); };
-  }
-
 public:
   /// How many frames there are.
   static constexpr int count = 3;
-  using Iterator = std::vector<Vec3>::iterator;
 
   /// @param frame 0 to count - 1; 0 is that of the axes
   explicit CuttingFrame(int frame)
@@ -49,27 +41,18 @@ public:
   /// Where a place is along a direction.
   double along(int direction, const Vec3& x) const { return dot(this->Directions[direction], x); }
 
-  /// The direction in which places extend the farthest. There must be some.
-  int longest(Iterator from, Iterator to) const
+  bool before(int direction, const Vec3& a, const Vec3& b) const
   {
-    double farthest = -1.0;
-    int direction = 0;
-    for (int k = 0; k < 3; ++k)
-    {
-      const auto ends = std::minmax_element(from, to, this->before(k));
-      const double extent = this->along(k, *ends.second - *ends.first);
-      direction = extent > farthest ? k : direction;
-      farthest = std::max(extent, farthest);
-    }
-    return direction;
+    return this->along(direction, a) < this->along(direction, b);
   }
 
-  /// Puts the places that are nearer along a direction than that at `middle` before it, and returns
-  /// where that is.
-  double cut(int direction, Iterator from, Iterator middle, Iterator to) const
+  /// How far places extend along a direction. There must be some.
+  double extent(
+    int direction, std::vector<Vec3>::iterator from, std::vector<Vec3>::iterator to) const
   {
-    std::nth_element(from, middle, to, this->before(direction));
-    return this->along(direction, *middle);
+    const auto ends = std::minmax_element(
+      from, to, [&](const Vec3& a, const Vec3& b) { return this->before(direction, a, b); });
+    return this->along(direction, *ends.second - *ends.first);
   }
 
 private:

@@ -3,6 +3,7 @@
 
 #include "CuttingFrames.h"
 #include "tautline/Core/Parallel.h"
+#include "tautline/Core/BisectionTree.h"
 
 #include <limits>
 #include <numeric>
@@ -19,69 +20,19 @@ Vec3 sumOfVertices(const TetrahedronMesh& mesh, TetId t)
   const TetVertices& v = mesh.tet(t).vertices;
   return mesh.point(v[0]) + mesh.point(v[1]) + mesh.point(v[2]) + mesh.point(v[3]);
 }
-
-/// A tree of planes: the children of node i are 2 i + 1 (below the plane) and 2 i + 2.
-class PlaneTree
-{
-public:
-  PlaneTree(const TetrahedronMesh& mesh, int frame, int levels)
-    : Frame(frame)
-    , Nodes((std::size_t(1) << levels) - 1)
-    , Levels(levels)
-  {
-    std::vector<Vec3> sample;
-    for (TetId t = 0; t < mesh.slots(); t += SampleStep)
-    {
-      if (mesh.alive(t))
-      {
-        sample.push_back(sumOfVertices(mesh, t));
-      }
-    }
-    this->split(0, sample.begin(), sample.end());
-  }
-
-  std::uint8_t find(const Vec3& x) const
-  {
-    std::size_t node = 0;
-    for (int level = 0; level < this->Levels; ++level)
-    {
-      const Node& n = this->Nodes[node];
-      node = 2 * node + (this->Frame.along(n.direction, x) < n.position ? 1 : 2);
-    }
-    return static_cast<std::uint8_t>(node - this->Nodes.size());
-  }
-
-private:
-  struct Node
-  {
-    int direction = 0;
-    double position = 0;
-  };
-  using Iterator = CuttingFrame::Iterator;
-
-  void split(std::size_t node, Iterator begin, Iterator end)
-  {
-    if (node >= this->Nodes.size() || begin == end)
-    {
-      return;
-    }
-    Node& n = this->Nodes[node];
-    n.direction = this->Frame.longest(begin, end);
-    const Iterator middle = begin + (end - begin) / 2;
-    n.position = this->Frame.cut(n.direction, begin, middle, end);
-    this->split(2 * node + 1, begin, middle);
-    this->split(2 * node + 2, middle, end);
-  }
-
-  CuttingFrame Frame;
-  std::vector<Node> Nodes;
-  int Levels;
-};
 }
 
 std::vector<std::uint8_t> partition(const TetrahedronMesh& mesh, int frame, int levels, int threads)
 {
-  const PlaneTree tree(mesh, frame, levels);
+  std::vector<Vec3> sample;
+  for (TetId t = 0; t < mesh.slots(); t += SampleStep)
+  {
+    if (mesh.alive(t))
+    {
+      sample.push_back(sumOfVertices(mesh, t));
+    }
+  }
+  const BisectionTree<CuttingFrame> tree(CuttingFrame(frame), sample, 1 << levels);
   std::vector<std::uint8_t> blocks(mesh.slots(), 0);
   forEachChunk(mesh.slots(), threads,
     [&](Index, Index begin, Index end)
@@ -89,7 +40,8 @@ std::vector<std::uint8_t> partition(const TetrahedronMesh& mesh, int frame, int 
       for (Index t = begin; t < end; ++t)
       {
         const TetId id = static_cast<TetId>(t);
-        blocks[t] = mesh.alive(id) ? tree.find(sumOfVertices(mesh, id)) : 0;
+        blocks[t] =
+          static_cast<std::uint8_t>(mesh.alive(id) ? tree.find(sumOfVertices(mesh, id)) : 0);
       }
     });
   return blocks;

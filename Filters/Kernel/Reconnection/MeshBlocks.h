@@ -17,7 +17,7 @@
 #ifndef tautline_MeshBlocks_h
 #define tautline_MeshBlocks_h
 
-#include "Schedule.h"
+#include "TetrahedronPasses.h"
 
 #include <memory>
 
@@ -32,7 +32,7 @@ namespace tautline
 std::vector<std::uint8_t> partition(
   const TetrahedronMesh& mesh, int frame, int levels, int threads);
 
-/// A block with the operations and the schedule for it.
+/// A block with the operations and the passes for it.
 class MeshBlock
 {
 public:
@@ -46,7 +46,7 @@ public:
 
   TetrahedronMesh& mesh() { return this->Mesh; }
   CavityOperations& operations() { return this->Operations; }
-  Schedule& schedule() { return this->Passes; }
+  TetrahedronPasses& passes() { return this->Passes; }
   /// The points of the whole mesh that the block has.
   const std::vector<PointId>& points() const { return this->Points; }
   /// For each of these, whether it is on a face between blocks.
@@ -74,7 +74,7 @@ private:
   std::vector<SharedFace> Faces;
   TetrahedronMesh Mesh;
   CavityOperations Operations;
-  Schedule Passes;
+  TetrahedronPasses Passes;
 };
 
 using MeshBlockList = std::vector<std::unique_ptr<MeshBlock>>;

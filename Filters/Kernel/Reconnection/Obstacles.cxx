@@ -25,7 +25,7 @@ bool isOwnWall(const TetrahedronMesh& mesh, TetId t, int i)
   return mesh.isWall(t, i) && (n == NoId || mesh.region(n >> 2) != OutsideRegion);
 }
 
-Walls findWalls(const TetrahedronMesh& mesh, const Schedule& schedule)
+Walls findWalls(const TetrahedronMesh& mesh, const TetrahedronPasses& passes)
 {
   Walls walls;
   walls.atSurface.assign(mesh.pointSlots(), 0);
@@ -58,7 +58,7 @@ Walls findWalls(const TetrahedronMesh& mesh, const Schedule& schedule)
     }
     if (own)
     {
-      walls.quality = std::min(walls.quality, schedule.bound(t));
+      walls.quality = std::min(walls.quality, passes.bound(t));
     }
   }
   return walls;
@@ -66,9 +66,9 @@ Walls findWalls(const TetrahedronMesh& mesh, const Schedule& schedule)
 
 /// The bound of a tetrahedron for each of its walls, and for all of them.
 double boundOf(
-  const TetrahedronMesh& mesh, const Schedule& schedule, TetId t, StarSmoothing& smoothing)
+  const TetrahedronMesh& mesh, const TetrahedronPasses& passes, TetId t, StarSmoothing& smoothing)
 {
-  double bound = schedule.bound(t);
+  double bound = passes.bound(t);
   for (int i = 0; i < 4; ++i)
   {
     if (isOwnWall(mesh, t, i))
@@ -83,12 +83,12 @@ double boundOf(
 }
 }
 
-void findObstacles(const TetrahedronMesh& mesh, const Schedule& schedule,
+void findObstacles(const TetrahedronMesh& mesh, const TetrahedronPasses& passes,
   const ReconnectionOptions& options, const std::vector<char>& fixedPoints,
   ReconnectionResult& result)
 {
   const double target = std::sin(options.targetAngle * (Pi / 180.0));
-  const Walls walls = findWalls(mesh, schedule);
+  const Walls walls = findWalls(mesh, passes);
   result.forcedQuality = walls.quality;
   result.forcedInverseMeanRatio = std::pow(walls.meanRatio, -2.0 / 3.0);
   StarSmoothing smoothing;
@@ -111,7 +111,7 @@ void findObstacles(const TetrahedronMesh& mesh, const Schedule& schedule,
     double bound = 1.0;
     if (quality < target)
     {
-      bound = boundOf(mesh, schedule, t, smoothing);
+      bound = boundOf(mesh, passes, t, smoothing);
       obstacle = bound <= quality * (1.0 + NearBound) ? Obstacle::Facets
         : any(fixedPoints)                            ? Obstacle::FixedPoints
         : any(walls.atInterface)                      ? Obstacle::Interface

@@ -8,7 +8,7 @@
 #define tautline_Obstacles_h
 
 #include "ReconnectionResult.h"
-#include "Schedule.h"
+#include "TetrahedronPasses.h"
 
 namespace tautline
 {
@@ -16,7 +16,7 @@ namespace tautline
  * @brief Sets the obstacles, qualities and bounds of the result, and what the walls force.
  * @param fixedPoints one flag per point of the input
  */
-void findObstacles(const TetrahedronMesh& mesh, const Schedule& schedule,
+void findObstacles(const TetrahedronMesh& mesh, const TetrahedronPasses& passes,
   const ReconnectionOptions& options, const std::vector<char>& fixedPoints,
   ReconnectionResult& result);
 }

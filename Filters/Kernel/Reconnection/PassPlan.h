@@ -7,7 +7,7 @@
 #define tautline_PassPlan_h
 
 #include "ReconnectionOptions.h"
-#include "Schedule.h"
+#include "TetrahedronPasses.h"
 
 #include <vector>
 

@@ -7,7 +7,7 @@
 #include "Obstacles.h"
 #include "PassPlan.h"
 #include "ReconnectionOutput.h"
-#include "Schedule.h"
+#include "TetrahedronPasses.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/LoopInterruption.h"
 #include "tautline/Core/Parallel.h"
@@ -214,7 +214,7 @@ public:
 
   void run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics,
     std::shared_ptr<const BoundarySurface> surface);
-  const Schedule& schedule() const { return this->Passes; }
+  const TetrahedronPasses& passes() const { return this->Passes; }
 
 private:
   bool record(int pass, double progress);
@@ -234,7 +234,7 @@ private:
   const ReconnectionOptions& Options;
   ReconnectionResult& Result;
   CavityOperations Operations;
-  Schedule Passes;
+  TetrahedronPasses Passes;
   Stopwatch Clock;
   double LastCall = 0, Progress = 0;
 };
@@ -457,16 +457,16 @@ bool Run::runBlocks(
   const auto runBlock = [&](Index b)
   {
     MeshBlock& block = *blocks[b];
-    Schedule& schedule = block.schedule();
-    schedule.proceed = proceed;
-    schedule.postponed = block.shared();
+    TetrahedronPasses& own = block.passes();
+    own.proceed = proceed;
+    own.postponed = block.shared();
     for (std::size_t i = 0; i < block.points().size(); ++i)
     {
       const PointId v = block.points()[i];
-      schedule.postponed[i] |= postponed(v);
+      own.postponed[i] |= postponed(v);
       if (!starts.empty())
       {
-        schedule.starts.push_back(starts[v]);
+        own.starts.push_back(starts[v]);
       }
     }
     try
@@ -477,10 +477,10 @@ bool Run::runBlocks(
           // Of the failures that a pass may have, the block has its share.
           const Index share = (pass.maxFailures * block.mesh().size()) / this->Mesh.size();
           pass.maxFailures = pass.maxFailures > 0 ? std::max<Index>(share, 1) : 0;
-          bool goesOn = !stop && schedule.run(pass) >= 0;
-          if (goesOn && schedule.exhausted())
+          bool goesOn = !stop && own.run(pass) >= 0;
+          if (goesOn && own.exhausted())
           {
-            goesOn = schedule.run(withoutCompound(pass)) >= 0;
+            goesOn = own.run(withoutCompound(pass)) >= 0;
           }
           return goesOn;
         });
@@ -651,7 +651,7 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
     result.meanBefore = meanRatioOf(changing, options.threads);
     run.run(freedoms, edgeMetrics(input, options), surface);
     result.meanAfter = meanRatioOf(changing, options.threads);
-    findObstacles(changing, run.schedule(), options, fixedPoints, result);
+    findObstacles(changing, run.passes(), options, fixedPoints, result);
   }
   if (metric)
   {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "RankParts.h"
+#include "TetrahedronPiece.h"
 
 #include "CuttingFrames.h"
-#include "tautline/Core/Interruption.h"
+#include "tautline/Core/BisectionTree.h"
 
 #include <algorithm>
 #include <iterator>
@@ -52,7 +52,7 @@ std::vector<Item> joined(std::vector<std::vector<Item>>&& lists)
 
 /// The points of cells. @param places those of the points of the part
 std::vector<PartPoint> pointsOf(
-  const MeshPart& part, const PointPlaces& places, const std::vector<PartCell>& cells)
+  const TetrahedronPiece& part, const PointPlaces& places, const std::vector<PartCell>& cells)
 {
   std::vector<Index> used;
   used.reserve(4 * cells.size());
@@ -111,79 +111,21 @@ std::uint64_t hashOf(const PartCell& cell)
   return hash;
 }
 
-/// Planes that divide a sample among ranks: a node has the ranks from first to end.
-class RankTree
+/// Planes that divide a sample among ranks.
+using RankTree = BisectionTree<CuttingFrame>;
+
+/// How near planes come to the centre of a ball: 0 at the radius or farther, the weight at it.
+double costOf(const RankTree& tree, const CuttingFrame& frame, const Ball& ball)
 {
-public:
-  RankTree(std::vector<Vec3>& sample, int ranks, int frame, double moved)
-    : Frame(frame)
-    , Moved(moved)
-  {
-    this->split(0, ranks, sample.begin(), sample.end());
-  }
-
-  int find(const Vec3& x) const
-  {
-    std::size_t node = 0;
-    while (this->Nodes[node].below > 0)
+  double nearest = ball.radius;
+  tree.find(ball.center,
+    [&](int direction, const Vec3& place)
     {
-      const Node& n = this->Nodes[node];
-      node = this->Frame.along(n.direction, x) < n.position ? n.below : n.above;
-    }
-    return this->Nodes[node].rank;
-  }
-
-  /// How near planes come to the centre of a ball: 0 at the radius or farther, the weight at it.
-  double cost(const Ball& ball) const
-  {
-    std::size_t node = 0;
-    double nearest = ball.radius;
-    while (this->Nodes[node].below > 0)
-    {
-      const Node& n = this->Nodes[node];
-      const double distance = this->Frame.along(n.direction, ball.center) - n.position;
+      const double distance = frame.along(direction, ball.center) - frame.along(direction, place);
       nearest = std::min(nearest, std::abs(distance));
-      node = distance < 0.0 ? n.below : n.above;
-    }
-    return ball.weight * (1.0 - nearest / ball.radius);
-  }
-
-private:
-  struct Node
-  {
-    int rank = 0, direction = 0;
-    double position = 0;
-    std::size_t below = 0, above = 0; ///< 0: a leaf
-  };
-  using Iterator = CuttingFrame::Iterator;
-
-  std::size_t split(int first, int end, Iterator from, Iterator to)
-  {
-    const std::size_t node = this->Nodes.size();
-    this->Nodes.emplace_back();
-    this->Nodes[node].rank = first;
-    if (end - first < 2 || from == to)
-    {
-      return node;
-    }
-    const int middle = first + (end - first) / 2;
-    const double share = static_cast<double>(middle - first) / (end - first) + this->Moved;
-    const Iterator at = from +
-      std::min(static_cast<std::ptrdiff_t>(share * static_cast<double>(to - from)), to - from - 1);
-    const int direction = this->Frame.longest(from, to);
-    this->Nodes[node].direction = direction;
-    this->Nodes[node].position = this->Frame.cut(direction, from, at, to);
-    const std::size_t below = this->split(first, middle, from, at);
-    const std::size_t above = this->split(middle, end, at, to);
-    this->Nodes[node].below = below;
-    this->Nodes[node].above = above;
-    return node;
-  }
-
-  CuttingFrame Frame;
-  double Moved;
-  std::vector<Node> Nodes;
-};
+    });
+  return ball.weight * (1.0 - nearest / ball.radius);
+}
 
 /// The planes of a round: of those in all directions but the last ones and at all places the ones
 /// that cost least. @param frame of the last round, -1 before the first one; gets that of this one
@@ -191,16 +133,17 @@ RankTree chooseTree(
   std::vector<Vec3> sample, int ranks, const std::vector<Ball>& inside, int& frame)
 {
   const auto treeOf = [&](int step, int direction)
-  { return RankTree(sample, ranks, direction, shiftOf(step)); };
-  const auto costOf = [&](const RankTree& tree)
+  { return RankTree(CuttingFrame(direction), sample, ranks, shiftOf(step)); };
+  const auto cost = [&](const RankTree& tree, int direction)
   {
+    const CuttingFrame directions(direction);
     return std::accumulate(inside.begin(), inside.end(), 0.0,
-      [&](double sum, const Ball& ball) { return sum + tree.cost(ball); });
+      [&](double sum, const Ball& ball) { return sum + costOf(tree, directions, ball); });
   };
   const int last = frame;
   frame = (last + 1) % CuttingFrame::count;
   RankTree best = treeOf(0, frame);
-  double least = costOf(best);
+  double least = cost(best, frame);
   const std::size_t affordable = MostSorted / std::max<std::size_t>(sample.size(), 1);
   std::size_t choices = 1;
   for (int step = 0; step < Shifts; ++step)
@@ -217,10 +160,10 @@ RankTree chooseTree(
         return best;
       }
       RankTree tree = treeOf(step, direction);
-      const double cost = costOf(tree);
-      if (cost < least)
+      const double found = cost(tree, direction);
+      if (found < least)
       {
-        least = cost;
+        least = found;
         best = std::move(tree);
         frame = direction;
       }
@@ -264,7 +207,7 @@ void throwIfAny(RankGroup& group, Index facets)
 }
 
 /// All facets of the cells of a part, in increasing order.
-std::vector<OuterFacet> sortedFacets(const MeshPart& part, Index rank)
+std::vector<OuterFacet> sortedFacets(const TetrahedronPiece& part, Index rank)
 {
   // Those with the same first point together, then in order among themselves.
   const PointPlaces places(part.points);
@@ -401,7 +344,7 @@ Index placeOf(const std::vector<PartPoint>& points, Index number)
   return std::lower_bound(points.begin(), points.end(), wanted, byNumber) - points.begin();
 }
 
-Vec3 centroidOf(const MeshPart& part, const PointPlaces& places, const PartCell& cell)
+Vec3 centroidOf(const TetrahedronPiece& part, const PointPlaces& places, const PartCell& cell)
 {
   Vec3 sum = { 0, 0, 0 };
   for (const Index number : sorted(cell.points)) // the same sum wherever the cell is
@@ -412,7 +355,7 @@ Vec3 centroidOf(const MeshPart& part, const PointPlaces& places, const PartCell&
 }
 
 //------------------------------------------------------------------------------
-void redistribute(RankGroup& group, const std::vector<int>& targets, MeshPart& part)
+void redistribute(RankGroup& group, const std::vector<int>& targets, TetrahedronPiece& part)
 {
   std::vector<std::vector<PartCell>> cells(group.size());
   std::vector<std::vector<PartPoint>> points(group.size());
@@ -451,7 +394,7 @@ void redistribute(RankGroup& group, const std::vector<int>& targets, MeshPart& p
 
 //------------------------------------------------------------------------------
 std::vector<int> divideAmongRanks(
-  RankGroup& group, const MeshPart& part, const std::vector<Ball>& inside, int& frame)
+  RankGroup& group, const TetrahedronPiece& part, const std::vector<Ball>& inside, int& frame)
 {
   const Index all = group.sum(static_cast<Index>(part.cells.size()));
   const Index step = std::max<Index>(1, all / (SamplesOfRank * group.size()));
@@ -467,8 +410,8 @@ std::vector<int> divideAmongRanks(
       own.push_back(centroids.back());
     }
   }
-  std::vector<Vec3> sample = joined(group.gatherItems(own));
-  const std::vector<Ball> balls = joined(group.gatherItems(inside));
+  std::vector<Vec3> sample = group.gatherJoined(own);
+  const std::vector<Ball> balls = group.gatherJoined(inside);
   std::vector<int> targets;
   const RankTree tree = chooseTree(std::move(sample), group.size(), balls, frame);
   targets.reserve(centroids.size());
@@ -479,7 +422,7 @@ std::vector<int> divideAmongRanks(
 
 //------------------------------------------------------------------------------
 PartSurroundings surroundingsOf(
-  RankGroup& group, const MeshPart& part, const std::vector<std::array<Index, 3>>& marked)
+  RankGroup& group, const TetrahedronPiece& part, const std::vector<std::array<Index, 3>>& marked)
 {
   const auto isMarked = [&marked](const Facet& facet)
   { return std::binary_search(marked.begin(), marked.end(), facet); };

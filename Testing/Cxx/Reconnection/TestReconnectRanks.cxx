@@ -4,7 +4,7 @@
 #include "Reconnecting.h"
 #include "ThreadRanks.h"
 
-#include "tautline/Reconnection/ReconnectOnRanks.h"
+#include "tautline/Reconnection/ReconnectionRounds.h"
 
 #include <atomic>
 
@@ -61,7 +61,7 @@ Joined reconnectOnRanks(
       {
         mesh.markedFacets.push_back(given.marked[i]);
       }
-      results[rank] = improveOnRanks(group, mesh, options, rounds);
+      results[rank] = improveConnectivity(group, mesh, options, rounds);
     });
   Joined joined;
   std::map<Index, Vec3> places;
@@ -454,7 +454,7 @@ void testStops()
 }
 }
 
-TAUTLINE_TEST(TestReconnectOnRanks)
+TAUTLINE_TEST(TestReconnectRanks)
 {
   TAUTLINE_RUN(testRounds());
   TAUTLINE_RUN(testSeams());

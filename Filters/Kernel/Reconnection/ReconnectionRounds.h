@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file ReconnectOnRanks.h
+ * @file ReconnectionRounds.h
  * @brief improveConnectivity() for tetrahedra that are spread over ranks.
  *
  * In each round a tree of planes divides the mesh among the ranks, and each of them improves its
@@ -17,8 +17,8 @@
  * rounds (ReconnectionOptions::postponed), and of the number of tetrahedra that may come or go the
  * first rounds use a part only: beside facets that stay it would be used up with little gain.
  */
-#ifndef tautline_ReconnectOnRanks_h
-#define tautline_ReconnectOnRanks_h
+#ifndef tautline_ReconnectionRounds_h
+#define tautline_ReconnectionRounds_h
 
 #include "Reconnection.h"
 #include "tautline/Core/RankGroup.h"
@@ -42,10 +42,13 @@ struct RankTetrahedra
   bool mirrored = false; ///< see Mesh::setMirrored(); the same on all ranks
 };
 
-/// What a rank gets: the tetrahedra that have one of its own as original cell.
-struct RankReconnection
+/**
+ * @brief What a rank gets: the tetrahedra that have one of its own as original cell, which are in
+ * increasing order of these. What is of cells is of the last round, the history of the whole mesh:
+ * the input, then a record per round. There are no interpolations, but shares.
+ */
+struct RankReconnection : ReconnectionResult
 {
-  std::vector<double> points;
   std::vector<Index> numbers; ///< per point; inserted ones follow those of the input
   Index firstInserted = 0;    ///< the number of the first point that was inserted
   /// A point of the input, and its part in an inserted one.
@@ -56,16 +59,6 @@ struct RankReconnection
   };
   std::vector<Index> shareOffsets; ///< points + 1
   std::vector<Share> shares;       ///< of inserted points; their sum is 1. Of others none.
-  std::vector<Index> tetrahedra;
-  std::vector<Index> originalCells; ///< of this rank, in increasing order
-  /// As those of ReconnectionResult, of the last round.
-  std::vector<signed char> obstacles;
-  std::vector<double> qualities, bounds;
-  /// Of the whole mesh, the same on all ranks: the input, then a record per round.
-  std::vector<ReconnectionRecord> history;
-  StopReason reason = StopReason::NoProgress;
-  double forcedInverseMeanRatio = 1, forcedQuality = 1;
-  Index markedFacets = 0;
 };
 
 /**
@@ -81,7 +74,7 @@ struct RankReconnection
  * called on all ranks, and returns false on any to stop.
  * @param rounds the largest number of rounds, at least 1
  */
-TAUTLINE_RECONNECTIONKERNEL_EXPORT RankReconnection improveOnRanks(
+TAUTLINE_RECONNECTIONKERNEL_EXPORT RankReconnection improveConnectivity(
   RankGroup& group, RankTetrahedra mesh, const ReconnectionOptions& options, int rounds);
 
 /// Why a mesh has to be on one rank with these options: "a metric as objective"; "" if it has not.

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file Schedule.h
+ * @file TetrahedronPasses.h
  * @brief The order in which reconnection works on tetrahedra: the worst first. Internal: not
  * installed.
  */
-#ifndef tautline_Schedule_h
-#define tautline_Schedule_h
+#ifndef tautline_TetrahedronPasses_h
+#define tautline_TetrahedronPasses_h
 
 #include "CavityOperations.h"
 
@@ -30,10 +30,10 @@ struct PassOptions
 };
 
 /// Works on tetrahedra below a target, worst first, until none of them can be improved.
-class Schedule
+class TetrahedronPasses
 {
 public:
-  Schedule(TetrahedronMesh& mesh, CavityOperations& operations)
+  TetrahedronPasses(TetrahedronMesh& mesh, CavityOperations& operations)
     : Mesh(mesh)
     , Operations(operations)
   {

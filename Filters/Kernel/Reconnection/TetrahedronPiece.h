@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file RankParts.h
+ * @file TetrahedronPiece.h
  * @brief Tetrahedra that move between ranks, with the points they need. Internal: not installed.
  */
-#ifndef tautline_RankParts_h
-#define tautline_RankParts_h
+#ifndef tautline_TetrahedronPiece_h
+#define tautline_TetrahedronPiece_h
 
 #include "tautline/Core/NumberIntervals.h"
 #include "tautline/Core/RankGroup.h"
@@ -51,7 +51,7 @@ struct Ball
 };
 
 /// What a rank works on.
-struct MeshPart
+struct TetrahedronPiece
 {
   std::vector<PartPoint> points; ///< in increasing order of the numbers
   std::vector<PartCell> cells;
@@ -92,11 +92,11 @@ private:
 };
 
 /// The centroid of a cell. @param places those of the points of the part
-Vec3 centroidOf(const MeshPart& part, const PointPlaces& places, const PartCell& cell);
+Vec3 centroidOf(const TetrahedronPiece& part, const PointPlaces& places, const PartCell& cell);
 
 /// Sends each cell to a rank, with its points and their shares. The order of what a rank has then
 /// does not depend on where it was. Collective.
-void redistribute(RankGroup& group, const std::vector<int>& targets, MeshPart& part);
+void redistribute(RankGroup& group, const std::vector<int>& targets, TetrahedronPiece& part);
 
 /**
  * @brief The rank that each cell goes to in a round: planes across the longest extents, in
@@ -105,7 +105,7 @@ void redistribute(RankGroup& group, const std::vector<int>& targets, MeshPart& p
  * @param frame the CuttingFrame of the last round, -1 before the first one; gets another one
  */
 std::vector<int> divideAmongRanks(
-  RankGroup& group, const MeshPart& part, const std::vector<Ball>& inside, int& frame);
+  RankGroup& group, const TetrahedronPiece& part, const std::vector<Ball>& inside, int& frame);
 
 /// What is around a part.
 struct PartSurroundings
@@ -124,6 +124,6 @@ struct PartSurroundings
  * @param marked sorted numbers of points, in increasing order
  */
 PartSurroundings surroundingsOf(
-  RankGroup& group, const MeshPart& part, const std::vector<std::array<Index, 3>>& marked);
+  RankGroup& group, const TetrahedronPiece& part, const std::vector<std::array<Index, 3>>& marked);
 }
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "ReconnectOnRanks.h"
+#include "ReconnectionRounds.h"
 
 #include "Constants.h"
-#include "RankParts.h"
+#include "TetrahedronPiece.h"
 #include "tautline/Core/Stopwatch.h"
 
 #include <algorithm>
@@ -92,7 +92,7 @@ private:
   double Share = 1;   ///< of this rank in what the number of cells may change by
   double Spent = 1;   ///< part of what it may grow by that is for this round
   double Largest = 0; ///< number of cells of this rank, at most
-  MeshPart Part;
+  TetrahedronPiece Part;
   std::vector<std::array<Index, 3>> Marked; ///< of the whole mesh, sorted
   Index FirstInserted = 0, NextPoint = 0, FirstSize = 0;
   Stopwatch Clock;
@@ -390,7 +390,7 @@ void RankRounds::addShares(const LocalMesh& local, const ReconnectionResult& res
 /// The part as the result has it, without what is around it.
 void RankRounds::takeResult(const LocalMesh& local, const ReconnectionResult& result)
 {
-  MeshPart& part = this->Part;
+  TetrahedronPiece& part = this->Part;
   const auto own = static_cast<Index>(part.cells.size());
   std::vector<char> used(result.originalPoints.size(), 0);
   std::vector<Index> numbers(used.size(), -1);
@@ -650,7 +650,7 @@ std::string needsOneRank(const ReconnectionOptions& options)
 }
 
 //------------------------------------------------------------------------------
-RankReconnection improveOnRanks(
+RankReconnection improveConnectivity(
   RankGroup& group, RankTetrahedra mesh, const ReconnectionOptions& options, int rounds)
 {
   const std::string what = needsOneRank(options);

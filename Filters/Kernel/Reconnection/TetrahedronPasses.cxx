@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "Schedule.h"
+#include "TetrahedronPasses.h"
 
 #include "Constants.h"
 #include "FacetBound.h"
@@ -12,7 +12,7 @@ namespace
 constexpr Index ProceedInterval = 64;
 }
 
-double Schedule::bound(TetId t) const
+double TetrahedronPasses::bound(TetId t) const
 {
   const QualityWeights& weights = this->Mesh.weights();
   double result = 1.0;
@@ -45,12 +45,12 @@ double Schedule::bound(TetId t) const
   return result;
 }
 
-bool Schedule::isAtBound(TetId t) const
+bool TetrahedronPasses::isAtBound(TetId t) const
 {
   return this->bound(t) <= this->Mesh.quality(t) * (1.0 + AtBound);
 }
 
-void Schedule::push(TetId t, double target)
+void TetrahedronPasses::push(TetId t, double target)
 {
   const double q = this->Mesh.quality(t);
   if (!(q < target))
@@ -61,7 +61,7 @@ void Schedule::push(TetId t, double target)
   std::push_heap(this->Heap.begin(), this->Heap.end());
 }
 
-bool Schedule::isFlagged(TetId t, const std::vector<char>& flags) const
+bool TetrahedronPasses::isFlagged(TetId t, const std::vector<char>& flags) const
 {
   const TetVertices& v = this->Mesh.tet(t).vertices;
   return std::any_of(v.begin(), v.end(),
@@ -69,13 +69,13 @@ bool Schedule::isFlagged(TetId t, const std::vector<char>& flags) const
 }
 
 /// Whether a pass starts with a tetrahedron; it does not with those outside a block.
-bool Schedule::startsWith(TetId t) const
+bool TetrahedronPasses::startsWith(TetId t) const
 {
   return this->Mesh.alive(t) && this->Mesh.region(t) >= 0 &&
     (this->starts.empty() || this->isFlagged(t, this->starts));
 }
 
-bool Schedule::swap(TetId t)
+bool TetrahedronPasses::swap(TetId t)
 {
   for (int i = 0; i < 4; ++i)
   {
@@ -97,7 +97,7 @@ bool Schedule::swap(TetId t)
   return false;
 }
 
-bool Schedule::contract(TetId t)
+bool TetrahedronPasses::contract(TetId t)
 {
   for (int i = 0; i < 4; ++i)
   {
@@ -112,7 +112,7 @@ bool Schedule::contract(TetId t)
   return false;
 }
 
-bool Schedule::improve(TetId t, const PassOptions& options)
+bool TetrahedronPasses::improve(TetId t, const PassOptions& options)
 {
   const auto pushChanged = [&]()
   {
@@ -161,7 +161,7 @@ bool Schedule::improve(TetId t, const PassOptions& options)
   return false;
 }
 
-Index Schedule::run(const PassOptions& options)
+Index TetrahedronPasses::run(const PassOptions& options)
 {
   this->Heap.clear();
   this->Tried.assign(this->Mesh.slots(), 0);
