@@ -7,11 +7,10 @@
 #include "Obstacles.h"
 #include "PassPlan.h"
 #include "ReconnectionOutput.h"
+#include "ReconnectionProgress.h"
 #include "TetrahedronPasses.h"
-#include "tautline/Core/Interruption.h"
 #include "tautline/Core/LoopInterruption.h"
 #include "tautline/Core/Parallel.h"
-#include "tautline/Core/Stopwatch.h"
 
 #include <atomic>
 #include <limits>
@@ -209,6 +208,7 @@ public:
     , Result(result)
     , Operations(mesh)
     , Passes(mesh, this->Operations)
+    , Progress(options, result)
   {
   }
 
@@ -217,8 +217,7 @@ public:
   const TetrahedronPasses& passes() const { return this->Passes; }
 
 private:
-  bool record(int pass, double progress);
-  bool proceed();
+  bool record(int pass, double fraction);
   void setFloor(const ReconnectionRecord& record);
   bool improveMean();
   void setBounds();
@@ -235,48 +234,17 @@ private:
   ReconnectionResult& Result;
   CavityOperations Operations;
   TetrahedronPasses Passes;
-  Stopwatch Clock;
-  double LastCall = 0, Progress = 0;
+  ReconnectionProgress Progress;
 };
 
 /// Adds a line to the history; false if the observer stops the run.
-bool Run::record(int pass, double progress)
+bool Run::record(int pass, double fraction)
 {
   ReconnectionRecord record;
-  record.pass = pass;
-  record.seconds = this->Clock.seconds();
   measureWorst(
     this->Mesh, std::sin(radians(this->Options.targetAngle)), this->Options.threads, record);
   copyCounts(this->Operations.counts(), record);
-  this->Result.history.push_back(record);
-  this->Progress = progress;
-  this->LastCall = record.seconds;
-  if (this->Result.reason == StopReason::Aborted)
-  {
-    return false; // within the pass: the observer is not called again
-  }
-  return !this->Options.observer || this->Options.observer(record, progress);
-}
-
-bool Run::proceed()
-{
-  if (this->Clock.reached(this->Options.maximumSeconds))
-  {
-    this->Result.reason = StopReason::TimeLimit;
-    return false;
-  }
-  throwIfInterrupted();
-  const double now = this->Clock.seconds();
-  if (this->Options.observer && now - this->LastCall > ObserverSeconds)
-  {
-    this->LastCall = now;
-    if (!this->Options.observer(this->Result.history.back(), this->Progress))
-    {
-      this->Result.reason = StopReason::Aborted;
-      return false;
-    }
-  }
-  return true;
+  return this->Progress.record(record, pass, fraction);
 }
 
 /// Nothing becomes worse than the worst of the mesh of a record.
@@ -320,9 +288,8 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   this->Result.reason = StopReason::NoProgress;
   const bool started = this->record(0, 0.0);
   this->setFloor(this->Result.history.front());
-  this->Passes.proceed = [this]() { return this->proceed(); };
+  this->Passes.proceed = [this]() { return this->Progress.proceed(); };
   std::vector<PassOptions> passes = planPasses(this->Options, this->Mesh.size());
-  this->Result.reason = started ? StopReason::NoProgress : StopReason::Aborted;
   const std::vector<char> starts = this->flagsOf(this->Options.starts);
   this->Passes.postponed = this->flagsOf(this->Options.postponed);
   this->Passes.starts = starts;
@@ -350,7 +317,7 @@ std::vector<char> Run::flagsOf(const unsigned char* flags) const
 bool Run::runPasses(std::vector<PassOptions> passes)
 {
   const std::size_t planned = passes.size();
-  const double start = this->Progress;
+  const double start = this->Progress.fraction();
   bool stopped = false;
   for (std::size_t i = 0; i < passes.size() && !stopped; ++i)
   {
@@ -365,13 +332,9 @@ bool Run::runPasses(std::vector<PassOptions> passes)
       this->Passes.starts.clear();
       passes[i].maxFailures = WholeFailures;
     }
-    stopped = this->Passes.run(passes[i]) < 0;
+    const bool complete = this->Passes.run(passes[i]) >= 0;
     const double done = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
-    if (!this->record(before.pass + 1, start + (1.0 - start) * done) && !stopped)
-    {
-      stopped = true;
-      this->Result.reason = StopReason::Aborted;
-    }
+    stopped = !this->record(before.pass + 1, start + (1.0 - start) * done) || !complete;
     const double gain = this->Result.history.back().worstQuality - before.worstQuality;
     if (this->Passes.exhausted() && !stopped)
     {
@@ -391,26 +354,9 @@ bool Run::improveMean()
 {
   const ReconnectionRecord before = this->Result.history.back();
   this->setFloor(before);
-  bool stopped = false;
-  for (int sweep = 0; sweep < MaxMeanSweeps && !stopped; ++sweep)
-  {
-    double decrease = 0.0;
-    for (PointId v = 0; v < this->Mesh.pointSlots() && !stopped; ++v)
-    {
-      stopped = v % MeanInterval == 0 && !this->proceed();
-      decrease += stopped ? 0.0 : this->Operations.improveMean(v);
-    }
-    if (decrease < LeastMeanDecrease * static_cast<double>(this->Mesh.size()))
-    {
-      break;
-    }
-  }
-  if (!this->record(before.pass + 1, 1.0) && !stopped)
-  {
-    stopped = true;
-    this->Result.reason = StopReason::Aborted;
-  }
-  return !stopped;
+  const bool complete = this->Progress.sweepForMean(this->Mesh.pointSlots(), this->Mesh.size(),
+    [this](PointId v) { return this->Operations.improveMean(v); });
+  return this->record(before.pass + 1, 1.0) && complete;
 }
 
 /// Flags also the points of the tetrahedra around.
@@ -442,9 +388,8 @@ bool Run::runBlocks(
   const auto proceed = [&]()
   {
     const bool goesOn = !stop &&
-      (std::this_thread::get_id() == caller
-          ? this->proceed()
-          : !callerIsInterrupted() && !this->Clock.reached(this->Options.maximumSeconds));
+      (std::this_thread::get_id() == caller ? this->Progress.proceed()
+                                            : !callerIsInterrupted() && !this->Progress.late());
     if (!goesOn)
     {
       stop = true;
@@ -527,7 +472,7 @@ bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels, std::v
   {
     MeshBlockList blocks =
       cutIntoBlocks(this->Mesh, this->Operations, k, levels, this->Options.threads);
-    bool goesOn = this->runBlocks(blocks, passes, starts);
+    const bool goesOn = this->runBlocks(blocks, passes, starts);
     std::vector<char> next(this->Mesh.pointSlots(), 0);
     for (const auto& block : blocks)
     {
@@ -539,12 +484,7 @@ bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels, std::v
     }
     joinBlocks(this->Mesh, this->Operations, blocks, this->Options.threads);
     starts = goesOn ? this->addRings(std::move(next)) : std::vector<char>();
-    if (!this->record(k + 1, BlockProgress * (k + 1) / Partitions) && goesOn)
-    {
-      goesOn = false;
-      this->Result.reason = StopReason::Aborted;
-    }
-    if (!goesOn)
+    if (!this->record(k + 1, BlockProgress * (k + 1) / Partitions) || !goesOn)
     {
       return false;
     }

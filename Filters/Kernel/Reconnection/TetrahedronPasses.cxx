@@ -53,12 +53,10 @@ bool TetrahedronPasses::isAtBound(TetId t) const
 void TetrahedronPasses::push(TetId t, double target)
 {
   const double q = this->Mesh.quality(t);
-  if (!(q < target))
+  if (q < target)
   {
-    return;
+    this->Waiting.push({ q, t });
   }
-  this->Heap.push_back({ q, t });
-  std::push_heap(this->Heap.begin(), this->Heap.end());
 }
 
 bool TetrahedronPasses::isFlagged(TetId t, const std::vector<char>& flags) const
@@ -163,27 +161,17 @@ bool TetrahedronPasses::improve(TetId t, const PassOptions& options)
 
 Index TetrahedronPasses::run(const PassOptions& options)
 {
-  this->Heap.clear();
   this->Tried.assign(this->Mesh.slots(), 0);
   this->Operations.prepareStamps();
   this->Operations.setLeastGain(options.leastGain);
   this->Operations.repairs = options.repairs;
-  for (TetId t = 0; t < this->Mesh.slots(); ++t)
-  {
-    if (this->startsWith(t) && this->Mesh.quality(t) < options.target)
-    {
-      this->Heap.push_back({ this->Mesh.quality(t), t });
-    }
-  }
-  std::make_heap(this->Heap.begin(), this->Heap.end());
+  this->Waiting.fill(this->Mesh,
+    [&](TetId t) { return this->startsWith(t) && this->Mesh.quality(t) < options.target; });
   Index accepted = 0, tries = 0, failures = 0;
-  while (!this->Heap.empty() && (options.maxFailures == 0 || failures < options.maxFailures))
+  while (!this->Waiting.empty() && (options.maxFailures == 0 || failures < options.maxFailures))
   {
-    std::pop_heap(this->Heap.begin(), this->Heap.end());
-    const Entry entry = this->Heap.back();
-    this->Heap.pop_back();
-    const TetId t = entry.tet;
-    if (!this->Mesh.alive(t) || this->Mesh.quality(t) != entry.quality)
+    const auto [quality, t] = this->Waiting.pop();
+    if (!this->Mesh.alive(t) || this->Mesh.quality(t) != quality)
     {
       continue; // changed since
     }

@@ -8,6 +8,7 @@
 #define tautline_TetrahedronPasses_h
 
 #include "CavityOperations.h"
+#include "ReconnectionProgress.h"
 
 #include <functional>
 
@@ -61,17 +62,6 @@ public:
   bool isAtBound(TetId t) const;
 
 private:
-  struct Entry
-  {
-    double quality;
-    TetId tet;
-    /// The worst tetrahedron, of equal ones that with the smallest id, is at the top of a heap.
-    bool operator<(const Entry& other) const
-    {
-      return this->quality != other.quality ? this->quality > other.quality : this->tet > other.tet;
-    }
-  };
-
   void push(TetId t, double target);
   bool startsWith(TetId t) const;
   bool isFlagged(TetId t, const std::vector<char>& flags) const;
@@ -81,7 +71,7 @@ private:
 
   TetrahedronMesh& Mesh;
   CavityOperations& Operations;
-  std::vector<Entry> Heap;
+  QualityQueue<TetId> Waiting;
   bool Exhausted = false;
   std::vector<std::uint32_t> Tried; ///< clock at the last attempt in vain, per slot
 };

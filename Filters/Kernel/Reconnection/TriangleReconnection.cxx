@@ -2,10 +2,9 @@
 #include "TriangleReconnection.h"
 
 #include "Constants.h"
+#include "ReconnectionProgress.h"
 #include "TriangleInput.h"
 #include "TriangleOperations.h"
-#include "tautline/Core/Interruption.h"
-#include "tautline/Core/Stopwatch.h"
 
 #include <limits>
 
@@ -114,84 +113,42 @@ public:
     , Options(options)
     , Result(result)
     , Operations(mesh, input)
+    , Progress(options, result)
   {
   }
 
   void run(const std::vector<PointFreedom>& freedoms);
 
 private:
-  struct Entry
-  {
-    double quality;
-    TriId triangle;
-    /// The worst triangle, of equal ones that with the smallest id, is at the top of a heap.
-    bool operator<(const Entry& other) const
-    {
-      return this->quality != other.quality ? this->quality > other.quality
-                                            : this->triangle > other.triangle;
-    }
-  };
-
+  using Queue = QualityQueue<TriId>;
   void prepare(const std::vector<PointFreedom>& freedoms);
-  bool record(int pass, double progress);
-  bool proceed();
+  bool record(int pass, double fraction);
   bool runPass(const TrianglePass& pass);
   bool improveMean();
   bool improve(TriId t, const TrianglePass& pass);
   void pushChanged(double target);
-  bool isWaiting(const Entry& entry);
+  bool isWaiting(const Queue::Entry& entry);
 
   TriangleMesh& Mesh;
   const TriangleInput& Input;
   const TriangleOptions& Options;
   ReconnectionResult& Result;
   TriangleOperations Operations;
-  std::vector<Entry> Heap;
+  Queue Waiting;
   std::vector<std::uint32_t> Tried; ///< clock at the last attempt in vain, per slot
-  Stopwatch Clock;
-  double LastCall = 0, Progress = 0;
+  ReconnectionProgress Progress;
   Index Attempts = 0;
 };
 
-bool TriangleRun::record(int pass, double progress)
+bool TriangleRun::record(int pass, double fraction)
 {
   ReconnectionRecord record = measure(this->Mesh, sineOf(this->Options.targetAngle));
-  record.pass = pass;
-  record.seconds = this->Clock.seconds();
   const TriangleOperations::Counts& counts = this->Operations.counts();
   record.edgeRemovals = counts.flips;
   record.contractions = counts.contractions;
   record.insertions = counts.insertions;
   record.moves = counts.moves;
-  this->Result.history.push_back(record);
-  this->Progress = progress;
-  this->LastCall = record.seconds;
-  if (this->Result.reason == StopReason::Aborted)
-  {
-    return false; // within the pass: the observer is not called again
-  }
-  return !this->Options.observer || this->Options.observer(record, progress);
-}
-
-bool TriangleRun::proceed()
-{
-  if (this->Clock.reached(this->Options.maximumSeconds))
-  {
-    this->Result.reason = StopReason::TimeLimit;
-    return false;
-  }
-  throwIfInterrupted();
-  const double now = this->Clock.seconds();
-  if (this->Options.observer && now - this->LastCall > ObserverSeconds)
-  {
-    this->LastCall = now;
-    if (!this->Options.observer(this->Result.history.back(), this->Progress))
-    {
-      this->Result.reason = StopReason::Aborted;
-      return false;
-    }
-  }
-  return true;
+  return this->Progress.record(record, pass, fraction);
 }
 
 void TriangleRun::pushChanged(double target)
@@ -200,8 +157,7 @@ void TriangleRun::pushChanged(double target)
   {
     if (this->Mesh.alive(t) && this->Mesh.quality(t) < target)
     {
-      this->Heap.push_back({ this->Mesh.quality(t), t });
-      std::push_heap(this->Heap.begin(), this->Heap.end());
+      this->Waiting.push({ this->Mesh.quality(t), t });
     }
   }
 }
@@ -243,9 +199,9 @@ bool TriangleRun::improve(TriId t, const TrianglePass& pass)
 }
 
 /// Whether the triangle is still as it was when it was put into the queue, and worth a try.
-bool TriangleRun::isWaiting(const Entry& entry)
+bool TriangleRun::isWaiting(const Queue::Entry& entry)
 {
-  const TriId t = entry.triangle;
+  const TriId t = entry.cell;
   if (t >= this->Mesh.slots() || !this->Mesh.alive(t) || this->Mesh.quality(t) != entry.quality)
   {
     return false;
@@ -262,39 +218,28 @@ bool TriangleRun::isWaiting(const Entry& entry)
 /// @return false if stopped
 bool TriangleRun::runPass(const TrianglePass& pass)
 {
-  this->Heap.clear();
   this->Tried.assign(this->Mesh.slots(), 0);
   this->Operations.leastGain = pass.leastGain;
-  for (TriId t = 0; t < this->Mesh.slots(); ++t)
+  this->Waiting.fill(this->Mesh,
+    [&](TriId t) { return this->Mesh.alive(t) && this->Mesh.quality(t) < pass.target; });
+  while (!this->Waiting.empty())
   {
-    if (this->Mesh.alive(t) && this->Mesh.quality(t) < pass.target)
-    {
-      this->Heap.push_back({ this->Mesh.quality(t), t });
-    }
-  }
-  std::make_heap(this->Heap.begin(), this->Heap.end());
-  while (!this->Heap.empty())
-  {
-    std::pop_heap(this->Heap.begin(), this->Heap.end());
-    const Entry entry = this->Heap.back();
-    this->Heap.pop_back();
+    const Queue::Entry entry = this->Waiting.pop();
     if (!this->isWaiting(entry))
     {
       continue;
     }
-    if (++this->Attempts % AttemptsBetweenChecks == 0 && !this->proceed())
+    if (++this->Attempts % AttemptsBetweenChecks == 0 && !this->Progress.proceed())
     {
       return false;
     }
-    if (!this->improve(entry.triangle, pass))
+    if (!this->improve(entry.cell, pass))
     {
-      this->Tried[entry.triangle] = this->Operations.clock() + 1;
+      this->Tried[entry.cell] = this->Operations.clock() + 1;
     }
-    else if (this->Mesh.alive(entry.triangle) &&
-      this->Mesh.quality(entry.triangle) == entry.quality)
+    else if (this->Mesh.alive(entry.cell) && this->Mesh.quality(entry.cell) == entry.quality)
     {
-      this->Heap.push_back(entry);
-      std::push_heap(this->Heap.begin(), this->Heap.end());
+      this->Waiting.push(entry);
     }
   }
   return true;
@@ -305,26 +250,9 @@ bool TriangleRun::improveMean()
 {
   const ReconnectionRecord before = this->Result.history.back();
   this->Operations.leastMeanRatio = 1.0 / before.worstInverseMeanRatio;
-  bool stopped = false;
-  for (int sweep = 0; sweep < MaxMeanSweeps && !stopped; ++sweep)
-  {
-    double decrease = 0.0;
-    for (VertexId v = 0; v < this->Mesh.pointSlots() && !stopped; ++v)
-    {
-      stopped = v % MeanInterval == 0 && !this->proceed();
-      decrease += stopped ? 0.0 : this->Operations.improveMean(v, before.worstQuality);
-    }
-    if (decrease < LeastMeanDecrease * static_cast<double>(this->Mesh.size()))
-    {
-      break;
-    }
-  }
-  if (!this->record(before.pass + 1, 1.0) && !stopped)
-  {
-    stopped = true;
-    this->Result.reason = StopReason::Aborted;
-  }
-  return !stopped;
+  const bool complete = this->Progress.sweepForMean(this->Mesh.pointSlots(), this->Mesh.size(),
+    [&](VertexId v) { return this->Operations.improveMean(v, before.worstQuality); });
+  return this->record(before.pass + 1, 1.0) && complete;
 }
 
 void TriangleRun::prepare(const std::vector<PointFreedom>& freedoms)
@@ -351,10 +279,6 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
   std::vector<TrianglePass> passes = planPasses(this->Options);
   const std::size_t planned = passes.size();
   bool stopped = !started;
-  if (!started)
-  {
-    this->Result.reason = StopReason::Aborted;
-  }
   for (std::size_t i = 0; i < passes.size() && !stopped; ++i)
   {
     const ReconnectionRecord before = this->Result.history.back();
@@ -362,14 +286,10 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
     {
       break;
     }
-    stopped = !this->runPass(passes[i]);
+    const bool complete = this->runPass(passes[i]);
     const double progress =
       static_cast<double>(i + 1) / static_cast<double>(planned + TrianglePasses);
-    if (!this->record(static_cast<int>(i) + 1, progress) && !stopped)
-    {
-      stopped = true;
-      this->Result.reason = StopReason::Aborted;
-    }
+    stopped = !this->record(static_cast<int>(i) + 1, progress) || !complete;
     const double gain = this->Result.history.back().worstQuality - before.worstQuality;
     if (i + 1 == passes.size() && gain > TrianglePassGain &&
       passes.size() < planned + TrianglePasses)
