@@ -2,6 +2,7 @@
 #include "CoordinateOrder.h"
 
 #include "MeshElements.h"
+#include "SampleSort.h"
 
 #include <algorithm>
 #include <array>
@@ -11,9 +12,6 @@ namespace tautline
 {
 namespace
 {
-/// Samples per rank of each rank: ranges then differ by a few percent in length.
-constexpr std::size_t SamplesPerRank = 32;
-
 struct PlacedPoint
 {
   std::array<double, 3> place;
@@ -31,29 +29,6 @@ PlacedPoint placedAt(const double* x, Index number, Index local)
 {
   return { { x[0] + 0.0, x[1] + 0.0, x[2] + 0.0 }, number, local };
 }
-
-/// The first point of each range but the first one; the same on all ranks.
-std::vector<PlacedPoint> rangesOf(RankGroup& group, const std::vector<PlacedPoint>& sorted)
-{
-  const std::size_t ranks = static_cast<std::size_t>(group.size());
-  const std::size_t wanted = std::min(sorted.size(), SamplesPerRank * ranks);
-  std::vector<PlacedPoint> samples, all;
-  for (std::size_t i = 0; i < wanted; ++i)
-  {
-    samples.push_back(sorted[i * sorted.size() / wanted]);
-  }
-  for (const std::vector<PlacedPoint>& list : group.gatherItems(samples))
-  {
-    all.insert(all.end(), list.begin(), list.end());
-  }
-  std::sort(all.begin(), all.end());
-  std::vector<PlacedPoint> firsts;
-  for (std::size_t r = 1; r < ranks && !all.empty(); ++r)
-  {
-    firsts.push_back(all[r * all.size() / ranks]);
-  }
-  return firsts;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -69,13 +44,7 @@ std::vector<Index> coordinateOrder(const DistributedMesh& mesh)
     }
   }
   std::sort(own.begin(), own.end());
-  const std::vector<PlacedPoint> firsts = rangesOf(group, own);
-  std::vector<std::vector<PlacedPoint>> sent(group.size());
-  for (const PlacedPoint& point : own)
-  {
-    const auto range = std::upper_bound(firsts.begin(), firsts.end(), point) - firsts.begin();
-    sent[range].push_back(point);
-  }
+  const std::vector<std::vector<PlacedPoint>> sent = splitIntoRanges(group, own);
   const std::vector<std::vector<PlacedPoint>> received = group.exchangeItems(sent);
 
   // The points of a range come from all ranks; their places go back in the order of arrival.

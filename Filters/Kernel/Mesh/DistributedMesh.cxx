@@ -2,6 +2,7 @@
 #include "DistributedMesh.h"
 
 #include "PointDivision.h"
+#include "SampleSort.h"
 #include "TakenCells.h"
 #include "tautline/Core/Random.h"
 
@@ -16,7 +17,6 @@ namespace tautline
 {
 namespace
 {
-constexpr int samplesPerRank = 64;        ///< keys that the ranges of the numbering are chosen from
 constexpr int mortonBits = 21;            ///< per direction
 constexpr double mortonCells = 2097151.0; ///< 2 ^ mortonBits - 1
 
@@ -240,29 +240,9 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
   const std::vector<PointKey>& keys) const
 {
   RankGroup& group = *this->Group;
-  std::vector<PointKey> samples, range;
-  std::vector<std::vector<PointKey>> sent;
-  for (std::size_t i = 0; i < samplesPerRank && !keys.empty(); ++i)
-  {
-    samples.push_back(keys[i * keys.size() / samplesPerRank]);
-  }
-  const std::vector<std::vector<PointKey>> sampled = group.gatherItems(samples);
-  std::vector<PointKey> all, limits;
-  for (const auto& list : sampled)
-  {
-    all.insert(all.end(), list.begin(), list.end());
-  }
-  std::sort(all.begin(), all.end());
-  for (int r = 1; r < group.size() && !all.empty(); ++r)
-  {
-    limits.push_back(all[r * all.size() / group.size()]);
-  }
-  sent.resize(group.size());
-  for (const PointKey& key : keys)
-  {
-    sent[std::upper_bound(limits.begin(), limits.end(), key) - limits.begin()].push_back(key);
-  }
-  const std::vector<std::vector<PointKey>> received = group.exchangeItems(sent);
+  std::vector<PointKey> range;
+  const std::vector<std::vector<PointKey>> received =
+    group.exchangeItems(splitIntoRanges(group, keys));
   for (const auto& list : received)
   {
     range.insert(range.end(), list.begin(), list.end());
