@@ -53,6 +53,12 @@ inline void untangleInto(
   result.invertedBefore = untangled.invertedBefore;
   result.invertedAfter = untangled.invertedAfter;
   result.remaining = untangled.remaining.size();
+  Index obstacles = 0; // of the cells of this rank
+  for (Index cell = 0; cell < mesh.view().numberOfCells; ++cell)
+  {
+    obstacles += mesh.ownedCells()[cell] && untangled.obstacles[cell] != 0;
+  }
+  TAUTLINE_CHECK_EQUAL(mesh.group().sum(obstacles), static_cast<Index>(result.remaining));
 }
 
 inline Run runOn(const MeshData& whole, Cut cut, int ranks, const OptimizeOptions& given,
