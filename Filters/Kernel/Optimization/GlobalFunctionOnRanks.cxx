@@ -10,7 +10,7 @@
 namespace tautline
 {
 //------------------------------------------------------------------------------
-GlobalFunctionOnRanks::GlobalFunctionOnRanks(const DistributedMesh& mesh, const RankRows& rows,
+GlobalFunctionOnRanks::GlobalFunctionOnRanks(const DistributedMesh& mesh, const MatrixRows& rows,
   OptimizationProblem* problem, const Scalarizer& scalarizer, std::size_t objectives,
   Optimizer optimizer, int coordinates, int threads)
   : TheMesh(mesh)

@@ -8,7 +8,7 @@
 #define tautline_GlobalFunctionOnRanks_h
 
 #include "GlobalFunction.h"
-#include "tautline/Objectives/MultigridOnRanks.h"
+#include "tautline/Objectives/BlockJacobiMultigrid.h"
 
 namespace tautline
 {
@@ -19,7 +19,7 @@ namespace tautline
  * points about them are received before. Values are sums over the owned cells of all ranks, rounded
  * once. All methods but size() are collective.
  *
- * Preconditioners do not depend on the ranks, to rounding: diagonal blocks, and MultigridOnRanks
+ * Preconditioners do not depend on the ranks, to rounding: diagonal blocks, and BlockJacobiMultigrid
  * for Newton's method with the positive semidefinite part of the Hessian.
  */
 class GlobalFunctionOnRanks : public SmoothFunction
@@ -30,7 +30,7 @@ public:
    * @param scalarizer the same on all ranks, of as many objectives
    * @param coordinates of a point: 2 in a plane, else 3
    */
-  GlobalFunctionOnRanks(const DistributedMesh& mesh, const RankRows& rows,
+  GlobalFunctionOnRanks(const DistributedMesh& mesh, const MatrixRows& rows,
     OptimizationProblem* problem, const Scalarizer& scalarizer, std::size_t objectives,
     Optimizer optimizer, int coordinates, int threads);
 
@@ -49,7 +49,7 @@ private:
   void makeMatrix();
 
   const DistributedMesh& TheMesh;
-  const RankRows& Rows;
+  const MatrixRows& Rows;
   const Scalarizer& TheScalarizer;
   int Size;
   bool Newton, Convex = false, Allowed = true;
@@ -57,7 +57,7 @@ private:
   std::vector<double> All, Product; ///< of the rows of all points here
   std::vector<double> Terms;        ///< of the cells
   std::vector<double> Slopes;
-  MultigridOnRanks Grids;
+  BlockJacobiMultigrid Grids;
 };
 }
 #endif

@@ -8,11 +8,11 @@
 namespace tautline
 {
 //------------------------------------------------------------------------------
-const RankRows& OptimizationOnRanks::rows()
+const MatrixRows& OptimizationOnRanks::rows()
 {
   if (!this->Rows)
   {
-    this->Rows = std::make_unique<RankRows>(this->TheMesh, this->Free);
+    this->Rows = std::make_unique<MatrixRows>(this->TheMesh, this->Free);
   }
   return *this->Rows;
 }

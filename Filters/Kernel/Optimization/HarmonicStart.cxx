@@ -4,7 +4,7 @@
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Random.h"
 #include "tautline/Core/VectorAlgebra.h"
-#include "tautline/Objectives/MultigridOnRanks.h"
+#include "tautline/Objectives/BlockJacobiMultigrid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -254,7 +254,7 @@ void shiftFreePoints(const Mesh& mesh, const std::vector<unsigned char>& free, c
 }
 
 //------------------------------------------------------------------------------
-bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
+bool harmonicPointsOnRanks(const DistributedMesh& mesh, const MatrixRows& rows,
   OptimizationProblem* problem, int threads, std::vector<double>& points)
 {
   Laplacian a;
@@ -292,7 +292,7 @@ bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
   }
   rows.pick(all.data(), x.data(), size);
   rows.pick(count > 0 ? a.right.data() : all.data(), right.data(), size);
-  MultigridOnRanks grids(rows, threads);
+  BlockJacobiMultigrid grids(rows, threads);
   grids.build(viewOf(a, count));
   const VectorAlgebra algebra(x.size(), threads, LaneOrder::Sequential, &mesh.group());
   const auto times = [&](const double* d, double* product)

@@ -7,7 +7,7 @@
 #define tautline_HarmonicStart_h
 
 #include "OptimizationProblem.h"
-#include "tautline/Objectives/RankRows.h"
+#include "tautline/Objectives/MatrixRows.h"
 
 namespace tautline
 {
@@ -39,7 +39,7 @@ void shiftFreePoints(const Mesh& mesh, const std::vector<unsigned char>& free, c
  * @param points the local points at the start, which are moved; not if the solver does not converge
  * @return whether it does
  */
-bool harmonicPointsOnRanks(const DistributedMesh& mesh, const RankRows& rows,
+bool harmonicPointsOnRanks(const DistributedMesh& mesh, const MatrixRows& rows,
   OptimizationProblem* problem, int threads, std::vector<double>& points);
 }
 #endif

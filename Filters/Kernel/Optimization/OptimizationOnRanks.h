@@ -11,7 +11,7 @@
 #include "Optimize.h"
 #include "RankGuard.h"
 #include "tautline/Mesh/DistributedMesh.h"
-#include "tautline/Objectives/RankRows.h"
+#include "tautline/Objectives/MatrixRows.h"
 
 #include <limits>
 #include <memory>
@@ -40,7 +40,7 @@ private:
   void rescaleUntangling();
   StopReason sweep(Slowness* slow, bool& failed, bool& repaired) override;
   // All vertices at once: GlobalOnRanks.cxx.
-  const RankRows& rows();
+  const MatrixRows& rows();
   StopReason minimizeAll(Optimizer method) override;
   bool hasManyCorners() const override;
   bool hasConvexPart() override;
@@ -80,7 +80,7 @@ private:
   std::vector<Objective> Resolved;
   std::vector<unsigned char> Free; ///< per local point
   std::vector<int> Sets;
-  std::unique_ptr<RankRows> Rows; ///< made on first use
+  std::unique_ptr<MatrixRows> Rows; ///< made on first use
   std::unique_ptr<Scalarizer> TheScalarizer;
   StoppingTest Watch;
   OptimizeResult Result;

@@ -38,7 +38,7 @@ TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
  * square) algebraic multigrid, smoothed by block Jacobi on the finest level instead of the
  * Gauss-Seidel of optimize(), so that it takes somewhat more inner iterations. Each rank has the
  * graph of the whole mesh while the aggregates are found, and all coarse levels (see
- * MultigridOnRanks.h). For other objectives NewtonConjugateGradient has diagonal blocks alone, in
+ * BlockJacobiMultigrid.h). For other objectives NewtonConjugateGradient has diagonal blocks alone, in
  * volumes instead of the Gauss-Seidel of optimize().
  *
  * Automatic goes over from sweeps to NewtonConjugateGradient, to its harmonic start and to

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file MultigridOnRanks.h
+ * @file BlockJacobiMultigrid.h
  * @brief Multigrid for a matrix whose rows are spread over ranks. Internal: not installed.
  *
  * The aggregates and the coarse matrices are the same however the rows are spread, to rounding: all
@@ -12,20 +12,20 @@
  * coarse vector over the ranks. So the memory of a rank has a part that does not shrink with more
  * ranks: 8 bytes per coupling of two free points, and about an eighth of the whole matrix.
  */
-#ifndef tautline_MultigridOnRanks_h
-#define tautline_MultigridOnRanks_h
+#ifndef tautline_BlockJacobiMultigrid_h
+#define tautline_BlockJacobiMultigrid_h
 
 #include "Aggregation.h"
 #include "Multigrid.h"
-#include "RankRows.h"
+#include "MatrixRows.h"
 
 namespace tautline
 {
-class TAUTLINE_KERNEL_EXPORT MultigridOnRanks
+class TAUTLINE_KERNEL_EXPORT BlockJacobiMultigrid
 {
 public:
   /// @param rows must outlive this @param threads 0: all cores. The result does not depend on it.
-  MultigridOnRanks(const RankRows& rows, int threads);
+  BlockJacobiMultigrid(const MatrixRows& rows, int threads);
 
   /**
    * @brief As Multigrid::build(). Collective, as apply().
@@ -60,7 +60,7 @@ private:
   void addUp(const std::vector<std::vector<std::int32_t>>& places, const std::vector<double>& own,
     int components, std::vector<double>& to) const;
 
-  const RankRows& Rows;
+  const MatrixRows& Rows;
   int Threads, Reused = 0;
   bool Floating = false; ///< see isFloating()
   BlockMatrixView Matrix;

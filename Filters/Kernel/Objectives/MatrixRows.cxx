@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "RankRows.h"
+#include "MatrixRows.h"
 
 #include <algorithm>
 #include <limits>
@@ -7,7 +7,7 @@
 namespace tautline
 {
 //------------------------------------------------------------------------------
-RankRows::RankRows(const DistributedMesh& mesh, std::vector<unsigned char> free)
+MatrixRows::MatrixRows(const DistributedMesh& mesh, std::vector<unsigned char> free)
   : TheMesh(mesh)
   , RowOfPoint(mesh.localPoints(), -1)
 {
@@ -41,7 +41,7 @@ RankRows::RankRows(const DistributedMesh& mesh, std::vector<unsigned char> free)
 }
 
 //------------------------------------------------------------------------------
-void RankRows::place(const double* own, double* all, int components) const
+void MatrixRows::place(const double* own, double* all, int components) const
 {
   for (std::size_t i = 0; i < this->Owned.size(); ++i)
   {
@@ -50,7 +50,7 @@ void RankRows::place(const double* own, double* all, int components) const
   }
 }
 
-void RankRows::pick(const double* all, double* own, int components) const
+void MatrixRows::pick(const double* all, double* own, int components) const
 {
   for (std::size_t i = 0; i < this->Owned.size(); ++i)
   {
@@ -59,14 +59,14 @@ void RankRows::pick(const double* all, double* own, int components) const
   }
 }
 
-void RankRows::spread(const double* own, double* all, int components) const
+void MatrixRows::spread(const double* own, double* all, int components) const
 {
   this->place(own, all, components);
   this->TheMesh.exchange(this->Halo, all, components);
 }
 
 //------------------------------------------------------------------------------
-std::vector<std::int32_t> RankRows::numbers() const
+std::vector<std::int32_t> MatrixRows::numbers() const
 {
   std::vector<Index> own;
   for (const std::int32_t row : this->Owned)

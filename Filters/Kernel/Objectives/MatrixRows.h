@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file RankRows.h
+ * @file MatrixRows.h
  * @brief The free points of a mesh on several ranks as rows of a matrix. Internal: not installed.
  */
-#ifndef tautline_RankRows_h
-#define tautline_RankRows_h
+#ifndef tautline_MatrixRows_h
+#define tautline_MatrixRows_h
 
 #include "tautline/Mesh/DistributedMesh.h"
 
@@ -14,16 +14,16 @@
 namespace tautline
 {
 /**
- * @class tautline::RankRows
+ * @class tautline::MatrixRows
  * @brief A row for each free local point, in the order of the global numbers: of those that this
  * rank owns, and of those about them. Vectors have one entry, or a few, for each row that the rank
  * owns. What is summed along a row in the order of its columns does not depend on the ranks.
  */
-class TAUTLINE_KERNEL_EXPORT RankRows
+class TAUTLINE_KERNEL_EXPORT MatrixRows
 {
 public:
   /// @param free one flag per local point, the owner's count. Collective.
-  RankRows(const DistributedMesh& mesh, std::vector<unsigned char> free);
+  MatrixRows(const DistributedMesh& mesh, std::vector<unsigned char> free);
 
   RankGroup& group() const { return this->TheMesh.group(); }
   Index rows() const { return this->Rows; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "MultigridOnRanks.h"
+#include "BlockJacobiMultigrid.h"
 
 #include "SmallBlocks.h"
 
@@ -90,7 +90,7 @@ Graph gathered(RankGroup& group, const std::vector<std::int32_t>& numbers,
 }
 
 //------------------------------------------------------------------------------
-MultigridOnRanks::MultigridOnRanks(const RankRows& rows, int threads)
+BlockJacobiMultigrid::BlockJacobiMultigrid(const MatrixRows& rows, int threads)
   : Rows(rows)
   , Threads(threads)
 {
@@ -98,7 +98,7 @@ MultigridOnRanks::MultigridOnRanks(const RankRows& rows, int threads)
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void MultigridOnRanks::invertDiagonals()
+void BlockJacobiMultigrid::invertDiagonals()
 {
   const BlockMatrixView& a = this->Matrix;
   const std::vector<std::int32_t>& owned = this->Rows.owned();
@@ -142,7 +142,7 @@ void MultigridOnRanks::invertDiagonals()
 //------------------------------------------------------------------------------
 /// See isFloating() in Multigrid.cxx. Uses the diagonals of all rows.
 template <int Dim>
-bool MultigridOnRanks::isFloating() const
+bool BlockJacobiMultigrid::isFloating() const
 {
   const BlockMatrixView& a = this->Matrix;
   const std::vector<std::int32_t>& owned = this->Rows.owned();
@@ -166,7 +166,7 @@ bool MultigridOnRanks::isFloating() const
 }
 
 template <int Dim>
-void MultigridOnRanks::removeTranslation(double* z)
+void BlockJacobiMultigrid::removeTranslation(double* z)
 {
   RankGroup& group = this->Rows.group();
   const std::size_t count = this->Rows.numberOfOwned();
@@ -189,7 +189,7 @@ void MultigridOnRanks::removeTranslation(double* z)
 //------------------------------------------------------------------------------
 /// How strongly all rows of all ranks couple, by their numbers.
 template <int Dim>
-Graph MultigridOnRanks::couplings(const std::vector<std::int32_t>& numbers) const
+Graph BlockJacobiMultigrid::couplings(const std::vector<std::int32_t>& numbers) const
 {
   const BlockMatrixView& a = this->Matrix;
   // In units of the diagonal, so that no number leaves the range of float.
@@ -224,7 +224,7 @@ Graph MultigridOnRanks::couplings(const std::vector<std::int32_t>& numbers) cons
 
 /// Finds the aggregates, and the pattern of the coarse matrix.
 template <int Dim>
-void MultigridOnRanks::aggregate()
+void BlockJacobiMultigrid::aggregate()
 {
   const BlockMatrixView& a = this->Matrix;
   const std::vector<std::int32_t>& owned = this->Rows.owned();
@@ -287,7 +287,7 @@ void MultigridOnRanks::aggregate()
 }
 
 //------------------------------------------------------------------------------
-void MultigridOnRanks::addUp(const std::vector<std::vector<std::int32_t>>& places,
+void BlockJacobiMultigrid::addUp(const std::vector<std::vector<std::int32_t>>& places,
   const std::vector<double>& own, int components, std::vector<double>& to) const
 {
   std::size_t total = 0;
@@ -324,7 +324,7 @@ void MultigridOnRanks::addUp(const std::vector<std::vector<std::int32_t>>& place
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void MultigridOnRanks::fillCoarse()
+void BlockJacobiMultigrid::fillCoarse()
 {
   const BlockMatrixView& a = this->Matrix;
   const std::vector<std::int32_t>& owned = this->Rows.owned();
@@ -349,7 +349,7 @@ void MultigridOnRanks::fillCoarse()
 }
 
 //------------------------------------------------------------------------------
-void MultigridOnRanks::build(const BlockMatrixView& matrix)
+void BlockJacobiMultigrid::build(const BlockMatrixView& matrix)
 {
   this->Matrix = matrix;
   const bool flat = matrix.size == 2;
@@ -368,7 +368,7 @@ void MultigridOnRanks::build(const BlockMatrixView& matrix)
 
 //------------------------------------------------------------------------------
 template <int Dim>
-void MultigridOnRanks::subtractProduct(const double* x, double* rest) const
+void BlockJacobiMultigrid::subtractProduct(const double* x, double* rest) const
 {
   const BlockMatrixView& a = this->Matrix;
   const std::vector<std::int32_t>& owned = this->Rows.owned();
@@ -392,7 +392,7 @@ void MultigridOnRanks::subtractProduct(const double* x, double* rest) const
 }
 
 template <int Dim>
-void MultigridOnRanks::cycle(const double* r, double* z)
+void BlockJacobiMultigrid::cycle(const double* r, double* z)
 {
   const auto count = static_cast<Index>(this->Rows.numberOfOwned());
   const auto smooth = [&](const double* rest)
@@ -441,7 +441,7 @@ void MultigridOnRanks::cycle(const double* r, double* z)
   }
 }
 
-void MultigridOnRanks::apply(const double* r, double* z)
+void BlockJacobiMultigrid::apply(const double* r, double* z)
 {
   this->Matrix.size == 2 ? this->cycle<2>(r, z) : this->cycle<3>(r, z);
 }
