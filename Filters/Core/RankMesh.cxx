@@ -9,7 +9,7 @@
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Mesh/RankPieces.h"
-#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Mesh/Ranks.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataSet.h"

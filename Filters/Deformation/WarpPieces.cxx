@@ -7,7 +7,7 @@
 #include "PieceMotion.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Mesh/BoundaryParts.h"
-#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Mesh/Ranks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -59,6 +59,7 @@ private:
   {
     return tautline::countOwned(this->Group, this->local(), flags);
   }
+  Index countInvalid(const std::vector<double>& points);
   void requireElements();
   PointFlags chosenToMove();
   PointFlags staying();
@@ -100,6 +101,17 @@ PieceWarp::PieceWarp(WarpSession& session, RankGroup& group, RankMesh& mesh, con
 }
 
 //------------------------------------------------------------------------------
+/// Inverted and degenerate elements of the whole mesh with these local points.
+Index PieceWarp::countInvalid(const std::vector<double>& points)
+{
+  const int threads = this->Settings.options.threads;
+  const Mesh start = localMesh(this->local(), this->Whole.mirrored(), threads);
+  std::vector<signed char> validity(start.view().numberOfCells);
+  start.at(points.data()).classifyCells(validity.data(), threads);
+  return Ranks(this->local()).countInvalid(validity);
+}
+
+//------------------------------------------------------------------------------
 /// As requireElements() of a mesh in one place.
 void PieceWarp::requireElements()
 {
@@ -112,8 +124,7 @@ void PieceWarp::requireElements()
   }
   requireShapes(this->Group.sum(shapeless));
   const DistributedMesh& mesh = this->local();
-  const Index inverted = countInvalidOnRanks(
-    mesh, this->Whole.mirrored(), mesh.points(), this->Settings.options.threads);
+  const Index inverted = this->countInvalid(mesh.points());
   if (inverted > 0)
   {
     throw Error(std::to_string(inverted) +
@@ -388,7 +399,7 @@ WarpResult PieceWarp::warpFromPrevious(const WarpResult& previous)
 {
   DistributedMesh& mesh = this->local();
   std::vector<double> points = localPoints(this->Whole, previous.points);
-  if (countInvalidOnRanks(mesh, this->Whole.mirrored(), points, this->Settings.options.threads) > 0)
+  if (this->countInvalid(points) > 0)
   {
     WarpResult result = this->run(this->Displacement);
     result.message += (result.message.empty() ? "" : " ") + std::string(PreviousInvalid);

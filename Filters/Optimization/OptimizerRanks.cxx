@@ -12,7 +12,7 @@
 #include "RankMesh.h"
 #include "TargetChoice.h"
 #include "tautline/Objectives/ObjectiveSum.h"
-#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Optimization/Optimize.h"
 
 #include "vtkDataSet.h"
 #include "vtkExecutive.h"
@@ -408,7 +408,8 @@ void vtkMeshOptimizer::OptimizeOnRanks(vtkInformationVector** inputVector, vtkDa
   };
   this->Runs.push_back(std::make_unique<tautline::OptimizerRun>());
   tautline::OptimizerRun& run = *this->Runs.back();
-  run.result = tautline::optimizeOnRanks(mesh.mesh(), mesh.mirrored(), options);
+  run.result = tautline::optimize(
+    tautline::localMesh(mesh.mesh(), mesh.mirrored()), options, {}, tautline::Ranks(mesh.mesh()));
   run.iterations = run.result.iterations;
   tautline::roundOnRanks(mesh, options, run);
   mesh.move(vtkPointSet::SafeDownCast(output), run.result.points, run.single);

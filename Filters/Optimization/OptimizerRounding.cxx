@@ -98,7 +98,7 @@ void OptimizerSetup::round(OptimizerRun& run) const
 }
 
 //------------------------------------------------------------------------------
-void roundOnRanks(const RankMesh& mesh, const OptimizeOptions& options, OptimizerRun& run)
+void roundOnRanks(RankMesh& mesh, const OptimizeOptions& options, OptimizerRun& run)
 {
   OptimizeResult& result = run.result;
   run.note.clear();
@@ -112,8 +112,11 @@ void roundOnRanks(const RankMesh& mesh, const OptimizeOptions& options, Optimize
   {
     return;
   }
-  RoundedResult rounded =
-    measureRoundedOnRanks(mesh.mesh(), mesh.mirrored(), options, result, points);
+  const Mesh start = localMesh(mesh.mesh(), mesh.mirrored(), options.threads);
+  Mesh there = start.at(points.data());
+  there.setSpace(start.space());
+  RoundedResult rounded = measureRounded(
+    start, validityOf(start, options.threads), options, result, there, Ranks(mesh.mesh()));
   if (rounded.keepsGuarantees())
   {
     take(result, std::move(points), rounded);

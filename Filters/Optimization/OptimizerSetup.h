@@ -159,7 +159,7 @@ private:
  * OptimizerSetup::round(). In double precision they are as they were verified. Collective.
  * @param options those of the run
  */
-void roundOnRanks(const RankMesh& mesh, const OptimizeOptions& options, OptimizerRun& run);
+void roundOnRanks(RankMesh& mesh, const OptimizeOptions& options, OptimizerRun& run);
 
 /// The objectives of CUSTOM, without targets; one at least.
 std::vector<Objective> customObjectives(const OptimizerSettings& settings);

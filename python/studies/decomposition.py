@@ -31,7 +31,7 @@ SIZES, SMALL_SIZES = (1_000, 2_000, 4_000, 8_000, 16_000), (200, 400, 800)
 SIZE_PARTS, SMALL_SIZE_PARTS = 27, 8
 #: What a rank sends of a point that has moved: x y z and a flag, in double precision.
 POINT_BYTES = 32
-#: Exchanges of one number with all ranks at the end of a sweep (RankSweeper), their bytes per rank, and the collective
+#: Exchanges of one number with all ranks at the end of a sweep (LocalSweeper), their bytes per rank, and the collective
 #: operations of each: one for lengths, one for values.
 REDUCTIONS, REDUCED_BYTES, OPERATIONS = 6, 16, 2
 #: Assumed of the network, not measured: seconds per message, bytes per second.

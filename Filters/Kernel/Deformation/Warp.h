@@ -42,8 +42,8 @@ public:
    * @brief The same for a mesh on several ranks. Collective, as warp() is then:
    * points, displacements and flags are those of the local points, and a prescribed point is one,
    * with the same displacement, on all ranks that have it. The numbers of the result are those of
-   * the whole mesh. Untangling and optimization are those of untangle() and
-   * optimizeOnRanks(), whose order does not depend on the ranks.
+   * the whole mesh. Untangling and optimization are those of untangle() and optimize() on several
+   * ranks, whose order does not depend on the ranks.
    * @param mesh stays alive; volume, or planar at right angles to an axis; all cells of one
    * dimension. Its points are others within warp(), and as before when it returns.
    * @param mirrored the mesh is reversed throughout, see Mesh::setMirrored(); the same on all ranks

@@ -6,7 +6,7 @@
 #include "WarpCoefficients.h"
 #include "WarpElastic.h"
 #include "WarpPointwise.h"
-#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Optimization/Optimize.h"
 
 namespace tautline
 {
@@ -447,16 +447,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   }
   optimization.observer = [&control](const IterationState& state)
   { return control.watch(0.7 + 0.3 * state.progress); };
-  OptimizeResult done;
-  if (ranks.several())
-  {
-    const PlacedMesh placed(ranks.mesh(), points);
-    done = optimizeOnRanks(ranks.mesh(), this->Initial.mirrored(), optimization);
-  }
-  else
-  {
-    done = tautline::optimize(*mesh, optimization);
-  }
+  OptimizeResult done = tautline::optimize(*mesh, optimization, {}, ranks);
   control.agree();
   points = std::move(done.points);
   return done.iterations;

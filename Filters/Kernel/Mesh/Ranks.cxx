@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Ranks.h"
 
+#include "BoundaryPoints.h"
+#include "tautline/Core/Memory.h"
+
 #include <algorithm>
+#include <new>
+#include <numeric>
 
 namespace tautline
 {
@@ -18,6 +23,62 @@ void Ranks::sum(double* values, Index count) const
   {
     std::transform(one.begin(), one.end(), values, values, std::plus<>());
   }
+}
+
+//------------------------------------------------------------------------------
+double Ranks::total(const std::vector<double>& values, double start) const
+{
+  return this->Spread ? start + this->Spread->group().orderlessSum(values)
+                      : std::accumulate(values.begin(), values.end(), start);
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> Ranks::boundary(const Mesh& local) const
+{
+  if (this->Spread)
+  {
+    return rankBoundary(*this->Spread);
+  }
+  const std::vector<char> boundary = boundaryPoints(local);
+  return { boundary.begin(), boundary.end() };
+}
+
+std::vector<unsigned char> rankBoundary(const DistributedMesh& mesh)
+{
+  std::vector<unsigned char> flags(mesh.localPoints(), 0);
+  if (mesh.view().numberOfCells > 0)
+  {
+    const std::vector<char> boundary = boundaryPoints(Mesh(mesh.view()));
+    std::copy(boundary.begin(), boundary.end(), flags.begin());
+  }
+  mesh.exchange(flags.data());
+  return flags;
+}
+
+//------------------------------------------------------------------------------
+Index Ranks::countInvalid(const std::vector<signed char>& validity) const
+{
+  Index count = 0;
+  for (std::size_t cell = 0; cell < validity.size(); ++cell)
+  {
+    count += this->ownsCell(static_cast<Index>(cell)) && isInvalid(validity[cell]);
+  }
+  return this->sum(count);
+}
+
+//------------------------------------------------------------------------------
+MeshSpace Ranks::space(const Mesh& local) const
+{
+  MeshSpace space = local.space();
+  if (this->Spread)
+  {
+    for (const MeshSpace& other :
+      this->Spread->group().gatherJoined(std::vector<MeshSpace>{ local.space() }))
+    {
+      space = space.dimension == Dimension::None ? other : space;
+    }
+  }
+  return space;
 }
 
 //------------------------------------------------------------------------------
@@ -42,11 +103,46 @@ void Ranks::together(const std::function<void()>& work) const
 }
 
 //------------------------------------------------------------------------------
+void Ranks::inMemory(const std::function<void()>& work, const char* message) const
+{
+  if (!this->Spread)
+  {
+    work();
+    return;
+  }
+  bool fits = true;
+  try
+  {
+    work();
+  }
+  catch (const std::bad_alloc&)
+  {
+    fits = false;
+  }
+  catch (const MemoryError&)
+  {
+    fits = false;
+  }
+  if (this->any(!fits))
+  {
+    throw MemoryError(message);
+  }
+}
+
+//------------------------------------------------------------------------------
 void Ranks::exchange(double* values, int components) const
 {
   if (this->Spread)
   {
     this->Spread->exchange(values, components);
+  }
+}
+
+void Ranks::exchange(unsigned char* flags) const
+{
+  if (this->Spread)
+  {
+    this->Spread->exchange(flags);
   }
 }
 

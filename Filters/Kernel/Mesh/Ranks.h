@@ -43,9 +43,17 @@ public:
   {
   }
 
+  /// With the numbers of the points as ids, and the communicator of the mesh's group.
+  explicit Ranks(DistributedMesh& mesh)
+    : Ranks(mesh, mesh.numbers(), mesh.group().communicator())
+  {
+  }
+
   bool several() const { return this->Spread != nullptr; }
   /// Of several ranks.
   DistributedMesh& mesh() const { return *this->Spread; }
+  /// Null: this process alone.
+  RankGroup* group() const { return this->Spread ? &this->Spread->group() : nullptr; }
   Communicator communicator() const { return this->Comm; }
   /// The order of points in sums over few of them, which then are those of one process, bitwise.
   Index id(Index point) const { return this->Ids[point]; }
@@ -60,6 +68,9 @@ public:
     return value;
   }
   Index sum(Index value) const { return this->Spread ? this->Spread->group().sum(value) : value; }
+  /// The sum of the values of all ranks, rounded once, whatever their order; on one process added
+  /// one by one to the start.
+  double total(const std::vector<double>& values, double start = 0.0) const;
   double maximum(double value) const
   {
     return this->Spread ? this->Spread->group().maximum(value) : value;
@@ -67,8 +78,19 @@ public:
   bool any(bool value) const { return this->Spread ? this->Spread->group().any(value) : value; }
   /// Of the whole mesh; a rank may have no cells.
   Dimension dimension(const Mesh& local) const;
+  /// One flag per local point: on the boundary of the whole mesh.
+  std::vector<unsigned char> boundary(const Mesh& local) const;
+  /// Inverted and degenerate cells of the whole mesh.
+  /// @param validity of the local cells, as Mesh::classifyCells() gives it
+  Index countInvalid(const std::vector<signed char>& validity) const;
+  /// The space of the whole mesh, whose pieces with cells agree on it.
+  MeshSpace space(const Mesh& local) const;
   /// Does work that does not communicate; what it throws on one rank is thrown on all.
   void together(const std::function<void()>& work) const;
+
+  /// Does work that does not communicate. On several ranks, if it has not enough memory on one,
+  /// throws MemoryError on all.
+  void inMemory(const std::function<void()>& work, const char* message) const;
 
   /// The values of the points that this rank owns, to all that have them.
   void exchange(double* values, int components) const;
@@ -94,6 +116,17 @@ private:
   const Index* Ids = nullptr;
   Communicator Comm = nullptr;
 };
+
+/// The local cells, where the points are. @param mirrored see Mesh::setMirrored()
+inline Mesh localMesh(const DistributedMesh& mesh, bool mirrored = false, int threads = 0)
+{
+  Mesh local(mesh.view(), threads);
+  local.setMirrored(mirrored);
+  return local;
+}
+
+/// One flag per local point: on the boundary of the whole mesh. Collective.
+TAUTLINE_KERNEL_EXPORT std::vector<unsigned char> rankBoundary(const DistributedMesh& mesh);
 
 /// Replaces members of items by their sums over all ranks.
 /// @param members the addresses of an item's members @param sizes of these, in numbers

@@ -2,6 +2,8 @@
 #include "Aggregation.h"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 namespace tautline
 {
@@ -128,5 +130,40 @@ Graph joined(const Graph& fine, const std::vector<std::int32_t>& aggregate, std:
     }
   }
   return coarse;
+}
+
+//------------------------------------------------------------------------------
+Aggregates aggregate(Graph fine, int pairings)
+{
+  Aggregates found;
+  found.ofRow.resize(fine.starts.size() - 1);
+  std::iota(found.ofRow.begin(), found.ofRow.end(), 0);
+  found.places.resize(fine.columns.size());
+  std::iota(found.places.begin(), found.places.end(), 0);
+  found.graph = std::move(fine);
+  std::vector<std::int32_t> pairs, moved;
+  std::int32_t count = 0;
+  for (int i = 0; i < pairings; ++i)
+  {
+    count = pairUp(found.graph, pairs);
+    found.graph = joined(found.graph, pairs, count, moved);
+    for (std::int32_t& row : found.ofRow)
+    {
+      row = pairs[row];
+    }
+    for (std::int32_t& place : found.places)
+    {
+      place = moved[place];
+    }
+  }
+  found.diagonals.resize(count);
+  for (std::int32_t row = 0; row < count; ++row)
+  {
+    const auto columns = found.graph.columns.begin();
+    const auto begin = columns + found.graph.starts[row],
+               end = columns + found.graph.starts[row + 1];
+    found.diagonals[row] = static_cast<std::int32_t>(std::lower_bound(begin, end, row) - columns);
+  }
+  return found;
 }
 }

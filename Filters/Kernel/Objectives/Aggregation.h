@@ -35,5 +35,15 @@ std::int32_t pairUp(const Graph& graph, std::vector<std::int32_t>& aggregate);
  */
 Graph joined(const Graph& fine, const std::vector<std::int32_t>& aggregate, std::int32_t count,
   std::vector<std::int32_t>& places);
+
+/// Rows joined in pairs, several times.
+struct Aggregates
+{
+  Graph graph;                         ///< of the aggregates
+  std::vector<std::int32_t> ofRow;     ///< the aggregate of each row
+  std::vector<std::int32_t> places;    ///< in the graph, of each place of the fine one
+  std::vector<std::int32_t> diagonals; ///< the place of each aggregate's own column
+};
+Aggregates aggregate(Graph fine, int pairings);
 }
 #endif

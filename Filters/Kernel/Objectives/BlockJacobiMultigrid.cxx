@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BlockJacobiMultigrid.h"
 
+#include "GridRows.h"
 #include "SmallBlocks.h"
 
 #include "tautline/Core/Memory.h"
@@ -35,29 +36,25 @@ std::vector<std::int32_t> compress(std::vector<std::int32_t>& list)
 
 /// The rows of a graph that each rank has, put together: the number of each row, how many columns
 /// it has, these, and their strengths.
-Graph gathered(RankGroup& group, const std::vector<std::int32_t>& numbers,
+Graph gathered(const Ranks& ranks, const std::vector<std::int32_t>& numbers,
   const std::vector<std::int32_t>& lengths, const std::vector<std::int32_t>& columns,
   const std::vector<float>& strengths)
 {
+  RankGroup& group = ranks.mesh().group();
   const Index rows = group.sum(static_cast<Index>(numbers.size()));
   const Index total = group.sum(static_cast<Index>(columns.size()));
-  bool fits = static_cast<double>(sizeof(float)) * static_cast<double>(total) <= 2 * atOnce;
-  try
-  {
-    // The graph, what comes from the ranks, and the graphs of pairs.
-    constexpr double copies = 4;
-    requireMemory(copies * static_cast<double>(sizeof(std::int32_t) + sizeof(float)) *
-        static_cast<double>(total),
-      "the graph of Newton's method", "choose Local Newton");
-  }
-  catch (const MemoryError&)
-  {
-    fits = false;
-  }
-  if (group.any(!fits))
-  {
-    throw MemoryError("The mesh is too large for Newton's method: choose Local Newton or L-BFGS.");
-  }
+  ranks.inMemory(
+    [total]
+    {
+      // The graph, what comes from the ranks, and the graphs of pairs.
+      constexpr double copies = 4;
+      const auto entries = static_cast<double>(total);
+      const double bytes = sizeof(float) * entries > 2 * atOnce
+        ? HUGE_VAL
+        : copies * (sizeof(std::int32_t) + sizeof(float)) * entries;
+      requireMemory(bytes, "the graph of Newton's method", "choose Local Newton");
+    },
+    "The mesh is too large for Newton's method: choose Local Newton or L-BFGS.");
   const auto rowsOf = group.gatherItems(numbers), lengthsOf = group.gatherItems(lengths);
   Graph graph;
   graph.starts.assign(rows + 1, 0);
@@ -112,8 +109,7 @@ void BlockJacobiMultigrid::invertDiagonals()
       own[Dim * i + c] = blockOf(a.diagonals[owned[i]])[(Dim + 1) * c];
     }
   }
-  this->Diagonal.assign(static_cast<std::size_t>(Dim) * this->Rows.rows(), 0.0);
-  this->Rows.spread(own.data(), this->Diagonal.data(), Dim);
+  this->Rows.spread(own.data(), this->Diagonal, Dim);
   this->Inverse.resize(Dim * Dim * count);
   forEachChunk(static_cast<Index>(count), this->Threads,
     [&](Index, Index begin, Index end)
@@ -123,16 +119,11 @@ void BlockJacobiMultigrid::invertDiagonals()
         const std::int32_t row = owned[i];
         double block[Dim * Dim];
         std::copy_n(blockOf(a.diagonals[row]), Dim * Dim, block);
-        for (std::int32_t k = a.starts[row]; k < a.starts[row + 1]; ++k)
+        double added[Dim];
+        addOutside<Dim>(a, row, row, row + 1, this->diagonals<Dim>(), added);
+        for (int c = 0; c < Dim; ++c)
         {
-          const Index column = a.columns[k];
-          for (int e = 0; column != row && e < Dim * Dim; ++e)
-          {
-            const double ratio =
-              this->Diagonal[Dim * row + e / Dim] / this->Diagonal[Dim * column + e % Dim];
-            const double part = 0.5 * std::abs(blockOf(k)[e]) * std::sqrt(ratio);
-            block[(Dim + 1) * (e / Dim)] += std::isfinite(part) ? part : 0.0;
-          }
+          block[(Dim + 1) * c] += added[c];
         }
         invert<Dim>(block, this->Inverse.data() + Dim * Dim * i);
       }
@@ -147,20 +138,7 @@ bool BlockJacobiMultigrid::isFloating() const
   const BlockMatrixView& a = this->Matrix;
   const std::vector<std::int32_t>& owned = this->Rows.owned();
   const bool held = std::any_of(owned.begin(), owned.end(),
-    [&](std::int32_t row)
-    {
-      double sum[Dim * Dim] = {}, size = 0;
-      for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
-      {
-        const double* block = a.blocks + static_cast<Index>(Dim * Dim) * i;
-        const double* diagonal = this->Diagonal.data() + static_cast<Index>(Dim) * a.columns[i];
-        std::transform(block, block + Dim * Dim, sum, sum, std::plus<>());
-        // Of a positive semidefinite block the largest entry is on the diagonal.
-        size = std::max(size, *std::max_element(diagonal, diagonal + Dim));
-      }
-      return !std::all_of(
-        sum, sum + Dim * Dim, [size](double x) { return std::abs(x) <= floatingSum * size; });
-    });
+    [&](std::int32_t row) { return !isFloatingRow<Dim>(a, row, this->diagonals<Dim>()); });
   RankGroup& group = this->Rows.group();
   return !group.any(held) && group.any(!owned.empty());
 }
@@ -192,13 +170,10 @@ template <int Dim>
 Graph BlockJacobiMultigrid::couplings(const std::vector<std::int32_t>& numbers) const
 {
   const BlockMatrixView& a = this->Matrix;
-  // In units of the diagonal, so that no number leaves the range of float.
-  std::vector<double> scale(this->Rows.rows());
-  for (std::size_t row = 0; row < scale.size(); ++row)
+  std::vector<double> units(this->Rows.rows());
+  for (std::size_t row = 0; row < units.size(); ++row)
   {
-    const double* d = this->Diagonal.data() + Dim * row;
-    const double trace = std::accumulate(d, d + Dim, 0.0);
-    scale[row] = trace > 0 ? 1 / std::sqrt(trace) : 0.0;
+    units[row] = unitOf<Dim>(static_cast<Index>(row), this->diagonals<Dim>());
   }
   std::vector<std::int32_t> own, lengths, columns;
   std::vector<float> strengths;
@@ -208,18 +183,12 @@ Graph BlockJacobiMultigrid::couplings(const std::vector<std::int32_t>& numbers) 
     lengths.push_back(a.starts[row + 1] - a.starts[row]);
     for (std::int32_t k = a.starts[row]; k < a.starts[row + 1]; ++k)
     {
-      const double* block = a.blocks + static_cast<Index>(Dim * Dim) * k;
-      double sum = 0;
-      for (int c = 0; c < Dim; ++c)
-      {
-        sum -= block[(Dim + 1) * c];
-      }
       columns.push_back(numbers[a.columns[k]]);
-      strengths.push_back(
-        static_cast<float>(std::max(0.0, sum * scale[row] * scale[a.columns[k]])));
+      strengths.push_back(couplingOf<Dim>(
+        a.blocks + static_cast<Index>(Dim * Dim) * k, units[row], units[a.columns[k]]));
     }
   }
-  return gathered(this->Rows.group(), own, lengths, columns, strengths);
+  return gathered(this->Rows.ranks(), own, lengths, columns, strengths);
 }
 
 /// Finds the aggregates, and the pattern of the coarse matrix.
@@ -232,29 +201,17 @@ void BlockJacobiMultigrid::aggregate()
   const std::vector<std::int32_t> numbers = this->Rows.numbers();
   Graph graph = this->couplings<Dim>(numbers);
   const std::vector<std::int32_t> fineStarts = graph.starts;
-  const auto rows = static_cast<std::int32_t>(fineStarts.size()) - 1;
-  std::vector<std::int32_t> aggregates(rows), places(graph.columns.size()), pairs, moved;
-  std::iota(aggregates.begin(), aggregates.end(), 0);
-  std::iota(places.begin(), places.end(), 0);
-  std::int32_t count = 0;
-  for (int i = 0; i < pairings; ++i)
-  {
-    count = pairUp(graph, pairs);
-    graph = joined(graph, pairs, count, moved);
-    const auto follow = [](std::vector<std::int32_t>& list, const std::vector<std::int32_t>& to)
-    { std::for_each(list.begin(), list.end(), [&](std::int32_t& item) { item = to[item]; }); };
-    follow(aggregates, pairs);
-    follow(places, moved);
-  }
+  Aggregates found = tautline::aggregate(std::move(graph), pairings);
+  const auto count = static_cast<Index>(found.diagonals.size());
   this->Coarse.reset();
-  if (static_cast<double>(count) > slowCoarsening * rows)
+  if (static_cast<double>(count) > slowCoarsening * static_cast<double>(found.ofRow.size()))
   {
     return;
   }
   this->Aggregate.resize(this->Rows.rows());
   for (std::size_t row = 0; row < this->Aggregate.size(); ++row)
   {
-    this->Aggregate[row] = aggregates[numbers[row]];
+    this->Aggregate[row] = found.ofRow[numbers[row]];
   }
   this->AggregateOf.clear();
   this->PlaceOf.clear();
@@ -262,22 +219,15 @@ void BlockJacobiMultigrid::aggregate()
   for (const std::int32_t row : owned)
   {
     this->AggregateOf.push_back(this->Aggregate[row]);
-    const auto begin = places.begin() + fineStarts[numbers[row]];
+    const auto begin = found.places.begin() + fineStarts[numbers[row]];
     this->PlaceStarts.push_back(static_cast<Index>(this->PlaceOf.size()));
     this->PlaceOf.insert(this->PlaceOf.end(), begin, begin + a.starts[row + 1] - a.starts[row]);
   }
   this->RankAggregates = group.gatherItems(compress(this->AggregateOf));
   this->RankPlaces = group.gatherItems(compress(this->PlaceOf));
-  this->Starts = std::move(graph.starts);
-  this->Columns = std::move(graph.columns);
-  this->Diagonals.resize(count);
-  for (std::int32_t row = 0; row < count; ++row)
-  {
-    const auto begin = this->Columns.begin() + this->Starts[row],
-               end = this->Columns.begin() + this->Starts[row + 1];
-    this->Diagonals[row] =
-      static_cast<std::int32_t>(std::lower_bound(begin, end, row) - this->Columns.begin());
-  }
+  this->Starts = std::move(found.graph.starts);
+  this->Columns = std::move(found.graph.columns);
+  this->Diagonals = std::move(found.diagonals);
   this->Blocks.resize(static_cast<std::size_t>(Dim * Dim) * this->Columns.size());
   this->R.resize(static_cast<std::size_t>(Dim) * count);
   this->Z.resize(this->R.size());
@@ -408,8 +358,7 @@ void BlockJacobiMultigrid::cycle(const double* r, double* z)
   };
   std::fill_n(z, Dim * count, 0.0);
   smooth(r);
-  this->All.resize(static_cast<std::size_t>(Dim) * this->Rows.rows());
-  this->Rows.spread(z, this->All.data(), Dim);
+  this->Rows.spread(z, this->All, Dim);
   this->Rest.assign(r, r + Dim * count);
   this->subtractProduct<Dim>(this->All.data(), this->Rest.data());
   if (this->Coarse)
@@ -444,5 +393,15 @@ void BlockJacobiMultigrid::cycle(const double* r, double* z)
 void BlockJacobiMultigrid::apply(const double* r, double* z)
 {
   this->Matrix.size == 2 ? this->cycle<2>(r, z) : this->cycle<3>(r, z);
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<GridHierarchy> makeGrids(const MatrixRows& rows, int threads)
+{
+  if (rows.ranks().several())
+  {
+    return std::make_unique<BlockJacobiMultigrid>(rows, threads);
+  }
+  return std::make_unique<Multigrid>(threads);
 }
 }

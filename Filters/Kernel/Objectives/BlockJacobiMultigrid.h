@@ -21,22 +21,26 @@
 
 namespace tautline
 {
-class TAUTLINE_KERNEL_EXPORT BlockJacobiMultigrid
+class TAUTLINE_KERNEL_EXPORT BlockJacobiMultigrid : public GridHierarchy
 {
 public:
   /// @param rows must outlive this @param threads 0: all cores. The result does not depend on it.
   BlockJacobiMultigrid(const MatrixRows& rows, int threads);
 
   /**
-   * @brief As Multigrid::build(). Collective, as apply().
-   * @param matrix a row for each of rows(), of which those of other ranks are not used; on a rank
-   * that owns none it may have no rows
+   * @brief See GridHierarchy. Collective, as apply().
+   * @param matrix a row for each of rows(), of which those of other ranks are not used
    */
-  void build(const BlockMatrixView& matrix);
-  /// @param r, z size numbers for each row that this rank owns
-  void apply(const double* r, double* z);
+  void build(const BlockMatrixView& matrix) override;
+  void apply(const double* r, double* z) override;
 
 private:
+  /// See GridRows.h: of all rows here.
+  template <int Dim>
+  auto diagonals() const
+  {
+    return [this](Index row, int c) { return this->Diagonal[Dim * row + c]; };
+  }
   template <int Dim>
   void invertDiagonals();
   /// Whether the matrix maps translations of all rows of all ranks to 0: no point is held.
@@ -81,5 +85,9 @@ private:
   /// Of each rank: the aggregates and the coarse blocks that its rows add to.
   std::vector<std::vector<std::int32_t>> RankAggregates, RankPlaces;
 };
+
+/// The hierarchy for rows: Multigrid on one process, BlockJacobiMultigrid on several ranks.
+TAUTLINE_KERNEL_EXPORT std::unique_ptr<GridHierarchy> makeGrids(
+  const MatrixRows& rows, int threads);
 }
 #endif

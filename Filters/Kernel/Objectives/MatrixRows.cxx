@@ -7,27 +7,41 @@
 namespace tautline
 {
 //------------------------------------------------------------------------------
-MatrixRows::MatrixRows(const DistributedMesh& mesh, std::vector<unsigned char> free)
-  : TheMesh(mesh)
-  , RowOfPoint(mesh.localPoints(), -1)
+MatrixRows::MatrixRows(
+  const std::vector<std::int32_t>& points, Index numberOfPoints, const Ranks& ranks)
+  : TheRanks(ranks)
+  , RowOfPoint(numberOfPoints, -1)
+  , Points(points)
 {
-  mesh.exchange(free.data());
-  for (Index p = 0; p < mesh.localPoints(); ++p)
+  std::vector<unsigned char> free(ranks.several() ? numberOfPoints : 0, 0);
+  if (ranks.several())
   {
-    if (!free[p])
+    for (const std::int32_t p : points)
     {
-      continue;
+      free[p] = 1;
     }
-    const auto row = static_cast<std::int32_t>(this->Points.size());
-    this->RowOfPoint[p] = row;
-    this->Points.push_back(static_cast<std::int32_t>(p));
-    if (mesh.owned(p))
+    ranks.exchange(free.data());
+    this->Points.clear();
+    for (Index p = 0; p < numberOfPoints; ++p)
     {
-      this->Owned.push_back(row);
+      if (free[p] && ranks.owns(p))
+      {
+        this->Owned.push_back(static_cast<std::int32_t>(this->Points.size()));
+      }
+      if (free[p])
+      {
+        this->Points.push_back(static_cast<std::int32_t>(p));
+      }
     }
   }
-  this->Rows = static_cast<Index>(this->Points.size());
-  this->Halo = mesh.subset(free);
+  for (std::size_t row = 0; row < this->Points.size(); ++row)
+  {
+    this->RowOfPoint[this->Points[row]] = static_cast<std::int32_t>(row);
+  }
+  if (ranks.several())
+  {
+    this->Halo = ranks.mesh().subset(free);
+  }
   for (auto& neighbour : this->Halo.neighbours)
   {
     for (std::vector<std::int32_t>* list : { &neighbour.sent, &neighbour.received })
@@ -41,28 +55,48 @@ MatrixRows::MatrixRows(const DistributedMesh& mesh, std::vector<unsigned char> f
 }
 
 //------------------------------------------------------------------------------
-void MatrixRows::place(const double* own, double* all, int components) const
+const double* MatrixRows::place(const double* own, std::vector<double>& all, int components) const
 {
+  if (!this->TheRanks.several())
+  {
+    return own;
+  }
+  all.resize(static_cast<std::size_t>(components * this->rows()));
   for (std::size_t i = 0; i < this->Owned.size(); ++i)
   {
     std::copy_n(own + components * i, components,
-      all + static_cast<std::size_t>(components) * this->Owned[i]);
+      all.begin() + static_cast<std::ptrdiff_t>(components) * this->Owned[i]);
   }
+  return all.data();
 }
 
-void MatrixRows::pick(const double* all, double* own, int components) const
+double* MatrixRows::target(double* own, std::vector<double>& all, int components) const
+{
+  if (!this->TheRanks.several())
+  {
+    return own;
+  }
+  all.resize(static_cast<std::size_t>(components * this->rows()));
+  return all.data();
+}
+
+void MatrixRows::pick(const std::vector<double>& all, double* own, int components) const
 {
   for (std::size_t i = 0; i < this->Owned.size(); ++i)
   {
-    std::copy_n(all + static_cast<std::size_t>(components) * this->Owned[i], components,
+    std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(components) * this->Owned[i], components,
       own + components * i);
   }
 }
 
-void MatrixRows::spread(const double* own, double* all, int components) const
+const double* MatrixRows::spread(const double* own, std::vector<double>& all, int components) const
 {
-  this->place(own, all, components);
-  this->TheMesh.exchange(this->Halo, all, components);
+  const double* values = this->place(own, all, components);
+  if (this->TheRanks.several())
+  {
+    this->TheRanks.mesh().exchange(this->Halo, all.data(), components);
+  }
+  return values;
 }
 
 //------------------------------------------------------------------------------
@@ -71,22 +105,18 @@ std::vector<std::int32_t> MatrixRows::numbers() const
   std::vector<Index> own;
   for (const std::int32_t row : this->Owned)
   {
-    own.push_back(this->TheMesh.numbers()[this->Points[row]]);
+    own.push_back(this->TheRanks.mesh().numbers()[this->Points[row]]);
   }
-  std::vector<Index> all;
-  for (const auto& ofRank : this->group().gatherItems(own))
-  {
-    all.insert(all.end(), ofRank.begin(), ofRank.end());
-  }
+  std::vector<Index> all = this->group().gatherJoined(own);
   if (static_cast<Index>(all.size()) > std::numeric_limits<std::int32_t>::max())
   {
     throw Error("The mesh has too many points for Newton's method: choose Local Newton or L-BFGS.");
   }
   std::sort(all.begin(), all.end());
-  std::vector<std::int32_t> numbers(this->Rows);
-  for (Index row = 0; row < this->Rows; ++row)
+  std::vector<std::int32_t> numbers(this->rows());
+  for (Index row = 0; row < this->rows(); ++row)
   {
-    const Index number = this->TheMesh.numbers()[this->Points[row]];
+    const Index number = this->TheRanks.mesh().numbers()[this->Points[row]];
     numbers[row] =
       static_cast<std::int32_t>(std::lower_bound(all.begin(), all.end(), number) - all.begin());
   }

@@ -2,6 +2,7 @@
 #include "Multigrid.h"
 
 #include "Aggregation.h"
+#include "GridRows.h"
 #include "SmallBlocks.h"
 
 #include "tautline/Core/Parallel.h"
@@ -11,7 +12,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace tautline
 {
@@ -54,36 +54,12 @@ namespace
 {
 using Level = Multigrid::Level;
 
-/**
- * @brief What is added to the diagonal of a row for its couplings to other ranges, which sweeps do
- * not see: half of the sum of their sizes, in units of the diagonals. The smoother then converges
- * (A. Baker et al., "Multigrid smoothers for ultraparallel computing", SIAM J. Sci. Comput. 33,
- * 2011: l1 smoothers).
- */
+/// See GridRows.h.
 template <int Dim>
-void addOutside(const BlockMatrixView& a, Index row, Index begin, Index end, double* added)
+auto diagonalsOf(const BlockMatrixView& a)
 {
-  const auto diagonal = [&](Index of, int c)
-  { return a.blocks[static_cast<Index>(Dim * Dim) * a.diagonals[of] + (Dim + 1) * c]; };
-  std::fill_n(added, Dim, 0.0);
-  for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
-  {
-    const std::int32_t column = a.columns[i];
-    if (column >= begin && column < end)
-    {
-      continue;
-    }
-    const double* block = a.blocks + static_cast<Index>(Dim * Dim) * i;
-    for (int r = 0; r < Dim; ++r)
-    {
-      for (int c = 0; c < Dim; ++c)
-      {
-        const double ratio = diagonal(row, r) / diagonal(column, c);
-        const double part = 0.5 * std::abs(block[Dim * r + c]) * std::sqrt(ratio);
-        added[r] += std::isfinite(part) ? part : 0.0;
-      }
-    }
-  }
+  return [&a](Index row, int c)
+  { return a.blocks[static_cast<Index>(Dim * Dim) * a.diagonals[row] + (Dim + 1) * c]; };
 }
 
 template <int Dim>
@@ -98,7 +74,7 @@ void invertDiagonals(Level& level, int threads)
       for (Index row = begin; row < end; ++row)
       {
         double* added = level.added.data() + Dim * row;
-        addOutside<Dim>(a, row, begin, end, added);
+        addOutside<Dim>(a, row, begin, end, diagonalsOf<Dim>(a), added);
         double block[Dim * Dim];
         std::copy_n(a.blocks + static_cast<Index>(Dim * Dim) * a.diagonals[row], Dim * Dim, block);
         for (int c = 0; c < Dim; ++c)
@@ -110,7 +86,6 @@ void invertDiagonals(Level& level, int threads)
     });
 }
 
-/// The coupling of rows: the size of what their block adds to the rigidity.
 template <int Dim>
 Graph graphOf(const BlockMatrixView& a, int threads)
 {
@@ -118,17 +93,10 @@ Graph graphOf(const BlockMatrixView& a, int threads)
   graph.starts.assign(a.starts, a.starts + a.rows + 1);
   graph.columns.assign(a.columns, a.columns + a.starts[a.rows]);
   graph.strengths.resize(graph.columns.size());
-  // In units of the diagonal, so that no number leaves the range of float.
-  std::vector<double> scale(a.rows);
+  std::vector<double> units(a.rows);
   for (Index row = 0; row < a.rows; ++row)
   {
-    const double* block = a.blocks + static_cast<Index>(Dim * Dim) * a.diagonals[row];
-    double trace = 0;
-    for (int c = 0; c < Dim; ++c)
-    {
-      trace += block[Dim * c + c];
-    }
-    scale[row] = trace > 0 ? 1 / std::sqrt(trace) : 0.0;
+    units[row] = unitOf<Dim>(row, diagonalsOf<Dim>(a));
   }
   forEachChunk(a.rows, threads,
     [&](Index, Index begin, Index end)
@@ -137,14 +105,8 @@ Graph graphOf(const BlockMatrixView& a, int threads)
       {
         for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
         {
-          const double* block = a.blocks + static_cast<Index>(Dim * Dim) * i;
-          double sum = 0;
-          for (int c = 0; c < Dim; ++c)
-          {
-            sum -= block[Dim * c + c];
-          }
-          graph.strengths[i] =
-            static_cast<float>(std::max(0.0, sum * scale[row] * scale[a.columns[i]]));
+          graph.strengths[i] = couplingOf<Dim>(
+            a.blocks + static_cast<Index>(Dim * Dim) * i, units[row], units[a.columns[i]]);
         }
       }
     });
@@ -172,43 +134,20 @@ template <int Dim>
 std::unique_ptr<Level> coarsened(Level& fine, int threads)
 {
   const BlockMatrixView& a = fine.matrix;
-  Graph graph = graphOf<Dim>(a, threads);
-  fine.aggregate.resize(a.rows);
-  std::iota(fine.aggregate.begin(), fine.aggregate.end(), 0);
-  fine.places.resize(graph.columns.size());
-  std::iota(fine.places.begin(), fine.places.end(), 0);
-  std::vector<std::int32_t> pairs, places;
-  std::int32_t count = 0;
-  for (int i = 0; i < pairings; ++i)
-  {
-    count = pairUp(graph, pairs);
-    graph = joined(graph, pairs, count, places);
-    for (std::int32_t& aggregate : fine.aggregate)
-    {
-      aggregate = pairs[aggregate];
-    }
-    for (std::int32_t& place : fine.places)
-    {
-      place = places[place];
-    }
-  }
+  Aggregates found = aggregate(graphOf<Dim>(a, threads), pairings);
+  fine.aggregate = std::move(found.ofRow);
+  fine.places = std::move(found.places);
+  const auto count = static_cast<Index>(found.diagonals.size());
   if (static_cast<double>(count) > slowCoarsening * static_cast<double>(a.rows))
   {
     return nullptr;
   }
   auto coarse = std::make_unique<Level>();
-  coarse->starts = std::move(graph.starts);
-  coarse->columns = std::move(graph.columns);
+  coarse->starts = std::move(found.graph.starts);
+  coarse->columns = std::move(found.graph.columns);
+  coarse->diagonals = std::move(found.diagonals);
   coarse->blocks.resize(static_cast<std::size_t>(Dim * Dim) * coarse->columns.size());
   addBlocks<Dim>(fine, *coarse);
-  coarse->diagonals.resize(count);
-  for (std::int32_t row = 0; row < count; ++row)
-  {
-    const auto begin = coarse->columns.begin() + coarse->starts[row],
-               end = coarse->columns.begin() + coarse->starts[row + 1];
-    coarse->diagonals[row] =
-      static_cast<std::int32_t>(std::lower_bound(begin, end, row) - coarse->columns.begin());
-  }
   coarse->matrix = { Dim, count, coarse->starts.data(), coarse->columns.data(),
     coarse->diagonals.data(), coarse->blocks.data() };
   return coarse;
@@ -283,27 +222,12 @@ void solveDense(const std::vector<double>& factor, std::size_t n, const double* 
 template <int Dim>
 bool isFloating(const BlockMatrixView& a)
 {
-  for (Index row = 0; row < a.rows; ++row)
+  Index row = 0;
+  while (row < a.rows && isFloatingRow<Dim>(a, row, diagonalsOf<Dim>(a)))
   {
-    // Entries are as exact as the largest of an element, which may be that of a neighbour.
-    double sum[Dim * Dim] = {}, size = 0;
-    for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
-    {
-      const auto block = static_cast<Index>(Dim * Dim);
-      const double* diagonal = a.blocks + block * a.diagonals[a.columns[i]];
-      for (int k = 0; k < Dim * Dim; ++k)
-      {
-        sum[k] += a.blocks[block * i + k];
-        size = std::max(size, std::abs(diagonal[k]));
-      }
-    }
-    if (!std::all_of(
-          sum, sum + Dim * Dim, [size](double x) { return std::abs(x) <= floatingSum * size; }))
-    {
-      return false;
-    }
+    ++row;
   }
-  return a.rows > 0;
+  return row == a.rows && a.rows > 0;
 }
 
 /// Removes the mean of each component.

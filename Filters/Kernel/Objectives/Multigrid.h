@@ -50,25 +50,34 @@ struct BlockMatrixView
 TAUTLINE_KERNEL_EXPORT void multiply(
   const BlockMatrixView& a, int threads, const double* x, double* y);
 
-class TAUTLINE_KERNEL_EXPORT Multigrid
+/// A hierarchy of grids: Multigrid below, or the one of several ranks.
+class GridHierarchy
 {
 public:
-  /// @param threads 0: all cores. The result does not depend on it, bitwise.
-  explicit Multigrid(int threads);
-  ~Multigrid();
-  Multigrid(const Multigrid&) = delete;
-  Multigrid& operator=(const Multigrid&) = delete;
-
+  virtual ~GridHierarchy() = default;
   /**
    * @brief Prepares apply() for a matrix, whose arrays must stay as they are while apply() is used.
    * Matrices of the same pattern that follow each other share their aggregates, a few at a time.
    */
-  void build(const BlockMatrixView& matrix);
+  virtual void build(const BlockMatrixView& matrix) = 0;
   /**
    * @brief z = M^-1 r, nearly linear and nearly symmetric: for flexible conjugate gradients.
-   * @param r, z size * rows numbers
+   * @param r, z size numbers for each row that this process owns
    */
-  void apply(const double* r, double* z);
+  virtual void apply(const double* r, double* z) = 0;
+};
+
+class TAUTLINE_KERNEL_EXPORT Multigrid : public GridHierarchy
+{
+public:
+  /// @param threads 0: all cores. The result does not depend on it, bitwise.
+  explicit Multigrid(int threads);
+  ~Multigrid() override;
+  Multigrid(const Multigrid&) = delete;
+  Multigrid& operator=(const Multigrid&) = delete;
+
+  void build(const BlockMatrixView& matrix) override;
+  void apply(const double* r, double* z) override;
   /// The same with at most two steps of flexible conjugate gradients, as on a coarse level.
   void solve(const double* r, double* z);
 

@@ -68,14 +68,14 @@ Fault faultOf(const Objective& objective)
   }
   return objective.objectiveTemplate == T::SumOfReciprocals ? Fault::Zero : Fault::None;
 }
-}
 
-//------------------------------------------------------------------------------
-void throwNoElements(const MetricInfo& info, bool defined)
+/// @param defined whether the metric is defined on any element
+[[noreturn]] void throwNoElements(const MetricInfo& info, bool defined)
 {
   throw Error(defined ? "The weights of all elements are 0: nothing is left to minimize."
                       : "The metric \"" + std::string(info.label) +
         "\" is not defined on any cell of the mesh. Choose another metric, or convert the cells.");
+}
 }
 
 //------------------------------------------------------------------------------
@@ -90,19 +90,20 @@ void requireElementWeight(Index cell, double weight)
 
 //------------------------------------------------------------------------------
 ObjectiveSumState::ObjectiveSumState(
-  const Mesh& mesh, const Objective& given, int threads, bool part)
+  const Mesh& mesh, const Objective& given, int threads, const Ranks& ofMesh)
   : objective(resolved(given, threads))
   , elements(mesh, objective.metric, objective.evaluation)
+  , ranks(ofMesh)
 {
   const MetricInfo& info = metricInfo(this->objective.metric);
   checkTemplate(this->objective);
   requireDerivatives(info);
-  if (this->elements.empty() && !part)
+  if (!this->ranks.any(!this->elements.empty()))
   {
     throwNoElements(info, false);
   }
   const double* weights = this->objective.elementWeights;
-  double total = 0;
+  std::vector<double> sums;
   for (const ElementSum::Chunk& chunk : this->elements.chunks())
   {
     const CellBlock& block = mesh.blocks()[chunk.block];
@@ -112,11 +113,12 @@ ObjectiveSumState::ObjectiveSumState(
       const Index cell = block.cell(i);
       const double w = weights ? weights[cell] : 1.0;
       requireElementWeight(cell, w);
-      sum += w;
+      sum += this->ranks.ownsCell(cell) ? w : 0.0;
     }
-    total += sum;
+    sums.push_back(sum);
   }
-  if (!(total > 0) && !part)
+  const double total = this->ranks.total(sums);
+  if (!(total > 0))
   {
     throwNoElements(info, true);
   }
@@ -176,6 +178,50 @@ double ObjectiveSumState::run(double scale, double* gradient) const
 }
 
 //------------------------------------------------------------------------------
+double ObjectiveSumState::runOnRanks(double scale, double* gradient) const
+{
+  const MeshView& view = this->elements.mesh().view();
+  std::vector<double> terms(view.numberOfCells), own;
+  OrderlessSums sums(gradient, gradient ? 3 * view.numberOfPoints : 0);
+  this->findTerms(scale, gradient ? &sums : nullptr, terms.data());
+  sums.finish();
+  const ElementFunction& f = this->function;
+  if (f.objectiveTemplate != ObjectiveTemplate::PowerMean)
+  {
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
+    {
+      if (this->ranks.ownsCell(cell))
+      {
+        own.push_back(terms[cell]);
+      }
+    }
+    const double sum = this->ranks.total(own);
+    return std::isnan(sum) ? HUGE_VAL : sum;
+  }
+  double unit = 0;
+  const auto weightOf = [&](Index cell) {
+    return !this->ranks.ownsCell(cell) ? 0.0 : f.weights ? f.weights[cell] : 1.0;
+  };
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    unit = weightOf(cell) > 0 ? std::max(unit, terms[cell]) : unit;
+  }
+  unit = this->ranks.maximum(unit);
+  for (Index cell = 0; cell < view.numberOfCells && unit > 0 && std::isfinite(unit); ++cell)
+  {
+    const double weight = weightOf(cell);
+    own.push_back(weight > 0 ? weight * std::pow(terms[cell] / unit, f.power) : 0.0);
+  }
+  return std::isfinite(unit) ? unit * std::pow(this->ranks.total(own) / f.totalWeight, 1 / f.power)
+                             : unit;
+}
+
+//------------------------------------------------------------------------------
+/**
+ * @brief The terms of a sum, one per cell of the view: 0 where the metric is not defined, +infinity
+ * where an element is at fault.
+ * @param gradient null, or as in ObjectiveSum::addGradient()
+ */
 void ObjectiveSumState::findTerms(double scale, OrderlessSums* gradient, double* terms) const
 {
   std::fill_n(terms, this->elements.mesh().view().numberOfCells, 0.0);
@@ -186,10 +232,13 @@ void ObjectiveSumState::findTerms(double scale, OrderlessSums* gradient, double*
     [](auto objectiveTemplate) -> Term
     {
       constexpr ObjectiveTemplate Template = decltype(objectiveTemplate)::value;
-      if constexpr (Template == ObjectiveTemplate::PowerMean ||
-        Template == ObjectiveTemplate::Maximum)
+      if constexpr (Template == ObjectiveTemplate::Maximum)
       {
-        throw Error("A p-mean and a maximum have no terms of single elements.");
+        throw Error("A maximum has no terms of single elements.");
+      }
+      else if constexpr (Template == ObjectiveTemplate::PowerMean)
+      {
+        return &ElementFunction::exponent<Template>; // without its weight
       }
       else
       {
@@ -239,8 +288,9 @@ void ObjectiveSumState::findTerms(double scale, OrderlessSums* gradient, double*
 }
 
 //------------------------------------------------------------------------------
-ObjectiveSum::ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads, bool part)
-  : Impl(std::make_unique<ObjectiveSumState>(mesh, objective, threads, part))
+ObjectiveSum::ObjectiveSum(
+  const Mesh& mesh, const Objective& objective, int threads, const Ranks& ranks)
+  : Impl(std::make_unique<ObjectiveSumState>(mesh, objective, threads, ranks))
 {
 }
 
@@ -250,12 +300,15 @@ ObjectiveSum& ObjectiveSum::operator=(ObjectiveSum&&) noexcept = default;
 
 double ObjectiveSum::value() const
 {
-  return this->Impl->run<false>(1.0, nullptr);
+  return this->Impl->ranks.several() ? this->Impl->runOnRanks(1.0, nullptr)
+                                     : this->Impl->run<false>(1.0, nullptr);
 }
 
 double ObjectiveSum::addGradient(double scale, double* gradient) const
 {
-  return scale == 0 ? this->value() : this->Impl->run<true>(scale, gradient);
+  return scale == 0               ? this->value()
+    : this->Impl->ranks.several() ? this->Impl->runOnRanks(scale, gradient)
+                                  : this->Impl->run<true>(scale, gradient);
 }
 
 void ObjectiveSum::elementValues(double* values) const
@@ -267,10 +320,5 @@ void ObjectiveSum::elementValues(double* values) const
 const Objective& ObjectiveSum::objective() const
 {
   return this->Impl->objective;
-}
-
-void ObjectiveSum::setTotalWeight(double weight)
-{
-  this->Impl->function.totalWeight = weight;
 }
 }

@@ -7,6 +7,7 @@
 #define tautline_ObjectiveSum_h
 
 #include "Objective.h"
+#include "tautline/Mesh/Ranks.h"
 
 #include <memory>
 
@@ -30,10 +31,13 @@ public:
    * @param mesh must outlive the sum. The coordinates in its view's array may change between calls;
    * the dimension and the plane remain those found when the mesh was made.
    * @param threads 0: that of objective.evaluation
-   * @param part the mesh is a part of another, in which some weight is above 0; in this part all
-   * may be 0
+   * @param ranks by default this process alone; else those that each have a part of the mesh, on
+   * which the constructor, value() and addGradient() are collective. Sums are then of the whole
+   * mesh, rounded once, and gradients are exact at the points that a rank owns. Not for Maximum;
+   * of a PowerMean the value alone.
    */
-  ObjectiveSum(const Mesh& mesh, const Objective& objective, int threads = 0, bool part = false);
+  ObjectiveSum(
+    const Mesh& mesh, const Objective& objective, int threads = 0, const Ranks& ranks = {});
   ~ObjectiveSum();
   ObjectiveSum(ObjectiveSum&&) noexcept;
   ObjectiveSum& operator=(ObjectiveSum&&) noexcept;
@@ -52,9 +56,6 @@ public:
 
   /// As given, with the template Default replaced by the one it stands for.
   const Objective& objective() const;
-
-  /// Where the mesh is a part, of a p-mean: the weight of all elements of the whole.
-  void setTotalWeight(double weight);
 
   /// For other parts of the kernel.
   const ObjectiveSumState& state() const { return *this->Impl; }

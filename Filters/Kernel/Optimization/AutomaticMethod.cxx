@@ -22,6 +22,7 @@ public:
   Stage(OptimizationSteps& steps, const OptimizeOptions& options,
     std::vector<IterationRecord>& history, StopReason& reason)
     : Steps(steps)
+    , Problem(steps.problem())
     , Options(options)
     , History(history)
     , Reason(reason)
@@ -42,6 +43,7 @@ private:
   }
 
   OptimizationSteps& Steps;
+  OptimizationProblem& Problem;
   const OptimizeOptions& Options;
   std::vector<IterationRecord>& History;
   StopReason& Reason;
@@ -66,25 +68,25 @@ void Stage::takeHarmonicStart(const std::vector<double>& start)
 {
   const IterationRecord& first = this->History.front();
   if (this->Steps.hasConstraintsOrTargets() ||
-    this->Options.objectives[0].metric != Metric::InverseMeanRatio || this->Steps.outOfTime() ||
+    this->Options.objectives[0].metric != Metric::InverseMeanRatio || this->Problem.outOfTime() ||
     first.mean[0] < enoughForHarmonicStart)
   {
     return;
   }
-  std::vector<double> harmonic = start;
-  if (!this->Steps.findHarmonicPoints(harmonic))
+  const std::vector<double> harmonic = this->Steps.harmonic(start);
+  if (this->Problem.ranks().any(harmonic.size() != start.size()))
   {
     return;
   }
   const auto leads = [&](const std::vector<double>& points)
   {
-    this->Steps.restart(points);
-    const IterationRecord record = this->Steps.record(0);
+    this->Problem.restart(points);
+    const IterationRecord record = this->Problem.record(0);
     return record.inverted == 0 && record.objective < first.objective;
   };
   if (!leads(harmonic))
   {
-    this->Steps.restart(start);
+    this->Problem.restart(start);
     return;
   }
   // As far from a saddle as elements stay valid.
@@ -92,13 +94,13 @@ void Stage::takeHarmonicStart(const std::vector<double>& start)
   for (double part = mostShifted; part > leastShifted; part *= 0.5)
   {
     std::vector<double> shifted = harmonic;
-    this->Steps.shiftPoints(part, shifted);
+    shiftFreePoints(this->Problem, part, shifted);
     if (leads(shifted))
     {
       return;
     }
   }
-  this->Steps.restart(harmonic);
+  this->Problem.restart(harmonic);
 }
 
 //------------------------------------------------------------------------------
@@ -106,15 +108,15 @@ void Stage::takeHarmonicStart(const std::vector<double>& start)
 bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
 {
   // Sweeps smooth what is rough and leave a start that is often further for Newton's method.
-  this->Steps.store();
-  const std::vector<double> swept = this->Steps.stored();
+  this->Problem.store();
+  const std::vector<double> swept = this->Problem.points();
   const double reached = this->History.back().objective;
   this->Fits = true;
   try
   {
     if (slow != Slowness::Near)
     {
-      this->Steps.restart(start);
+      this->Problem.restart(start);
       this->takeHarmonicStart(start);
     }
     this->Reason = this->Steps.minimizeAll(Optimizer::NewtonConjugateGradient);
@@ -122,11 +124,11 @@ bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
   catch (const MemoryError&)
   {
     this->Fits = false;
-    this->Steps.restart(swept);
+    this->Problem.restart(swept);
     return false;
   }
   // From close to the minimum, no iteration may be recorded.
-  const IterationRecord found = this->Steps.record(this->History.back().iteration);
+  const IterationRecord found = this->Problem.record(this->History.back().iteration);
   // Inverted elements do not count in the objective.
   const bool valid = found.inverted <= this->History.front().inverted;
   if (valid && found.objective < this->History.back().objective)
@@ -140,8 +142,8 @@ bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
   {
     return true;
   }
-  this->Steps.restart(swept);
-  this->History.back() = this->Steps.record(this->History.back().iteration);
+  this->Problem.restart(swept);
+  this->History.back() = this->Problem.record(this->History.back().iteration);
   return false;
 }
 
@@ -162,7 +164,7 @@ void Stage::takeTurns(const IterationRecord& first)
 {
   // The same on all ranks, also on one whose points, and so the start, are empty.
   const bool slides = this->Steps.slidesOnSurface();
-  const std::vector<double> start = slides ? std::vector<double>() : this->Steps.stored();
+  const std::vector<double> start = slides ? std::vector<double>() : this->Problem.points();
   for (int turn = 0; turn < maxTurns; ++turn)
   {
     Slowness slow = Slowness::Costly;

@@ -23,13 +23,11 @@ Vec3 directionOf(const std::vector<double>& directions, std::size_t p)
 }
 
 //------------------------------------------------------------------------------
-GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer,
-  std::vector<std::int32_t> rowOfPoint, Index rows)
+GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer)
   : Problem(problem)
   , Newton(optimizer == Optimizer::NewtonConjugateGradient)
   , Size(problem.moving().dimension() == Dimension::Planar ? 2 : 3)
-  , RowOfPoint(std::move(rowOfPoint))
-  , Rows(RowOfPoint.empty() ? problem.simplices().freeVertices() : rows)
+  , Rows(problem.rows())
   , Axes(coordinateAxes(problem.moving()))
   , Slides(problem.slides())
   , Origin(problem.points())
@@ -49,7 +47,7 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
   }
   if (this->bends())
   {
-    this->move(std::vector<double>(this->size(), 0.0).data());
+    this->move(std::vector<double>(this->Size * this->Rows.rows(), 0.0).data());
   }
   findValidityLevels(problem.moving(), problem.options().threads, this->Start);
   // An objective that is infinite on inverted elements needs no other check, if these have no
@@ -62,10 +60,6 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
   this->Check = !problem.options().allowInversion;
   for (std::size_t i = 0; i < problem.objectives() && !someInvalid && !inside; ++i)
   {
-    if (!this->hasElements(i))
-    {
-      continue;
-    }
     const Fault fault = problem.sum(i).state().function.fault;
     const bool all = !problem.sum(i).objective().elementWeights;
     this->Check =
@@ -76,33 +70,16 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
 //------------------------------------------------------------------------------
 std::size_t GlobalFunction::size() const
 {
-  return static_cast<std::size_t>(this->Size * this->Rows);
+  return this->Size * this->Rows.numberOfOwned();
 }
 
-/// Whether the objective has elements here. A part of a mesh may have none; its sum would be
-/// refused.
-bool GlobalFunction::hasElements(std::size_t objective) const
+/// Whether points may be elsewhere than the steps alone lead.
+bool GlobalFunction::bends() const
 {
-  if (this->RowOfPoint.empty())
-  {
-    return true;
-  }
-  const Objective& o = this->Problem.resolved()[objective];
-  for (const CellBlock& block : this->Problem.moving().blocks())
-  {
-    const bool counts =
-      isElement(this->Problem.moving(), block.type) && metricInfo(o.metric).definedOn(block.type);
-    for (Index i = 0; counts && i < block.count; ++i)
-    {
-      if (!o.elementWeights || o.elementWeights[block.cell(i)] > 0)
-      {
-        return true;
-      }
-    }
-  }
-  return false;
+  return this->Surface || !this->Outward.empty();
 }
 
+/// Calls visit(row, point) for each free point.
 template <class Visit>
 void GlobalFunction::forEachFree(const Visit& visit) const
 {
@@ -110,14 +87,12 @@ void GlobalFunction::forEachFree(const Visit& visit) const
   for (std::int32_t v = 0; v < s.freeVertices(); ++v)
   {
     const auto p = static_cast<std::size_t>(s.point(v));
-    visit(this->RowOfPoint.empty() ? static_cast<std::size_t>(v)
-                                   : static_cast<std::size_t>(this->RowOfPoint[p]),
-      p);
+    visit(static_cast<std::size_t>(this->Rows.rowOfPoint()[p]), p);
   }
 }
 
 //------------------------------------------------------------------------------
-/// Sets the free points.
+/// Moves the points of the problem alone. @param x of all rows
 void GlobalFunction::move(const double* x)
 {
   this->forEachFree(
@@ -169,26 +144,26 @@ Vec3 GlobalFunction::outwardOf(std::size_t p) const
 //------------------------------------------------------------------------------
 void GlobalFunction::put(const double* x)
 {
-  this->move(x);
+  this->move(this->Rows.spread(x, this->All, this->Size));
   this->Problem.simplices().load(this->Problem.points().data(), this->Problem.options().threads);
   this->Problem.coordinatesChanged();
+  // Points of the piece without a cell here.
+  this->Problem.ranks().exchange(this->Problem.points().data(), 3);
 }
 
 //------------------------------------------------------------------------------
 /// No element is less valid than it was at the start.
 bool GlobalFunction::allowed()
 {
-  if (this->Surface && !this->Problem.options().allowInversion && this->Surface->turned())
+  bool allowed =
+    !(this->Surface && !this->Problem.options().allowInversion && this->Surface->turned());
+  if (allowed && this->Check)
   {
-    return false;
+    findValidityLevels(this->Problem.moving(), this->Problem.options().threads, this->Levels);
+    allowed = std::equal(this->Levels.begin(), this->Levels.end(), this->Start.begin(),
+      [](signed char now, signed char before) { return now >= before; });
   }
-  if (!this->Check)
-  {
-    return true;
-  }
-  findValidityLevels(this->Problem.moving(), this->Problem.options().threads, this->Levels);
-  return std::equal(this->Levels.begin(), this->Levels.end(), this->Start.begin(),
-    [](signed char now, signed char before) { return now >= before; });
+  return !this->Problem.ranks().any(!allowed);
 }
 
 //------------------------------------------------------------------------------
@@ -230,7 +205,7 @@ Vec3 GlobalFunction::project(std::size_t p, Vec3 g) const
 //------------------------------------------------------------------------------
 double GlobalFunction::valueAndGradient(const double* x, double* gradient)
 {
-  this->move(x);
+  this->move(this->Rows.spread(x, this->All, this->Size));
   const double infinity = std::numeric_limits<double>::infinity();
   if (!this->allowed())
   {
@@ -256,7 +231,8 @@ double GlobalFunction::valueAndGradient(const double* x, double* gradient)
     const double own = this->Problem.sum(i).addGradient(this->Slopes[i], this->Gradient.data());
     value = n == 1 ? own : value;
   }
-  this->takeGradient(gradient);
+  this->takeGradient(this->Rows.target(gradient, this->Product, this->Size));
+  this->Rows.pick(this->Product, gradient, this->Size);
   return std::isnan(value) ? infinity : value;
 }
 
@@ -278,48 +254,23 @@ void GlobalFunction::takeGradient(double* gradient) const
 }
 
 //------------------------------------------------------------------------------
-void GlobalFunction::findTerms(std::size_t objective, double* terms)
-{
-  if (this->hasElements(objective))
-  {
-    this->Problem.sum(objective).state().findTerms(1.0, nullptr, terms);
-  }
-  else
-  {
-    std::fill_n(terms, this->Problem.moving().view().numberOfCells, 0.0);
-  }
-}
-
-void GlobalFunction::findGradient(
-  const std::vector<double>& slopes, double* gradient, double* terms)
-{
-  this->Slopes = slopes;
-  std::fill(this->Gradient.begin(), this->Gradient.end(), 0.0);
-  OrderlessSums sums(this->Gradient.data(), this->Gradient.size());
-  for (std::size_t i = slopes.size(); i-- > 0;) // at last the first, whose terms are wanted
-  {
-    if (this->hasElements(i))
-    {
-      this->Problem.sum(i).state().findTerms(slopes[i], &sums, terms);
-    }
-    else
-    {
-      this->findTerms(i, terms);
-    }
-  }
-  sums.finish();
-  this->takeGradient(gradient);
-}
-
-//------------------------------------------------------------------------------
+/// Takes the memory for the Hessian.
 void GlobalFunction::makeMatrix()
 {
   std::vector<std::int32_t> rows(this->Problem.moving().view().numberOfPoints, -1);
   this->forEachFree([&](std::size_t i, std::size_t p) { rows[p] = static_cast<std::int32_t>(i); });
-  this->Hessian = std::make_unique<HessianMatrix>(this->Problem.moving(), std::move(rows),
-    this->Rows, this->Newton ? HessianMatrix::Pattern::Full : HessianMatrix::Pattern::Diagonal,
-    this->Problem.options().threads);
-  this->Hessian->setOrderless(!this->RowOfPoint.empty() && !this->Newton);
+  const Ranks& ranks = this->Problem.ranks();
+  ranks.inMemory(
+    [&]
+    {
+      this->Hessian =
+        std::make_unique<HessianMatrix>(this->Problem.moving(), std::move(rows), this->Rows.rows(),
+          this->Newton ? HessianMatrix::Pattern::Full : HessianMatrix::Pattern::Diagonal,
+          this->Problem.options().threads);
+    },
+    "The matrix of Newton's method does not fit into memory: choose another optimizer, such as "
+    "Local Newton, or take more processes.");
+  this->Hessian->setOrderless(ranks.several() && !this->Newton);
 }
 
 //------------------------------------------------------------------------------
@@ -346,7 +297,8 @@ void GlobalFunction::restrict(std::size_t row, std::size_t p)
 }
 
 //------------------------------------------------------------------------------
-bool GlobalFunction::fillMatrix()
+/// The Hessian with the slopes of the last gradient, or its positive semidefinite part.
+void GlobalFunction::fillMatrix()
 {
   this->Hessian->clear();
   // With the positive semidefinite part of each Hessian no direction of Newton's method needs a
@@ -357,13 +309,11 @@ bool GlobalFunction::fillMatrix()
     convex =
       convex && this->Slopes[i] >= 0 && HessianMatrix::hasConvexPart(this->Problem.resolved()[i]);
   }
+  this->Convex = !this->Problem.ranks().any(!convex);
   for (std::size_t i = 0; i < this->Objectives.size(); ++i)
   {
-    if (this->hasElements(i))
-    {
-      convex ? this->Hessian->addConvexPart(this->Problem.sum(i), this->Slopes[i])
-             : this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
-    }
+    this->Convex ? this->Hessian->addConvexPart(this->Problem.sum(i), this->Slopes[i])
+                 : this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
   }
   if (this->hasConstraints())
   {
@@ -374,7 +324,6 @@ bool GlobalFunction::fillMatrix()
         this->restrict(i, p);
       });
   }
-  return convex;
 }
 
 //------------------------------------------------------------------------------
@@ -394,12 +343,10 @@ void GlobalFunction::bendAtLimit(std::size_t row, std::size_t p)
 }
 
 //------------------------------------------------------------------------------
+/// Takes the points, which put() has moved, for those that further steps are added to: points at
+/// limits and on surfaces are elsewhere than the steps alone lead. @param x of all rows
 void GlobalFunction::rebase(const double* x)
 {
-  if (!this->bends())
-  {
-    return;
-  }
   this->forEachFree(
     [&](std::size_t i, std::size_t p)
     {
@@ -422,26 +369,32 @@ void GlobalFunction::rebase(const double* x)
 //------------------------------------------------------------------------------
 void GlobalFunction::linearize(const double* x)
 {
-  if (this->bends())
+  if (this->Problem.ranks().any(this->bends()))
   {
     this->put(x);
-    this->rebase(x);
+    this->rebase(this->Rows.spread(x, this->All, this->Size));
   }
   if (!this->Hessian)
   {
     this->makeMatrix();
   }
-  const bool convex = this->fillMatrix();
-  convex ? this->Hessian->factorizeByMultigrid() : this->Hessian->factorize();
+  this->fillMatrix();
+  if (!this->Convex)
+  {
+    this->Hessian->factorize();
+    return;
+  }
+  if (!this->Grids)
+  {
+    this->Grids = makeGrids(this->Rows, this->Problem.options().threads);
+  }
+  this->Grids->build(this->Hessian->view());
 }
 
 //------------------------------------------------------------------------------
+/// Takes from steps of the points what leads them off their planes and lines.
 void GlobalFunction::keepSlides(double* d) const
 {
-  if (!this->hasConstraints())
-  {
-    return;
-  }
   this->forEachFree(
     [&](std::size_t i, std::size_t p)
     {
@@ -462,9 +415,27 @@ void GlobalFunction::keepSlides(double* d) const
 //------------------------------------------------------------------------------
 bool GlobalFunction::precondition(const double* r, double* z)
 {
-  this->Hessian->precondition(r, z);
-  // The coarse grids of multigrid do not have the planes and lines of the points.
-  this->keepSlides(z);
+  if (this->Convex)
+  {
+    this->Grids->apply(r, z);
+  }
+  else if (!this->Problem.ranks().several())
+  {
+    this->Hessian->precondition(r, z);
+  }
+  else
+  {
+    this->Hessian->preconditionByDiagonal(
+      this->Rows.place(r, this->All, this->Size), this->Rows.target(z, this->Product, this->Size));
+    this->Rows.pick(this->Product, z, this->Size);
+  }
+  if (this->hasConstraints())
+  {
+    // The coarse grids of multigrid do not have the planes and lines of the points.
+    this->Rows.place(z, this->All, this->Size);
+    this->keepSlides(this->Rows.target(z, this->All, this->Size));
+    this->Rows.pick(this->All, z, this->Size);
+  }
   return true;
 }
 
@@ -475,7 +446,9 @@ bool GlobalFunction::hessianTimes(const double* d, double* product)
   {
     return false;
   }
-  this->Hessian->times(d, product);
+  this->Hessian->times(this->Rows.spread(d, this->All, this->Size),
+    this->Rows.target(product, this->Product, this->Size));
+  this->Rows.pick(this->Product, product, this->Size);
   return true;
 }
 }

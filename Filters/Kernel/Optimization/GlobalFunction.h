@@ -10,6 +10,7 @@
 #include "Minimize.h"
 #include "OptimizationProblem.h"
 #include "SurfaceSlides.h"
+#include "tautline/Objectives/BlockJacobiMultigrid.h"
 #include "tautline/Objectives/HessianMatrix.h"
 
 #include <memory>
@@ -23,21 +24,22 @@ namespace tautline
  * gradients along their line or plane only, those that are held none. A point that would go
  * farther than its limit is at the closest place within; while it is at its limit it moves across
  * its way from the start only, see keepLimit(). Points of a surface stay on it, see SurfaceSlides.
+ *
+ * On several ranks the variables of a rank are those of the free points that it owns, and all
+ * methods but size() are collective. All cells at these points are here, so that gradients and rows
+ * of the Hessian need no sums over ranks: the displacements of the points about them are received
+ * before. Preconditioners do not depend on the ranks, to rounding: diagonal blocks, and
+ * BlockJacobiMultigrid for Newton's method with the positive semidefinite part of the Hessian.
  */
 class GlobalFunction : public SmoothFunction
 {
 public:
-  /**
-   * @param optimizer NewtonConjugateGradient gets the whole Hessian, others its diagonal blocks
-   * @param rowOfPoint per point of the mesh where its variables are, -1 for none; empty: in the
-   * order of the simplices
-   * @param rows of all points
-   */
-  GlobalFunction(OptimizationProblem& problem, Optimizer optimizer,
-    std::vector<std::int32_t> rowOfPoint = {}, Index rows = 0);
+  /// @param optimizer NewtonConjugateGradient gets the whole Hessian, others its diagonal blocks
+  GlobalFunction(OptimizationProblem& problem, Optimizer optimizer);
 
   std::size_t size() const override;
   double valueAndGradient(const double* x, double* gradient) override;
+  /// Throws MemoryError, on all ranks, where the matrix does not fit into the memory of one.
   void linearize(const double* x) override;
   bool precondition(const double* r, double* z) override;
   bool hessianTimes(const double* d, double* product) override;
@@ -45,36 +47,17 @@ public:
   /// Moves the points of the problem, and its simplices, to x.
   void put(const double* x);
 
-  // Its parts, for a mesh on several ranks.
-
-  /// Moves the points of the problem alone.
-  void move(const double* x);
-  /// No element is less valid than it was at the start.
-  bool allowed();
-  /// The terms of an objective: one per cell.
-  void findTerms(std::size_t objective, double* terms);
-  /// The gradient of the sum of the objectives times their slopes, and the terms of the first.
-  void findGradient(const std::vector<double>& slopes, double* gradient, double* terms);
-  /// Takes the memory for the Hessian.
-  void makeMatrix();
-  /// Takes the points, which put(x) has moved, for those that further steps are added to: points at
-  /// limits and on surfaces are elsewhere than the steps alone lead.
-  void rebase(const double* x);
-  /// Whether points may be elsewhere than the steps alone lead.
-  bool bends() const { return this->Surface || !this->Outward.empty(); }
-  /// The Hessian with the slopes of findGradient(), not factorized; whether it is the positive
-  /// semidefinite part.
-  bool fillMatrix();
-  /// Takes from steps of the points what leads them off their planes and lines.
-  void keepSlides(double* d) const;
-  HessianMatrix& matrix() { return *this->Hessian; }
-  bool hasMatrix() const { return this->Hessian != nullptr; }
-
 private:
   template <class Visit>
   void forEachFree(const Visit& visit) const;
-  bool hasElements(std::size_t objective) const;
+  void move(const double* x);
+  bool allowed();
   void takeGradient(double* gradient) const;
+  void makeMatrix();
+  void fillMatrix();
+  void rebase(const double* x);
+  bool bends() const;
+  void keepSlides(double* d) const;
   bool hasConstraints() const;
   bool isHeld(std::size_t p) const;
   void restrict(std::size_t row, std::size_t p);
@@ -85,9 +68,9 @@ private:
 
   OptimizationProblem& Problem;
   bool Newton;
-  int Size; ///< coordinates of a point
-  std::vector<std::int32_t> RowOfPoint;
-  Index Rows;
+  bool Convex = false; ///< the Hessian is its positive semidefinite part
+  int Size;            ///< coordinates of a point
+  const MatrixRows& Rows;
   std::array<Vec3, 3> Axes;
   const PointSlides& Slides;
   std::vector<double> Origin; ///< 3 per point
@@ -100,6 +83,8 @@ private:
   std::vector<double> Gradient;
   std::vector<double> Objectives, Slopes;
   std::unique_ptr<HessianMatrix> Hessian;
+  std::unique_ptr<GridHierarchy> Grids;
+  std::vector<double> All, Product; ///< of the rows of all points here, on several ranks
 };
 }
 #endif

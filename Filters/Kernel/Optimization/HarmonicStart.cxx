@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <new>
 #include <utility>
 
 namespace tautline
@@ -182,48 +181,64 @@ bool solve(const VectorAlgebra& algebra, const std::vector<double>& right, const
 //------------------------------------------------------------------------------
 std::vector<double> harmonicPoints(OptimizationProblem& problem, const std::vector<double>& start)
 {
-  requireMemoryFor(problem);
-  const SimplexMesh& s = problem.simplices();
-  const Index count = s.freeVertices();
-  std::vector<std::int32_t> rows(start.size() / 3, -1);
-  std::vector<double> x(static_cast<std::size_t>(size * count));
-  for (std::int32_t v = 0; v < s.freeVertices(); ++v)
-  {
-    rows[s.point(v)] = v;
-    std::copy_n(start.begin() + 3 * static_cast<std::size_t>(s.point(v)), 3,
-      x.begin() + static_cast<std::size_t>(size) * v);
-  }
+  const MatrixRows& rows = problem.rows();
+  const Ranks& ranks = problem.ranks();
   const int threads = problem.options().threads;
-  const Laplacian a = assemble(problem, rows, count, start);
-  Multigrid grids(threads);
-  grids.build(viewOf(a, count));
-  std::vector<double> points = start;
-  if (!solve(
-        VectorAlgebra(x.size(), threads), a.right,
-        [&](const double* d, double* product) { multiply(viewOf(a, count), threads, d, product); },
-        [&](const double* r, double* z) { grids.apply(r, z); }, x))
+  Laplacian a;
+  std::vector<double> all, found, x(size * rows.numberOfOwned()), right;
+  ranks.inMemory(
+    [&]
+    {
+      requireMemoryFor(problem); // also for what follows, where no rank may fail alone
+      a = assemble(problem, rows.rowOfPoint(), rows.rows(), start);
+      all.resize(static_cast<std::size_t>(size * rows.rows()));
+      found.resize(ranks.several() ? all.size() : 0);
+      right.resize(x.size());
+    },
+    "The harmonic map does not fit into memory.");
+  for (Index row = 0; row < rows.rows(); ++row)
   {
-    points.clear();
-    return points;
+    std::copy_n(&start[3 * static_cast<std::size_t>(rows.points()[row])], 3, &all[size * row]);
   }
-  for (std::int32_t v = 0; v < s.freeVertices(); ++v)
+  const auto ofOwn = [&](std::vector<double>& ofAll, std::vector<double>& own)
+  { ranks.several() ? rows.pick(ofAll, own.data(), size) : own.swap(ofAll); };
+  ofOwn(all, x);
+  ofOwn(a.right, right);
+  const BlockMatrixView matrix = viewOf(a, rows.rows());
+  const std::unique_ptr<GridHierarchy> grids = makeGrids(rows, threads);
+  grids->build(matrix);
+  const auto times = [&](const double* d, double* product)
   {
-    std::copy_n(x.begin() + static_cast<std::size_t>(size) * v, 3,
-      points.begin() + 3 * static_cast<std::size_t>(s.point(v)));
+    multiply(matrix, threads, rows.spread(d, all, size), rows.target(product, found, size));
+    rows.pick(found, product, size);
+  };
+  if (!solve(
+        VectorAlgebra(x.size(), threads, LaneOrder::Sequential, ranks.group()), right, times,
+        [&](const double* r, double* z) { grids->apply(r, z); }, x))
+  {
+    return {};
+  }
+  std::vector<double> points = start;
+  const double* moved = rows.spread(x.data(), all, size);
+  for (Index row = 0; row < rows.rows(); ++row)
+  {
+    std::copy_n(moved + size * row, 3, &points[3 * static_cast<std::size_t>(rows.points()[row])]);
   }
   return points;
 }
 
 //------------------------------------------------------------------------------
-void shiftFreePoints(const Mesh& mesh, const std::vector<unsigned char>& free, const Index* numbers,
-  double part, std::vector<double>& points)
+void shiftFreePoints(const OptimizationProblem& problem, double part, std::vector<double>& points)
 {
+  const Mesh& mesh = problem.moving();
+  const SimplexMesh& simplices = problem.simplices();
+  const Ranks& ranks = problem.ranks();
   constexpr std::uint64_t seed = 1, stream = 0;
   const MeshView& view = mesh.view();
   const auto at = [&](Index p) {
     return Vec3{ points[3 * p], points[3 * p + 1], points[3 * p + 2] };
   };
-  std::vector<double> shortest(free.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> shortest(view.numberOfPoints, std::numeric_limits<double>::infinity());
   for (const CellBlock& block : mesh.blocks())
   {
     const CellTopology& t = topology(block.type);
@@ -239,11 +254,12 @@ void shiftFreePoints(const Mesh& mesh, const std::vector<unsigned char>& free, c
       }
     }
   }
-  for (Index p = 0; p < static_cast<Index>(free.size()); ++p)
+  for (std::int32_t v = 0; v < simplices.freeVertices(); ++v)
   {
-    if (free[p] && std::isfinite(shortest[p]))
+    const Index p = simplices.point(v);
+    if (std::isfinite(shortest[p]))
     {
-      SplitMix random(seed, stream, numbers ? numbers[p] : p);
+      SplitMix random(seed, stream, ranks.several() ? ranks.mesh().numbers()[p] : p);
       const Vec3 direction = mesh.dimension() == Dimension::Planar
         ? random.direction(mesh.frame()[0], mesh.frame()[1])
         : random.direction();
@@ -251,66 +267,6 @@ void shiftFreePoints(const Mesh& mesh, const std::vector<unsigned char>& free, c
       std::copy(shifted.begin(), shifted.end(), points.begin() + 3 * p);
     }
   }
-}
-
-//------------------------------------------------------------------------------
-bool harmonicPointsOnRanks(const DistributedMesh& mesh, const MatrixRows& rows,
-  OptimizationProblem* problem, int threads, std::vector<double>& points)
-{
-  Laplacian a;
-  Index count = 0;
-  bool fits = true;
-  std::vector<double> all, found, x, right;
-  try
-  {
-    if (problem)
-    {
-      requireMemoryFor(*problem); // also for what follows, where no rank may fail alone
-      count = rows.rows();
-      a = assemble(*problem, rows.rowOfPoint(), count, points);
-    }
-    all.resize(static_cast<std::size_t>(size * rows.rows()));
-    found.resize(all.size());
-    x.resize(static_cast<std::size_t>(size * rows.numberOfOwned()));
-    right.resize(x.size());
-  }
-  catch (const std::bad_alloc&)
-  {
-    fits = false;
-  }
-  catch (const MemoryError&)
-  {
-    fits = false;
-  }
-  if (mesh.group().any(!fits))
-  {
-    throw MemoryError("The harmonic map does not fit into memory.");
-  }
-  for (Index row = 0; row < rows.rows(); ++row)
-  {
-    std::copy_n(&points[3 * static_cast<std::size_t>(rows.points()[row])], 3, &all[size * row]);
-  }
-  rows.pick(all.data(), x.data(), size);
-  rows.pick(count > 0 ? a.right.data() : all.data(), right.data(), size);
-  BlockJacobiMultigrid grids(rows, threads);
-  grids.build(viewOf(a, count));
-  const VectorAlgebra algebra(x.size(), threads, LaneOrder::Sequential, &mesh.group());
-  const auto times = [&](const double* d, double* product)
-  {
-    rows.spread(d, all.data(), size);
-    multiply(viewOf(a, count), threads, all.data(), found.data());
-    rows.pick(found.data(), product, size);
-  };
-  if (!solve(
-        algebra, right, times, [&](const double* r, double* z) { grids.apply(r, z); }, x))
-  {
-    return false;
-  }
-  rows.spread(x.data(), all.data(), size);
-  for (Index row = 0; row < rows.rows(); ++row)
-  {
-    std::copy_n(&all[size * row], 3, &points[3 * static_cast<std::size_t>(rows.points()[row])]);
-  }
-  return true;
+  ranks.exchange(points.data(), 3); // a copy of a point may miss edges
 }
 }

@@ -68,7 +68,7 @@ private:
   {
     OptimizationProblem& problem = this->Problem;
     LocalSweeper sweeper(problem.simplices(), problem.moving(), problem.points().data(),
-      problem.localTerms(), problem.localOptions());
+      problem.localTerms(), problem.localOptions(), &problem.order());
     sweeper.wakeOnly(this->Active);
     std::vector<double> values = before.objectives;
     const SweepResult swept = sweeper.sweep(problem.scalarizer(), values);

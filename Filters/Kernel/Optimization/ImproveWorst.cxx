@@ -10,6 +10,10 @@ namespace tautline
 namespace
 {
 constexpr int maxWorstRounds = 100;
+/// Sweeps of a round, and, in closed form, the fraction of the worst value above which elements are
+/// where the first begins: the others have a share below 1e-5.
+constexpr int sweepsPerRound = 4;
+constexpr double nearWorst = 0.7;
 /// A round that reduces the worst value by less than this fraction is the last.
 constexpr double worthwhile = 1e-3;
 /// p, one after the other: with the first, elements at 0.8 of the worst value have a thousandth of
@@ -21,6 +25,42 @@ constexpr double strongest = 256;
 /// A p-mean that has fallen below this fraction is computed anew: its change in units of the p-th
 /// power has lost digits.
 constexpr double trusted = 0.9;
+
+/// An objective with the metric that judges the worst element, without targets if it is another.
+Objective judgedAs(Objective objective, Metric metric, int threads)
+{
+  if (metric != objective.metric)
+  {
+    objective.metric = metric;
+    objective.evaluation = EvaluationOptions();
+    objective.evaluation.threads = threads;
+  }
+  return objective;
+}
+
+/// The options of the sweeps.
+LocalOptions worstOptions(const OptimizationProblem& problem)
+{
+  LocalOptions options = problem.localOptions();
+  options.newton = true;
+  options.relaxation = 1.0;
+  return options;
+}
+
+/// The sums by the changes relative to where they start.
+/// @param first their values there; empty: one closed form
+Scalarizer worstScalarizer(
+  const std::vector<double>& first, double pull, const std::vector<double>& now)
+{
+  ScalarizationOptions options;
+  options.method = Scalarization::WeightedSum;
+  std::vector<double> weights = { 1.0 };
+  if (!first.empty())
+  {
+    weights = { 1.0 / std::abs(first[0]), pull / std::abs(first[1]) };
+  }
+  return Scalarizer(options, weights, now);
+}
 
 /// What a round minimizes.
 class WorstObjectives
@@ -73,10 +113,7 @@ private:
   const ObjectiveSum* Mean; ///< null: one closed form
   std::vector<double> First;
 };
-}
 
-namespace
-{
 /// The first objective, with the metric of the worst element.
 Objective judgedBy(OptimizationProblem& problem)
 {
@@ -84,28 +121,35 @@ Objective judgedBy(OptimizationProblem& problem)
     problem.options().threads);
 }
 
-/// The steps on one process.
-class StepsOfWorst : public WorstSteps
+/// Whether the sums of all ranks have one closed form; one without cells takes part in any.
+bool isFast(OptimizationProblem& problem, Metric judged)
+{
+  return !problem.ranks().any(problem.moving().view().numberOfCells > 0 &&
+    (problem.localTerms()[0].shapePower == 0 || judged != Metric::InverseMeanRatio));
+}
+
+/// The steps, and the points as they are at best.
+class StepsOfWorst
 {
 public:
   explicit StepsOfWorst(OptimizationProblem& problem)
     : Problem(problem)
     , Judged(judgedBy(problem))
-    , Fast(problem.localTerms()[0].shapePower > 0 && Judged.metric == Metric::InverseMeanRatio)
+    , Fast(tautline::isFast(problem, Judged.metric))
     , Best(problem.simplices().coordinates(), problem.simplices().coordinates() + this->size())
   {
   }
 
   const Objective& judged() const { return this->Judged; }
-  bool outOfTime() const override { return this->Problem.outOfTime(); }
-  IterationRecord record() override { return this->Problem.record(0); }
-  /// Elements that cannot move do not count.
-  double worst() override
+  /// The worst value of the metric that judges, among the elements with a free point; infinite
+  /// without any.
+  double worst()
   {
     this->AtBest = this->Problem.measure(this->Judged);
     return this->Problem.worstMovable(this->Judged, this->AtBest);
   }
-  double reached() override
+  /// The same after sweep().
+  double reached()
   {
     if (this->OfSimplices)
     {
@@ -114,9 +158,17 @@ public:
     this->Now = this->Problem.measure(this->Judged);
     return this->Problem.worstMovable(this->Judged, this->Now);
   }
-  bool isFast() override { return this->Fast; }
+  /// Whether both sums have one closed form, without a pull.
+  bool isFast() const { return this->Fast; }
 
-  bool sweep(double worst, double power, double pull) override
+  /**
+   * @brief A few sweeps, and stores the points.
+   * @param worst the worst value so far
+   * @param power of the second sum
+   * @param pull how much more that counts than the first
+   * @return false without a sweep if one of the sums is 0 already
+   */
+  bool sweep(double worst, double power, double pull)
   {
     const WorstObjectives objectives(
       this->Problem, worst, this->Fast ? nullptr : this->meanOf(power), pull);
@@ -126,10 +178,10 @@ public:
     }
     SimplexMesh& simplices = this->Problem.simplices();
     LocalSweeper sweeper(simplices, this->Problem.moving(), this->Problem.points().data(),
-      objectives.terms(), worstOptions(this->Problem));
+      objectives.terms(), worstOptions(this->Problem), &this->Problem.order());
     const Scalarizer scalarizer = objectives.scalarizer();
     // The simplices have the targets of the objective, the metric that judges may have none.
-    this->OfSimplices = this->Fast && simplices.uniform();
+    this->OfSimplices = this->Fast && !this->Problem.ranks().any(!simplices.uniform());
     if (this->OfSimplices)
     {
       sweeper.wakeOnly(this->Problem.verticesAbove(nearWorst * worst));
@@ -152,12 +204,13 @@ public:
     return true;
   }
 
-  void keep() override
+  /// Keeps the points as they are; and goes back to those kept last, or to those of the start.
+  void keep()
   {
     std::copy_n(this->Problem.simplices().coordinates(), this->size(), this->Best.begin());
     std::swap(this->AtBest, this->Now);
   }
-  void goBack() override
+  void goBack()
   {
     std::copy(this->Best.begin(), this->Best.end(), this->Problem.simplices().coordinates());
     this->Problem.store();
@@ -178,7 +231,7 @@ private:
       mean.objectiveTemplate = ObjectiveTemplate::PowerMean;
       mean.power = this->Power = power;
       this->Mean = std::make_unique<ObjectiveSum>(
-        this->Problem.moving(), mean, this->Problem.options().threads);
+        this->Problem.moving(), mean, this->Problem.options().threads, this->Problem.ranks());
     }
     return this->Mean.get();
   }
@@ -194,47 +247,16 @@ private:
 }
 
 //------------------------------------------------------------------------------
-Objective judgedAs(Objective objective, Metric metric, int threads)
+bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
+  const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report)
 {
-  if (metric != objective.metric)
-  {
-    objective.metric = metric;
-    objective.evaluation = EvaluationOptions();
-    objective.evaluation.threads = threads;
-  }
-  return objective;
-}
-
-LocalOptions worstOptions(const OptimizationProblem& problem)
-{
-  LocalOptions options = problem.localOptions();
-  options.newton = true;
-  options.relaxation = 1.0;
-  return options;
-}
-
-Scalarizer worstScalarizer(
-  const std::vector<double>& first, double pull, const std::vector<double>& now)
-{
-  ScalarizationOptions options;
-  options.method = Scalarization::WeightedSum;
-  std::vector<double> weights = { 1.0 };
-  if (!first.empty())
-  {
-    weights = { 1.0 / std::abs(first[0]), pull / std::abs(first[1]) };
-  }
-  return Scalarizer(options, weights, now);
-}
-
-//------------------------------------------------------------------------------
-bool improveWorst(WorstSteps& steps, Metric judged, Metric ofMean,
-  const std::function<bool(double)>& isWorse, const WorstLimits& limits,
-  const std::function<bool(const IterationRecord&)>& report)
-{
+  problem.shareTolerance(1.0);
+  StepsOfWorst steps(problem);
+  const Metric judged = steps.judged().metric, ofMean = problem.options().objectives[0].metric;
   const auto isLarger = [](Metric metric)
   { return metricInfo(metric).direction == Direction::LargerIsBetter; };
   const bool larger = isLarger(judged);
-  const IterationRecord start = steps.record();
+  const IterationRecord start = problem.record(0);
   double worst = steps.worst();
   if (!std::isfinite(worst) || metricInfo(judged).direction == Direction::Neutral)
   {
@@ -248,22 +270,22 @@ bool improveWorst(WorstSteps& steps, Metric judged, Metric ofMean,
   const double* power = std::begin(powers);
   double pull = 1.0;
   bool lowered = false; // the pull, once, because its cost was too high
-  for (int round = 0; round < maxWorstRounds && !steps.outOfTime(); ++round)
+  for (int round = 0; round < maxWorstRounds && !problem.outOfTime(); ++round)
   {
     if (!steps.sweep(worst, *power, pull))
     {
       return false;
     }
-    IterationRecord now = steps.record();
+    IterationRecord now = problem.record(0);
     const double reached = steps.reached();
-    const bool affordable = sign * (now.mean[0] - bound) <= 0 || isWorse(worst);
+    const bool affordable = sign * (now.mean[0] - bound) <= 0 || guard.worse(worst);
     const bool kept = better(reached, worst) && affordable && now.inverted <= start.inverted;
     const double gain = kept ? std::abs(worst - reached) / std::abs(worst) : 0.0;
     if (kept)
     {
       worst = reached;
       steps.keep();
-      if (!report(now) || (limits.onlyAsInput && !isWorse(worst)))
+      if (!report(now) || (limits.onlyAsInput && !guard.worse(worst)))
       {
         return false;
       }
@@ -291,16 +313,6 @@ bool improveWorst(WorstSteps& steps, Metric judged, Metric ofMean,
       }
     }
   }
-  return steps.outOfTime();
-}
-
-bool improveWorst(OptimizationProblem& problem, const QualityGuard& guard,
-  const WorstLimits& limits, const std::function<bool(const IterationRecord&)>& report)
-{
-  problem.shareTolerance(1.0);
-  StepsOfWorst steps(problem);
-  return improveWorst(
-    steps, steps.judged().metric, problem.options().objectives[0].metric,
-    [&guard](double worst) { return guard.worse(worst); }, limits, report);
+  return problem.outOfTime();
 }
 }

@@ -4,28 +4,152 @@
 #include "tautline/Core/Parallel.h"
 #include "VertexOptimizer.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace tautline
 {
+namespace
+{
+/// What ranks send of a vertex: x y z, and whether it has moved.
+constexpr int Sent = 4;
+}
+
+//------------------------------------------------------------------------------
+SweepOrder::SweepOrder(const SimplexMesh& simplices, const Ranks& ranks)
+  : TheRanks(ranks)
+{
+  if (ranks.several())
+  {
+    this->findSets(simplices);
+    return;
+  }
+  const VertexBlocks& blocks = simplices.blocks();
+  this->Size = VertexBlocks::size;
+  this->SetStarts = blocks.colourStarts;
+  for (const std::int32_t block : blocks.byColour)
+  {
+    this->Begins.push_back(block * VertexBlocks::size);
+  }
+}
+
+//------------------------------------------------------------------------------
+void SweepOrder::findSets(const SimplexMesh& simplices)
+{
+  constexpr Index verticesPerTask = 128;
+  const DistributedMesh& mesh = this->TheRanks.mesh();
+  const Index points = mesh.localPoints();
+  this->GroupsPerTask = verticesPerTask;
+  this->VertexOf.assign(points, -1);
+  std::vector<unsigned char> flags(points, 0);
+  for (std::int32_t v = 0; v < simplices.freeVertices(); ++v)
+  {
+    this->VertexOf[simplices.point(v)] = v;
+    flags[simplices.point(v)] = 1;
+  }
+  const std::vector<int> sets = mesh.independentSets(flags);
+  const int highest = sets.empty() ? -1 : *std::max_element(sets.begin(), sets.end());
+  const Index count = mesh.group().maximum(static_cast<Index>(highest)) + 1;
+  this->SetStarts.assign(1, 0);
+  for (Index set = 0; set < count; ++set)
+  {
+    for (std::int32_t v = 0; v < simplices.freeVertices(); ++v)
+    {
+      const Index p = simplices.point(v);
+      if (sets[p] == set && mesh.owned(p))
+      {
+        this->Begins.push_back(v);
+      }
+    }
+    this->SetStarts.push_back(static_cast<std::int32_t>(this->Begins.size()));
+    std::transform(sets.begin(), sets.end(), flags.begin(), [set](int of) { return of == set; });
+    this->Halos.push_back(mesh.subset(flags));
+  }
+}
+
+//------------------------------------------------------------------------------
 struct LocalSweeper::Base
 {
+  Base(SimplexMesh& simplices, double* points, const SweepOrder* order)
+    : Simplices(simplices)
+    , Points(points)
+    , Own(order ? nullptr : std::make_unique<SweepOrder>(simplices))
+    , Order(order ? *order : *Own)
+    , Buffer(Sent * Order.VertexOf.size())
+    , Active(simplices.freeVertices(), 1)
+  {
+  }
   virtual ~Base() = default;
   virtual SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values) = 0;
+  template <class Visit>
+  void exchange(std::size_t set, const std::vector<Index>& moved, const Visit& visitMoved);
+
+  SimplexMesh& Simplices;
+  double* Points;
+  std::unique_ptr<SweepOrder> Own;
+  const SweepOrder& Order;
+  std::vector<double> Buffer;
   std::vector<unsigned char> Active;
 };
 
+//------------------------------------------------------------------------------
+/**
+ * @brief Sends to other ranks where the own vertices of a set are now, and puts those of the halo
+ * there.
+ * @param moved per group, how many vertices of it have moved
+ * @param visitMoved called with each vertex of the halo that has moved
+ */
+template <class Visit>
+void LocalSweeper::Base::exchange(
+  std::size_t set, const std::vector<Index>& moved, const Visit& visitMoved)
+{
+  double* x = this->Simplices.coordinates();
+  for (std::int32_t i = this->Order.SetStarts[set]; i < this->Order.SetStarts[set + 1]; ++i)
+  {
+    const std::int32_t v = this->Order.Begins[i];
+    double* to = &this->Buffer[static_cast<std::size_t>(Sent) * this->Simplices.point(v)];
+    std::copy_n(x + VertexStride * static_cast<std::size_t>(v), 3, to);
+    to[3] = static_cast<double>(moved[i]);
+  }
+  const DistributedMesh::Subset& halo = this->Order.Halos[set];
+  this->Order.TheRanks.mesh().exchange(halo, this->Buffer.data(), Sent);
+  for (const auto& neighbour : halo.neighbours)
+  {
+    for (const std::int32_t p : neighbour.received)
+    {
+      const std::int32_t v = this->Order.VertexOf[p];
+      if (v < 0)
+      {
+        continue; // a point of the piece without a cell here
+      }
+      const double* from = &this->Buffer[Sent * static_cast<std::size_t>(p)];
+      double* at = x + VertexStride * static_cast<std::size_t>(v);
+      // Where a vertex stays, its owner has the point as it was, which is not stored and rounded.
+      if (!std::equal(from, from + 3, at))
+      {
+        std::copy_n(from, 3, at);
+        this->Simplices.storeVertex(at, this->Points + 3 * static_cast<std::size_t>(p));
+      }
+      if (from[3] != 0)
+      {
+        visitMoved(v);
+      }
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 template <int Dim>
 struct LocalSweeper::Implementation : LocalSweeper::Base
 {
   Implementation(SimplexMesh& simplices, const Mesh& mesh, double* points,
-    const std::vector<LocalTerm>& terms, const LocalOptions& options)
-    : Simplices(simplices)
+    const std::vector<LocalTerm>& terms, const LocalOptions& options, const SweepOrder* order)
+    : Base(simplices, points, order)
     , Options(options)
     , Mover(simplices, mesh, points, terms, options)
   {
-    this->Active.assign(simplices.freeVertices(), 1);
   }
 
   SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values) override;
@@ -33,7 +157,6 @@ struct LocalSweeper::Implementation : LocalSweeper::Base
 private:
   void wake(std::int32_t v, std::vector<unsigned char>& next) const;
 
-  SimplexMesh& Simplices;
   LocalOptions Options;
   VertexOptimizer<Dim> Mover;
 };
@@ -62,20 +185,22 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
 {
   const std::size_t n = values.size();
   this->Mover.begin(values);
-  const VertexBlocks& blocks = this->Simplices.blocks();
-  const std::size_t numberOfBlocks = blocks.byColour.size();
-  // Results are kept per block and added in order: they do not depend on the number of threads.
-  std::vector<double> gradient2(numberOfBlocks, 0.0), changes(n * numberOfBlocks, 0.0);
-  std::vector<Index> visited(numberOfBlocks, 0), moved(numberOfBlocks, 0);
+  const SweepOrder& order = this->Order;
+  const Ranks& ranks = order.TheRanks;
+  const std::size_t groups = order.Begins.size();
+  // Results are kept per group and added in order: they do not depend on the number of threads.
+  std::vector<double> gradient2(groups, 0.0);
+  std::vector<Index> visited(groups, 0), moved(groups, 0);
+  std::vector<std::vector<double>> ofSet(n);
   std::vector<unsigned char> next(this->Simplices.freeVertices(), 0);
   std::vector<double> total(n, 0.0);
   ScratchPool<PatchWorker<Dim>> workers([&] { return this->Mover.makeWorker(); });
-  const auto sweepBlock = [&](PatchWorker<Dim>& w, Index i)
+  const auto moveGroup = [&](PatchWorker<Dim>& w, std::size_t i, std::size_t place)
   {
-    // A block uses the changes of earlier colours, and its own.
+    // A group uses the changes of earlier sets, and its own.
     w.change = total;
-    const std::int32_t begin = blocks.byColour[i] * blocks.size;
-    const std::int32_t end = std::min(this->Simplices.freeVertices(), begin + blocks.size);
+    const std::int32_t begin = order.Begins[i];
+    const std::int32_t end = std::min(this->Simplices.freeVertices(), begin + order.Size);
     for (std::int32_t v = begin; v < end; ++v)
     {
       if (this->Active[v])
@@ -90,31 +215,31 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
     }
     for (std::size_t k = 0; k < n; ++k)
     {
-      changes[n * i + k] = w.change[k] - total[k];
+      ofSet[k][place] = w.change[k] - total[k];
     }
   };
-  for (std::size_t colour = 0; colour + 1 < blocks.colourStarts.size(); ++colour)
+  for (std::size_t set = 0; set + 1 < order.SetStarts.size(); ++set)
   {
-    const std::int32_t first = blocks.colourStarts[colour], last = blocks.colourStarts[colour + 1];
-    parallelFor(last - first, 1, this->Options.threads, workers,
-      [&](PatchWorker<Dim>& w, Index i) { sweepBlock(w, first + i); });
-    for (std::int32_t i = first; i < last; ++i)
+    const std::int32_t first = order.SetStarts[set], last = order.SetStarts[set + 1];
+    for (std::vector<double>& ofGroups : ofSet)
     {
-      for (std::size_t k = 0; k < n; ++k)
-      {
-        total[k] += changes[n * i + k];
-      }
+      ofGroups.assign(last - first, 0.0);
+    }
+    parallelFor(last - first, order.GroupsPerTask, this->Options.threads, workers,
+      [&](PatchWorker<Dim>& w, Index i) { moveGroup(w, first + i, i); });
+    if (ranks.several())
+    {
+      this->exchange(set, moved, [&](std::int32_t v) { this->wake(v, next); });
+    }
+    for (std::size_t k = 0; k < n && (n > 1 || !ranks.several()); ++k)
+    {
+      total[k] = ranks.total(ofSet[k], total[k]);
     }
   }
   SweepResult result;
-  double norm2 = 0;
-  for (std::size_t i = 0; i < numberOfBlocks; ++i)
-  {
-    result.visited += visited[i];
-    result.moved += moved[i];
-    norm2 += gradient2[i];
-  }
-  result.gradientNorm = std::sqrt(norm2) / this->Simplices.scale();
+  result.visited = ranks.sum(std::accumulate(visited.begin(), visited.end(), Index(0)));
+  result.moved = ranks.sum(std::accumulate(moved.begin(), moved.end(), Index(0)));
+  result.gradientNorm = std::sqrt(ranks.total(gradient2)) / this->Simplices.scale();
   for (std::size_t i = 0; i < n; ++i)
   {
     values[i] = this->Mover.objective(i, total[i]);
@@ -129,15 +254,17 @@ SweepResult LocalSweeper::Implementation<Dim>::sweep(
 
 //------------------------------------------------------------------------------
 LocalSweeper::LocalSweeper(SimplexMesh& simplices, const Mesh& mesh, double* points,
-  const std::vector<LocalTerm>& terms, const LocalOptions& options)
+  const std::vector<LocalTerm>& terms, const LocalOptions& options, const SweepOrder* order)
 {
   if (simplices.dimension() == 3)
   {
-    this->Impl = std::make_unique<Implementation<3>>(simplices, mesh, points, terms, options);
+    this->Impl =
+      std::make_unique<Implementation<3>>(simplices, mesh, points, terms, options, order);
   }
   else
   {
-    this->Impl = std::make_unique<Implementation<2>>(simplices, mesh, points, terms, options);
+    this->Impl =
+      std::make_unique<Implementation<2>>(simplices, mesh, points, terms, options, order);
   }
 }
 

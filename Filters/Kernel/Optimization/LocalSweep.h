@@ -8,6 +8,7 @@
 #define tautline_LocalSweep_h
 
 #include "LocalOptions.h"
+#include "tautline/Mesh/Ranks.h"
 #include "tautline/Objectives/Scalarization.h"
 
 #include <memory>
@@ -22,20 +23,50 @@ struct SweepResult
     0; ///< of the gradients each vertex saw, over those visited; per length of the mesh
 };
 
+/**
+ * @brief The order in which a sweep moves the vertices: sets of groups, one set after the other.
+ * The groups of a set move at the same time, the vertices of a group one after the other.
+ *
+ * On one process the groups are coloured blocks (VertexBlocks). On several ranks they are single
+ * vertices that a rank owns, in sets without a common cell (DistributedMesh::independentSets()):
+ * the order does not depend on how the mesh is cut.
+ */
+class TAUTLINE_KERNEL_EXPORT SweepOrder
+{
+public:
+  /// Collective.
+  explicit SweepOrder(const SimplexMesh& simplices, const Ranks& ranks = {});
+
+private:
+  friend class LocalSweeper;
+  void findSets(const SimplexMesh& simplices);
+
+  Ranks TheRanks;
+  std::vector<std::int32_t> Begins;           ///< the first vertex of each group
+  std::int32_t Size = 1;                      ///< vertices of a group, except the last one
+  Index GroupsPerTask = 1;                    ///< that a thread moves at a time
+  std::vector<std::int32_t> SetStarts;        ///< into Begins, and its end
+  std::vector<DistributedMesh::Subset> Halos; ///< of each set
+  std::vector<std::int32_t> VertexOf;         ///< per local point; -1: not free
+};
+
 class TAUTLINE_KERNEL_EXPORT LocalSweeper
 {
 public:
   /**
    * @param points 3 per point of `mesh`, kept up to date with the simplex mesh if a term needs it;
    * `mesh` is a mesh whose view has these points
+   * @param order null: that of this process alone
    */
   LocalSweeper(SimplexMesh& simplices, const Mesh& mesh, double* points,
-    const std::vector<LocalTerm>& terms, const LocalOptions& options);
+    const std::vector<LocalTerm>& terms, const LocalOptions& options,
+    const SweepOrder* order = nullptr);
   ~LocalSweeper();
 
   /**
-   * @brief One sweep. Objective values in `values` are those of the mesh before and, up to
-   * rounding, after. A step is taken if it reduces the scalarized objective.
+   * @brief One sweep, of the whole mesh. Objective values in `values` are those of the mesh before
+   * and, up to rounding, after; on several ranks a single one is not updated. A step is taken if it
+   * reduces the scalarized objective.
    */
   SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values);
 

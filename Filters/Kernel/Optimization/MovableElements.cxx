@@ -60,7 +60,7 @@ OptimizationProblem::Measured OptimizationProblem::measure(const Objective& judg
 }
 
 //------------------------------------------------------------------------------
-double OptimizationProblem::worstMovable(const Objective& judged, const Measured& measured) const
+double OptimizationProblem::worstMovable(const Objective& judged, const Measured& measured)
 {
   const Mesh& mesh = *this->Moving;
   const std::vector<std::int32_t> vertex =
@@ -84,7 +84,7 @@ double OptimizationProblem::worstMovable(const Objective& judged, const Measured
       });
     worst = std::accumulate(ofChunk.begin(), ofChunk.end(), worst, worse);
   }
-  return worst;
+  return larger ? -this->TheRanks.maximum(-worst) : this->TheRanks.maximum(worst);
 }
 
 //------------------------------------------------------------------------------

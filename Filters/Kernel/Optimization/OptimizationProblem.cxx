@@ -29,13 +29,43 @@ bool isOfInvariants(const MetricInfo& info, CellType type)
   double value = 0, derivatives[5];
   return info.user->evaluateInvariants(type, 1, 1, ideal, &value, derivatives);
 }
+
+/// The bounds of points and the scale of edges of a mesh on several ranks.
+SimplexFrame frameOf(const Mesh& local, const Ranks& ranks)
+{
+  const MeshView& view = local.view();
+  SimplexFrame frame;
+  for (int c = 0; c < 3; ++c)
+  {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Index p = 0; p < view.numberOfPoints; ++p)
+    {
+      low = std::min(low, view.points[3 * p + c]);
+      high = std::max(high, view.points[3 * p + c]);
+    }
+    frame.low[c] = -ranks.maximum(-low);
+    frame.high[c] = ranks.maximum(high);
+  }
+  std::vector<double> lengths;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const Index* node = view.connectivity + view.offsets[cell];
+    if (ranks.ownsCell(cell))
+    {
+      lengths.push_back(norm(pointOf(view, node[1]) - pointOf(view, node[0])));
+    }
+  }
+  const auto cells = static_cast<double>(std::max<Index>(1, ranks.mesh().globalCells()));
+  frame.scale = powerOfTwo(ranks.total(lengths) / cells);
+  return frame;
+}
 }
 
 //------------------------------------------------------------------------------
 OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options,
-  std::vector<double>& points, const Stopwatch& clock, const SimplexFrame* frame)
+  std::vector<double>& points, const Stopwatch& clock, const Ranks& ranks)
   : TheMesh(mesh)
-  , Part(frame != nullptr)
+  , TheRanks(ranks)
   , Options(options)
   , Points(points)
   , Clock(clock)
@@ -61,8 +91,9 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
       targets = objective.evaluation.targets;
     }
   }
-  this->Simplices =
-    std::make_unique<SimplexMesh>(*this->Moving, options.fixed, targets, options.threads, frame);
+  const SimplexFrame frame = ranks.several() ? frameOf(*this->Moving, ranks) : SimplexFrame();
+  this->Simplices = std::make_unique<SimplexMesh>(
+    *this->Moving, options.fixed, targets, options.threads, ranks.several() ? &frame : nullptr);
   this->makeSurface();
   // Objectives that are energies of the simplices are evaluated without the metrics.
   this->Sums.resize(this->Resolved.size());
@@ -80,48 +111,52 @@ OptimizationProblem::OptimizationProblem(const Mesh& mesh, const OptimizeOptions
       this->AllFast = false;
     }
   }
-  if (this->Moving->nonFinitePoints() > 0 || !this->AllFast)
+  bool some = this->Moving->nonFinitePoints() > 0 || !this->AllFast;
+  if (!some)
+  {
+    this->summarizeSimplices(this->AtStart);
+    some = this->AtStart.inverted > 0;
+  }
+  if (ranks.any(some))
   {
     // Inverted elements that no objective can repair, and those with NaN, are left out.
+    this->AtStart = {};
     std::vector<signed char> validity(view.numberOfCells);
     this->Moving->classifyCells(validity.data(), options.threads);
     this->leaveOut(validity);
   }
-  else
+  std::vector<double> largest = this->largestValues();
+  std::transform(largest.begin(), largest.end(), largest.begin(),
+    [&ranks](double value) { return ranks.maximum(value); });
+  this->rescaleUntangling(largest);
+  if (ranks.several())
   {
-    this->summarizeSimplices(this->AtStart);
-    if (this->AtStart.inverted > 0)
-    {
-      this->AtStart = {};
-      std::vector<signed char> validity(view.numberOfCells);
-      this->Moving->classifyCells(validity.data(), options.threads);
-      this->leaveOut(validity);
-    }
+    this->agreeOnForms();
   }
-  this->rescaleUntangling(this->Part ? std::vector<double>() : this->largestValues());
 }
 
 //------------------------------------------------------------------------------
-std::vector<unsigned char> OptimizationProblem::closedForms() const
+/// On several ranks: an objective is in closed form on all or on none.
+void OptimizationProblem::agreeOnForms()
 {
-  std::vector<unsigned char> flags;
-  for (const LocalTerm& term : this->Terms)
-  {
-    flags.push_back(term.ofSimplices());
-  }
-  return flags;
-}
-
-//------------------------------------------------------------------------------
-void OptimizationProblem::keepClosedForms(const std::vector<unsigned char>& flags)
-{
+  // A rank without cells follows the others.
+  const bool here = this->Moving->view().numberOfCells > 0;
+  bool weighted = false, all = true;
   for (std::size_t i = 0; i < this->Terms.size(); ++i)
   {
-    if (!flags[i])
-    {
-      this->Terms[i] = LocalTerm();
-      this->AllFast = false;
-    }
+    const bool closed = !this->TheRanks.any(here && !this->Terms[i].ofSimplices());
+    this->Terms[i] = closed ? this->Terms[i] : LocalTerm();
+    all = all && closed;
+    weighted = weighted || this->Resolved[i].elementWeights;
+  }
+  this->AllFast = all && (this->AllFast || !here);
+  if (this->TheRanks.any(weighted) && !all)
+  {
+    this->Terms.assign(this->Terms.size(), LocalTerm()); // weights of cells differ by objective
+  }
+  for (std::size_t i = 0; i < this->Resolved.size(); ++i)
+  {
+    this->sum(i); // which takes all ranks
   }
 }
 
@@ -223,7 +258,7 @@ void OptimizationProblem::leaveOut(std::vector<signed char> validity)
     {
       count += out(cell);
     }
-    if (count == 0)
+    if (!this->TheRanks.any(count > 0))
     {
       continue;
     }
@@ -235,10 +270,14 @@ void OptimizationProblem::leaveOut(std::vector<signed char> validity)
         elements += !out(block.cell(c));
       }
     }
-    if (elements == 0 && !this->Part)
+    if (!this->TheRanks.any(elements > 0))
     {
       throw Error("No element is valid, and no objective repairs them: untangle the mesh first; if "
                   "that leaves all invalid, let more points move.");
+    }
+    if (count == 0)
+    {
+      continue;
     }
     this->Weights[i].assign(cells, 1.0);
     this->LeftOut.clear();
@@ -257,13 +296,15 @@ void OptimizationProblem::leaveOut(std::vector<signed char> validity)
 }
 
 //------------------------------------------------------------------------------
-bool OptimizationProblem::someRepaired() const
+bool OptimizationProblem::someRepaired()
 {
-  return std::any_of(this->LeftOut.begin(), this->LeftOut.end(),
-    [&](Index cell) { return cornerValidity(*this->Moving, cell) == Valid; });
+  return this->TheRanks.any(std::any_of(this->LeftOut.begin(), this->LeftOut.end(),
+    [&](Index cell) { return cornerValidity(*this->Moving, cell) == Valid; }));
 }
 
 //------------------------------------------------------------------------------
+/// The largest absolute element value of each objective where the points are, if untangling
+/// objectives are to be rescaled, else empty.
 std::vector<double> OptimizationProblem::largestValues() const
 {
   const bool untangles = std::any_of(this->Resolved.begin(), this->Resolved.end(),
@@ -287,6 +328,7 @@ std::vector<double> OptimizationProblem::largestValues() const
 }
 
 //------------------------------------------------------------------------------
+/// See OptimizeOptions::rescaleUntangling.
 void OptimizationProblem::rescaleUntangling(const std::vector<double>& largest)
 {
   // The largest element values of the other objectives are what the untangling ones have to exceed.
@@ -332,7 +374,7 @@ const ObjectiveSum& OptimizationProblem::sum(std::size_t objective)
   if (!this->Sums[objective])
   {
     this->Sums[objective] = std::make_unique<ObjectiveSum>(
-      *this->Moving, this->Resolved[objective], this->Options.threads, this->Part);
+      *this->Moving, this->Resolved[objective], this->Options.threads, this->TheRanks);
   }
   return *this->Sums[objective];
 }
@@ -418,9 +460,46 @@ LocalOptions OptimizationProblem::localOptions() const
 }
 
 //------------------------------------------------------------------------------
+const SweepOrder& OptimizationProblem::order()
+{
+  if (!this->Order)
+  {
+    this->Order = std::make_unique<SweepOrder>(*this->Simplices, this->TheRanks);
+  }
+  return *this->Order;
+}
+
+const MatrixRows& OptimizationProblem::rows()
+{
+  if (!this->Rows)
+  {
+    std::vector<std::int32_t> points;
+    for (std::int32_t v = 0; v < this->Simplices->freeVertices(); ++v)
+    {
+      points.push_back(this->Simplices->point(v));
+    }
+    this->Rows =
+      std::make_unique<MatrixRows>(points, this->Moving->view().numberOfPoints, this->TheRanks);
+  }
+  return *this->Rows;
+}
+
+//------------------------------------------------------------------------------
+Index OptimizationProblem::freePoints() const
+{
+  Index count = 0;
+  for (std::int32_t v = 0; v < this->Simplices->freeVertices(); ++v)
+  {
+    count += this->TheRanks.owns(this->Simplices->point(v));
+  }
+  return this->TheRanks.sum(count);
+}
+
+//------------------------------------------------------------------------------
 void OptimizationProblem::store()
 {
   this->Simplices->store(this->Points.data(), this->Options.threads);
+  this->TheRanks.exchange(this->Points.data(), 3);
 }
 
 //------------------------------------------------------------------------------
@@ -437,34 +516,35 @@ void OptimizationProblem::summarizeCells(IterationRecord& record)
     evaluateMetric(*this->Moving, objective.metric, objective.evaluation, q.data());
     const MetricInfo& info = metricInfo(objective.metric);
     const bool larger = info.direction == Direction::LargerIsBetter;
-    double total = 0, worst = 0;
-    Index count = 0;
+    std::vector<double> values;
+    double worst = -std::numeric_limits<double>::infinity(); // larger the worse
     for (const CellBlock& block : this->Moving->blocks())
     {
       for (Index c = 0; isElement(*this->Moving, block.type) && c < block.count; ++c)
       {
         const Index cell = block.cell(c);
-        if (validity[cell] == Valid)
+        if (validity[cell] == Valid && this->TheRanks.ownsCell(cell))
         {
-          total += q[cell];
-          worst = count == 0 ? q[cell]
-            : larger         ? std::min(worst, q[cell])
-                             : std::max(worst, q[cell]);
-          ++count;
+          values.push_back(q[cell]);
+          worst = std::max(worst, larger ? -q[cell] : q[cell]);
         }
       }
     }
+    const Index count = this->TheRanks.sum(static_cast<Index>(values.size()));
+    const double total = this->TheRanks.total(values);
+    worst = this->TheRanks.maximum(worst);
     record.mean.push_back(count > 0 ? total / static_cast<double>(count) : 0.0);
-    record.worst.push_back(worst);
+    record.worst.push_back(count == 0 ? 0.0 : larger ? -worst : worst);
   }
   for (const CellBlock& block : this->Moving->blocks())
   {
     for (Index c = 0; isElement(*this->Moving, block.type) && c < block.count; ++c)
     {
-      const signed char state = validity[block.cell(c)];
-      record.inverted += isInvalid(state);
+      const Index cell = block.cell(c);
+      record.inverted += this->TheRanks.ownsCell(cell) && isInvalid(validity[cell]);
     }
   }
+  record.inverted = this->TheRanks.sum(record.inverted);
 }
 
 //------------------------------------------------------------------------------
@@ -491,7 +571,7 @@ IterationRecord OptimizationProblem::record(int iteration)
 bool OptimizationProblem::hasSimplexTotals() const
 {
   // The mean of the mean ratio does not follow from sums of its reciprocal.
-  return this->AllFast &&
+  return this->AllFast && !this->TheRanks.several() &&
     std::none_of(this->Resolved.begin(), this->Resolved.end(),
       [](const Objective& o) { return o.metric == Metric::MeanRatio; });
 }
@@ -513,9 +593,9 @@ IterationRecord OptimizationProblem::firstRecord(int iteration)
 //------------------------------------------------------------------------------
 bool OptimizationProblem::isSumOfSquaresOf(const Objective& judged) const
 {
-  return this->isSimple() && this->Terms[0].shapePower == 2 && this->Simplices->uniform() &&
-    judged.metric == Metric::InverseMeanRatio && !judged.evaluation.targets &&
-    !this->Resolved[0].evaluation.targets;
+  return !this->TheRanks.several() && this->isSimple() && this->Terms[0].shapePower == 2 &&
+    this->Simplices->uniform() && judged.metric == Metric::InverseMeanRatio &&
+    !judged.evaluation.targets && !this->Resolved[0].evaluation.targets;
 }
 
 //------------------------------------------------------------------------------
@@ -576,26 +656,25 @@ double OptimizationProblem::limitOf(std::size_t point) const
 }
 
 //------------------------------------------------------------------------------
-bool OptimizationProblem::someAtLimit() const
+bool OptimizationProblem::someAtLimit()
 {
+  bool some = false;
   for (std::int32_t v = 0; this->Options.limits && v < this->Simplices->freeVertices(); ++v)
   {
     const auto p = static_cast<std::size_t>(this->Simplices->point(v));
     const double* now = &this->Points[3 * p];
     const double* start = this->start() + 3 * p;
     const double limit = this->limitOf(p);
-    if (limit > 0 &&
-      std::hypot(now[0] - start[0], now[1] - start[1], now[2] - start[2]) >= insideLimit * limit)
-    {
-      return true;
-    }
+    some = some ||
+      (limit > 0 &&
+        std::hypot(now[0] - start[0], now[1] - start[1], now[2] - start[2]) >= insideLimit * limit);
   }
-  return false;
+  return this->TheRanks.any(some);
 }
 
 //------------------------------------------------------------------------------
 bool OptimizationProblem::outOfTime() const
 {
-  return this->Clock.reached(this->Options.stopping.maximumSeconds);
+  return this->TheRanks.any(this->Clock.reached(this->Options.stopping.maximumSeconds));
 }
 }

@@ -10,6 +10,7 @@
 #include "tautline/Core/Stopwatch.h"
 #include "FlatParts.h"
 #include "LocalSweep.h"
+#include "tautline/Objectives/MatrixRows.h"
 
 #include <memory>
 
@@ -24,14 +25,18 @@ public:
   /**
    * @param points where the optimization starts; moved in place
    * @param clock started with the run; the time limit counts from there
-   * @param frame see SimplexMesh
+   * @param ranks of which each has a part of the mesh. Methods that are not const are then
+   * collective, and so is outOfTime(); records are of the whole mesh.
    * The options have been checked, see checkOptions().
    */
   OptimizationProblem(const Mesh& mesh, const OptimizeOptions& options, std::vector<double>& points,
-    const Stopwatch& clock, const SimplexFrame* frame = nullptr);
+    const Stopwatch& clock, const Ranks& ranks = {});
+
+  const Ranks& ranks() const { return this->TheRanks; }
 
   const Mesh& moving() const { return *this->Moving; }
   SimplexMesh& simplices() { return *this->Simplices; }
+  const SimplexMesh& simplices() const { return *this->Simplices; }
   /// The facets of the surface that points are kept on, or null.
   const SurfaceProjection* surface() const { return this->Surface.get(); }
   /// The distance between it, or the interfaces of the model, and the surface, or the interfaces,
@@ -50,18 +55,6 @@ public:
   std::size_t objectives() const { return this->Resolved.size(); }
   /// The objectives with their templates, and weights of 0 for the cells that are left out.
   const std::vector<Objective>& resolved() const { return this->Resolved; }
-  /// Per objective: whether it is evaluated in closed form.
-  std::vector<unsigned char> closedForms() const;
-  /// Evaluates those with a flag of 0 by their metrics, as some other part of the mesh needs it.
-  void keepClosedForms(const std::vector<unsigned char>& flags);
-  /**
-   * @brief The largest absolute element value of each objective where the points are, if untangling
-   * objectives are to be rescaled, else empty. Of a part of a mesh, to be followed by
-   * rescaleUntangling() with those of the whole.
-   */
-  std::vector<double> largestValues() const;
-  /// See OptimizeOptions::rescaleUntangling.
-  void rescaleUntangling(const std::vector<double>& largest);
   const Scalarizer& scalarizer() const { return *this->TheScalarizer; }
   Scalarizer& scalarizer() { return *this->TheScalarizer; }
   /// The objective sums, made on first use.
@@ -69,13 +62,20 @@ public:
   std::vector<LocalTerm> localTerms();
   LocalOptions localOptions() const;
 
+  /// The order of the sweeps.
+  const SweepOrder& order();
+  /// The free points as rows of a matrix.
+  const MatrixRows& rows();
+  /// Free points of the whole mesh.
+  Index freePoints() const;
+
   /// Writes the simplices' coordinates to the points.
   void store();
   /// To be called where the coordinates of the simplices have changed other than by sweeps.
   void coordinatesChanged();
   /// Goes back to other points.
   void restart(const std::vector<double>& points);
-  /// One objective in closed form, of every element.
+  /// One objective in closed form, of every element of this rank.
   bool isSimple() const
   {
     return this->AllFast && this->Resolved.size() == 1 && this->LeftOut.empty() &&
@@ -83,7 +83,7 @@ public:
   }
   /// Whether an element that an objective leaves out because a corner was inverted has valid
   /// corners at the stored points.
-  bool someRepaired() const;
+  bool someRepaired();
   /// The record of the points as they are; sets the objectives and counts the inverted elements.
   IterationRecord record(int iteration);
   /// The same before anything has moved, from what the constructor has found.
@@ -98,9 +98,9 @@ public:
   };
   Measured measure(const Objective& judged) const;
   /// The worst value of a metric among the valid elements with a free vertex.
-  double worstMovable(const Objective& judged, const Measured& measured) const;
+  double worstMovable(const Objective& judged, const Measured& measured);
   /// That of the inverse mean ratio, of simplices alone: where the coordinates are, stored or not.
-  double worstRatioMovable() const;
+  double worstRatioMovable();
   /// One flag per free vertex: it has a simplex whose inverse mean ratio exceeds a bound.
   std::vector<unsigned char> verticesAbove(double ratio) const;
   /// The same: it has an element with a share in the p-mean of a metric, beside that of the worst
@@ -120,9 +120,12 @@ public:
   /// The points of the input, 3 numbers each.
   const double* start() const { return this->TheMesh.view().points; }
   /// Whether a point is as far from its start as a limit lets it.
-  bool someAtLimit() const;
+  bool someAtLimit();
 
 private:
+  void agreeOnForms();
+  std::vector<double> largestValues() const;
+  void rescaleUntangling(const std::vector<double>& largest);
   void makeSurface();
   void makeInterfaces();
   double distanceOf(const SurfaceProjection& now, const SurfaceProjection& before) const;
@@ -135,7 +138,7 @@ private:
   void summarizeCells(IterationRecord& record);
 
   const Mesh& TheMesh;
-  bool Part; ///< of a mesh on several ranks
+  Ranks TheRanks;
   OptimizeOptions Options;
   std::vector<double>& Points;
   std::unique_ptr<Mesh> Moving;
@@ -153,6 +156,8 @@ private:
   std::vector<std::vector<double>> Weights; ///< of each objective, if not all 1
   std::unique_ptr<Scalarizer> TheScalarizer;
   std::unique_ptr<PointSlides> Slides;
+  std::unique_ptr<SweepOrder> Order;
+  std::unique_ptr<MatrixRows> Rows;
   IterationRecord AtStart; ///< sums of the simplices there; without objectives: not found
   Stopwatch Clock;
 };

@@ -2,16 +2,10 @@
 #include "Optimize.h"
 
 #include "AutomaticMethod.h"
-#include "GlobalFunction.h"
-#include "HarmonicStart.h"
 #include "HoldingSweeps.h"
-#include "tautline/Core/Memory.h"
-#include "tautline/Core/Parallel.h"
-#include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "ImproveWorst.h"
 #include "LeaveSurface.h"
-#include "Minimize.h"
 #include "OptionChecks.h"
 #include "QualityGuard.h"
 #include "tautline/Quality/JudgedValues.h"
@@ -20,322 +14,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <new>
-#include <numeric>
-#include <type_traits>
+#include <functional>
 
 namespace tautline
 {
 namespace
 {
-/// Adds a record to the history and calls the observer; false if that stops the run.
-bool report(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result,
-  const IterationRecord& record)
-{
-  result.history.push_back(presentable(problem.scalarizer(), record));
-  const auto& observer = problem.options().observer;
-  if (!observer)
-  {
-    return true;
-  }
-  const auto points = [&](double* p)
-  {
-    problem.store();
-    std::copy(problem.points().begin(), problem.points().end(), p);
-  };
-  return observer({ result.history.back(), watch.progress(record), points });
-}
-
-//------------------------------------------------------------------------------
-/**
- * @brief Sweeps to convergence.
- * @param failed set where a sweep raised the objective, as those of several objectives can
- * @param repaired set where an element that was left out has become valid
- * @param slow set, if not null, where they converge too slowly
- */
-StopReason optimizeLocally(OptimizationProblem& problem, const StoppingTest& watch,
-  OptimizeResult& result, bool& failed, bool& repaired, Slowness* slow)
-{
-  const StoppingCriteria& stop = problem.options().stopping;
-  SimplexMesh& simplices = problem.simplices();
-  LocalSweeper sweeper(simplices, problem.moving(), problem.points().data(), problem.localTerms(),
-    problem.localOptions());
-  std::vector<double> best(simplices.coordinates(),
-    simplices.coordinates() + VertexStride * static_cast<std::size_t>(simplices.freeVertices()));
-  // One objective in closed form needs neither the mesh's own points on the way nor a way back:
-  // each step reduces it.
-  const bool simple = problem.isSimple();
-  StopReason reason = StopReason::NoProgress;
-  double firstGradient = 0;
-  bool all = true;           // whether the next sweep visits every vertex
-  SweepGains gains(!simple); // hexahedra have no closed form
-  for (int iteration = result.history.back().iteration + 1;; ++iteration)
-  {
-    if (watch.ends(result.history, reason))
-    {
-      return reason;
-    }
-    const IterationRecord& before = result.history.back();
-    std::vector<double> values = before.objectives;
-    const SweepResult sweep = sweeper.sweep(problem.scalarizer(), values);
-    if (!simple)
-    {
-      problem.store();
-    }
-    IterationRecord now = problem.record(iteration);
-    now.gradientNorm = sweep.gradientNorm;
-    now.moving = sweep.moved;
-    const double lowered = scalarized(problem.scalarizer(), before) - now.objective;
-    const double size = std::abs(now.objective);
-    if (!simple && !(std::isfinite(size) && lowered >= -roundingOfSums * size))
-    {
-      // Blocks of one colour do not use each other's changes of a composite objective, which may
-      // rise or leave its domain, as a product with a factor below 0.
-      std::copy(best.begin(), best.end(), simplices.coordinates());
-      problem.store();
-      failed = true;
-      return StopReason::NoProgress;
-    }
-    if (!simple)
-    {
-      std::copy_n(simplices.coordinates(), best.size(), best.begin());
-    }
-    firstGradient = firstGradient > 0 ? firstGradient : sweep.gradientNorm;
-    if (!report(problem, watch, result, now))
-    {
-      return StopReason::Aborted;
-    }
-    if (problem.someRepaired() && !watch.ends(result.history, reason))
-    {
-      repaired = true;
-      return StopReason::NoProgress;
-    }
-
-    gains.add(lowered);
-    // On a surface each sweep moves the points a little off the input: no more of them than needed.
-    const double remaining = problem.surface() ? lowered : gains.remaining();
-    if (slow && (gains.stiff(size) || gains.slow(size, stop.relativeChange)))
-    {
-      *slow = gains.stiff(size) ? Slowness::Far : Slowness::Near;
-      return StopReason::NoProgress;
-    }
-
-    // Convergence is only believed of a sweep over all vertices.
-    if (!converged(
-          stop, sweep, all, firstGradient, lowered, remaining, gains.remaining(), size, reason))
-    {
-      all = sweep.moved == 0;
-      if (all)
-      {
-        sweeper.wakeAll();
-      }
-      continue;
-    }
-    if (!all)
-    {
-      sweeper.wakeAll();
-      all = true;
-    }
-    else if (problem.scalarizer().next(result.history.back().objectives))
-    {
-      sweeper.wakeAll();
-      gains.clear();
-      firstGradient = 0;
-    }
-    else
-    {
-      return reason;
-    }
-  }
-}
-
-//------------------------------------------------------------------------------
-StopReason optimizeGlobally(
-  OptimizationProblem& problem, const StoppingTest& watch, Optimizer method, OptimizeResult& result)
-{
-  const StoppingCriteria& stop = problem.options().stopping;
-  StopReason reason = StopReason::NoProgress;
-  if (watch.ends(result.history, reason))
-  {
-    return reason;
-  }
-  const bool alone = isGlobal(problem.options().optimizer);
-  GlobalFunction function(problem, method);
-  std::vector<double> x(function.size(), 0.0);
-  for (;;)
-  {
-    const int before = result.history.back().iteration;
-    MinimizeOptions options = minimizeOptions(stop, method, alone);
-    options.maximumIterations -= before;
-    options.outOfTime = [&] { return problem.outOfTime(); };
-    options.threads = problem.options().threads;
-    bool ended = false;
-    options.observer = [&](int iteration, double, double gradientNorm, const double* now)
-    {
-      if (iteration == 0)
-      {
-        return true;
-      }
-      function.put(now);
-      IterationRecord record = problem.record(before + iteration);
-      record.gradientNorm = gradientNorm;
-      if (!report(problem, watch, result, record))
-      {
-        reason = StopReason::Aborted;
-        ended = true;
-      }
-      else
-      {
-        ended = watch.ends(result.history, reason);
-      }
-      return !ended;
-    };
-    const MinimizeResult found = minimize(function, x.data(), options);
-    function.put(x.data());
-    if (ended)
-    {
-      return reason;
-    }
-    if (!problem.scalarizer().next(problem.record(0).objectives))
-    {
-      return found.reason;
-    }
-  }
-}
-
-std::vector<signed char> validityOf(const Mesh& mesh, int threads)
-{
-  std::vector<signed char> validity(mesh.view().numberOfCells);
-  mesh.classifyCells(validity.data(), threads);
-  return validity;
-}
-
-Index countInvalid(const std::vector<signed char>& validity)
-{
-  return std::count_if(validity.begin(), validity.end(), isInvalid);
-}
-
-//------------------------------------------------------------------------------
-/// The steps of a stage on one process.
-class StepsOfProblem : public OptimizationSteps
-{
-public:
-  StepsOfProblem(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result)
-    : Problem(problem)
-    , Watch(watch)
-    , Result(result)
-  {
-  }
-
-  StopReason sweep(Slowness* slow, bool& failed, bool& repaired) override
-  {
-    return optimizeLocally(this->Problem, this->Watch, this->Result, failed, repaired, slow);
-  }
-
-  StopReason minimizeAll(Optimizer method) override
-  {
-    const auto minimize = [&]
-    { return optimizeGlobally(this->Problem, this->Watch, method, this->Result); };
-    return method == Optimizer::NewtonConjugateGradient ? this->inMemory(minimize) : minimize();
-  }
-
-  bool hasManyCorners() const override
-  {
-    const Mesh& mesh = this->Problem.moving();
-    const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
-    Index simplices = 0, others = 0;
-    for (const CellBlock& block : mesh.blocks())
-    {
-      const CellTopology& t = topology(block.type);
-      (t.samples > 1 ? others : simplices) += t.dimension == dimension ? block.count : 0;
-    }
-    return static_cast<double>(others) > manyCorners * static_cast<double>(simplices);
-  }
-
-  bool hasConvexPart() override { return HessianMatrix::hasConvexPart(this->Problem.sum(0)); }
-  bool hasConstraintsOrTargets() const override
-  {
-    const OptimizeOptions& options = this->Problem.options();
-    return options.slidePlanes || options.slideLines || options.limits ||
-      options.objectives[0].evaluation.targets ||
-      this->Problem.moving().dimension() == Dimension::Surface;
-  }
-  bool slidesOnSurface() const override
-  {
-    const OptimizeOptions& options = this->Problem.options();
-    return this->Problem.moving().dimension() != Dimension::Surface &&
-      (options.model || options.slideSurface);
-  }
-  bool holdsPoints() override
-  {
-    const std::vector<unsigned char>& held = this->Problem.slides().held;
-    return this->Problem.someAtLimit() ||
-      std::any_of(held.begin(), held.end(), [](unsigned char h) { return h != 0; });
-  }
-  bool outOfTime() const override { return this->Problem.outOfTime(); }
-
-  const std::vector<double>& stored() const override { return this->Result.points; }
-  void store() override { this->Problem.store(); }
-  void restart(const std::vector<double>& points) override { this->Problem.restart(points); }
-  bool findHarmonicPoints(std::vector<double>& points) override
-  {
-    points = this->inMemory([&] { return harmonicPoints(this->Problem, points); });
-    return !points.empty();
-  }
-  void shiftPoints(double part, std::vector<double>& points) override
-  {
-    const SimplexMesh& simplices = this->Problem.simplices();
-    std::vector<unsigned char> free(points.size() / 3, 0);
-    for (std::int32_t v = 0; v < simplices.freeVertices(); ++v)
-    {
-      free[simplices.point(v)] = 1;
-    }
-    shiftFreePoints(this->Problem.moving(), free, nullptr, part, points);
-  }
-  IterationRecord record(int iteration) override { return this->Problem.record(iteration); }
-
-private:
-  /// What work() returns. @throws MemoryError if it does not fit, so that the sweeps go on, unless
-  /// the user has chosen a global optimizer
-  template <class Work>
-  std::invoke_result_t<Work> inMemory(const Work& work) const
-  {
-    try
-    {
-      return work();
-    }
-    catch (const std::bad_alloc&)
-    {
-      if (isGlobal(this->Problem.options().optimizer))
-      {
-        throw;
-      }
-      throw MemoryError("The matrix does not fit into memory.");
-    }
-  }
-
-  OptimizationProblem& Problem;
-  const StoppingTest& Watch;
-  OptimizeResult& Result; ///< whose points are those of the problem
-};
-
 /// Lets points leave the surface, see leaveSurface(), unless the result is worse than the input,
 /// which is better already where they are.
-void leaveNearWorst(const Mesh& mesh, OptimizationProblem& problem, const StoppingTest& watch,
-  const IterationRecord& first, const QualityGuard& guard, const WorstLimits& limits,
-  const Stopwatch& clock, OptimizeResult& result, LeavingResult& left)
+void leaveNearWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord& first,
+  const QualityGuard& guard, const WorstLimits& limits, const Stopwatch& clock, LeavingResult& left)
 {
+  OptimizationProblem& problem = steps.problem();
   problem.store();
   const std::vector<double> slid = problem.points();
   left = leaveSurface(mesh, problem, guard, limits, clock,
     [&](OptimizationProblem& now, IterationRecord record)
     {
-      record.iteration = result.history.back().iteration + 1;
+      record.iteration = steps.next();
       if (problem.objectives() > 1)
       {
         record.objective = problem.scalarizer().value(record.objectives);
       }
-      return report(now, watch, result, record);
+      return steps.report(now, record);
     });
   const bool larger = guard.holdsObjective() &&
     isLarger(problem.options().scalarization, problem.scalarizer(), problem.record(0), first);
@@ -343,17 +44,17 @@ void leaveNearWorst(const Mesh& mesh, OptimizationProblem& problem, const Stoppi
   {
     problem.restart(slid);
     left.points.clear();
-    IterationRecord record = problem.record(result.history.back().iteration + 1);
-    report(problem, watch, result, record);
+    steps.report(problem.record(steps.next()));
   }
 }
 
 /// Improves the worst element as far as wanted, and at least to that of the input. Stores the
 /// points and measures the elements there.
-QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
-  const StoppingTest& watch, const IterationRecord& first, const QualityGuard& guard,
-  const Stopwatch& clock, OptimizeResult& result)
+QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
+  const IterationRecord& first, const QualityGuard& guard, const Stopwatch& clock,
+  OptimizeResult& result)
 {
+  OptimizationProblem& problem = steps.problem();
   // The metrics of the mean and of the worst element disagree on stretched hexahedra.
   constexpr double ofAnotherMetric = 5;
   const OptimizeOptions& options = problem.options();
@@ -383,13 +84,13 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
     bool outOfTime = improveWorst(problem, guard, limits,
       [&](IterationRecord record)
       {
-        record.iteration = result.history.back().iteration + 1;
-        stopped = !report(problem, watch, result, record);
+        record.iteration = steps.next();
+        stopped = !steps.report(record);
         return !stopped;
       });
     if (leaves && !stopped && !outOfTime)
     {
-      leaveNearWorst(mesh, problem, watch, first, guard, limits, clock, result, left);
+      leaveNearWorst(mesh, steps, first, guard, limits, clock, left);
       stopped = left.stopped;
       outOfTime = left.outOfTime;
     }
@@ -401,8 +102,7 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationProblem& problem,
   if (state.violated)
   {
     result.restored = guard.restore(problem);
-    IterationRecord record = problem.record(result.history.back().iteration + 1);
-    report(problem, watch, result, record);
+    steps.report(problem.record(steps.next()));
     state = guard.check(problem);
   }
   result.leftSurface = left.count(problem.points());
@@ -460,10 +160,11 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
  * element. Points that slide cannot go far back one by one: those between them would be squeezed.
  * Otherwise the input has converged, and the reason is the one it `ended` for.
  */
-void holdWorst(const Mesh& mesh, OptimizationProblem& problem, const IterationRecord& first,
+void holdWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord& first,
   const QualityGuard& guard, const StoppingTest& watch, StopReason ended,
   QualityGuard::State& state, OptimizeResult& result)
 {
+  OptimizationProblem& problem = steps.problem();
   if (ended == StopReason::Aborted || ended == StopReason::TimeLimit)
   {
     return;
@@ -481,8 +182,7 @@ void holdWorst(const Mesh& mesh, OptimizationProblem& problem, const IterationRe
   }
   result.unchanged = false;
   result.reason = sweepHoldingWorst(
-    problem, guard, watch,
-    [&](const IterationRecord& record) { return report(problem, watch, result, record); },
+    problem, guard, watch, [&](const IterationRecord& record) { return steps.report(record); },
     result.history);
   state = guard.check(problem);
   verify(mesh, problem, first, guard, state, result);
@@ -492,11 +192,12 @@ void holdWorst(const Mesh& mesh, OptimizationProblem& problem, const IterationRe
 /// Optimizes from result.points on; returns whether there is more to do, with elements that have
 /// become valid.
 bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const QualityGuard& guard,
-  const Stopwatch& clock, OptimizeResult& result)
+  const Stopwatch& clock, const Ranks& ranks, OptimizeResult& result)
 {
-  OptimizationProblem problem(mesh, options, result.points, clock);
-  result.freeVertices = problem.simplices().freeVertices();
+  OptimizationProblem problem(mesh, options, result.points, clock, ranks);
+  result.freeVertices = problem.freePoints();
   const StoppingTest watch(options, [&problem] { return problem.outOfTime(); });
+  OptimizationSteps steps(problem, watch, result);
   const bool again = !result.history.empty();
   IterationRecord first = problem.firstRecord(again ? result.history.back().iteration : 0);
   if (!again)
@@ -511,7 +212,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
     result.history.back().objective = first.objective;
     result.history.back().objectives = first.objectives;
   }
-  else if (!report(problem, watch, result, first))
+  else if (!steps.report(first))
   {
     result.reason = StopReason::Aborted;
     return false;
@@ -521,7 +222,6 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
     result.reason = StopReason::NoFreeVertices;
     return false;
   }
-  StepsOfProblem steps(problem, watch, result);
   // Elements that are valid keep points that slide in the part of the surface that they are on.
   const bool mayCross =
     steps.slidesOnSurface() && (first.inverted > 0 || mesh.nonFinitePoints() > 0);
@@ -532,20 +232,20 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   if (repaired)
   {
     problem.store();
-    state.validity = validityOf(problem.moving(), options.threads);
+    state.validity = cellValidity(problem.moving(), options.threads);
   }
   else
   {
-    state = settleWorst(mesh, problem, watch, first, guard, clock, result);
+    state = settleWorst(mesh, steps, first, guard, clock, result);
     const StopReason ended = result.reason;
     verify(mesh, problem, first, guard, state, result);
     if (result.unchanged && steps.slidesOnSurface())
     {
-      holdWorst(mesh, problem, first, guard, watch, ended, state, result);
+      holdWorst(mesh, steps, first, guard, watch, ended, state, result);
     }
   }
   result.iterations = result.history.back().iteration;
-  result.invertedAfter = countInvalid(state.validity);
+  result.invertedAfter = ranks.countInvalid(state.validity);
   result.elements.validity = std::move(state.validity);
   result.elements.after = std::move(state.values);
   result.surfaceError = problem.surfaceError();
@@ -555,31 +255,85 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
 }
 
 //------------------------------------------------------------------------------
-/// Runs untangle() with the time that is left; false if the observer stopped it.
-bool untangleFirst(
-  const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock, OptimizeResult& result)
+/// Runs untangle() with the time that is left; false if the observer stopped it, on any rank.
+bool untangleFirst(const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock,
+  const Ranks& ranks, OptimizeResult& result)
 {
   std::vector<unsigned char> held = heldInUntangling(options, mesh.view().numberOfPoints);
   if (!options.fixed && !held.empty())
   {
-    const std::vector<char> boundary = boundaryPoints(mesh);
-    std::transform(held.begin(), held.end(), boundary.begin(), held.begin(),
-      [](unsigned char h, char b) { return static_cast<unsigned char>(h || b); });
+    const std::vector<unsigned char> boundary = ranks.boundary(mesh);
+    std::transform(held.begin(), held.end(), boundary.begin(), held.begin(), std::bit_or<>());
   }
   bool proceed = true;
   const UntangleOptions untangling = untanglingFirst(options, held, clock, proceed);
-  UntangleResult untangled = untangle(mesh, untangling);
+  UntangleResult untangled = untangle(mesh, untangling, ranks);
   result.points = std::move(untangled.points);
   result.invertedAfter = untangled.invertedAfter;
   result.untangled = true;
   result.newlyInvalid = untangled.newlyInvalid;
-  if (proceed)
+  if (ranks.any(!proceed))
   {
-    requireWithinLimits(
-      beyondLimits(options, mesh.view().points, result.points, [](Index) { return true; }));
+    return false;
   }
-  return proceed;
+  requireWithinLimits(options, mesh.view().points, result.points, ranks);
+  return true;
 }
+
+/// Throws Error if the parts of a mesh on several ranks are not of one dimension and, if planar, in
+/// one plane at right angles to an axis.
+void requireDivisible(const Mesh& mesh, const Ranks& ranks)
+{
+  const Dimension whole = ranks.dimension(mesh);
+  const bool differ = ranks.any(mesh.dimension() != whole);
+  const auto& box = ranks.mesh().bounds();
+  const bool planar = whole == Dimension::Planar && !differ &&
+    (box[0] == box[3] || box[1] == box[4] || box[2] == box[5]);
+  if (whole != Dimension::None && !(whole == Dimension::Volume && !differ) && !planar)
+  {
+    throw Error("A mesh on several processes, or in the reproducible order, is a volume mesh or "
+                "lies in a plane at right angles to an axis, and this one does not: gather it on "
+                "one process, in ParaView by Aggregate Dataset, with Reproducible Order off.");
+  }
+}
+
+/// The options of a mesh on several ranks, whose directions and flags of points are those that the
+/// owners have.
+struct AgreedOptions
+{
+  AgreedOptions(const OptimizeOptions& given, Index points, const Ranks& ranks)
+    : options(given)
+  {
+    if (!given.fixed && points > 0)
+    {
+      throw Error("The fixed points of a mesh on several ranks must be given, see rankBoundary().");
+    }
+    this->fixed.assign(given.fixed, given.fixed + points);
+    this->fixed.reserve(1); // not null, which would be the boundary
+    ranks.exchange(this->fixed.data());
+    this->options.fixed = this->fixed.data();
+    agreeOn(this->options.slidePlanes, this->planes, points, ranks);
+    agreeOn(this->options.slideLines, this->lines, points, ranks);
+  }
+
+  OptimizeOptions options;
+  std::vector<unsigned char> fixed;
+  std::vector<double> planes, lines;
+
+private:
+  static void agreeOn(
+    const double*& given, std::vector<double>& directions, Index points, const Ranks& ranks)
+  {
+    if (ranks.any(given != nullptr))
+    {
+      directions.assign(3 * points, 0.0);
+      std::copy_n(given, given ? directions.size() : 0, directions.begin());
+      ranks.exchange(directions.data(), 3);
+      directions.reserve(1);
+      given = directions.data();
+    }
+  }
+};
 }
 
 //------------------------------------------------------------------------------
@@ -606,8 +360,10 @@ void OptimizeResult::keepStart(std::vector<double> start, Index inverted)
 }
 
 //------------------------------------------------------------------------------
-OptimizeResult optimize(
-  const Mesh& mesh, const OptimizeOptions& options, const std::vector<signed char>& known)
+namespace
+{
+OptimizeResult run(const Mesh& mesh, const OptimizeOptions& options,
+  const std::vector<signed char>& known, const Ranks& ranks)
 {
   const Stopwatch clock;
   OptimizeResult result;
@@ -619,10 +375,10 @@ OptimizeResult optimize(
     return result;
   }
   requireOrdinaryScale(view, "Optimization");
-  checkOptions(mesh, options);
+  checkOptions(mesh, options, ranks);
   const std::vector<signed char> validity =
-    known.empty() ? validityOf(mesh, options.threads) : known;
-  result.invertedBefore = result.invertedAfter = countInvalid(validity);
+    known.empty() ? cellValidity(mesh, options.threads) : known;
+  result.invertedBefore = result.invertedAfter = ranks.countInvalid(validity);
   const bool repairs =
     std::any_of(options.objectives.begin(), options.objectives.end(), canUntangle);
   if (result.invertedBefore > 0 && !repairs && mesh.dimension() != Dimension::Surface)
@@ -633,18 +389,18 @@ OptimizeResult optimize(
         " elements are inverted or degenerate, and no objective repairs them: untangle first, or "
         "add the untangling metric.");
     }
-    if (!untangleFirst(mesh, options, clock, result))
+    if (!untangleFirst(mesh, options, clock, ranks, result))
     {
       result.reason = StopReason::Aborted;
       return result;
     }
   }
 
-  QualityGuard guard(mesh, validity, options);
+  QualityGuard guard(mesh, validity, options, ranks);
   // Elements left out join the objective as soon as they are valid: another stage.
   const Index invalid = result.invertedAfter;
   const std::vector<double> untangled = result.untangled ? result.points : std::vector<double>();
-  while (optimizeStage(mesh, options, guard, clock, result))
+  while (optimizeStage(mesh, options, guard, clock, ranks, result))
   {
   }
   // Verified on the points themselves: the optimizers measure simplices, in units of the mean edge,
@@ -668,6 +424,33 @@ OptimizeResult optimize(
   }
   asMeasured(result.elements.before);
   asMeasured(result.elements.after);
+  return result;
+}
+}
+
+//------------------------------------------------------------------------------
+OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options,
+  const std::vector<signed char>& validity, const Ranks& ranks)
+{
+  if (!ranks.several())
+  {
+    return run(mesh, options, validity, ranks);
+  }
+  OptimizeResult result;
+  ranks.together(
+    [&]
+    {
+      requireLocalOptions(options);
+      const AgreedOptions agreed(options, mesh.view().numberOfPoints, ranks);
+      Mesh local = mesh;
+      const MeshSpace space = ranks.space(mesh);
+      if (mesh.view().numberOfCells == 0)
+      {
+        local.setSpace(space);
+      }
+      requireDivisible(local, ranks);
+      result = run(local, agreed.options, validity, ranks);
+    });
   return result;
 }
 }

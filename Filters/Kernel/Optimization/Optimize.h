@@ -14,10 +14,11 @@
 #define tautline_Optimize_h
 
 #include "OptimizeOptions.h"
+#include "tautline/Mesh/Ranks.h"
 
 namespace tautline
 {
-/// What is measured to verify a result. Empty where it was not needed.
+/// What is measured to verify a result, of the local cells. Empty where it was not needed.
 struct VerifiedElements
 {
   std::vector<signed char> validity; ///< of the result, as Mesh::classifyCells() gives it
@@ -67,10 +68,30 @@ struct OptimizeResult
  * computed anew from its points: the invalid elements, and, where the input has none, the value of
  * the worst element (see OptimizeOptions::worstMetric and holdWorst) and the scalarized objective.
  * Throws Error on options that cannot be met and names the remedy.
- * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed.
+ *
+ * On several ranks each has a part of the mesh, and the call is collective. The result then does
+ * not depend on how the mesh is cut, nor on how many ranks there are, to rounding (1e-10 in the
+ * tests); one rank may do the same. The rules are those of one process, in another order: local
+ * optimizers move sets of vertices without a common cell one after the other. Global ones take dot
+ * products and sums over all ranks, which are rounded once, and preconditioners that do not depend
+ * on the ranks: diagonal blocks; and for NewtonConjugateGradient on sums of the inverse mean ratio
+ * (or of its square) multigrid smoothed by block Jacobi, which takes somewhat more inner
+ * iterations than the Gauss-Seidel of one process. Each rank has the graph of the whole mesh while
+ * the aggregates are found, and all coarse levels (see BlockJacobiMultigrid.h). Converged
+ * objectives are those of one process to 1e-6.
+ *
+ * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed. On
+ * several ranks with the view of their mesh: a volume mesh or a planar one at right angles to an
+ * axis, all cells of one dimension, else Error
+ * @param options on several ranks the same on all, without what requireLocalOptions() rejects;
+ * arrays per point are of the local points and count where a rank owns the point, and fixed must
+ * not be null (see rankBoundary()); targets and weights are of the local cells, the same on all
+ * ranks that have a cell, and all weights of a rank may be 0. The observer is called on every rank.
  * @param validity of its cells, as Mesh::classifyCells() gives it; empty: it is computed
+ * @param ranks by default this process alone
+ * @return the points and elements are those of `mesh`; all else is of the whole mesh
  */
-TAUTLINE_KERNEL_EXPORT OptimizeResult optimize(
-  const Mesh& mesh, const OptimizeOptions& options, const std::vector<signed char>& validity = {});
+TAUTLINE_KERNEL_EXPORT OptimizeResult optimize(const Mesh& mesh, const OptimizeOptions& options,
+  const std::vector<signed char>& validity = {}, const Ranks& ranks = {});
 }
 #endif

@@ -13,6 +13,7 @@
 
 #include <limits>
 #include <optional>
+#include <string>
 
 namespace tautline
 {
@@ -198,5 +199,20 @@ struct OptimizeOptions
  * (referenceTargets()).
  */
 TAUTLINE_KERNEL_EXPORT void applyPreset(Preset preset, OptimizeOptions& options);
+
+/// Why options need the whole mesh in one place.
+struct NeedOfWholeMesh
+{
+  std::string what;   ///< in the plural, "steps that improve the worst element"; "": none
+  std::string remedy; ///< "set ... to 0"
+};
+TAUTLINE_KERNEL_EXPORT NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& options);
+
+/**
+ * @brief Throws Error for options that need the whole mesh in one place, by name and with the
+ * remedy: the templates p-mean and maximum, points that slide on curved surfaces, improvement
+ * of the worst element.
+ */
+TAUTLINE_KERNEL_EXPORT void requireLocalOptions(const OptimizeOptions& options);
 }
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OptionChecks.h"
 
-#include "tautline/Mesh/BoundaryPoints.h"
-
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <string>
 
@@ -29,27 +29,26 @@ bool slides(const double* directions, Index p)
 }
 
 /// Whether a point of the boundary may leave it.
-bool boundaryMoves(const Mesh& mesh, const OptimizeOptions& options)
+bool boundaryMoves(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks)
 {
   if (!options.fixed || options.slideSurface)
   {
     return false;
   }
-  const std::vector<char> boundary = boundaryPoints(mesh);
+  const std::vector<unsigned char> boundary = ranks.boundary(mesh);
+  bool moves = false;
   for (Index p = 0; p < static_cast<Index>(boundary.size()); ++p)
   {
     const bool onModel = options.model && options.parts && options.parts[p] >= 0;
-    if (boundary[p] && !options.fixed[p] && !onModel && !slides(options.slidePlanes, p) &&
-      !slides(options.slideLines, p))
-    {
-      return true;
-    }
+    moves = moves ||
+      (boundary[p] && !options.fixed[p] && !onModel && !slides(options.slidePlanes, p) &&
+        !slides(options.slideLines, p));
   }
-  return false;
+  return ranks.any(moves);
 }
 
 /// With a free boundary, a mesh shrinks to a point where smaller elements are better.
-void checkSizes(const Mesh& mesh, const OptimizeOptions& options)
+void checkSizes(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks)
 {
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
   for (const Objective& objective : options.objectives)
@@ -57,7 +56,7 @@ void checkSizes(const Mesh& mesh, const OptimizeOptions& options)
     const MetricInfo& info = metricInfo(objective.metric);
     const bool ofSize = info.lengthPower(dimension) != 0 ||
       (info.family == MetricFamily::Simplex && !info.scaleInvariant);
-    if (ofSize && !canUntangle(objective) && boundaryMoves(mesh, options))
+    if (ofSize && !canUntangle(objective) && boundaryMoves(mesh, options, ranks))
     {
       throw Error(std::string(info.label) +
         " depends on the size of the elements, and the boundary may move: the mesh would shrink "
@@ -91,7 +90,7 @@ void checkWorstMetric(const Mesh& mesh, Metric metric)
 }
 
 //------------------------------------------------------------------------------
-void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
+void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks)
 {
   const StoppingCriteria& stop = options.stopping;
   if (options.objectives.empty())
@@ -136,7 +135,7 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options)
                                      : "Sliding on a boundary or on interfaces needs") +
       " a local optimizer: choose Automatic or Local Newton.");
   }
-  checkSizes(mesh, options);
+  checkSizes(mesh, options, ranks);
   if (options.worstMetric)
   {
     checkWorstMetric(mesh, *options.worstMetric);
@@ -188,23 +187,19 @@ UntangleOptions untanglingFirst(const OptimizeOptions& options,
 }
 
 //------------------------------------------------------------------------------
-Index beyondLimits(const OptimizeOptions& options, const double* start,
-  const std::vector<double>& points, const std::function<bool(Index)>& counts)
+void requireWithinLimits(const OptimizeOptions& options, const double* start,
+  const std::vector<double>& points, const Ranks& ranks)
 {
   constexpr double rounding = 1e-9; // relative
-  Index count = 0;
+  Index beyond = 0;
   for (std::size_t p = 0; options.limits && p < points.size() / 3; ++p)
   {
     const double *x = &points[3 * p], *from = start + 3 * p;
     const double way = std::hypot(x[0] - from[0], x[1] - from[1], x[2] - from[2]);
-    count +=
-      way > (1 + rounding) * std::max(0.0, options.limits[p]) && counts(static_cast<Index>(p));
+    beyond +=
+      way > (1 + rounding) * std::max(0.0, options.limits[p]) && ranks.owns(static_cast<Index>(p));
   }
-  return count;
-}
-
-void requireWithinLimits(Index beyond)
-{
+  beyond = ranks.sum(beyond);
   if (beyond > 0)
   {
     throw Error("The elements are untangled first, and that moves " + std::to_string(beyond) +
@@ -226,6 +221,43 @@ void requireValues(const std::vector<Objective>& objectives, const std::vector<d
         "formula must have a value on every valid element: Element Quality shows 0 where it has "
         "none.");
     }
+  }
+}
+
+//------------------------------------------------------------------------------
+NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& options)
+{
+  if (options.model || options.slideSurface)
+  {
+    return { "points that slide on curved surfaces, features and geometries",
+      "choose the Boundary Fixed, Slide on flat parts (sliding) or Free" };
+  }
+  if (options.improveWorst > 0)
+  {
+    return { "steps that improve the worst element",
+      "set Improve Worst to 0, or choose the preset Best Shape" };
+  }
+  for (const Objective& objective : options.objectives)
+  {
+    if (objective.objectiveTemplate == ObjectiveTemplate::PowerMean ||
+      objective.objectiveTemplate == ObjectiveTemplate::Maximum)
+    {
+      return { "the templates p-Mean and Maximum", "choose a sum" };
+    }
+  }
+  return {};
+}
+
+void requireLocalOptions(const OptimizeOptions& options)
+{
+  NeedOfWholeMesh need = needOfWholeMesh(options);
+  if (!need.what.empty())
+  {
+    need.what[0] = static_cast<char>(std::toupper(need.what[0]));
+    throw Error(need.what +
+      " need the whole mesh on one process: gather it, in ParaView by Aggregate Dataset, with "
+      "Reproducible Order off; or " +
+      need.remedy + ".");
   }
 }
 }

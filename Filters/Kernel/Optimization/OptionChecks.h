@@ -8,16 +8,16 @@
 
 #include "OptimizeOptions.h"
 #include "tautline/Core/Stopwatch.h"
-#include "tautline/Mesh/Mesh.h"
+#include "tautline/Mesh/Ranks.h"
 #include "tautline/Untangling/UntangleOptions.h"
 
-#include <functional>
 #include <vector>
 
 namespace tautline
 {
-/// Throws Error, with the remedy, for options that are out of range or do not fit the mesh.
-void checkOptions(const Mesh& mesh, const OptimizeOptions& options);
+/// Throws Error, with the remedy, for options that are out of range or do not fit the mesh, of which
+/// ranks may have parts.
+void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks);
 
 /**
  * The points that stay while a mesh is untangled before it is optimized, one flag each: those that
@@ -30,14 +30,11 @@ std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Inde
 UntangleOptions untanglingFirst(const OptimizeOptions& options,
   const std::vector<unsigned char>& held, const Stopwatch& clock, bool& proceed);
 /**
- * @brief How many points, 3 coordinates each, are farther from their start than their limit.
- * @param counts whether a point counts
+ * @brief Throws Error if untangling has moved points, 3 coordinates each, farther from their start
+ * than their limits.
  */
-Index beyondLimits(const OptimizeOptions& options, const double* start,
-  const std::vector<double>& points, const std::function<bool(Index)>& counts);
-
-/// Throws Error if untangling has moved so many points farther than their limits.
-void requireWithinLimits(Index beyond);
+void requireWithinLimits(const OptimizeOptions& options, const double* start,
+  const std::vector<double>& points, const Ranks& ranks);
 
 /// Throws Error if a user's metric has no finite value on an element, so that any step would do.
 /// @param values of the objectives at the start

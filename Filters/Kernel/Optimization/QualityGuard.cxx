@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <sstream>
 
 namespace tautline
 {
@@ -54,6 +55,19 @@ struct Extremes
   Index undefined = std::numeric_limits<Index>::max(); ///< the first valid cell without a value
   double smallest = std::numeric_limits<double>::infinity(), largest = -smallest;
 };
+
+/// The name of a cell. On ranks its number is that of a part: where it is does not depend on these.
+std::string placeOf(const Mesh& mesh, Index cell, const Ranks& ranks)
+{
+  if (!ranks.several())
+  {
+    return "cell " + std::to_string(cell);
+  }
+  const Vec3 p = pointOf(mesh.view(), mesh.view().connectivity[mesh.view().offsets[cell]]);
+  std::ostringstream place;
+  place << "a cell at the point (" << p[0] << ", " << p[1] << ", " << p[2] << ")";
+  return place.str();
+}
 }
 
 std::vector<signed char> cellValidity(const Mesh& mesh, int threads)
@@ -110,9 +124,10 @@ double sumOfSquares(const std::vector<double>& values, int threads)
 }
 
 //------------------------------------------------------------------------------
-QualityGuard::QualityGuard(
-  const Mesh& input, const std::vector<signed char>& validity, const OptimizeOptions& options)
+QualityGuard::QualityGuard(const Mesh& input, const std::vector<signed char>& validity,
+  const OptimizeOptions& options, const Ranks& ranks)
   : Input(input)
+  , TheRanks(ranks)
   , Judged(judgedBy(worstMetric(input, options), options))
 {
   const MetricInfo& info = metricInfo(this->Judged.metric);
@@ -140,10 +155,10 @@ QualityGuard::QualityGuard(
   }
   if (all.undefined < input.view().numberOfCells && (options.holdWorst || options.improveWorst > 0))
   {
-    throw Error(noValueToJudge(info, "cell " + std::to_string(all.undefined)));
+    throw Error(noValueToJudge(info, placeOf(input, all.undefined, ranks)));
   }
-  this->Worst = this->Larger ? all.smallest : all.largest;
-  this->ValidInput = this->Active = all.valid;
+  this->Worst = this->Larger ? -ranks.maximum(-all.smallest) : ranks.maximum(all.largest);
+  this->ValidInput = this->Active = !ranks.any(!all.valid);
   // Elements that the metric does not judge stay valid nevertheless.
   this->HoldWorst =
     this->HoldWorst && info.direction != Direction::Neutral && std::isfinite(this->Worst);
@@ -205,39 +220,44 @@ Index QualityGuard::restore(OptimizationProblem& problem, const double* to) cons
 {
   const MeshView& view = this->Input.view();
   const double* places = to ? to : view.points;
-  std::vector<char> restoredPoint(view.numberOfPoints, 0);
-  Index restored = 0;
+  std::vector<unsigned char> restored(view.numberOfPoints, 0), back = restored;
   problem.store();
   std::vector<double> points = problem.points();
   constexpr int maxRounds = 20; // then all points go back
-  int round = 0;
-  for (bool more = this->Active; more; ++round)
+  for (int round = 0; this->Active; ++round)
   {
-    more = false;
     const Mesh& mesh = problem.moving();
     std::vector<double> values;
-    const std::vector<char> flags =
+    std::vector<char> flags =
       this->offenders(mesh, cellValidity(mesh, this->Judged.evaluation.threads), values);
+    if (round >= maxRounds && this->TheRanks.any(!flags.empty()))
+    {
+      flags.assign(view.numberOfCells, 1);
+    }
     for (Index cell = 0; cell < static_cast<Index>(flags.size()); ++cell)
     {
-      const bool back = flags[cell] || round >= maxRounds;
-      for (Index n = view.offsets[cell]; back && n < view.offsets[cell + 1]; ++n)
+      for (Index n = view.offsets[cell]; flags[cell] && n < view.offsets[cell + 1]; ++n)
       {
-        const Index p = view.connectivity[n];
-        if (!restoredPoint[p])
-        {
-          restoredPoint[p] = 1;
-          more = true;
-          ++restored;
-          std::copy_n(places + 3 * p, 3, points.data() + 3 * p);
-        }
+        back[view.connectivity[n]] = 1;
       }
     }
-    if (more)
+    this->TheRanks.exchange(back.data());
+    if (!this->TheRanks.any(back != restored))
     {
-      problem.restart(points);
+      break;
     }
+    restored = back;
+    for (Index p = 0; p < view.numberOfPoints; ++p)
+    {
+      std::copy_n(places + 3 * p, restored[p] ? 3 : 0, points.data() + 3 * p);
+    }
+    problem.restart(points);
   }
-  return restored;
+  Index count = 0;
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    count += restored[p] && this->TheRanks.owns(p);
+  }
+  return this->TheRanks.sum(count);
 }
 }

@@ -49,9 +49,11 @@ public:
   /**
    * @param input must outlive the guard
    * @param validity of its cells, as Mesh::classifyCells() gives it
+   * @param ranks of which each has a part of the input; all methods but accessors and worse() are
+   * then collective
    */
-  QualityGuard(
-    const Mesh& input, const std::vector<signed char>& validity, const OptimizeOptions& options);
+  QualityGuard(const Mesh& input, const std::vector<signed char>& validity,
+    const OptimizeOptions& options, const Ranks& ranks = {});
   /// Measures the validity of the cells itself.
   QualityGuard(const Mesh& input, const OptimizeOptions& options);
 
@@ -80,7 +82,7 @@ public:
   bool violatedAt(
     const Mesh& mesh, const std::vector<signed char>& validity, std::vector<double>& values) const
   {
-    return this->Active && !this->offenders(mesh, validity, values).empty();
+    return this->Active && this->TheRanks.any(!this->offenders(mesh, validity, values).empty());
   }
   /**
    * @brief Puts points back to where they were in the input, about the elements that are invalid or
@@ -96,6 +98,7 @@ private:
     const Mesh& mesh, const std::vector<signed char>& validity, std::vector<double>& values) const;
 
   const Mesh& Input;
+  Ranks TheRanks;
   Objective Judged;
   std::vector<double> Values;
   bool Active = false, ValidInput = false;

@@ -2,13 +2,13 @@
 #include "RoundedResult.h"
 
 #include "QualityGuard.h"
-#include "RankGuard.h"
 #include "SweepControl.h"
+#include "tautline/Mesh/MeshElements.h"
 #include "tautline/Objectives/ObjectiveSum.h"
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <limits>
 
 namespace tautline
 {
@@ -21,7 +21,8 @@ struct Values
 };
 
 /// @param q the values of the metric, or empty: then they are measured
-Values valuesOf(const Mesh& mesh, const Objective& given, int threads, std::vector<double>& q)
+Values valuesOf(
+  const Mesh& mesh, const Objective& given, int threads, const Ranks& ranks, std::vector<double>& q)
 {
   Objective objective = given;
   objective.evaluation.threads = threads;
@@ -33,29 +34,31 @@ Values valuesOf(const Mesh& mesh, const Objective& given, int threads, std::vect
   const MetricInfo& info = metricInfo(objective.metric);
   const bool larger = info.direction == Direction::LargerIsBetter;
   Values values;
-  Index count = 0;
-  double squares = 0;
+  std::vector<double> own;
+  double squares = 0, worst = -std::numeric_limits<double>::infinity(); // larger the worse
   for (const CellBlock& block : mesh.blocks())
   {
-    const bool counts =
-      topology(block.type).dimension == (mesh.dimension() == Dimension::Volume ? 3 : 2);
-    for (Index i = 0; counts && i < block.count; ++i)
+    for (Index i = 0; isElement(mesh, block.type) && i < block.count; ++i)
     {
-      const double value = q[block.cell(i)];
-      values.mean += value;
-      squares += value * value;
-      values.worst = count == 0 ? value
-        : larger                ? std::min(values.worst, value)
-                                : std::max(values.worst, value);
-      ++count;
+      if (ranks.ownsCell(block.cell(i)))
+      {
+        const double value = q[block.cell(i)];
+        own.push_back(value);
+        squares += value * value;
+        worst = std::max(worst, larger ? -value : value);
+      }
     }
   }
-  values.mean /= static_cast<double>(std::max<Index>(count, 1));
+  const Index count = ranks.sum(static_cast<Index>(own.size()));
+  values.mean = ranks.total(own) / static_cast<double>(std::max<Index>(count, 1));
+  worst = ranks.maximum(worst);
+  values.worst = count == 0 ? 0.0 : larger ? -worst : worst;
   const ObjectiveTemplate made = objective.objectiveTemplate == ObjectiveTemplate::Default
     ? defaultTemplate(objective.metric)
     : objective.objectiveTemplate;
   const bool ofValues = made == ObjectiveTemplate::SumOfSquares && !objective.elementWeights;
-  values.objective = ofValues ? squares : ObjectiveSum(mesh, objective, threads).value();
+  values.objective =
+    ofValues && !ranks.several() ? squares : ObjectiveSum(mesh, objective, threads, ranks).value();
   return values;
 }
 
@@ -86,7 +89,7 @@ void compareObjectives(
 
 //------------------------------------------------------------------------------
 RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& validity,
-  const OptimizeOptions& options, OptimizeResult& result, const Mesh& rounded)
+  const OptimizeOptions& options, OptimizeResult& result, const Mesh& rounded, const Ranks& ranks)
 {
   const int threads = options.threads;
   RoundedResult found;
@@ -101,10 +104,12 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
   const std::vector<signed char>& now = found.elements.validity;
   for (std::size_t cell = 0; cell < now.size(); ++cell)
   {
-    found.lost += there[cell] == Valid && now[cell] != Valid;
-    found.inverted += isInvalid(now[cell]);
+    found.lost +=
+      ranks.ownsCell(static_cast<Index>(cell)) && there[cell] == Valid && now[cell] != Valid;
   }
-  const QualityGuard guard(mesh, validity, options);
+  found.lost = ranks.sum(found.lost);
+  found.inverted = ranks.countInvalid(now);
+  const QualityGuard guard(mesh, validity, options, ranks);
   if (!guard.holdsObjective() || found.lost > 0)
   {
     return found;
@@ -120,8 +125,8 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
     const bool known = same && &objective == &first;
     std::vector<double> before = known ? guard.values() : std::vector<double>();
     std::vector<double> after = known ? judged : std::vector<double>();
-    start.push_back(valuesOf(mesh, objective, threads, before).objective);
-    const Values values = valuesOf(rounded, objective, threads, after);
+    start.push_back(valuesOf(mesh, objective, threads, ranks, before).objective);
+    const Values values = valuesOf(rounded, objective, threads, ranks, after);
     found.record.objectives.push_back(values.objective);
     found.record.mean.push_back(values.mean);
     found.record.worst.push_back(values.worst);
@@ -132,58 +137,6 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
     }
   }
   compareObjectives(options, start, found);
-  return found;
-}
-
-//------------------------------------------------------------------------------
-RoundedResult measureRoundedOnRanks(const DistributedMesh& mesh, bool mirrored,
-  const OptimizeOptions& options, const OptimizeResult& result, const std::vector<double>& rounded)
-{
-  RankGroup& group = mesh.group();
-  RoundedResult found;
-  std::unique_ptr<Mesh> input, moved; // null on a rank without cells
-  std::vector<signed char> before, after;
-  std::vector<Objective> objectives;
-  objectives = options.objectives;
-  for (Objective& objective : objectives)
-  {
-    objective.evaluation.threads = options.threads;
-    objective.objectiveTemplate = objective.objectiveTemplate == ObjectiveTemplate::Default
-      ? defaultTemplate(objective.metric)
-      : objective.objectiveTemplate;
-  }
-  if (mesh.view().numberOfCells > 0)
-  {
-    const auto at = [&](const std::vector<double>& points)
-    { return movedMesh(mesh, mirrored, points, options.threads); };
-    input = std::make_unique<Mesh>(at(mesh.points()));
-    moved = std::make_unique<Mesh>(at(rounded));
-    before = cellValidity(*input, options.threads);
-    after = cellValidity(*moved, options.threads);
-    const std::vector<signed char> there = cellValidity(at(result.points), options.threads);
-    for (std::size_t cell = 0; cell < after.size(); ++cell)
-    {
-      const bool owned = mesh.ownedCells()[cell] != 0;
-      found.lost += owned && there[cell] == Valid && after[cell] != Valid;
-      found.inverted += owned && isInvalid(after[cell]);
-    }
-  }
-  found.lost = group.sum(found.lost);
-  found.inverted = group.sum(found.inverted);
-  found.record.inverted = found.inverted;
-  const RankGuard guard(mesh, mirrored, options, result.invertedBefore == 0);
-  if (!guard.active() || found.lost > 0)
-  {
-    return found;
-  }
-  found.worseWorst = guard.violatedAt(guard.measure(rounded));
-  IterationRecord start;
-  for (const Objective& objective : objectives)
-  {
-    addObjectiveOnRanks(mesh, objective, input.get(), before, start);
-    addObjectiveOnRanks(mesh, objective, moved.get(), after, found.record);
-  }
-  compareObjectives(options, start.objectives, found);
   return found;
 }
 }

@@ -10,8 +10,6 @@
 
 namespace tautline
 {
-class DistributedMesh;
-
 /// The mesh of a result with rounded points.
 struct RoundedResult
 {
@@ -33,22 +31,15 @@ struct RoundedResult
  * @brief Measures rounded points by what optimize() guarantees: valid elements stay valid, and,
  * where the input has no invalid one, neither the worst element nor the scalarized objective gets
  * worse.
- * @param mesh as it was given to optimize(), with these options
+ * @param mesh as it was given to optimize(), with these options and ranks
  * @param validity of its cells
  * @param result of optimize(); its elements may be used up
  * @param rounded the mesh with the rounded points
+ * @param ranks that have parts of the mesh: the numbers are of the whole mesh, the same on all.
+ * Collective.
  */
 TAUTLINE_KERNEL_EXPORT RoundedResult measureRounded(const Mesh& mesh,
   const std::vector<signed char>& validity, const OptimizeOptions& options, OptimizeResult& result,
-  const Mesh& rounded);
-
-/**
- * @brief The same of a mesh on several ranks, as it was given to optimizeOnRanks() with these
- * options: the numbers are of the whole mesh, the same on all. Collective.
- * @param rounded of the local points
- */
-TAUTLINE_KERNEL_EXPORT RoundedResult measureRoundedOnRanks(const DistributedMesh& mesh,
-  bool mirrored, const OptimizeOptions& options, const OptimizeResult& result,
-  const std::vector<double>& rounded);
+  const Mesh& rounded, const Ranks& ranks = {});
 }
 #endif

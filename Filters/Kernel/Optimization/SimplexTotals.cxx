@@ -222,7 +222,7 @@ void OptimizationProblem::summarizeSimplices(IterationRecord& record) const
 }
 
 //------------------------------------------------------------------------------
-double OptimizationProblem::worstRatioMovable() const
+double OptimizationProblem::worstRatioMovable()
 {
   const SimplexMesh& mesh = *this->Simplices;
   std::vector<double> worst(numberOfChunks(mesh.simplices()), 0.0);
@@ -230,7 +230,8 @@ double OptimizationProblem::worstRatioMovable() const
   const auto visit = [&worst](Index chunk, std::int32_t, double ratio) { worst[chunk] = ratio; };
   mesh.dimension() == 3 ? forEachAbove<3>(mesh, this->Options.threads, bound, visit)
                         : forEachAbove<2>(mesh, this->Options.threads, bound, visit);
-  return worst.empty() ? 0.0 : *std::max_element(worst.begin(), worst.end());
+  return this->TheRanks.maximum(
+    worst.empty() ? 0.0 : *std::max_element(worst.begin(), worst.end()));
 }
 
 //------------------------------------------------------------------------------

@@ -6,7 +6,7 @@
 #include "Processes.h"
 #include "WarpingRanks.h"
 #include "tautline/Deformation/Warp.h"
-#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Mesh/Ranks.h"
 
 using namespace tautline;
 

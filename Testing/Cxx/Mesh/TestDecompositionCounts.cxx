@@ -32,7 +32,7 @@ std::vector<int> partsOf(const MeshData& whole, Cut cut, int ranks)
   return parts;
 }
 
-/// The counts of the ranks themselves: as in RankSweeper, an exchange of each set.
+/// The counts of the ranks themselves: as in LocalSweeper, an exchange of each set.
 DecompositionCounts measured(
   const MeshData& whole, const std::vector<int>& parts, int ranks, std::vector<unsigned char> free)
 {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Limits on the way of points: kept, and no stop short of the minimum within them.
 #include "Registry.h"
-#include "OptimizingOnRanks.h"
+#include "OptimizingRanks.h"
 #include "StretchedMeshes.h"
 
 #include "tautline/Mesh/BoundaryShape.h"
@@ -289,7 +289,7 @@ void testUntangling()
       local.limits = own.data();
       try
       {
-        optimizeOnRanks(mesh, false, local);
+        optimize(localMesh(mesh), local, {}, Ranks(mesh));
       }
       catch (const Error& error)
       {
@@ -318,7 +318,7 @@ void testRanks(CellType type, int cells, double limit)
         const std::vector<double> limits(mesh.localPoints(), limit);
         own.fixed = fixed.data();
         own.limits = limits.data();
-        static_cast<OptimizeResult&>(result) = optimizeOnRanks(mesh, false, own);
+        static_cast<OptimizeResult&>(result) = optimize(localMesh(mesh), own, {}, Ranks(mesh));
       });
   };
   const std::vector<double> limits(data.numberOfPoints(), limit);

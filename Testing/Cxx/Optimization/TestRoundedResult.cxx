@@ -2,7 +2,7 @@
 // What rounded points of a result break is found on ranks as on one process, however the mesh is
 // cut.
 #include "Registry.h"
-#include "OptimizingOnRanks.h"
+#include "OptimizingRanks.h"
 #include "tautline/Optimization/RoundedResult.h"
 
 using namespace tautline;
@@ -53,8 +53,10 @@ int compare(const MeshData& whole, const OptimizeOptions& options, double step)
               &points[3 * part.pointOf[p]], 3, &local.points[3 * pieces.localOfPiece()[p]]);
           }
           pieces.exchange(local.points.data(), 3);
-          const RoundedResult found =
-            measureRoundedOnRanks(pieces, false, options, local, rounded(local.points, step));
+          const Mesh start = localMesh(pieces);
+          const std::vector<double> there = rounded(local.points, step);
+          const RoundedResult found = measureRounded(
+            start, validityOf(start), options, local, start.at(there.data()), Ranks(pieces));
           const std::lock_guard<std::mutex> lock(mutex);
           TAUTLINE_CHECK_EQUAL(found.lost, expected.lost);
           TAUTLINE_CHECK_EQUAL(found.inverted, expected.inverted);
@@ -76,7 +78,7 @@ int compare(const MeshData& whole, const OptimizeOptions& options, double step)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_TEST(TestRoundedOnRanks)
+TAUTLINE_TEST(TestRoundedResult)
 {
   std::vector<int> seen(8, 0);
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Hexahedron })

@@ -2,7 +2,7 @@
 // Optimizers that move all points at once, on ranks: the result does not depend on how the mesh is
 // cut, and is as good as that of one process in its own order.
 #include "Registry.h"
-#include "OptimizingOnRanks.h"
+#include "OptimizingRanks.h"
 #include "StretchedMeshes.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Untangling/Untangle.h"
@@ -242,7 +242,7 @@ void testMemory()
         const std::vector<unsigned char> fixed = rankBoundary(mesh);
         own.fixed = fixed.data();
         own.optimizer = optimizer;
-        static_cast<OptimizeResult&>(result) = optimizeOnRanks(mesh, false, own);
+        static_cast<OptimizeResult&>(result) = optimize(localMesh(mesh), own, {}, Ranks(mesh));
       });
   };
   const Run sweeps = run(Optimizer::LocalNewton, false);
@@ -271,7 +271,7 @@ void testMemory()
       own.optimizer = Optimizer::NewtonConjugateGradient;
       try
       {
-        optimizeOnRanks(mesh, false, own);
+        optimize(localMesh(mesh), own, {}, Ranks(mesh));
       }
       catch (const MemoryError& error)
       {
@@ -308,7 +308,7 @@ void testLarge()
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_TEST(TestGlobalOnRanks)
+TAUTLINE_TEST(TestGlobalRanks)
 {
   constexpr int most = 3; // the argument that is another number of ranks
   if (argc > most)

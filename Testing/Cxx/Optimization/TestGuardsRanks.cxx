@@ -3,7 +3,7 @@
 // is improved, as on one process; where there is no time for that, points about it go back to the
 // input. The same however the mesh is cut.
 #include "Registry.h"
-#include "OptimizingOnRanks.h"
+#include "OptimizingRanks.h"
 
 #include "tautline/Quality/UserMetric.h"
 
@@ -182,7 +182,7 @@ void testWithoutValue(bool larger)
         std::string error = "none";
         try
         {
-          optimizeOnRanks(mesh, false, own);
+          optimize(localMesh(mesh), own, {}, Ranks(mesh));
         }
         catch (const Error& e)
         {
@@ -199,7 +199,7 @@ void testWithoutValue(bool larger)
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_TEST(TestGuardsOnRanks)
+TAUTLINE_TEST(TestGuardsRanks)
 {
   TAUTLINE_RUN(testWithoutValue(false));
   TAUTLINE_RUN(testWithoutValue(true));

@@ -2,7 +2,7 @@
 // Optimization and untangling on ranks: the points do not depend on how the mesh is cut, and are as
 // good as those of one process in its own order.
 #include "Registry.h"
-#include "OptimizingOnRanks.h"
+#include "OptimizingRanks.h"
 #include "tautline/Untangling/Untangle.h"
 
 using namespace tautline;
@@ -207,7 +207,7 @@ void testFailure()
       };
       try
       {
-        optimizeOnRanks(mesh, false, options);
+        optimize(localMesh(mesh), options, {}, Ranks(mesh));
       }
       catch (const Error& error)
       {
@@ -230,7 +230,7 @@ void testRefusals()
   {
     try
     {
-      optimizeOnRanks(mesh, false, wrong);
+      optimize(localMesh(mesh), wrong, {}, Ranks(mesh));
     }
     catch (const Error& error)
     {
@@ -249,7 +249,7 @@ void testRefusals()
 }
 
 //------------------------------------------------------------------------------
-TAUTLINE_TEST(TestOptimizeOnRanks)
+TAUTLINE_TEST(TestOptimizeRanks)
 {
   constexpr int most = 3; // the argument that is another number of ranks
   if (argc > most)

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file OptimizingOnRanks.h
+ * @file OptimizingRanks.h
  * @brief Meshes that threads as ranks optimize, for tests.
  */
-#ifndef tautline_OptimizingOnRanks_h
-#define tautline_OptimizingOnRanks_h
+#ifndef tautline_OptimizingRanks_h
+#define tautline_OptimizingRanks_h
 
 #include "MovingOnRanks.h"
 #include "Optimizing.h"
 #include "tautline/Mesh/BoundaryShape.h"
-#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Optimization/Optimize.h"
 #include "tautline/Quality/Targets.h"
 #include "tautline/Untangling/Untangle.h"
 
@@ -17,7 +17,7 @@
 
 namespace tautline
 {
-/** What a rank has found: the result of optimizeOnRanks() or of untangle(). */
+/** What a rank has found: the result of optimize() or of untangle(). */
 struct Found : OptimizeResult
 {
   std::size_t remaining = 0;
@@ -92,7 +92,7 @@ inline Run runOn(const MeshData& whole, Cut cut, int ranks, const OptimizeOption
         untangleInto(mesh, fixed, result);
         return;
       }
-      static_cast<OptimizeResult&>(result) = optimizeOnRanks(mesh, false, options);
+      static_cast<OptimizeResult&>(result) = optimize(localMesh(mesh), options, {}, Ranks(mesh));
     });
   for (const Found& other : run.results)
   {

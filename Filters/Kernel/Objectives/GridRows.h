@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file GridRows.h
+ * @brief What a hierarchy of grids needs of a row of its matrix. Internal: not installed.
+ *
+ * diagonal(row, c) is entry c of the diagonal of a row's own block, also of a row of another rank.
+ */
+#ifndef tautline_GridRows_h
+#define tautline_GridRows_h
+
+#include "Multigrid.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tautline
+{
+/**
+ * @brief What is added to the diagonal of a row for its couplings to rows outside a range, which
+ * sweeps do not see: half of the sum of their sizes, in units of the diagonals. The smoother then
+ * converges (A. Baker et al., "Multigrid smoothers for ultraparallel computing", SIAM J. Sci.
+ * Comput. 33, 2011: l1 smoothers).
+ */
+template <int Dim, class Diagonal>
+void addOutside(const BlockMatrixView& a, Index row, Index begin, Index end,
+  const Diagonal& diagonal, double* added)
+{
+  std::fill_n(added, Dim, 0.0);
+  for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
+  {
+    const std::int32_t column = a.columns[i];
+    if (column >= begin && column < end)
+    {
+      continue;
+    }
+    const double* block = a.blocks + static_cast<Index>(Dim * Dim) * i;
+    for (int r = 0; r < Dim; ++r)
+    {
+      for (int c = 0; c < Dim; ++c)
+      {
+        const double ratio = diagonal(row, r) / diagonal(column, c);
+        const double part = 0.5 * std::abs(block[Dim * r + c]) * std::sqrt(ratio);
+        added[r] += std::isfinite(part) ? part : 0.0;
+      }
+    }
+  }
+}
+
+/// By what couplings of a row are multiplied, so that no number leaves the range of float: in units
+/// of the diagonal.
+template <int Dim, class Diagonal>
+double unitOf(Index row, const Diagonal& diagonal)
+{
+  double trace = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    trace += diagonal(row, c);
+  }
+  return trace > 0 ? 1 / std::sqrt(trace) : 0.0;
+}
+
+/// The coupling of rows: the size of what their block adds to the rigidity.
+template <int Dim>
+float couplingOf(const double* block, double unitOfRow, double unitOfColumn)
+{
+  double sum = 0;
+  for (int c = 0; c < Dim; ++c)
+  {
+    sum -= block[(Dim + 1) * c];
+  }
+  return static_cast<float>(std::max(0.0, sum * unitOfRow * unitOfColumn));
+}
+
+/// Whether a row maps translations of all rows to 0.
+template <int Dim, class Diagonal>
+bool isFloatingRow(const BlockMatrixView& a, Index row, const Diagonal& diagonal)
+{
+  // Entries are as exact as the largest of an element, which may be that of a neighbour. Of a
+  // positive semidefinite block the largest is on the diagonal.
+  double sum[Dim * Dim] = {}, size = 0;
+  for (std::int32_t i = a.starts[row]; i < a.starts[row + 1]; ++i)
+  {
+    for (int k = 0; k < Dim * Dim; ++k)
+    {
+      sum[k] += a.blocks[static_cast<Index>(Dim * Dim) * i + k];
+    }
+    for (int c = 0; c < Dim; ++c)
+    {
+      size = std::max(size, std::abs(diagonal(a.columns[i], c)));
+    }
+  }
+  return std::all_of(sum, sum + Dim * Dim,
+    [size](double x) { return std::abs(x) <= multigrid::floatingSum * size; });
+}
+}
+#endif

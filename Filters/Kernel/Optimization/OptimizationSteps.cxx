@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OptimizationSteps.h"
+
+#include "GlobalFunction.h"
+#include "HarmonicStart.h"
+#include "tautline/Core/Memory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+#include <type_traits>
+
+namespace tautline
+{
+namespace
+{
+/// What work() returns. @throws MemoryError if it does not fit, so that the sweeps go on, unless
+/// the user has chosen a global optimizer
+template <class Work>
+std::invoke_result_t<Work> inMemory(const OptimizeOptions& options, const Work& work)
+{
+  try
+  {
+    return work();
+  }
+  catch (const std::bad_alloc&)
+  {
+    if (isGlobal(options.optimizer))
+    {
+      throw;
+    }
+    throw MemoryError("The matrix does not fit into memory.");
+  }
+}
+}
+
+//------------------------------------------------------------------------------
+bool OptimizationSteps::report(OptimizationProblem& problem, const IterationRecord& record)
+{
+  this->Result.history.push_back(presentable(problem.scalarizer(), record));
+  const auto& observer = problem.options().observer;
+  const auto points = [&](double* p)
+  {
+    if (!problem.ranks().several()) // where they are stored, which takes all ranks
+    {
+      problem.store();
+    }
+    std::copy(problem.points().begin(), problem.points().end(), p);
+  };
+  const bool proceed =
+    !observer || observer({ this->Result.history.back(), this->Watch.progress(record), points });
+  return !problem.ranks().any(!proceed);
+}
+
+//------------------------------------------------------------------------------
+StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired)
+{
+  OptimizationProblem& problem = this->Problem;
+  const StoppingTest& watch = this->Watch;
+  const std::vector<IterationRecord>& history = this->Result.history;
+  const StoppingCriteria& stop = problem.options().stopping;
+  SimplexMesh& simplices = problem.simplices();
+  LocalSweeper sweeper(simplices, problem.moving(), problem.points().data(), problem.localTerms(),
+    problem.localOptions(), &problem.order());
+  std::vector<double> best(simplices.coordinates(),
+    simplices.coordinates() + VertexStride * static_cast<std::size_t>(simplices.freeVertices()));
+  // One objective in closed form needs neither the mesh's own points on the way nor a way back:
+  // each step reduces it. Records of several ranks are of stored points.
+  const bool costly = problem.ranks().any(!problem.isSimple());
+  const bool simple = !costly && !problem.ranks().several();
+  StopReason reason = StopReason::NoProgress;
+  double firstGradient = 0;
+  bool all = true;          // whether the next sweep visits every vertex
+  SweepGains gains(costly); // hexahedra have no closed form
+  for (int iteration = this->next();; ++iteration)
+  {
+    if (watch.ends(history, reason))
+    {
+      return reason;
+    }
+    const IterationRecord before = history.back();
+    std::vector<double> values = before.objectives;
+    const SweepResult sweep = sweeper.sweep(problem.scalarizer(), values);
+    if (!simple)
+    {
+      problem.store();
+    }
+    IterationRecord now = problem.record(iteration);
+    now.gradientNorm = sweep.gradientNorm;
+    now.moving = sweep.moved;
+    const double lowered = scalarized(problem.scalarizer(), before) - now.objective;
+    const double size = std::abs(now.objective);
+    if (!simple && !(std::isfinite(size) && lowered >= -roundingOfSums * size))
+    {
+      // Blocks of one colour do not use each other's changes of a composite objective, which may
+      // rise or leave its domain, as a product with a factor below 0.
+      std::copy(best.begin(), best.end(), simplices.coordinates());
+      problem.store();
+      failed = true;
+      return StopReason::NoProgress;
+    }
+    if (!simple)
+    {
+      std::copy_n(simplices.coordinates(), best.size(), best.begin());
+    }
+    firstGradient = firstGradient > 0 ? firstGradient : sweep.gradientNorm;
+    if (!this->report(now))
+    {
+      return StopReason::Aborted;
+    }
+    if (problem.someRepaired() && !watch.ends(history, reason))
+    {
+      repaired = true;
+      return StopReason::NoProgress;
+    }
+
+    gains.add(lowered);
+    // On a surface each sweep moves the points a little off the input: no more of them than needed.
+    const double remaining = problem.surface() ? lowered : gains.remaining();
+    if (slow && (gains.stiff(size) || gains.slow(size, stop.relativeChange)))
+    {
+      *slow = gains.stiff(size) ? Slowness::Far : Slowness::Near;
+      return StopReason::NoProgress;
+    }
+
+    // Convergence is only believed of a sweep over all vertices.
+    if (!converged(
+          stop, sweep, all, firstGradient, lowered, remaining, gains.remaining(), size, reason))
+    {
+      all = sweep.moved == 0;
+      if (all)
+      {
+        sweeper.wakeAll();
+      }
+      continue;
+    }
+    if (!all)
+    {
+      sweeper.wakeAll();
+      all = true;
+    }
+    else if (problem.scalarizer().next(history.back().objectives))
+    {
+      sweeper.wakeAll();
+      gains.clear();
+      firstGradient = 0;
+    }
+    else
+    {
+      return reason;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+StopReason OptimizationSteps::minimizeAll(Optimizer method)
+{
+  StopReason reason = StopReason::NoProgress;
+  const auto minimize = [&] { reason = this->minimizeTogether(method); };
+  // The caller goes on where memory lacks, on all ranks alike.
+  this->Problem.ranks().together(
+    [&]
+    {
+      method == Optimizer::NewtonConjugateGradient ? inMemory(this->Problem.options(), minimize)
+                                                   : minimize();
+    });
+  return reason;
+}
+
+//------------------------------------------------------------------------------
+StopReason OptimizationSteps::minimizeTogether(Optimizer method)
+{
+  OptimizationProblem& problem = this->Problem;
+  const std::vector<IterationRecord>& history = this->Result.history;
+  const StoppingCriteria& stop = problem.options().stopping;
+  StopReason reason = StopReason::NoProgress;
+  if (this->Watch.ends(history, reason))
+  {
+    return reason;
+  }
+  const bool alone = isGlobal(problem.options().optimizer);
+  GlobalFunction function(problem, method);
+  std::vector<double> x(function.size(), 0.0);
+  for (;;)
+  {
+    const int before = history.back().iteration;
+    MinimizeOptions options = minimizeOptions(stop, method, alone);
+    options.maximumIterations -= before;
+    options.outOfTime = [&] { return problem.outOfTime(); };
+    options.threads = problem.options().threads;
+    options.group = problem.ranks().group();
+    bool ended = false;
+    options.observer = [&](int iteration, double, double gradientNorm, const double* now)
+    {
+      function.put(now);
+      IterationRecord record = problem.record(before + iteration);
+      record.gradientNorm = gradientNorm;
+      if (!this->report(record))
+      {
+        reason = StopReason::Aborted;
+        ended = true;
+      }
+      else
+      {
+        ended = this->Watch.ends(history, reason);
+      }
+      return !ended;
+    };
+    const MinimizeResult found = minimize(function, x.data(), options);
+    function.put(x.data());
+    if (ended)
+    {
+      return reason;
+    }
+    if (!problem.scalarizer().next(problem.record(0).objectives))
+    {
+      return found.reason;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> OptimizationSteps::harmonic(const std::vector<double>& points)
+{
+  return inMemory(this->Problem.options(), [&] { return harmonicPoints(this->Problem, points); });
+}
+
+//------------------------------------------------------------------------------
+bool OptimizationSteps::hasManyCorners() const
+{
+  const Mesh& mesh = this->Problem.moving();
+  const Ranks& ranks = this->Problem.ranks();
+  const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
+  Index simplices = 0, others = 0;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; t.dimension == dimension && i < block.count; ++i)
+    {
+      (t.samples > 1 ? others : simplices) += ranks.ownsCell(block.cell(i));
+    }
+  }
+  return static_cast<double>(ranks.sum(others)) >
+    manyCorners * static_cast<double>(ranks.sum(simplices));
+}
+
+bool OptimizationSteps::hasConvexPart() const
+{
+  return !this->Problem.ranks().any(!HessianMatrix::hasConvexPart(this->Problem.resolved()[0]));
+}
+
+//------------------------------------------------------------------------------
+bool OptimizationSteps::hasConstraintsOrTargets() const
+{
+  const OptimizeOptions& options = this->Problem.options();
+  return this->Problem.ranks().any(options.slidePlanes || options.slideLines || options.limits ||
+    options.objectives[0].evaluation.targets ||
+    this->Problem.moving().dimension() == Dimension::Surface);
+}
+
+bool OptimizationSteps::slidesOnSurface() const
+{
+  const OptimizeOptions& options = this->Problem.options();
+  return this->Problem.moving().dimension() != Dimension::Surface &&
+    (options.model || options.slideSurface);
+}
+
+bool OptimizationSteps::holdsPoints()
+{
+  const std::vector<unsigned char>& held = this->Problem.slides().held;
+  return this->Problem.someAtLimit() ||
+    this->Problem.ranks().any(
+      std::any_of(held.begin(), held.end(), [](unsigned char h) { return h != 0; }));
+}
+}

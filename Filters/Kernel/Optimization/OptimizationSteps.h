@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file OptimizationSteps.h
+ * @brief What moves the points of an optimization, and its history. Internal: not installed.
+ */
+#ifndef tautline_OptimizationSteps_h
+#define tautline_OptimizationSteps_h
+
+#include "OptimizationProblem.h"
+#include "Optimize.h"
+#include "SweepControl.h"
+
+namespace tautline
+{
+/// Elements with corners beside simplices: from so many on, for each of these, sweeps take several
+/// times as long as Newton's method.
+constexpr double manyCorners = 0.01;
+
+/**
+ * @class tautline::OptimizationSteps
+ * @brief The methods by which the points of a problem move, each to convergence. On several ranks
+ * all methods are collective and return the same everywhere.
+ */
+class OptimizationSteps
+{
+public:
+  /// @param result whose points are those of the problem; it gets the history
+  OptimizationSteps(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result)
+    : Problem(problem)
+    , Watch(watch)
+    , Result(result)
+  {
+  }
+
+  OptimizationProblem& problem() { return this->Problem; }
+  /// Adds a record to the history and calls the observer; false if that stops the run, on any rank.
+  bool report(const IterationRecord& record) { return this->report(this->Problem, record); }
+  /// The same of points that another problem has.
+  bool report(OptimizationProblem& problem, const IterationRecord& record);
+  /// The number of the next record.
+  int next() const { return this->Result.history.back().iteration + 1; }
+
+  /**
+   * @brief Sweeps to convergence.
+   * @param slow set, if not null, where they converge too slowly
+   * @param failed set where a sweep raised the objective, as those of several objectives can
+   * @param repaired set where an element that was left out has become valid
+   */
+  StopReason sweep(Slowness* slow, bool& failed, bool& repaired);
+  /// Moves all points at once, to convergence. Throws MemoryError if the matrix of Newton's method
+  /// does not fit and the optimizer is Automatic.
+  StopReason minimizeAll(Optimizer method);
+  /// The harmonicPoints() of these; empty if there are none. Throws MemoryError if the matrix does
+  /// not fit.
+  std::vector<double> harmonic(const std::vector<double>& points);
+
+  /// Whether more than manyCorners of the elements have several corners that together make one
+  /// value: quadrilaterals, hexahedra, wedges and pyramids. Sweeps have no closed form there.
+  bool hasManyCorners() const;
+  /// See HessianMatrix::hasConvexPart(), of the first objective.
+  bool hasConvexPart() const;
+  /// Whether points slide on lines or planes or have limits, an objective has targets, or the mesh
+  /// is a surface in space.
+  bool hasConstraintsOrTargets() const;
+  /// Whether points slide on the boundary of a planar or volume mesh, which only sweeps keep where
+  /// it is curved.
+  bool slidesOnSurface() const;
+  /// Whether methods that move all points at once hold some of these.
+  bool holdsPoints();
+
+private:
+  StopReason minimizeTogether(Optimizer method);
+
+  OptimizationProblem& Problem;
+  const StoppingTest& Watch;
+  OptimizeResult& Result;
+};
+}
+#endif
