@@ -37,7 +37,8 @@ struct DecompositionCounts
 };
 
 /**
- * @brief Counts what LocalSweeper would send with these parts on as many ranks, without ghost cells.
+ * @brief Counts what LocalSweeper would send with these parts on as many ranks, without ghost
+ * cells.
  * @param partOfCell one number per cell, 0 to parts - 1; a part may have no cell
  * @param parts at least 1
  * @param free one flag per point: it moves

@@ -1,20 +1,42 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file GridRows.h
- * @brief What a hierarchy of grids needs of a row of its matrix. Internal: not installed.
+ * @brief What hierarchies of grids have in common: the matrix, and what they need of its rows.
+ * Internal: not installed.
  *
  * diagonal(row, c) is entry c of the diagonal of a row's own block, also of a row of another rank.
  */
 #ifndef tautline_GridRows_h
 #define tautline_GridRows_h
 
-#include "Multigrid.h"
+#include "tautline/Core/Types.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace tautline
 {
+/// What the hierarchies of one process and of several ranks have in common.
+namespace multigrid
+{
+constexpr int pairings = 3;            ///< of rows, from a level to the next
+constexpr double slowCoarsening = 0.8; ///< ratio of rows beyond which no coarser level is made
+constexpr double floatingSum = 1e-10;  ///< of a row, relative to the diagonals near it: rounding
+constexpr int rebuildAfter = 4;        ///< matrices of one pattern, after which rows are aggregated
+}
+
+/// A sparse matrix of Size x Size blocks with a symmetric pattern, on arrays of the caller.
+struct BlockMatrixView
+{
+  int size = 0;                            ///< of a block: 2 or 3
+  Index rows = 0;                          ///< of blocks
+  const std::int32_t* starts = nullptr;    ///< rows + 1 places
+  const std::int32_t* columns = nullptr;   ///< of each place, ascending within a row
+  const std::int32_t* diagonals = nullptr; ///< place of the diagonal block of each row
+  const double* blocks = nullptr;          ///< size x size numbers a place, row by row
+};
+
 /**
  * @brief What is added to the diagonal of a row for its couplings to rows outside a range, which
  * sweeps do not see: half of the sum of their sizes, in units of the diagonals. The smoother then

@@ -16,36 +16,15 @@
 #ifndef tautline_Multigrid_h
 #define tautline_Multigrid_h
 
-#include "tautline/Core/Types.h"
+#include "GridRows.h"
 
 #include "tautline/KernelExport.h"
 
-#include <cstdint>
 #include <memory>
 #include <vector>
 
 namespace tautline
 {
-/// What the hierarchies of one process and of several ranks have in common.
-namespace multigrid
-{
-constexpr int pairings = 3;            ///< of rows, from a level to the next
-constexpr double slowCoarsening = 0.8; ///< ratio of rows beyond which no coarser level is made
-constexpr double floatingSum = 1e-10;  ///< of a row, relative to the diagonals near it: rounding
-constexpr int rebuildAfter = 4;        ///< matrices of one pattern, after which rows are aggregated
-}
-
-/// A sparse matrix of Size x Size blocks with a symmetric pattern, on arrays of the caller.
-struct BlockMatrixView
-{
-  int size = 0;                            ///< of a block: 2 or 3
-  Index rows = 0;                          ///< of blocks
-  const std::int32_t* starts = nullptr;    ///< rows + 1 places
-  const std::int32_t* columns = nullptr;   ///< of each place, ascending within a row
-  const std::int32_t* diagonals = nullptr; ///< place of the diagonal block of each row
-  const double* blocks = nullptr;          ///< size x size numbers a place, row by row
-};
-
 /// y = A x.
 TAUTLINE_KERNEL_EXPORT void multiply(
   const BlockMatrixView& a, int threads, const double* x, double* y);

@@ -37,7 +37,7 @@ std::invoke_result_t<Work> inMemory(const OptimizeOptions& options, const Work& 
 //------------------------------------------------------------------------------
 bool OptimizationSteps::report(OptimizationProblem& problem, const IterationRecord& record)
 {
-  this->Result.history.push_back(presentable(problem.scalarizer(), record));
+  this->History.push_back(presentable(problem.scalarizer(), record));
   const auto& observer = problem.options().observer;
   const auto points = [&](double* p)
   {
@@ -48,7 +48,7 @@ bool OptimizationSteps::report(OptimizationProblem& problem, const IterationReco
     std::copy(problem.points().begin(), problem.points().end(), p);
   };
   const bool proceed =
-    !observer || observer({ this->Result.history.back(), this->Watch.progress(record), points });
+    !observer || observer({ this->History.back(), this->Watch.progress(record), points });
   return !problem.ranks().any(!proceed);
 }
 
@@ -57,7 +57,7 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
 {
   OptimizationProblem& problem = this->Problem;
   const StoppingTest& watch = this->Watch;
-  const std::vector<IterationRecord>& history = this->Result.history;
+  const std::vector<IterationRecord>& history = this->History;
   const StoppingCriteria& stop = problem.options().stopping;
   SimplexMesh& simplices = problem.simplices();
   LocalSweeper sweeper(simplices, problem.moving(), problem.points().data(), problem.localTerms(),
@@ -171,7 +171,7 @@ StopReason OptimizationSteps::minimizeAll(Optimizer method)
 StopReason OptimizationSteps::minimizeTogether(Optimizer method)
 {
   OptimizationProblem& problem = this->Problem;
-  const std::vector<IterationRecord>& history = this->Result.history;
+  const std::vector<IterationRecord>& history = this->History;
   const StoppingCriteria& stop = problem.options().stopping;
   StopReason reason = StopReason::NoProgress;
   if (this->Watch.ends(history, reason))

@@ -7,7 +7,6 @@
 #define tautline_OptimizationSteps_h
 
 #include "OptimizationProblem.h"
-#include "Optimize.h"
 #include "SweepControl.h"
 
 namespace tautline
@@ -24,11 +23,11 @@ constexpr double manyCorners = 0.01;
 class OptimizationSteps
 {
 public:
-  /// @param result whose points are those of the problem; it gets the history
-  OptimizationSteps(OptimizationProblem& problem, const StoppingTest& watch, OptimizeResult& result)
+  OptimizationSteps(OptimizationProblem& problem, const StoppingTest& watch,
+    std::vector<IterationRecord>& history)
     : Problem(problem)
     , Watch(watch)
-    , Result(result)
+    , History(history)
   {
   }
 
@@ -38,7 +37,7 @@ public:
   /// The same of points that another problem has.
   bool report(OptimizationProblem& problem, const IterationRecord& record);
   /// The number of the next record.
-  int next() const { return this->Result.history.back().iteration + 1; }
+  int next() const { return this->History.back().iteration + 1; }
 
   /**
    * @brief Sweeps to convergence.
@@ -73,7 +72,7 @@ private:
 
   OptimizationProblem& Problem;
   const StoppingTest& Watch;
-  OptimizeResult& Result;
+  std::vector<IterationRecord>& History;
 };
 }
 #endif

@@ -197,7 +197,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   OptimizationProblem problem(mesh, options, result.points, clock, ranks);
   result.freeVertices = problem.freePoints();
   const StoppingTest watch(options, [&problem] { return problem.outOfTime(); });
-  OptimizationSteps steps(problem, watch, result);
+  OptimizationSteps steps(problem, watch, result.history);
   const bool again = !result.history.empty();
   IterationRecord first = problem.firstRecord(again ? result.history.back().iteration : 0);
   if (!again)

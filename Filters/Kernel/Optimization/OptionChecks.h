@@ -15,8 +15,8 @@
 
 namespace tautline
 {
-/// Throws Error, with the remedy, for options that are out of range or do not fit the mesh, of which
-/// ranks may have parts.
+/// Throws Error, with the remedy, for options that are out of range or do not fit the mesh, which
+/// ranks may have parts of.
 void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks);
 
 /**
