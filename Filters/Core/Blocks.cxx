@@ -218,6 +218,10 @@ vtkDataArray* chosenArray(
   }
   const bool ofCells =
     of == ArrayOf::Either ? chosenOfCells(algorithm, index) : of == ArrayOf::Cells;
+  if (input->GetNumberOfElements(ofCells ? vtkDataObject::CELL : vtkDataObject::POINT) == 0)
+  {
+    return nullptr;
+  }
   vtkDataSetAttributes* data =
     input->GetAttributes(ofCells ? vtkDataObject::CELL : vtkDataObject::POINT);
   vtkDataSetAttributes* others =

@@ -91,7 +91,7 @@ enum class ArrayOf
 
 /**
  * @brief The point or cell array that the user chose by SetInputArrayToProcess(); null if none is
- * chosen ("None" or "").
+ * chosen ("None" or ""), or the input has nothing it would be of, as an empty piece of a mesh.
  * @param index that of SetInputArrayToProcess()
  * @param purpose for the message, "of fixed points"
  * @param of what the filter needs. With Points or Cells the name alone counts, since a script that

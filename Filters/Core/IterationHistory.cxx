@@ -63,14 +63,6 @@ void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
 std::string summarize(
   const OptimizeResult& result, const MovableMesh& mesh, const std::string& block)
 {
-  const MeshView& view = mesh.mesh().view();
-  return summarize(result, view.numberOfPoints, view.numberOfCells, block);
-}
-
-//------------------------------------------------------------------------------
-std::string summarize(
-  const OptimizeResult& result, Index points, Index cells, const std::string& block)
-{
   std::ostringstream text;
   text << (block.empty() ? "" : "In " + block + ": ") << describe(result.reason) << "\n";
   text << result.iterations << " iterations";
@@ -80,9 +72,9 @@ std::string summarize(
     text << ", " << last.seconds << " s. " << objectivesPhrase(first, last);
   }
   text << ".\n"
-       << result.freeVertices << " of " << points
+       << result.freeVertices << " of " << mesh.allPoints()
        << " points were free to move.\nInverted elements: " << result.invertedBefore << " before, "
-       << result.invertedAfter << " after, of " << cells
+       << result.invertedAfter << " after, of " << mesh.allCells()
        << (!result.untangled              ? "."
               : result.invertedAfter == 0 ? "; it was untangled first."
                                           : "; untangling came first and left some inverted.");

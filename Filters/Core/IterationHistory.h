@@ -29,9 +29,6 @@ TAUTLINECORE_EXPORT void addHistory(TableRows& rows, const std::vector<Iteration
 /// Reason, iterations, seconds, free points and inverted elements, in sentences.
 TAUTLINECORE_EXPORT std::string summarize(
   const OptimizeResult& result, const MovableMesh& mesh, const std::string& block);
-/// The same of a mesh with so many points and cells.
-TAUTLINECORE_EXPORT std::string summarize(
-  const OptimizeResult& result, Index points, Index cells, const std::string& block);
 
 /// "\nLargest distance of the elements from the surface: 0.01."; "" if the error is 0.
 TAUTLINECORE_EXPORT std::string surfaceErrorSentence(double surfaceError);

@@ -3,8 +3,10 @@
 
 #include "Blocks.h"
 #include "PointMerge.h"
-#include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Mesh/BoundaryPoints.h"
+#include "tautline/Mesh/BoundaryShape.h"
+#include "tautline/Mesh/DistributedMesh.h"
+#include "tautline/Optimization/OptimizeOnRanks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -24,7 +26,7 @@ namespace
 {
 vtkDataSet* withPoints(vtkDataSet* input)
 {
-  if (!vtkPointSet::SafeDownCast(input))
+  if (!vtkPointSet::SafeDownCast(input) && input->GetNumberOfPoints() > 0)
   {
     throw Error(std::string("The points of ") + input->GetClassName() +
       " are implicit and cannot move: run Image Data to Point Set or Rectilinear Data to Point Set "
@@ -38,6 +40,47 @@ std::vector<signed char> validityOf(const Mesh& mesh, int threads)
   std::vector<signed char> validity(mesh.view().numberOfCells);
   mesh.classifyCells(validity.data(), threads);
   return validity;
+}
+
+void requireLinear(const Mesh& mesh)
+{
+  if (mesh.higherOrderCells() > 0)
+  {
+    throw Error("The mesh has " + std::to_string(mesh.higherOrderCells()) +
+      " cells of quadratic or higher order, whose midpoints would stay behind: run Tessellate "
+      "first.");
+  }
+}
+
+int dimensionOf(unsigned char cellType)
+{
+  const CellType type = cornerType(cellType);
+  return type == CellType::Unsupported ? 0 : topology(type).dimension;
+}
+
+/// The elements of a piece: cells of the dimension of the mesh.
+struct Elements
+{
+  std::vector<unsigned char> types, ghosts;
+  std::vector<Index> offsets = { 0 }, connectivity;
+};
+
+/// @param ghosts one flag per cell, or null
+Elements elementsOf(const MeshView& view, const unsigned char* ghosts, int dimension)
+{
+  Elements elements;
+  for (Index cell = 0; cell < view.numberOfCells && dimension > 0; ++cell)
+  {
+    if (dimensionOf(view.cellTypes[cell]) == dimension)
+    {
+      elements.types.push_back(view.cellTypes[cell]);
+      elements.ghosts.push_back(ghosts && ghosts[cell]);
+      elements.connectivity.insert(elements.connectivity.end(),
+        view.connectivity + view.offsets[cell], view.connectivity + view.offsets[cell + 1]);
+      elements.offsets.push_back(static_cast<Index>(elements.connectivity.size()));
+    }
+  }
+  return elements;
 }
 }
 
@@ -64,12 +107,7 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
   {
     throw Error("There is no element whose points could move. " + this->Adapter.notice());
   }
-  if (this->mesh().higherOrderCells() > 0)
-  {
-    throw Error("The mesh has " + std::to_string(this->mesh().higherOrderCells()) +
-      " cells of quadratic or higher order, whose midpoints would stay behind: run Tessellate "
-      "first.");
-  }
+  requireLinear(this->mesh());
   this->Validity.resize(this->mesh().view().numberOfCells);
   const std::string oriented = this->Adapter.orient(this->Validity.data());
   const Mesh& mesh = this->mesh();
@@ -83,6 +121,70 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
   this->Skip = cellsToSkip(this->Adapter);
   this->Fixed.assign(mesh.view().numberOfPoints, 0);
   this->fixWhatStays();
+}
+
+//------------------------------------------------------------------------------
+MovableMesh::MovableMesh(
+  RankGroup& group, vtkDataSet* input, int threads, bool mergePoints, Redistribution redistribution)
+  : Input(vtkPointSet::SafeDownCast(withPoints(input)))
+  , Adapter(input, threads)
+  , Threads(threads)
+  , MergePoints(mergePoints)
+  , Spread(new Pieces(group, group.size() > 1 ? redistribution : Redistribution::None))
+{
+  requireLinear(this->mesh());
+  const MeshView& view = this->piece();
+  const unsigned char* ghosts = this->Adapter.ghostCells();
+  Index dimension = 0;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    dimension = std::max<Index>(dimension, dimensionOf(view.cellTypes[cell]));
+  }
+  this->Spread->dimension = static_cast<int>(group.maximum(dimension));
+  this->Spread->marked.assign(view.numberOfPoints, 0);
+  this->Skip.assign(view.numberOfCells, 0);
+  std::vector<unsigned char> held(view.numberOfPoints, 0);
+  // As a rule all cells are elements, and need not be copied.
+  bool copies = this->Spread->dimension == 0;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const bool lower = dimensionOf(view.cellTypes[cell]) < this->Spread->dimension;
+    copies = copies || lower;
+    this->Skip[cell] = lower || (ghosts && ghosts[cell]);
+    for (Index n = view.offsets[cell]; lower && n < view.offsets[cell + 1]; ++n)
+    {
+      held[view.connectivity[n]] = 1;
+    }
+  }
+  vtkDataArray* given = input->GetPointData()->GetGlobalIds();
+  std::vector<Index> ids = idsOf(given);
+  if (!mergePoints && !given && view.numberOfPoints > 0)
+  {
+    if (group.size() > 1)
+    {
+      throw Error("With Merge Coincident Points off, points of different processes are one by "
+                  "their global ids, and there are none: run Generate Global Ids first.");
+    }
+    ids.resize(view.numberOfPoints);
+    std::iota(ids.begin(), ids.end(), Index(0));
+  }
+  const bool unnamed = static_cast<Index>(ids.size()) < view.numberOfPoints;
+  this->Spread->copies = tautline::joinCopies(group, view, unnamed ? nullptr : ids.data());
+  MeshView joined = view;
+  joined.points = this->joinedPoints();
+  Elements elements;
+  if (copies)
+  {
+    elements = elementsOf(view, ghosts, this->Spread->dimension);
+    joined.numberOfCells = static_cast<Index>(elements.types.size());
+    joined.cellTypes = elements.types.data();
+    joined.offsets = elements.offsets.data();
+    joined.connectivity = elements.connectivity.data();
+    ghosts = elements.ghosts.data();
+  }
+  this->divide({ joined, mergePoints ? nullptr : ids.data(), ghosts });
+  this->checkOrder();
+  this->fixHeld(held);
 }
 
 //------------------------------------------------------------------------------
@@ -118,21 +220,79 @@ void MovableMesh::fixWhatStays()
 }
 
 //------------------------------------------------------------------------------
-void MovableMesh::fix(vtkDataArray* array, bool ofCells)
+/// The points of cells that are no elements stay, but on the boundary of a volume.
+void MovableMesh::fixHeld(const std::vector<unsigned char>& held)
 {
-  const MeshView& view = this->mesh().view();
+  this->Fixed.assign(this->distributed().localPoints(), 0);
+  if (!this->group().any(std::find(held.begin(), held.end(), 1) != held.end()))
+  {
+    return;
+  }
+  this->Fixed = this->anyOf(held);
+  if (this->dimension() == 3)
+  {
+    const std::vector<unsigned char> on = rankBoundary(this->distributed());
+    std::transform(this->Fixed.begin(), this->Fixed.end(), on.begin(), this->Fixed.begin(),
+      [](unsigned char fixed, unsigned char boundary) { return fixed && !boundary; });
+  }
+}
+
+//------------------------------------------------------------------------------
+/// @param flags one per point of the input
+void MovableMesh::addFixed(const std::vector<unsigned char>& flags)
+{
+  const auto add = [](std::vector<unsigned char>& to, const std::vector<unsigned char>& more)
+  {
+    std::transform(to.begin(), to.end(), more.begin(), to.begin(),
+      [](unsigned char a, unsigned char b) -> unsigned char { return a || b; });
+  };
+  if (this->inPieces())
+  {
+    add(this->Spread->marked, flags);
+  }
+  add(this->Fixed, this->inPieces() ? this->anyOf(flags) : flags);
+  this->uniteFixed();
+}
+
+//------------------------------------------------------------------------------
+namespace
+{
+/// Flags the points with a value other than 0, or those of cells with one.
+void mark(
+  const MeshView& view, vtkDataArray* array, bool ofCells, std::vector<unsigned char>& flags)
+{
   for (Index cell = 0; array && ofCells && cell < view.numberOfCells; ++cell)
   {
     for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
     {
-      this->Fixed[view.connectivity[n]] |= array->GetComponent(cell, 0) != 0;
+      flags[view.connectivity[n]] |= array->GetComponent(cell, 0) != 0;
     }
   }
   for (Index i = 0; array && !ofCells && i < view.numberOfPoints; ++i)
   {
-    this->Fixed[i] |= array->GetComponent(i, 0) != 0;
+    flags[i] |= array->GetComponent(i, 0) != 0;
   }
-  this->uniteFixed();
+}
+}
+
+//------------------------------------------------------------------------------
+void MovableMesh::fix(vtkDataArray* array, bool ofCells)
+{
+  std::vector<unsigned char> flags(this->piece().numberOfPoints, 0);
+  mark(this->piece(), array, ofCells, flags);
+  this->addFixed(flags);
+}
+
+//------------------------------------------------------------------------------
+void MovableMesh::fixSelected(vtkDataSet* selected)
+{
+  std::vector<unsigned char> flags(this->piece().numberOfPoints, 0);
+  if (selected)
+  {
+    mark(this->piece(), selected->GetCellData()->GetArray(SelectedArray), true, flags);
+    mark(this->piece(), selected->GetPointData()->GetArray(SelectedArray), false, flags);
+  }
+  this->addFixed(flags);
 }
 
 //------------------------------------------------------------------------------
@@ -145,6 +305,11 @@ void MovableMesh::uniteFixed()
 void MovableMesh::fixBoundary()
 {
   this->BoundaryFixed = true;
+  if (this->inPieces())
+  {
+    const std::vector<unsigned char> on = rankBoundary(this->distributed());
+    this->Skin.assign(on.begin(), on.end());
+  }
   std::transform(this->Fixed.begin(), this->Fixed.end(), this->Skin.begin(), this->Fixed.begin(),
     [](unsigned char fixed, char on) { return fixed || on; });
   this->uniteFixed();
@@ -156,6 +321,10 @@ void MovableMesh::fixCorners(const BoundaryShape& shape)
   std::transform(this->Fixed.begin(), this->Fixed.end(), shape.fixed.begin(), this->Fixed.begin(),
     [](unsigned char fixed, unsigned char corner) { return fixed || corner; });
   this->SlidingFixed = true;
+  if (this->inPieces())
+  {
+    this->distributed().exchange(this->Fixed.data());
+  }
   this->uniteFixed();
 }
 
@@ -168,7 +337,6 @@ std::string boundaryIsFixed(Index used, Index onBoundary)
                             : std::to_string(onBoundary) + " of the " + std::to_string(used) +
       " points are on the boundary of the mesh, which is fixed, and the others are fixed by an "
       "array, a selection or cells that stay";
-}
 }
 
 std::string noneIsFree(Index used, Index onBoundary, bool slides, const std::string& boundaryRemedy)
@@ -183,28 +351,41 @@ std::string noneIsFree(Index used, Index onBoundary, bool slides, const std::str
       boundaryRemedy + ", or fix fewer points."
     : "Every point is fixed by an array or a selection: fix fewer points.";
 }
+}
 
 //------------------------------------------------------------------------------
 std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
 {
   const Mesh& mesh = this->mesh();
-  const MeshView& view = mesh.view();
-  const VertexCells cells = mesh.vertexCells();
   Index used = 0, fixed = 0, onBoundary = 0;
-  for (Index p = 0; p < view.numberOfPoints; ++p)
+  const auto count = [&](std::size_t p)
   {
-    if (cells.offsets[p] < cells.offsets[p + 1])
+    ++used;
+    fixed += this->Fixed[p] != 0;
+    onBoundary += this->BoundaryFixed && this->Skin[p];
+  };
+  const VertexCells cells = this->inPieces() ? VertexCells() : mesh.vertexCells();
+  for (std::size_t p = 0; p < this->Fixed.size(); ++p)
+  {
+    const bool counts = this->inPieces() ? this->distributed().owned(static_cast<Index>(p))
+                                         : cells.offsets[p] < cells.offsets[p + 1];
+    if (counts)
     {
-      ++used;
-      fixed += this->Fixed[p] != 0;
-      onBoundary += this->BoundaryFixed && this->Skin[p];
+      count(p);
+    }
+  }
+  if (this->inPieces())
+  {
+    for (Index* number : { &used, &fixed, &onBoundary })
+    {
+      *number = this->group().sum(*number);
     }
   }
   if (fixed < used)
   {
     return "";
   }
-  if (onBoundary == 0)
+  if (onBoundary == 0 || this->inPieces())
   {
     return noneIsFree(used, onBoundary, this->SlidingFixed, boundaryRemedy);
   }
@@ -233,51 +414,63 @@ std::string MovableMesh::whyNoneIsFree(const std::string& boundaryRemedy) const
 //------------------------------------------------------------------------------
 std::string MovableMesh::move(vtkPointSet* output, const std::vector<double>& moved) const
 {
-  bool single = this->isSingle();
-  std::string note;
+  vtkPoints* like = this->Input ? this->Input->GetPoints() : nullptr;
+  const bool single = like && like->GetDataType() == VTK_FLOAT;
+  const unsigned char* ghosts = this->inPieces() ? this->Adapter.ghostCells() : nullptr;
+  Index lost = 0;
   if (single)
   {
     const auto before = this->validityAt(moved),
                after = this->validityAt(this->rounded(moved, true));
-    const auto lost = std::inner_product(before.begin(), before.end(), after.begin(), Index(0),
-      std::plus<>(), [](signed char a, signed char b) { return Index(a == Valid && b != Valid); });
-    if (lost > 0)
+    for (std::size_t cell = 0; cell < after.size(); ++cell)
     {
-      single = false;
-      note = "The points are given in double precision: in single precision " +
-        std::to_string(lost) + " valid elements would not be valid.";
+      lost += !(ghosts && ghosts[cell]) && before[cell] == Valid && after[cell] != Valid;
     }
   }
-  this->move(output, moved, single);
-  return note;
+  lost = this->inPieces() ? this->group().sum(lost) : lost;
+  this->move(output, moved, single && lost == 0);
+  return lost == 0 ? ""
+                   : "The points are given in double precision: in single precision " +
+      std::to_string(lost) + " valid elements would not be valid.";
 }
 
 //------------------------------------------------------------------------------
 void MovableMesh::move(vtkPointSet* output, const std::vector<double>& moved, bool single) const
 {
+  if (!output)
+  {
+    return; // an empty piece of another kind
+  }
   const std::vector<double> actual = this->written(moved, single);
-  output->SetPoints(makePoints(actual, single ? this->Input->GetPoints() : nullptr));
+  vtkPoints* like = this->Input ? this->Input->GetPoints() : nullptr;
+  output->SetPoints(makePoints(actual, single ? like : nullptr));
   addDisplacement(output, this->Adapter.inputView().points, actual);
 }
 
 //------------------------------------------------------------------------------
 bool MovableMesh::isSingle() const
 {
-  return this->Input->GetPoints()->GetDataType() == VTK_FLOAT;
+  vtkPoints* points = this->Input ? this->Input->GetPoints() : nullptr;
+  const bool single = points && points->GetDataType() == VTK_FLOAT;
+  return this->inPieces() ? !this->group().any(this->piece().numberOfPoints > 0 && !single)
+                          : single;
 }
 
 //------------------------------------------------------------------------------
 std::vector<double> MovableMesh::written(const std::vector<double>& points, bool single) const
 {
-  std::vector<double> together = points;
-  spread(together, 3, this->representative());
-  std::vector<double> actual = this->actual(together);
+  std::vector<double> actual = points;
+  if (!this->inPieces())
+  {
+    spread(actual, 3, this->representative());
+    actual = this->actual(actual);
+  }
   if (single)
   {
     std::transform(actual.begin(), actual.end(), actual.begin(),
       [](double x) { return static_cast<double>(static_cast<float>(x)); });
   }
-  return actual;
+  return this->inPieces() ? this->ofPiece(actual) : actual;
 }
 
 //------------------------------------------------------------------------------
@@ -286,6 +479,13 @@ std::vector<double> MovableMesh::rounded(const std::vector<double>& points, bool
   if (!single && this->frame().isIdentity())
   {
     return points;
+  }
+  if (this->inPieces())
+  {
+    std::vector<double> result = points;
+    std::transform(result.begin(), result.end(), result.begin(),
+      [](double x) { return static_cast<double>(static_cast<float>(x)); });
+    return result;
   }
   std::vector<double> result = this->written(points, single);
   this->frame().enter(result);
@@ -328,23 +528,58 @@ std::vector<double> MovableMesh::settle(const std::vector<double>& points, std::
 }
 
 //------------------------------------------------------------------------------
-std::vector<signed char> MovableMesh::validityAt(const std::vector<double>& points) const
+Mesh MovableMesh::placed(const std::vector<double>& points, std::vector<double>& storage) const
 {
-  Mesh moved = this->mesh().at(points.data());
+  if (this->inPieces())
+  {
+    storage = this->ofPiece(points);
+  }
+  Mesh moved = this->mesh().at(this->inPieces() ? storage.data() : points.data());
   moved.setSpace(this->mesh().space());
-  return validityOf(moved, this->Threads);
+  return moved;
 }
 
 //------------------------------------------------------------------------------
-void fixSelected(MovableMesh& mesh, vtkDataSet* selected)
+std::vector<signed char> MovableMesh::validityAt(const std::vector<double>& points) const
 {
-  if (selected)
+  std::vector<double> storage;
+  return validityOf(this->placed(points, storage), this->Threads);
+}
+
+//------------------------------------------------------------------------------
+const std::vector<signed char>& MovableMesh::validity() const
+{
+  if (this->Validity.empty()) // of a piece: most filters do not need it
   {
-    vtkDataArray* ofCells = selected->GetCellData()->GetArray(SelectedArray);
-    vtkDataArray* ofPoints = selected->GetPointData()->GetArray(SelectedArray);
-    mesh.fix(ofCells, true);
-    mesh.fix(ofPoints, false);
+    this->Validity = validityOf(this->mesh(), this->Threads);
   }
+  return this->Validity;
+}
+
+//------------------------------------------------------------------------------
+int MovableMesh::dimension() const
+{
+  return this->inPieces()                           ? this->Spread->dimension
+    : this->mesh().dimension() == Dimension::Volume ? 3
+                                                    : 2;
+}
+
+//------------------------------------------------------------------------------
+Index MovableMesh::allPoints() const
+{
+  return this->inPieces() ? this->distributed().globalPoints() : this->mesh().view().numberOfPoints;
+}
+
+//------------------------------------------------------------------------------
+Index MovableMesh::allCells() const
+{
+  return this->inPieces() ? this->distributed().globalCells() : this->mesh().view().numberOfCells;
+}
+
+//------------------------------------------------------------------------------
+std::string MovableMesh::coarseness() const
+{
+  return this->inPieces() ? "" : this->Adapter.coarseness();
 }
 
 //------------------------------------------------------------------------------

@@ -79,6 +79,15 @@ std::string firstProblem(const std::string& own)
 }
 
 //------------------------------------------------------------------------------
+bool isScattered(vtkDataObject* input)
+{
+  vtkMultiProcessController* all = severalProcesses();
+  const bool here = all && all->GetLocalProcessId() > 0 && input &&
+    input->GetNumberOfElements(vtkDataObject::CELL) > 0;
+  return minimumOverProcesses(here ? 0 : 1) == 0;
+}
+
+//------------------------------------------------------------------------------
 void requireOneProcess(vtkDataObject* input)
 {
   vtkMultiProcessController* controller = severalProcesses();

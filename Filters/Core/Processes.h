@@ -40,6 +40,9 @@ TAUTLINECORE_EXPORT int minimumOverProcesses(int own);
 /// none has. Collective; MPI is not needed.
 TAUTLINECORE_EXPORT std::string firstProblem(const std::string& own);
 
+/// Whether processes other than the first have cells of a mesh. Collective; MPI is not needed.
+TAUTLINECORE_EXPORT bool isScattered(vtkDataObject* input);
+
 /// Throws Error, on all processes, if a data set has cells on several of them. Collective; MPI is
 /// not needed.
 TAUTLINECORE_EXPORT void requireOneProcess(vtkDataObject* input);

@@ -4,7 +4,11 @@
 #include "Blocks.h"
 #include "BlockSeams.h"
 #include "GatheredExecution.h"
+#include "MovableMesh.h"
+#include "ProcessGroup.h"
 #include "Processes.h"
+#include "tautline/Mesh/CoordinateFrame.h"
+#include "tautline/Mesh/DistributedMesh.h"
 
 #include "vtkDataSet.h"
 #include "vtkInformationVector.h"
@@ -22,6 +26,26 @@ void vtkMeshMotionAlgorithm::ForEachBlock(vtkInformationVector** inputVector,
   const std::function<void(const tautline::InputBlock&)>& visit)
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[MeshPort]);
+  vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
+  auto* selection = vtkSelection::GetData(inputVector[fixedPort]);
+  this->BlockNotice.clear();
+  this->NumberOfBlocks = 1;
+  if (this->WorksOnPieces())
+  {
+    auto* piece = vtkDataSet::SafeDownCast(input);
+    if (!piece)
+    {
+      throw tautline::Error("The reproducible order is that of one mesh, and the input has blocks: "
+                            "run Merge Blocks first, or switch Reproducible Order off.");
+    }
+    const bool empty = piece->GetNumberOfPoints() == 0;
+    const auto marked = tautline::markSelected(piece, empty ? nullptr : selection);
+    output->ShallowCopy(piece);
+    visit({ piece, vtkDataSet::SafeDownCast(reference), vtkDataSet::SafeDownCast(marked),
+      vtkDataSet::SafeDownCast(output), 0, "", 0, {} });
+    return;
+  }
+  this->Group.reset(); // of an execution before, on pieces
   tautline::requireOneProcess(input);
   this->BlockNotice =
     this->MergeCoincidentPoints ? tautline::describeBlockSeams(input, this->Threads) : "";
@@ -34,9 +58,9 @@ void vtkMeshMotionAlgorithm::ForEachBlock(vtkInformationVector** inputVector,
   {
     vtkWarningMacro(<< this->BlockNotice);
   }
-  const auto fixed = tautline::markSelected(input, vtkSelection::GetData(inputVector[fixedPort]));
+  const auto fixed = tautline::markSelected(input, selection);
   this->NumberOfBlocks = tautline::countBlocks(input);
-  tautline::forEachBlock(input, reference, fixed, vtkDataObject::GetData(outputVector, MeshPort),
+  tautline::forEachBlock(input, reference, fixed, output,
     [&visit](const tautline::InputBlock& block)
     {
       block.output->ShallowCopy(block.input);
@@ -45,6 +69,94 @@ void vtkMeshMotionAlgorithm::ForEachBlock(vtkInformationVector** inputVector,
         visit(block);
       }
     });
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshMotionAlgorithm::TakePiece(vtkDataObject* input, const std::string& why)
+{
+  this->Piece.reset();
+  this->Group.reset();
+  this->WhyGathered.clear();
+  const auto gather = [this](const std::string& reason)
+  {
+    this->WhyGathered = tautline::gatheredSentence(reason);
+    return false;
+  };
+  const bool scattered = tautline::isScattered(input);
+  if (!why.empty())
+  {
+    return gather(scattered ? why : "");
+  }
+  this->Group = tautline::tryProcessGroup();
+  if (!this->Group)
+  {
+    return gather("the processes do not communicate by MPI");
+  }
+  tautline::RankGroup& group = *this->Group;
+  if (group.size() == 1 || (this->Redistribute == NO_REDISTRIBUTION && !scattered))
+  {
+    return false;
+  }
+  auto* data = vtkDataSet::SafeDownCast(input);
+  if (group.any(!data))
+  {
+    return gather(scattered ? "it has blocks" : "");
+  }
+  std::unique_ptr<tautline::MovableMesh> mesh;
+  try
+  {
+    mesh = tautline::MovableMesh::makePiece(group, data, this->Threads, this->MergeCoincidentPoints,
+      static_cast<tautline::Redistribution>(this->Redistribute));
+  }
+  catch (const tautline::Error& error) // the same on all processes; one process may refuse it, too
+  {
+    return gather(
+      scattered ? std::string("its pieces could not be joined. ") + error.what() : std::string());
+  }
+  if (mesh && mesh->distributed().globalCells() == 0)
+  {
+    return false;
+  }
+  const auto isFramed = [](const tautline::MeshView& view)
+  { return !tautline::CoordinateFrame(tautline::coordinateRange(view), false).isIdentity(); };
+  const std::string reason = !mesh                    ? tautline::oppositeOrders
+    : group.any(isFramed(mesh->distributed().view())) ? "its coordinates are of extreme size"
+    : !mesh->inSpaceOrPlane()
+    ? "it is a surface in space, or in a plane that is not at right angles to an axis"
+    : "";
+  if (!reason.empty())
+  {
+    return gather(scattered ? reason : "");
+  }
+  this->Piece = std::move(mesh);
+  return true;
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshMotionAlgorithm::DropPiece()
+{
+  this->Piece.reset();
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<tautline::MovableMesh> vtkMeshMotionAlgorithm::MakeMesh(
+  const tautline::InputBlock& block, bool framed)
+{
+  if (this->Piece || !this->ReproducibleOrder)
+  {
+    return this->Piece ? std::move(this->Piece)
+                       : std::make_unique<tautline::MovableMesh>(
+                           block.input, this->Threads, this->MergeCoincidentPoints, framed);
+  }
+  this->Group = tautline::makeProcessGroup();
+  return std::make_unique<tautline::MovableMesh>(
+    *this->Group, block.input, this->Threads, this->MergeCoincidentPoints);
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshMotionAlgorithm::IsFirst() const
+{
+  return !this->Group || this->Group->rank() == 0;
 }
 
 //------------------------------------------------------------------------------

@@ -37,10 +37,14 @@
 #include "vtkTautlineSetRange.h"
 #include "vtkTautlineTimedAlgorithm.h"
 
+#include <memory> // for Group
+
 class vtkDataObject;
 
 namespace tautline
 {
+class MovableMesh;
+class RankGroup;
 struct InputBlock;
 }
 
@@ -98,8 +102,36 @@ protected:
   };
 
   /**
+   * For TakesPieces(): whether each process works on its piece of the mesh in the execution to
+   * come. Not where all cells are on the first process (unless redistributed), and where the mesh
+   * has to be gathered, which GetWhyGathered() then says: blocks, surfaces in space, planes that
+   * are inclined, cells of extreme size, and pieces that cannot be joined; and processes that do
+   * not communicate by MPI. Collective.
+   * @param input the mesh, or what it is at the first time step
+   * @param why what else needs the whole mesh, "features need the whole mesh"; or ""
+   */
+  bool TakePiece(vtkDataObject* input, const std::string& why);
+
+  /// Forgets a piece that an execution before did not use.
+  void DropPiece();
+
+  /// Whether this execution works on pieces, which may be the only one in the reproducible order.
+  bool WorksOnPieces() const { return this->Piece || this->ReproducibleOrder; }
+
+  /// The mesh of a data set within ForEachBlock(), see tautline::MovableMesh; that of TakePiece(),
+  /// which is no longer kept.
+  std::unique_ptr<tautline::MovableMesh> MakeMesh(const tautline::InputBlock& block, bool framed);
+
+  /// Whether this process reports for all that work on pieces; the only one does.
+  bool IsFirst() const;
+
+  /// Why the mesh was put together, as a sentence, or "".
+  const std::string& GetWhyGathered() const { return this->WhyGathered; }
+
+  /**
    * Calls visit for each data set of the input, with its counterparts and its output, which has the
-   * arrays of the input. Data sets without points or cells are passed on without a call.
+   * arrays of the input. Data sets without points or cells are passed on without a call, but for
+   * pieces, which may be empty.
    * @param reference a data object of the same structure, or null
    * @param fixedPort the input port with the selection of fixed points
    * @param boundaryMoves whether points of the boundary can move by themselves, so that a seam
@@ -120,6 +152,7 @@ protected:
 
   bool MergeCoincidentPoints = true;
   int Redistribute = NO_REDISTRIBUTION;
+  bool ReproducibleOrder = false; ///< a property of some filters
 
 private:
   vtkMeshMotionAlgorithm(const vtkMeshMotionAlgorithm&) = delete;
@@ -127,6 +160,10 @@ private:
 
   int NumberOfBlocks = 1;
   std::string BlockNotice;
+  // Of an execution on several processes:
+  std::unique_ptr<tautline::RankGroup> Group;   ///< outlives Piece
+  std::unique_ptr<tautline::MovableMesh> Piece; ///< null: gathered, or one process
+  std::string WhyGathered;
 };
 
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PieceMotion.h"
 
-#include "RankMesh.h"
+#include "MovableMesh.h"
 
 #include <algorithm>
 #include <array>
@@ -16,10 +16,10 @@ constexpr double NotGiven = std::numeric_limits<double>::infinity();
 
 /// Takes the least of what the pieces give for a point.
 /// @param given 3 per point of the piece
-void takeLeast(RankGroup& group, const RankMesh& mesh, const std::vector<double>& given,
-  double amount, PieceMotion& motion)
+void takeLeast(
+  const MovableMesh& mesh, const std::vector<double>& given, double amount, PieceMotion& motion)
 {
-  const Index points = mesh.mesh().localPoints();
+  const Index points = mesh.distributed().localPoints();
   std::vector<double> component, negative;
   component.resize(given.size() / 3);
   negative.resize(component.size());
@@ -42,19 +42,19 @@ void takeLeast(RankGroup& group, const RankMesh& mesh, const std::vector<double>
       }
     }
   }
-  motion.farthest = group.maximum(motion.farthest);
+  motion.farthest = mesh.group().maximum(motion.farthest);
 }
 }
 
 //------------------------------------------------------------------------------
-Index countOwned(RankGroup& group, const DistributedMesh& mesh, const PointFlags& flags)
+Index countOwned(const DistributedMesh& mesh, const PointFlags& flags)
 {
   Index count = 0;
   for (Index p = 0; p < mesh.localPoints(); ++p)
   {
     count += flags[p] != 0 && mesh.owned(p);
   }
-  return group.sum(count);
+  return mesh.group().sum(count);
 }
 
 //------------------------------------------------------------------------------
@@ -65,11 +65,11 @@ double diagonalOf(const DistributedMesh& mesh)
 }
 
 //------------------------------------------------------------------------------
-PieceMotion motionOfPieces(RankGroup& group, RankMesh& mesh, const PointFlags& chosen,
-  double amount, const std::function<Vec3(Index)>& displacementOf)
+PieceMotion motionOfPieces(const MovableMesh& mesh, const PointFlags& chosen, double amount,
+  const std::function<Vec3(Index)>& displacementOf)
 {
   const Index points = mesh.piece().numberOfPoints;
-  const std::vector<Index>& localOf = mesh.mesh().localOfPiece();
+  const std::vector<Index>& localOf = mesh.distributed().localOfPiece();
   PieceMotion motion;
   std::vector<double> given;
   PointFlags broken;
@@ -85,18 +85,18 @@ PieceMotion motionOfPieces(RankGroup& group, RankMesh& mesh, const PointFlags& c
     broken[p] = !std::isfinite(d[0]) || !std::isfinite(d[1]) || !std::isfinite(d[2]);
     std::copy(d.begin(), d.end(), &given[3 * p]);
   }
-  motion.broken = countOwned(group, mesh.mesh(), mesh.anyOf(broken));
+  motion.broken = countOwned(mesh.distributed(), mesh.anyOf(broken));
   if (motion.broken == 0)
   {
-    takeLeast(group, mesh, given, amount, motion);
+    takeLeast(mesh, given, amount, motion);
   }
   return motion;
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> localPoints(const RankMesh& mesh, const std::vector<double>& ofPiece)
+std::vector<double> localPoints(const MovableMesh& mesh, const std::vector<double>& ofPiece)
 {
-  const Index points = mesh.mesh().localPoints();
+  const Index points = mesh.distributed().localPoints();
   std::vector<double> local, component;
   local.resize(3 * points);
   component.resize(ofPiece.size() / 3);

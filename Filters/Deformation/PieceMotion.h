@@ -16,7 +16,7 @@
 
 namespace tautline
 {
-class RankMesh;
+class MovableMesh;
 
 /// A motion of the points here.
 struct PieceMotion
@@ -27,7 +27,7 @@ struct PieceMotion
 };
 
 /// The points of all processes whose flag (one per local point) is set. Collective.
-Index countOwned(RankGroup& group, const DistributedMesh& mesh, const PointFlags& flags);
+Index countOwned(const DistributedMesh& mesh, const PointFlags& flags);
 
 /// The length of the diagonal of the box around a mesh.
 double diagonalOf(const DistributedMesh& mesh);
@@ -39,12 +39,12 @@ double diagonalOf(const DistributedMesh& mesh);
  * @param chosen one flag per local point: others are not asked for
  * @param displacementOf what a point of the piece moves by
  */
-PieceMotion motionOfPieces(RankGroup& group, RankMesh& mesh, const PointFlags& chosen,
-  double amount, const std::function<Vec3(Index)>& displacementOf);
+PieceMotion motionOfPieces(const MovableMesh& mesh, const PointFlags& chosen, double amount,
+  const std::function<Vec3(Index)>& displacementOf);
 
 /// Coordinates of local points from those of the pieces, which are the same for one point on all of
-/// them, as RankMesh::ofPiece() gives them. Collective.
-std::vector<double> localPoints(const RankMesh& mesh, const std::vector<double>& ofPiece);
+/// them, as MovableMesh::ofPiece() gives them. Collective.
+std::vector<double> localPoints(const MovableMesh& mesh, const std::vector<double>& ofPiece);
 
 /// A mesh with other points, in place, as views of it read them; until the end of its life.
 class PlacedPoints

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WarpOutput.h"
 
+#include "Measurement.h"
 #include "tautline/Quality/Statistics.h"
 #include "tautline/Quality/Targets.h"
 
@@ -22,19 +23,6 @@ namespace
 {
 constexpr const char* ShapeArray = "TMP shape";
 constexpr double Rounding = 1e-13; // smaller values are those of the same shape
-
-/// A metric over the measured elements (Statistics.h); the values of all cells go to `values`.
-WarpMeasurement measure(const Mesh& mesh, Metric metric, const EvaluationOptions& options,
-  const signed char* validity, const unsigned char* skip, double* values)
-{
-  const MetricInfo& info = metricInfo(metric);
-  evaluateMetric(mesh, metric, options, values);
-  const CellValues data = { mesh.view().numberOfCells, values, validity, mesh.view().cellTypes,
-    skip };
-  const MetricStatistics statistics = summarize(
-    info, mesh.dimension() == Dimension::Volume ? 3 : 2, measuredValues(info, data), false);
-  return { worstValue(info, statistics, worstElements(info, data)), statistics.mean };
-}
 
 template <class Array, class Values>
 void addCellArray(vtkDataSet* output, const char* name, const Values& values)
@@ -146,78 +134,11 @@ std::string describe(const WarpResult& result, const WarpFacts& facts, const War
        << (facts.reused ? "; the matrices were those of the run before." : ".");
   return text.str();
 }
-}
-
-//------------------------------------------------------------------------------
-void addWarpOutput(const MovableMesh& rest, const WarpResult& result, const WarpFacts& facts,
-  const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals)
-{
-  const Mesh& mesh = rest.mesh();
-  const std::string note = rest.move(vtkPointSet::SafeDownCast(block.output), result.points);
-  const std::vector<signed char> validity = rest.validityAt(result.points);
-  MeshView view = mesh.view();
-  view.points = result.points.data();
-  Mesh moved(view, facts.threads);
-  moved.setMirrored(mesh.mirrored());
-
-  WarpQualities q;
-  std::vector<double> values(view.numberOfCells);
-  EvaluationOptions ideal, similar;
-  ideal.threads = similar.threads = facts.threads;
-  q.before = measure(
-    mesh, Metric::InverseMeanRatio, ideal, rest.validity().data(), rest.skipped(), values.data());
-  q.after =
-    measure(moved, Metric::InverseMeanRatio, ideal, validity.data(), rest.skipped(), values.data());
-  const Targets targets = referenceTargets(moved, mesh);
-  similar.targets = &targets;
-  q.shape = measure(
-    moved, Metric::ShapeSimilarity, similar, validity.data(), rest.skipped(), values.data());
-  const ValidityCounts counts = countValidity(validity.data(), rest.skipped(), view.numberOfCells);
-  q.inverted = counts.inverted + counts.degenerate;
-  q.elements = q.inverted + counts.valid;
-  addWarpArrays(block.output, values, validity);
-  addWarpReport(result, facts, q, block.name, { note, rest.notice() }, history, statistics, totals);
-}
-
-//------------------------------------------------------------------------------
-void addWarpArrays(
-  vtkDataSet* output, std::vector<double>& shape, const std::vector<signed char>& validity)
-{
-  std::replace_if(
-    shape.begin(), shape.end(), [](double value) { return value < Rounding; }, 0.0);
-  addCellArray<vtkDoubleArray>(output, ShapeArray, shape);
-  addCellArray<vtkSignedCharArray>(output, "Validity", validity);
-  // Without active point scalars, views colour by the shape.
-  output->GetPointData()->SetActiveScalars(nullptr);
-  output->GetCellData()->SetActiveScalars(ShapeArray);
-}
-
-//------------------------------------------------------------------------------
-void addWarpReport(const WarpResult& result, const WarpFacts& facts, const WarpQualities& q,
-  const std::string& block, const std::vector<std::string>& notes, TableRows& history,
-  TableRows& statistics, WarpTotals& totals)
-{
-  addHistory(result, block, history);
-  addStatistics(result, facts, q, block, statistics);
-  std::ostringstream text;
-  text << (totals.summary.empty() ? "" : "\n") << (block.empty() ? "" : "In " + block + ": ")
-       << describe(result, facts, q);
-  std::vector<std::string> sentences = notes;
-  sentences.insert(sentences.begin(), result.message);
-  for (const std::string& sentence : sentences)
-  {
-    text << (sentence.empty() ? "" : "\n") << sentence;
-  }
-  totals.summary += text.str();
-  totals.invertedAfterWarp += result.invertedWarp;
-  totals.inverted += q.inverted;
-  totals.impossible += result.impossible;
-  totals.incomplete |= result.amount < 1;
-  totals.worstShape = std::max(totals.worstShape, q.shape.worst);
-  totals.reused += facts.reused;
-}
-
-//------------------------------------------------------------------------------
+/**
+ * The shape (4.22) of each cell against that before, with targets. Volumes are measured range by
+ * range, as the targets of a cell need nine times the memory of its value.
+ * @param values one per cell, filled
+ */
 void measureSimilarity(
   const Mesh& after, const Mesh& before, int threads, std::vector<double>& values)
 {
@@ -248,5 +169,86 @@ void measureSimilarity(
     options.targets = &targets;
     evaluateMetric(now, Metric::ShapeSimilarity, options, values.data() + first);
   }
+}
+
+/// @param shape values are rounded to 0 in place
+void addWarpArrays(
+  vtkDataSet* output, std::vector<double>& shape, const std::vector<signed char>& validity)
+{
+  std::replace_if(
+    shape.begin(), shape.end(), [](double value) { return value < Rounding; }, 0.0);
+  addCellArray<vtkDoubleArray>(output, ShapeArray, shape);
+  addCellArray<vtkSignedCharArray>(output, "Validity", validity);
+  // Without active point scalars, views colour by the shape.
+  output->GetPointData()->SetActiveScalars(nullptr);
+  output->GetCellData()->SetActiveScalars(ShapeArray);
+}
+
+/// @param notes further sentences; empty ones are left out
+void addWarpReport(const WarpResult& result, const WarpFacts& facts, const WarpQualities& q,
+  const std::string& block, const std::vector<std::string>& notes, TableRows& history,
+  TableRows& statistics, WarpTotals& totals)
+{
+  addHistory(result, block, history);
+  addStatistics(result, facts, q, block, statistics);
+  std::ostringstream text;
+  text << (totals.summary.empty() ? "" : "\n") << (block.empty() ? "" : "In " + block + ": ")
+       << describe(result, facts, q);
+  std::vector<std::string> sentences = notes;
+  sentences.insert(sentences.begin(), result.message);
+  for (const std::string& sentence : sentences)
+  {
+    text << (sentence.empty() ? "" : "\n") << sentence;
+  }
+  totals.summary += text.str();
+  totals.invertedAfterWarp += result.invertedWarp;
+  totals.inverted += q.inverted;
+  totals.impossible += result.impossible;
+  totals.incomplete |= result.amount < 1;
+  totals.worstShape = std::max(totals.worstShape, q.shape.worst);
+  totals.reused += facts.reused;
+}
+}
+
+//------------------------------------------------------------------------------
+void addWarpOutput(MovableMesh& rest, WarpResult& result, const WarpFacts& facts,
+  const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals)
+{
+  const std::string note = rest.move(vtkPointSet::SafeDownCast(block.output), result.points);
+  const std::vector<signed char> validity = rest.validityAt(result.points);
+  std::vector<double> ofPiece;
+  if (rest.inPieces())
+  {
+    ofPiece = rest.ofPiece(result.points);
+    result.points = {};
+    rest.releaseDistributed();
+  }
+  const Mesh& mesh = rest.mesh();
+  MeshView view = mesh.view();
+  view.points = rest.inPieces() ? ofPiece.data() : result.points.data();
+  Mesh moved(view, facts.threads);
+  moved.setMirrored(mesh.mirrored());
+
+  WarpQualities q;
+  std::vector<double> values(view.numberOfCells);
+  EvaluationOptions ideal;
+  ideal.threads = facts.threads;
+  const auto measureAt = [&](
+                           const Mesh& at, const std::vector<signed char>& valid) -> WarpMeasurement
+  {
+    const Measurement m = measure(rest.ranks(), at, rest.dimension(), Metric::InverseMeanRatio,
+      ideal, valid.data(), rest.skipped(), values.data());
+    return { m.worst, m.statistics.mean };
+  };
+  q.before = measureAt(mesh, rest.validity());
+  q.after = measureAt(moved, validity);
+  measureSimilarity(moved, mesh, facts.threads, values);
+  const Measurement shape = measureValues(rest.ranks(), view, rest.dimension(),
+    Metric::ShapeSimilarity, validity.data(), rest.skipped(), values.data());
+  q.shape = { shape.worst, shape.statistics.mean };
+  q.inverted = shape.counts.inverted + shape.counts.degenerate;
+  q.elements = q.inverted + shape.counts.valid;
+  addWarpArrays(block.output, values, validity);
+  addWarpReport(result, facts, q, block.name, { note, rest.notice() }, history, statistics, totals);
 }
 }

@@ -52,29 +52,11 @@ struct WarpTotals
 
 /**
  * @brief Gives the output the new points and the arrays `Displacement`, `TMP shape` (the active
- * scalars) and `Validity`, adds rows to the tables and to the totals.
+ * scalars) and `Validity`, adds rows to the tables and to the totals. Of a mesh in pieces: the
+ * numbers are of the whole mesh, the rows for the first process, and the memory of the mesh and of
+ * the points is freed; collective.
  */
-void addWarpOutput(const MovableMesh& rest, const WarpResult& result, const WarpFacts& facts,
+void addWarpOutput(MovableMesh& rest, WarpResult& result, const WarpFacts& facts,
   const InputBlock& block, TableRows& history, TableRows& statistics, WarpTotals& totals);
-
-/// The part of it that adds the arrays; values of the shape are rounded to 0 in place.
-void addWarpArrays(
-  vtkDataSet* output, std::vector<double>& shape, const std::vector<signed char>& validity);
-
-/**
- * @brief The part of it that adds rows and sentences.
- * @param notes further sentences; empty ones are left out
- */
-void addWarpReport(const WarpResult& result, const WarpFacts& facts, const WarpQualities& qualities,
-  const std::string& block, const std::vector<std::string>& notes, TableRows& history,
-  TableRows& statistics, WarpTotals& totals);
-
-/**
- * @brief The shape (4.22) of each cell against that before, with targets. Volumes are measured
- * range by range, as the targets of a cell need nine times the memory of its value.
- * @param values one per cell, filled
- */
-void measureSimilarity(
-  const Mesh& after, const Mesh& before, int threads, std::vector<double>& values);
 }
 #endif

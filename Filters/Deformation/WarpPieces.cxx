@@ -2,8 +2,6 @@
 #include "WarpPieces.h"
 
 #include "Processes.h"
-#include "RankMesh.h"
-#include "RankStatistics.h"
 #include "PieceMotion.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Mesh/BoundaryParts.h"
@@ -49,17 +47,13 @@ WarpResult copyWithoutPoints(WarpResult& result)
 class PieceWarp
 {
 public:
-  PieceWarp(WarpSession& session, RankGroup& group, RankMesh& mesh, const WarpPiece& piece);
+  PieceWarp(WarpSession& session, MovableMesh& mesh, const InputBlock& piece, vtkDataObject* moved);
   void run(TableRows& history, TableRows& statistics, WarpTotals& totals);
 
 private:
-  DistributedMesh& local() { return this->Whole.mesh(); }
+  DistributedMesh& local() { return this->Whole.distributed(); }
   bool here() const { return this->Piece.input->GetNumberOfPoints() > 0; }
-  Index countOwned(const PointFlags& flags)
-  {
-    return tautline::countOwned(this->Group, this->local(), flags);
-  }
-  Index countInvalid(const std::vector<double>& points);
+  Index countOwned(const PointFlags& flags) { return tautline::countOwned(this->local(), flags); }
   void requireElements();
   PointFlags chosenToMove();
   PointFlags staying();
@@ -80,9 +74,10 @@ private:
   WarpSession& Session;
   const WarpSettings& Settings;
   RankGroup& Group;
-  RankMesh& Whole;
-  const WarpPiece& Piece; ///< at this time step; the mesh is that of the first
-  std::vector<Index> Ids; ///< per local point
+  MovableMesh& Whole;
+  const InputBlock& Piece; ///< at this time step; the mesh is that of the first
+  vtkDataSet* Selected;    ///< with what is selected to move, or null
+  std::vector<Index> Ids;  ///< per local point
   PointFlags Boundary, Moved, Stay, Prescribed;
   std::vector<double> Displacement; ///< 3 per local point, at the amount
   MovedPoints Cloud;                ///< of a transform
@@ -90,12 +85,14 @@ private:
 };
 
 //------------------------------------------------------------------------------
-PieceWarp::PieceWarp(WarpSession& session, RankGroup& group, RankMesh& mesh, const WarpPiece& piece)
+PieceWarp::PieceWarp(
+  WarpSession& session, MovableMesh& mesh, const InputBlock& piece, vtkDataObject* moved)
   : Session(session)
   , Settings(session.settings)
-  , Group(group)
+  , Group(mesh.group())
   , Whole(mesh)
   , Piece(piece)
+  , Selected(vtkDataSet::SafeDownCast(moved))
   , Ids(mesh.pointIds())
 {
 }
@@ -156,10 +153,8 @@ PointFlags PieceWarp::chosenToMove()
     return moved;
   }
   PointFlags marked(this->Whole.piece().numberOfPoints, 0);
-  const bool selected = this->Group.any(this->Piece.moved != nullptr);
-  const auto copy = markSelected(this->Piece.input, this->Piece.moved);
-  choice.selected = vtkDataSet::SafeDownCast(copy);
-  choice.elsewhere = selected;
+  choice.selected = this->Selected;
+  choice.elsewhere = this->Group.any(this->Selected != nullptr);
   if (choice.part == MovedPart::Values && this->here())
   {
     choice.array = chosenArray(set.arrays, MovedArray, this->Piece.input, "of the part that moves");
@@ -185,12 +180,11 @@ PointFlags PieceWarp::staying()
   if (this->here())
   {
     const Mesh piece(this->Whole.piece());
-    const auto copy = markSelected(this->Piece.input, this->Piece.fixed);
     markPoints(piece,
       chosenArray(
         this->Settings.arrays, FixedArray, this->Piece.input, "of fixed points", ArrayOf::Points),
       false, marked);
-    markPoints(piece, vtkDataSet::SafeDownCast(copy), marked);
+    markPoints(piece, this->Piece.selected, marked);
   }
   return this->Whole.anyOf(marked);
 }
@@ -211,11 +205,10 @@ void PieceWarp::moveByArray()
   {
     given = displacementsOf(displacementArray(this->Settings.arrays, this->Piece.input), boundary);
   }
-  PieceMotion motion =
-    motionOfPieces(this->Group, this->Whole, this->Boundary, this->Settings.amount,
-      [&given](Index p) {
-        return Vec3{ given[3 * p], given[3 * p + 1], given[3 * p + 2] };
-      });
+  PieceMotion motion = motionOfPieces(this->Whole, this->Boundary, this->Settings.amount,
+    [&given](Index p) {
+      return Vec3{ given[3 * p], given[3 * p + 1], given[3 * p + 2] };
+    });
   if (motion.farthest > 0)
   {
     throw Error("Points at the same place are treated as one, but have different displacements: "
@@ -233,14 +226,13 @@ void PieceWarp::moveOverTime()
     throw Error(NoTimeSteps);
   }
   const MeshView& piece = this->Whole.piece();
-  PieceMotion motion =
-    motionOfPieces(this->Group, this->Whole, this->Boundary, this->Settings.amount,
-      [&](Index p)
-      {
-        Vec3 place;
-        this->Piece.input->GetPoint(p, place.data());
-        return place - tautline::pointOf(piece, p);
-      });
+  PieceMotion motion = motionOfPieces(this->Whole, this->Boundary, this->Settings.amount,
+    [&](Index p)
+    {
+      Vec3 place;
+      this->Piece.input->GetPoint(p, place.data());
+      return place - tautline::pointOf(piece, p);
+    });
   if (motion.broken > 0)
   {
     throw Error("The displacements of " + std::to_string(motion.broken) +
@@ -464,20 +456,10 @@ WarpResult PieceWarp::run(const std::vector<double>& displacement)
 }
 
 //------------------------------------------------------------------------------
-/// Adds arrays and rows. What is no longer needed is freed on the way, as it is as large as what is
-/// measured: the points of the result, the local mesh and what has moved it.
+/// Adds arrays and rows. What has moved the mesh is freed, as it is as large as what is measured.
 void PieceWarp::report(WarpResult& result, WarpFacts& facts, TableRows& history,
   TableRows& statistics, WarpTotals& totals)
 {
-  const int threads = this->Settings.options.threads;
-  const std::string note =
-    this->Whole.move(vtkPointSet::SafeDownCast(this->Piece.output), result.points);
-  const MeshView& view = this->Whole.piece();
-  std::vector<double> end, values;
-  std::vector<signed char> validity;
-  std::unique_ptr<Mesh> before, after;
-  end = this->Whole.ofPiece(result.points);
-  result.points = {};
   this->Displacement = {};
   this->Tensors = {};
   this->Ids = {};
@@ -486,36 +468,7 @@ void PieceWarp::report(WarpResult& result, WarpFacts& facts, TableRows& history,
   {
     *flags = {};
   }
-  this->Whole.releaseMesh();
-  before = std::make_unique<Mesh>(view, threads);
-  before->setMirrored(this->Whole.mirrored());
-  after.reset(new Mesh(this->Whole.movedPiece(end)));
-  validity.resize(view.numberOfCells);
-  values.resize(view.numberOfCells);
-  const int dimension = this->Whole.volume() ? 3 : 2;
-  const unsigned char* skip = this->Whole.skipped().data();
-  WarpQualities q;
-  EvaluationOptions ideal;
-  ideal.threads = threads;
-  for (const bool moved : { false, true })
-  {
-    const Mesh& mesh = moved ? *after : *before;
-    mesh.classifyCells(validity.data(), threads);
-    const Measurement m = measureOnRanks(this->Group, mesh, dimension, Metric::InverseMeanRatio,
-      ideal, validity.data(), skip, values.data());
-    (moved ? q.after : q.before) = { m.worst, m.statistics.mean };
-  }
-  measureSimilarity(*after, *before, threads, values);
-  const Measurement shape = summarizeOnRanks(
-    this->Group, view, dimension, Metric::ShapeSimilarity, validity.data(), skip, values.data());
-  q.shape = { shape.worst, shape.statistics.mean };
-  q.inverted = shape.counts.inverted + shape.counts.degenerate;
-  q.elements = q.inverted + shape.counts.valid;
-  addWarpArrays(this->Piece.output, values, validity);
-  TableRows unused;
-  const bool first = this->Group.rank() == 0; // tables of several processes would be joined
-  addWarpReport(result, facts, q, "", { note, this->Whole.notice() }, first ? history : unused,
-    first ? statistics : unused, totals);
+  addWarpOutput(this->Whole, result, facts, this->Piece, history, statistics, totals);
 }
 
 //------------------------------------------------------------------------------
@@ -611,19 +564,19 @@ bool areAlike(vtkDataSet* piece, vtkDataSet* other)
 }
 
 //------------------------------------------------------------------------------
-void warpPieces(WarpSession& session, RankGroup& group, RankMesh& mesh, const WarpPiece& piece,
-  TableRows& history, TableRows& statistics, WarpTotals& totals)
+void warpPieces(WarpSession& session, MovableMesh& mesh, const InputBlock& block,
+  vtkDataObject* moved, TableRows& history, TableRows& statistics, WarpTotals& totals)
 {
-  group.together(
+  mesh.group().together(
     [&]
     {
-      if (session.sequence() && group.any(!areAlike(piece.input, session.ownPiece().first)))
+      if (session.sequence() && mesh.group().any(!areAlike(block.input, session.ownPiece().first)))
       {
         session.beginGathered();
       }
       else if (session.atRequested() || session.settings.fromPreviousStep)
       {
-        PieceWarp(session, group, mesh, piece).run(history, statistics, totals);
+        PieceWarp(session, mesh, block, moved).run(history, statistics, totals);
       }
     });
 }

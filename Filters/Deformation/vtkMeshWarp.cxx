@@ -3,7 +3,6 @@
 
 #include "GatheredExecution.h"
 #include "Processes.h"
-#include "RankMesh.h"
 #include "WarpPieces.h"
 
 #include "vtkDemandDrivenPipeline.h"
@@ -313,33 +312,33 @@ int vtkMeshWarp::RequestData(
   tautline::TableRows history, statistics;
   tautline::WarpTotals totals;
   this->ClearNumbers();
-  const std::unique_ptr<tautline::RankMesh> pieces = std::move(this->Pieces);
   std::string failure = FailureOf("choose conjugate gradients with BoomerAMG (Automatic Solver "
                                   "off), or warp the mesh in parts",
     [&]
     {
       session.requireSameTimes();
-      if (pieces || session.piecewise)
+      if (session.piecewise && !this->WorksOnPieces())
+      {
+        session.beginGathered(); // of other kinds than at the first time step
+        return;
+      }
+      const auto moved =
+        tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedPort]));
+      if (this->WorksOnPieces())
       {
         if (!session.sequence())
         {
           session.clear();
         }
-        if (!pieces) // of other kinds than at the first time step
-        {
-          session.beginGathered();
-          return;
-        }
-        output->ShallowCopy(input);
-        vtkDataObject* first = session.sequence() ? session.firstPiece(input) : input;
-        const tautline::WarpPiece piece = { vtkDataSet::SafeDownCast(input),
-          vtkDataSet::SafeDownCast(first), vtkSelection::GetData(inputVector[MovedPort]),
-          vtkSelection::GetData(inputVector[FixedPort]), vtkDataSet::SafeDownCast(output) };
-        tautline::warpPieces(session, *this->Group, *pieces, piece, history, statistics, totals);
+        tautline::TableRows unused; // tables of several processes would be joined
+        this->ForEachBlock(inputVector, outputVector, nullptr, FixedPort, false,
+          [&](const tautline::InputBlock& block)
+          {
+            tautline::warpPieces(session, *this->MakeMesh(block, false), block, moved,
+              this->IsFirst() ? history : unused, this->IsFirst() ? statistics : unused, totals);
+          });
         return;
       }
-      const auto moved =
-        tautline::markSelected(input, vtkSelection::GetData(inputVector[MovedPort]));
       this->ForEachBlock(inputVector, outputVector, nullptr, FixedPort, false,
         [&](const tautline::InputBlock& block)
         { session.visit(block, target, moved, history, statistics, totals); });
@@ -376,8 +375,8 @@ int vtkMeshWarp::RequestData(
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
   this->Summary = totals.summary;
-  this->AddToSummary(pieces ? "" : this->GetBlockNotice());
-  this->AddToSummary(this->WhyGathered);
+  this->AddToSummary(this->GetBlockNotice());
+  this->AddToSummary(this->GetWhyGathered());
   this->InvertedAfterWarp = totals.invertedAfterWarp;
   this->Inverted = totals.inverted;
   this->Impossible = totals.impossible;
@@ -425,8 +424,7 @@ tautline::GatheredRules vtkMeshWarp::GetGatheredRules()
 //------------------------------------------------------------------------------
 bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
 {
-  this->Pieces.reset();
-  this->Group.reset();
+  this->DropPiece();
   tautline::WarpSession& session = *this->Session;
   session.settings = this->GetSettings();
   const bool sequence = session.sequence();
@@ -445,27 +443,19 @@ bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
   vtkPointSet* first = sequence ? session.firstPiece(input) : nullptr;
   const bool toTarget = session.settings.motion == tautline::MotionSource::Target;
-  std::string why =
-    toTarget && tautline::isScattered(input) ? "a motion to a target needs the whole mesh" : "";
-  if (sequence && session.gathers)
-  {
-    why = "its pieces change over time";
-  }
-  else if (!toTarget)
-  {
-    this->Pieces = tautline::takePieces(this->Group, first ? first : input, this->Threads,
-      this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute), &why);
-  }
-  this->WhyGathered = tautline::gatheredSentence(why);
+  const std::string why = sequence && session.gathers ? "its pieces change over time"
+    : toTarget                                        ? "a motion to a target needs the whole mesh"
+                                                      : "";
+  const bool taken = this->TakePiece(first ? first : input, why);
   if (sequence && !session.begun)
   {
-    session.piecewise = this->Pieces != nullptr;
+    session.piecewise = taken;
     if (!session.piecewise)
     {
       session.forgetFrom(0);
     }
   }
-  return this->Pieces || (sequence && session.piecewise);
+  return taken || (sequence && session.piecewise);
 }
 
 //------------------------------------------------------------------------------

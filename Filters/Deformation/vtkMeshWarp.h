@@ -105,8 +105,6 @@ class vtkLinearTransform;
 
 namespace tautline
 {
-class RankGroup;
-class RankMesh;
 class WarpSession;
 struct WarpSettings;
 }
@@ -469,11 +467,6 @@ protected:
 private:
   vtkMeshWarp(const vtkMeshWarp&) = delete;
   void operator=(const vtkMeshWarp&) = delete;
-
-  /// The mesh of an execution in which each process takes its piece; else null.
-  std::unique_ptr<tautline::RankGroup> Group;
-  std::unique_ptr<tautline::RankMesh> Pieces;
-  std::string WhyGathered; ///< a sentence, or ""
 
   void ClearNumbers();
   /// Whether the time of a request is a fraction of the way.

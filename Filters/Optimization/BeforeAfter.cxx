@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BeforeAfter.h"
 
-#include "RankStatistics.h"
+#include "Measurement.h"
 #include "tautline/Core/Parallel.h"
 
 #include "vtkCellData.h"
@@ -19,34 +19,28 @@ namespace tautline
 {
 namespace
 {
-/// @param unit the length that is 1 in the coordinates of the mesh
-/// @param known the values of the metric, or empty
-Measurement measure(const Mesh& mesh, double unit, const MeasuredMetric& what,
-  const std::vector<double>& known, const signed char* validity, const unsigned char* skip,
-  double* values)
+/// @param known the values of the metric, or empty @param values filled
+Measurement measureMetric(const MovableMesh& movable, const Mesh& mesh, const MeasuredMetric& what,
+  const std::vector<double>& known, const signed char* validity, double* values)
 {
   const MetricInfo& info = metricInfo(what.metric);
   const Index cells = mesh.view().numberOfCells;
-  if (known.empty())
-  {
-    evaluateMetric(mesh, what.metric, what.options, values);
-  }
-  else
+  if (!known.empty())
   {
     std::copy(known.begin(), known.end(), values);
   }
-  const int power = info.lengthPower(mesh.dimension() == Dimension::Volume ? 3 : 2);
+  else if (cells > 0)
+  {
+    evaluateMetric(mesh, what.metric, what.options, values);
+  }
+  const double unit = movable.frame().unit();
+  const int power = info.lengthPower(movable.dimension());
   for (Index i = 0; i < cells && unit != 1 && power != 0; ++i)
   {
     values[i] *= std::pow(unit, power);
   }
-  const CellValues data = { cells, values, validity, mesh.view().cellTypes, skip };
-  Measurement result;
-  result.statistics = summarize(
-    info, mesh.dimension() == Dimension::Volume ? 3 : 2, measuredValues(info, data), false);
-  result.counts = countValidity(validity, skip, cells);
-  result.worst = worstValue(info, result.statistics, worstElements(info, data));
-  return result;
+  return measureValues(movable.ranks(), mesh.view(), movable.dimension(), what.metric, validity,
+    movable.skipped(), values);
 }
 
 vtkSmartPointer<vtkDoubleArray> addCellArray(vtkDataSet* output, const std::string& name)
@@ -135,8 +129,8 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
   const std::string& block, vtkDataSet* output, TableRows& rows)
 {
   const MeshView& view = mesh.mesh().view();
-  Mesh moved = mesh.mesh().at(points.data());
-  moved.setSpace(mesh.mesh().space());
+  std::vector<double> storage;
+  const Mesh moved = mesh.placed(points, storage);
   vtkNew<vtkSignedCharArray> validity;
   validity->SetName("Validity");
   validity->SetNumberOfValues(view.numberOfCells);
@@ -149,7 +143,7 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
     std::copy(known.validity.begin(), known.validity.end(), validity->GetPointer(0));
   }
 
-  const double unit = mesh.frame().unit();
+  const signed char* const validityBefore = mesh.validity().data();
   std::ostringstream text;
   const std::vector<double> unknown;
   for (const MeasuredMetric& what : metrics)
@@ -157,51 +151,27 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
     const bool first = &what == &metrics.front();
     double* const valuesBefore = addCellArray(output, what.name + "_before")->GetPointer(0);
     double* const valuesAfter = addCellArray(output, what.name)->GetPointer(0);
-    // At the same time: much of it is not cut into chunks.
     Measurement before, after;
-    parallelFor(2, 1, threads,
-      [&](Index which)
-      {
-        which == 0 ? before = measure(mesh.mesh(), unit, what, first ? known.before : unknown,
-                       mesh.validity().data(), mesh.skipped(), valuesBefore)
-                   : after = measure(moved, unit, what, first ? known.after : unknown,
-                       validity->GetPointer(0), mesh.skipped(), valuesAfter);
-      });
+    const auto measure = [&](Index which)
+    {
+      which == 0 ? before = measureMetric(mesh, mesh.mesh(), what, first ? known.before : unknown,
+                     validityBefore, valuesBefore)
+                 : after = measureMetric(mesh, moved, what, first ? known.after : unknown,
+                     validity->GetPointer(0), valuesAfter);
+    };
+    if (mesh.inPieces())
+    {
+      measure(0);
+      measure(1);
+    }
+    else // at the same time: much of it is not cut into chunks
+    {
+      parallelFor(2, 1, threads, measure);
+    }
     addRow(what, block, before, after, rows, text);
   }
   output->GetCellData()->AddArray(validity);
   // Without active point scalars, views colour by the metric.
-  output->GetPointData()->SetActiveScalars(nullptr);
-  output->GetCellData()->SetActiveScalars(metrics.front().name.c_str());
-  return text.str();
-}
-
-//------------------------------------------------------------------------------
-std::string addBeforeAfterOnRanks(RankGroup& group, const RankMesh& mesh,
-  const std::vector<double>& points, const std::vector<MeasuredMetric>& metrics, int threads,
-  vtkDataSet* output, TableRows& rows)
-{
-  const MeshView& view = mesh.piece();
-  const std::vector<double> start(view.points, view.points + 3 * view.numberOfPoints);
-  const Mesh input = mesh.movedPiece(start), moved = mesh.movedPiece(points);
-  const std::vector<signed char> before = mesh.validityAt(start);
-  vtkNew<vtkSignedCharArray> validity;
-  validity->SetName("Validity");
-  validity->SetNumberOfValues(view.numberOfCells);
-  moved.classifyCells(validity->GetPointer(0), threads);
-  std::ostringstream text;
-  const int dimension = mesh.volume() ? 3 : 2;
-  for (const MeasuredMetric& what : metrics)
-  {
-    const Measurement then =
-      measureOnRanks(group, input, dimension, what.metric, what.options, before.data(),
-        mesh.skipped().data(), addCellArray(output, what.name + "_before")->GetPointer(0));
-    const Measurement now =
-      measureOnRanks(group, moved, dimension, what.metric, what.options, validity->GetPointer(0),
-        mesh.skipped().data(), addCellArray(output, what.name)->GetPointer(0));
-    addRow(what, "", then, now, rows, text);
-  }
-  output->GetCellData()->AddArray(validity);
   output->GetPointData()->SetActiveScalars(nullptr);
   output->GetCellData()->SetActiveScalars(metrics.front().name.c_str());
   return text.str();

@@ -7,7 +7,6 @@
 #define tautline_BeforeAfter_h
 
 #include "MovableMesh.h"
-#include "RankMesh.h"
 #include "TableRows.h"
 #include "tautline/Objectives/Objective.h"
 #include "tautline/Optimization/Optimize.h"
@@ -38,19 +37,12 @@ std::vector<std::string> objectiveNames(const std::vector<Objective>& objectives
  * `OutsideAcceptable`, `Inverted`, `Degenerate`
  * @param known of these points, with the first metric, if it was measured before; what is empty is
  * measured
+ * Of a mesh in pieces: arrays of the piece, numbers of the whole mesh, the same on all processes;
+ * collective.
  * @return a line per metric: "imr: mean 1.3 to 1.1, worst 8.2 to 2.1"
  */
 std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& points,
   const std::vector<MeasuredMetric>& metrics, const VerifiedElements& known, int threads,
   const std::string& block, vtkDataSet* output, TableRows& rows);
-
-/**
- * @brief The same of a mesh on several processes: arrays of the piece, numbers of the whole mesh,
- * the same on all. Collective.
- * @param points of the piece
- */
-std::string addBeforeAfterOnRanks(RankGroup& group, const RankMesh& mesh,
-  const std::vector<double>& points, const std::vector<MeasuredMetric>& metrics, int threads,
-  vtkDataSet* output, TableRows& rows);
 }
 #endif

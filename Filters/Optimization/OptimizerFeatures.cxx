@@ -82,6 +82,10 @@ bool OptimizerSetup::slidesOnModel(const OptimizerSettings& settings) const
 //------------------------------------------------------------------------------
 void OptimizerSetup::setFeatures(const OptimizerSettings& settings, const InputBlock& block)
 {
+  if (this->TheMesh.inPieces())
+  {
+    return; // see requireLocalSettings()
+  }
   const bool regions =
     chosenArray(settings.arrays, RegionArray, block.input, "of regions", ArrayOf::Cells) != nullptr;
   const bool keep = this->slidesOnModel(settings) || (settings.keepFeatures && regions);
@@ -195,6 +199,10 @@ void OptimizerSetup::placePoints()
 void OptimizerSetup::setSurfaceTolerance(const OptimizerSettings& settings)
 {
   this->Options.onGeometry = this->HasGeometry;
+  if (this->TheMesh.inPieces())
+  {
+    return;
+  }
   const bool slides =
     settings.boundary == BoundaryMotion::OnSurface || !this->Model.interfaces.empty();
   if (!slides || !(settings.surfaceTolerance > 0) ||

@@ -2,7 +2,6 @@
 // The points of a result as they are written.
 #include "OptimizerSetup.h"
 
-#include "RankMesh.h"
 #include "tautline/Optimization/RoundedResult.h"
 
 namespace tautline
@@ -50,27 +49,47 @@ void take(OptimizeResult& result, std::vector<double> points, RoundedResult& rou
 }
 
 //------------------------------------------------------------------------------
+RoundedResult OptimizerSetup::measureAt(const std::vector<double>& points,
+  const std::vector<signed char>& validity, OptimizeResult& result) const
+{
+  if (this->TheMesh.inPieces())
+  {
+    return measureRoundedOnRanks(
+      this->TheMesh.distributed(), this->TheMesh.mirrored(), this->Options, result, points);
+  }
+  Mesh there = this->start().at(points.data());
+  there.setSpace(this->start().space());
+  return measureRounded(this->start(), validity, this->Options, result, there);
+}
+
+//------------------------------------------------------------------------------
 void OptimizerSetup::round(OptimizerRun& run) const
 {
   OptimizeResult& result = run.result;
   const MovableMesh& mesh = this->TheMesh;
   const Mesh& start = this->start();
   const MeshView& view = start.view();
-  const std::vector<signed char> validity =
-    &start == &mesh.mesh() ? mesh.validity() : validityOf(start, this->Options.threads);
+  std::vector<signed char> validity;
+  if (!mesh.inPieces())
+  {
+    validity = &start == &mesh.mesh() ? mesh.validity() : validityOf(start, this->Options.threads);
+  }
   RoundedResult rounded;
   run.note.clear();
   run.warning.clear();
   for (run.single = mesh.isSingle();; run.single = false)
   {
+    if (mesh.inPieces() && !run.single)
+    {
+      return; // in double precision they are as they were verified
+    }
     std::vector<double> points = mesh.rounded(result.points, run.single);
-    if (points == result.points)
+    const bool changed = points != result.points;
+    if (!(mesh.inPieces() ? mesh.group().any(changed) : changed))
     {
       return;
     }
-    Mesh there = start.at(points.data());
-    there.setSpace(start.space());
-    rounded = measureRounded(start, validity, this->Options, result, there);
+    rounded = this->measureAt(points, validity, result);
     // Where the input has invalid elements, double precision may cost some that were repaired.
     const bool kept = rounded.keepsGuarantees() ||
       (!run.single && result.invertedBefore > 0 && rounded.inverted <= result.invertedBefore);
@@ -95,34 +114,5 @@ void OptimizerSetup::round(OptimizerRun& run) const
   result.untangled = false;
   result.newlyInvalid = 0;
   run.single = mesh.isSingle();
-}
-
-//------------------------------------------------------------------------------
-void roundOnRanks(RankMesh& mesh, const OptimizeOptions& options, OptimizerRun& run)
-{
-  OptimizeResult& result = run.result;
-  run.note.clear();
-  run.single = mesh.isSingle();
-  if (!run.single)
-  {
-    return;
-  }
-  std::vector<double> points = mesh.rounded(result.points);
-  if (!mesh.mesh().group().any(points != result.points))
-  {
-    return;
-  }
-  const Mesh start = localMesh(mesh.mesh(), mesh.mirrored(), options.threads);
-  Mesh there = start.at(points.data());
-  there.setSpace(start.space());
-  RoundedResult rounded = measureRounded(
-    start, validityOf(start, options.threads), options, result, there, Ranks(mesh.mesh()));
-  if (rounded.keepsGuarantees())
-  {
-    take(result, std::move(points), rounded);
-    return;
-  }
-  run.single = false;
-  run.note = describeDouble(rounded);
 }
 }

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "OptimizerSetup.h"
 
+#include "tautline/Objectives/ObjectiveSum.h"
+#include "tautline/Optimization/QualityGuard.h"
+#include "tautline/Optimization/RoundedResult.h"
+
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <sstream>
 
 namespace tautline
@@ -28,8 +33,9 @@ std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose)
 }
 
 //------------------------------------------------------------------------------
-OptimizerSetup::OptimizerSetup(const OptimizerSettings& settings, const InputBlock& block)
-  : TheMesh(block.input, settings.options.threads, settings.mergePoints, true)
+OptimizerSetup::OptimizerSetup(
+  const OptimizerSettings& settings, const InputBlock& block, MovableMesh& mesh)
+  : TheMesh(mesh)
   , Options(settings.options)
 {
   this->setFixed(settings, block);
@@ -44,11 +50,10 @@ OptimizerSetup::OptimizerSetup(const OptimizerSettings& settings, const InputBlo
 void OptimizerSetup::setFixed(const OptimizerSettings& settings, const InputBlock& block)
 {
   MovableMesh& mesh = this->TheMesh;
-  const auto points = static_cast<std::size_t>(mesh.mesh().view().numberOfPoints);
   mesh.fix(
     chosenArray(settings.arrays, FixedArray, block.input, "of fixed points", ArrayOf::Points),
     false);
-  fixSelected(mesh, block.selected);
+  mesh.fixSelected(block.selected);
   const bool onSurface =
     settings.boundary == BoundaryMotion::OnSurface && !this->slidesOnModel(settings);
   if (settings.boundary == BoundaryMotion::Fixed)
@@ -57,17 +62,18 @@ void OptimizerSetup::setFixed(const OptimizerSettings& settings, const InputBloc
   }
   else if (settings.boundary == BoundaryMotion::Sliding || onSurface)
   {
-    this->Shape =
-      boundaryShape(mesh.mesh(), settings.flatAngle, onSurface ? settings.featureAngle : 0.0);
+    this->Shape = mesh.inPieces()
+      ? boundaryShapeOnRanks(mesh.distributed(), settings.flatAngle, settings.options.threads)
+      : boundaryShape(mesh.mesh(), settings.flatAngle, onSurface ? settings.featureAngle : 0.0);
     mesh.fixCorners(this->Shape);
-    for (std::size_t i = 0; i < 3 * points; ++i)
+    for (std::size_t i = 0; i < 3 * mesh.fixed().size(); ++i)
     {
       if (mesh.fixed()[i / 3])
       {
         this->Shape.planes[i] = this->Shape.lines[i] = 0;
       }
     }
-    for (std::size_t i = 0; i < points; ++i)
+    for (std::size_t i = 0; i < this->Shape.surface.size(); ++i)
     {
       this->Shape.surface[i] &= !mesh.fixed()[i];
     }
@@ -88,19 +94,20 @@ void OptimizerSetup::setLimits(const OptimizerSettings& settings, const InputBlo
   {
     limit = limit < 0 ? std::numeric_limits<double>::infinity() : limit;
   }
-  if (!array && settings.maximumDisplacement > 0)
+  const bool given =
+    this->TheMesh.inPieces() ? this->TheMesh.group().any(!this->Limits.empty()) : array != nullptr;
+  if (given)
   {
-    this->Limits.assign(this->TheMesh.mesh().view().numberOfPoints, settings.maximumDisplacement);
+    // Points that are one may move as far as the one with the smallest limit.
+    this->Limits = this->TheMesh.leastOf(this->Limits, std::numeric_limits<double>::infinity());
+  }
+  else if (settings.maximumDisplacement > 0)
+  {
+    this->Limits.assign(this->TheMesh.fixed().size(), settings.maximumDisplacement);
   }
   for (double& limit : this->Limits)
   {
     limit /= this->TheMesh.frame().unit();
-  }
-  // Points that are one may move as far as the one with the smallest limit.
-  const std::vector<Index>& one = this->TheMesh.representative();
-  for (std::size_t p = 0; !this->Limits.empty() && p < one.size(); ++p)
-  {
-    this->Limits[one[p]] = std::min(this->Limits[one[p]], this->Limits[p]);
   }
   this->Options.limits = this->Limits.empty() ? nullptr : this->Limits.data();
 }
@@ -109,23 +116,36 @@ void OptimizerSetup::setLimits(const OptimizerSettings& settings, const InputBlo
 const Targets* OptimizerSetup::target(
   const OptimizerSettings& settings, const InputBlock& block, TargetType type)
 {
-  Targets& made = this->MadeTargets[static_cast<std::size_t>(type)];
-  if (type == TargetType::Ideal || !made.offsets.empty())
+  const auto number = static_cast<std::size_t>(type);
+  Targets& made = this->MadeTargets[number];
+  if (type == TargetType::Ideal || this->HasTargets[number])
   {
     return type == TargetType::Ideal ? nullptr : &made;
   }
+  this->HasTargets[number] = true;
   TargetChoice choice;
   choice.type = type;
   choice.reference = block.reference;
-  if (type == TargetType::Size || type == TargetType::Tensor)
+  const bool hasCells = block.input->GetNumberOfCells() > 0; // a piece may be empty
+  if (hasCells && (type == TargetType::Size || type == TargetType::Tensor))
   {
     const bool size = type == TargetType::Size;
     (size ? choice.size : choice.tensor) =
       settings.targetArray(size ? SizeArray : TensorArray, block.input);
   }
-  made = makeTargets(this->TheMesh.given(), choice, this->Options.threads);
+  const MovableMesh& mesh = this->TheMesh;
+  if (mesh.inPieces())
+  {
+    const std::vector<double> ofPiece =
+      hasCells ? targetValues(mesh.piece(), choice) : std::vector<double>();
+    // First, so that errors have the numbers of the input's cells.
+    this->TargetsOfPiece[number] = targetsOf(mesh.given(), type, ofPiece);
+    made = targetsOf(mesh.local(), type, mesh.ofCells(ofPiece, targetComponents(type)));
+    return &made;
+  }
+  made = makeTargets(mesh.given(), choice, this->Options.threads);
   // T has the size it has in the coordinates of the input.
-  scaleTargets(made, this->TheMesh.frame().unit());
+  scaleTargets(made, mesh.frame().unit());
   return &made;
 }
 
@@ -137,9 +157,7 @@ void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const Inpu
   {
     this->keepTotalSize();
   }
-  this->Weights = scalarsOf(
-    chosenArray(settings.arrays, WeightArray, block.input, "of element weights", ArrayOf::Cells),
-    "weights");
+  this->setWeights(settings, block);
   if (settings.preset != Preset::Custom)
   {
     for (Objective& objective : objectives)
@@ -164,27 +182,109 @@ void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const Inpu
   {
     this->setUnit(objective);
     objective.evaluation.threads = this->Options.threads;
-    objective.elementWeights = this->Weights.empty() ? nullptr : this->Weights.data();
+    objective.elementWeights = this->Weights.capacity() > 0 ? this->Weights.data() : nullptr;
+  }
+}
+
+//------------------------------------------------------------------------------
+void OptimizerSetup::setWeights(const OptimizerSettings& settings, const InputBlock& block)
+{
+  this->Weights = scalarsOf(
+    chosenArray(settings.arrays, WeightArray, block.input, "of element weights", ArrayOf::Cells),
+    "weights");
+  if (!this->TheMesh.inPieces())
+  {
+    return;
+  }
+  for (std::size_t cell = 0; cell < this->Weights.size(); ++cell)
+  {
+    if (!this->TheMesh.skipped()[cell])
+    {
+      requireElementWeight(static_cast<Index>(cell), this->Weights[cell]);
+    }
+  }
+  if (this->TheMesh.group().any(!this->Weights.empty()))
+  {
+    this->Weights = this->TheMesh.ofCells(this->Weights, 1);
+    this->Weights.reserve(1); // not null, also without cells
   }
 }
 
 //------------------------------------------------------------------------------
 void OptimizerSetup::keepTotalSize()
 {
-  const Mesh& mesh = this->TheMesh.given();
-  std::vector<double> sizes(mesh.view().numberOfCells);
+  const bool pieces = this->TheMesh.inPieces();
+  const Mesh local = pieces ? this->TheMesh.local() : this->TheMesh.given();
+  std::vector<double> sizes(local.view().numberOfCells), own;
   EvaluationOptions evaluation;
   evaluation.threads = this->Options.threads;
-  evaluateMetric(mesh, Metric::Size, evaluation, sizes.data());
-  double total = 0;
-  Index valid = 0;
+  std::vector<signed char> validity;
+  if (!sizes.empty())
+  {
+    evaluateMetric(local, Metric::Size, evaluation, sizes.data());
+  }
+  if (pieces)
+  {
+    validity.resize(sizes.size());
+    local.classifyCells(validity.data(), this->Options.threads);
+  }
+  else
+  {
+    validity = this->TheMesh.validity();
+  }
   for (std::size_t i = 0; i < sizes.size(); ++i)
   {
-    total += this->TheMesh.validity()[i] == Valid ? sizes[i] : 0.0;
-    valid += this->TheMesh.validity()[i] == Valid;
+    if (validity[i] == Valid && (!pieces || this->TheMesh.distributed().ownedCells()[i]))
+    {
+      own.push_back(sizes[i]);
+    }
   }
-  compareSizesWith(mesh, total, valid,
-    this->MadeTargets[static_cast<std::size_t>(TargetType::Size)], this->Options);
+  auto valid = static_cast<Index>(own.size());
+  double total = std::accumulate(own.begin(), own.end(), 0.0);
+  constexpr auto size = static_cast<std::size_t>(TargetType::Size);
+  if (pieces)
+  {
+    total = this->TheMesh.group().orderlessSum(own);
+    valid = this->TheMesh.group().sum(valid);
+    compareSizesWith(
+      this->TheMesh.given(), total, valid, this->TargetsOfPiece[size], this->Options);
+  }
+  compareSizesWith(local, total, valid, this->MadeTargets[size], this->Options);
+}
+
+//------------------------------------------------------------------------------
+OptimizeResult OptimizerSetup::run()
+{
+  if (this->TheMesh.inPieces())
+  {
+    OptimizeResult result =
+      optimizeOnRanks(this->TheMesh.distributed(), this->TheMesh.mirrored(), this->Options);
+    result.elements = {}; // not of the cells of the input
+    return result;
+  }
+  // With a geometry, the start is another mesh than the input.
+  const bool asGiven = &this->start() == &this->TheMesh.mesh();
+  OptimizeResult result = optimize(
+    this->start(), this->Options, asGiven ? this->TheMesh.validity() : std::vector<signed char>());
+  result.surfaceError *= this->TheMesh.frame().unit();
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::vector<MeasuredMetric> OptimizerSetup::metrics() const
+{
+  if (!this->TheMesh.inPieces())
+  {
+    return measuredMetrics(this->Options, worstMetric(this->TheMesh.mesh(), this->Options));
+  }
+  std::vector<MeasuredMetric> metrics = measuredMetrics(
+    this->Options, this->Options.worstMetric.value_or(this->Options.objectives[0].metric));
+  for (MeasuredMetric& metric : metrics)
+  {
+    const Targets*& targets = metric.options.targets;
+    targets = targets ? &this->TargetsOfPiece[targets - this->MadeTargets.data()] : nullptr;
+  }
+  return metrics;
 }
 
 //------------------------------------------------------------------------------

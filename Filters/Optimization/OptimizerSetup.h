@@ -7,6 +7,7 @@
 #ifndef tautline_OptimizerSetup_h
 #define tautline_OptimizerSetup_h
 
+#include "BeforeAfter.h"
 #include "Blocks.h"
 #include "MovableMesh.h"
 #include "TargetChoice.h"
@@ -14,6 +15,7 @@
 #include "tautline/Mesh/Features.h"
 #include "tautline/Optimization/GeometryMatch.h"
 #include "tautline/Optimization/Optimize.h"
+#include "tautline/Optimization/OptimizeOnRanks.h"
 
 #include <array>
 #include <functional>
@@ -90,8 +92,8 @@ enum OptimizerArrays
   RegionArray = 6
 };
 
-class RankMesh;
 struct OptimizerRun;
+struct RoundedResult;
 
 /**
  * @class tautline::OptimizerSetup
@@ -101,14 +103,18 @@ struct OptimizerRun;
 class OptimizerSetup
 {
 public:
-  OptimizerSetup(const OptimizerSettings& settings, const InputBlock& block);
+  /// @param mesh of the block, framed; outlives the setup. Collective if it is in pieces.
+  OptimizerSetup(const OptimizerSettings& settings, const InputBlock& block, MovableMesh& mesh);
   OptimizerSetup(const OptimizerSetup&) = delete;
   OptimizerSetup& operator=(const OptimizerSetup&) = delete;
 
-  const MovableMesh& mesh() const { return this->TheMesh; }
   /// The mesh where the optimization starts: with a geometry, its points are placed on that.
   const Mesh& start() const { return this->Placed ? *this->Placed : this->TheMesh.mesh(); }
   OptimizeOptions& options() { return this->Options; }
+  /// Optimizes from start().
+  OptimizeResult run();
+  /// What is measured on the cells of the input.
+  std::vector<MeasuredMetric> metrics() const;
   /// Adds the arrays `FeatureKind` and `PatchId` of points, of surfaces also `PatchId` of cells.
   void addFeatures(vtkDataSet* output) const;
   /**
@@ -135,11 +141,16 @@ private:
   void setObjectives(const OptimizerSettings& settings, const InputBlock& block);
   void setUnit(Objective& objective) const;
   void keepTotalSize();
+  void setWeights(const OptimizerSettings& settings, const InputBlock& block);
+  RoundedResult measureAt(const std::vector<double>& points,
+    const std::vector<signed char>& validity, OptimizeResult& result) const;
   const Targets* target(
     const OptimizerSettings& settings, const InputBlock& block, TargetType type);
 
-  MovableMesh TheMesh;
-  std::array<Targets, 4> MadeTargets; ///< by type
+  MovableMesh& TheMesh;
+  std::array<Targets, 4> MadeTargets;    ///< by type, of the cells that are optimized
+  std::array<Targets, 4> TargetsOfPiece; ///< the same of the cells of the input, if in pieces
+  std::array<bool, 4> HasTargets = {};
   std::vector<double> Weights, Limits;
   BoundaryShape Shape;
   Features Found;
@@ -155,11 +166,15 @@ private:
 };
 
 /**
- * @brief Rounds the points of a result on several processes to those that are written, as
- * OptimizerSetup::round(). In double precision they are as they were verified. Collective.
- * @param options those of the run
+ * @brief Why settings need the whole mesh in one place, if they do; `what` is a plural.
+ * @param features whether feature kinds or regions are chosen, on any process
+ * @param animation whether iterations are kept
  */
-void roundOnRanks(RankMesh& mesh, const OptimizeOptions& options, OptimizerRun& run);
+NeedOfWholeMesh needOfWholeMesh(const OptimizerSettings& settings, bool features, bool animation);
+/// Throws Error for settings that need the whole mesh in one place, in its own order.
+void requireLocalSettings(const OptimizerSettings& settings, bool features, bool animation);
+/// Whether feature kinds or regions are chosen; also arrays that are missing, which others report.
+bool choosesFeatures(const OptimizerSettings& settings, vtkDataSet* input);
 
 /// The objectives of CUSTOM, without targets; one at least.
 std::vector<Objective> customObjectives(const OptimizerSettings& settings);

@@ -3,12 +3,11 @@
 
 #include "BeforeAfter.h"
 #include "ContentStamp.h"
+#include "GatheredExecution.h"
 #include "IterationHistory.h"
 #include "OptimizerSetup.h"
-#include "ProcessGroup.h"
+#include "Processes.h"
 #include "ProgressStep.h"
-#include "RankMesh.h"
-#include "tautline/Optimization/QualityGuard.h"
 
 #include "vtkDataSet.h"
 #include "vtkInformation.h"
@@ -429,12 +428,6 @@ int vtkMeshOptimizer::RequestData(
     this->Attempt(outputVector, "optimize the mesh in parts, or reduce Animation Memory",
       [&]
       {
-        if (this->Pieces || this->ReproducibleOrder)
-        {
-          this->OptimizeOnRanks(
-            inputVector, vtkDataObject::GetData(outputVector, MeshPort), history, statistics);
-          return;
-        }
         tautline::OptimizerSettings settings = this->GetSettings();
         settings.geometry = geometry;
         this->ForEachBlock(inputVector, outputVector, reference,
@@ -464,7 +457,7 @@ int vtkMeshOptimizer::RequestData(
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
   this->Report();
-  this->AddToSummary(this->WhyGathered);
+  this->AddToSummary(this->GetWhyGathered());
   if (this->Animation)
   {
     this->RequestInformation(nullptr, inputVector, outputVector);
@@ -489,8 +482,14 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   const tautline::InputBlock& block, tautline::OptimizerRun& run, bool done, double time,
   tautline::TableRows& history, tautline::TableRows& statistics)
 {
-  tautline::OptimizerSetup setup(settings, block);
-  const tautline::MovableMesh& mesh = setup.mesh();
+  if (this->WorksOnPieces())
+  {
+    tautline::requireLocalSettings(
+      settings, tautline::choosesFeatures(settings, block.input), this->Animation);
+  }
+  const std::unique_ptr<tautline::MovableMesh> made = this->MakeMesh(block, true);
+  const tautline::MovableMesh& mesh = *made;
+  tautline::OptimizerSetup setup(settings, block, *made);
   tautline::OptimizeOptions& options = setup.options();
   const tautline::MeshView& view = mesh.mesh().view();
   if (!done)
@@ -512,14 +511,10 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     };
     run.iterations = -1;
     options.stopping.maximumSeconds = this->GetRemainingSeconds();
-    // With a geometry, the start is another mesh than the input.
-    const bool asGiven = &setup.start() == &mesh.mesh();
-    run.result = tautline::optimize(
-      setup.start(), options, asGiven ? mesh.validity() : std::vector<signed char>());
-    run.result.surfaceError *= mesh.frame().unit();
+    run.result = setup.run();
     setup.round(run);
     this->Warn(run.warning);
-    if (!asGiven || !mesh.frame().isIdentity())
+    if (&setup.start() != &mesh.mesh() || !mesh.frame().isIdentity())
     {
       run.result.elements = {};
     }
@@ -536,8 +531,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   {
     note = mesh.move(vtkPointSet::SafeDownCast(block.output), points);
   }
-  const auto metrics =
-    tautline::measuredMetrics(options, tautline::worstMetric(mesh.mesh(), options));
+  const auto metrics = setup.metrics();
   if (this->ShowFeatures)
   {
     setup.addFeatures(block.output);
@@ -553,11 +547,15 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   const tautline::VerifiedElements known =
     ofResult ? std::move(run.result.elements) : tautline::VerifiedElements();
   run.result.elements = {};
-  const std::string shown = tautline::addBeforeAfter(
-    mesh, points, metrics, known, this->Threads, block.name, block.output, statistics);
+  tautline::TableRows unused; // tables of several processes would be joined
+  const std::string shown = tautline::addBeforeAfter(mesh, points, metrics, known, this->Threads,
+    block.name, block.output, this->IsFirst() ? statistics : unused);
   qualities = qualities.empty() ? shown : qualities;
-  tautline::addHistory(
-    history, run.result.history, tautline::objectiveNames(options.objectives), block.name);
+  if (this->IsFirst())
+  {
+    tautline::addHistory(
+      history, run.result.history, tautline::objectiveNames(options.objectives), block.name);
+  }
   if (!done)
   {
     run.summary = tautline::summarize(run.result, mesh, block.name) + qualities;
@@ -569,6 +567,42 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
       run.summary += (sentence.empty() ? "" : "\n") + sentence;
     }
     this->Warn(mesh.coarseness());
+  }
+}
+
+//------------------------------------------------------------------------------
+tautline::GatheredRules vtkMeshOptimizer::GetGatheredRules()
+{
+  tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
+  rules.result = tautline::GatheredResult::SameMesh;
+  return rules;
+}
+
+//------------------------------------------------------------------------------
+bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
+{
+  const auto onAny = [](bool here) { return tautline::minimumOverProcesses(here ? 0 : 1) == 0; };
+  this->InputsChanged = onAny(this->InputsChanged);
+  // What needs the whole mesh is not divided first.
+  tautline::OptimizerSettings settings = this->GetSettings();
+  settings.geometry = vtkDataObject::GetData(inputs[tautline::OptimizerPorts::Geometry]);
+  vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
+  const bool features = onAny(tautline::choosesFeatures(settings, vtkDataSet::SafeDownCast(input)));
+  const std::string what = tautline::needOfWholeMesh(settings, features, this->Animation).what;
+  return this->TakePiece(input, what.empty() ? "" : what + " need the whole mesh");
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshOptimizer::ExchangeResult(tautline::ResultStream& stream)
+{
+  this->Superclass::ExchangeResult(stream);
+  stream(this->Reason, this->StopReason, this->Iterations, this->FreePoints, this->InvertedBefore,
+    this->InvertedAfter, this->SurfaceError, this->LastIteration);
+  if (this->Animation)
+  {
+    this->RunTime.Modified();
+    // All processes announce the same time steps.
+    this->RequestInformation(nullptr, nullptr, this->GetExecutive()->GetOutputInformation());
   }
 }
 

@@ -94,8 +94,6 @@ struct InputBlock;
 struct ObjectiveRow;
 struct OptimizerRun;
 struct OptimizerSettings;
-class RankGroup;
-class RankMesh;
 }
 
 class TAUTLINEOPTIMIZATION_EXPORT vtkMeshOptimizer : public vtkMeshMotionAlgorithm
@@ -633,8 +631,6 @@ private:
   void Optimize(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
     tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
     tautline::TableRows& statistics);
-  void OptimizeOnRanks(vtkInformationVector** inputVector, vtkDataObject* output,
-    tautline::TableRows& history, tautline::TableRows& statistics);
   void Report();
 
   std::vector<tautline::ObjectiveRow> Rows;
@@ -676,7 +672,6 @@ private:
   double ImproveWorst = 0.0;
   int WorstMetric = -1;
   bool HoldWorst = true;
-  bool ReproducibleOrder = false;
   bool Animation = false;
   double AnimationMemory = 1000.0;
 
@@ -685,10 +680,6 @@ private:
   std::vector<vtkMTimeType> RunInputs;                       ///< the content of the inputs of Runs
   bool InputsChanged = true; ///< since the execution before; on several processes, of any
   int LastIteration = -1;    ///< the last one of any of Runs, on all processes; -1: none
-  // Of an execution on several processes:
-  std::unique_ptr<tautline::RankGroup> Group; ///< outlives Pieces
-  std::unique_ptr<tautline::RankMesh> Pieces; ///< null: gathered, or one process
-  std::string WhyGathered;                    ///< a sentence, or ""
   std::string Reason;
   int StopReason = -1;
   int Iterations = 0;

@@ -8,7 +8,7 @@
 #include "PieceResults.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
-#include "RankMesh.h"
+#include "MovableMesh.h"
 #include "ReconnectablePiece.h"
 #include "TableRows.h"
 #include "tautline/Reconnection/ReconnectionRounds.h"
@@ -57,7 +57,7 @@ bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
     }
     if (why.empty())
     {
-      this->Pieces = tautline::RankMesh::make(
+      this->Pieces = tautline::MovableMesh::makePiece(
         *this->Group, vtkDataSet::SafeDownCast(input), this->Threads, this->MergeCoincidentPoints);
       if (this->Pieces && this->Pieces->inverted() == 0)
       {
@@ -114,23 +114,21 @@ std::string vtkMeshImprover::FindReasonToGather(vtkDataObject* input)
 void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkDataObject* output,
   tautline::TableRows& history, tautline::TableRows& remaining)
 {
-  std::unique_ptr<tautline::RankMesh> mesh = std::move(this->Pieces);
+  std::unique_ptr<tautline::MovableMesh> mesh = std::move(this->Pieces);
   if (!mesh)
   {
     throw tautline::Error(this->PieceError);
   }
   tautline::RankGroup& group = *this->Group;
   auto* input = vtkDataSet::SafeDownCast(vtkDataObject::GetData(inputVector[MeshPort]));
-  vtkDataArray* regions = nullptr;
-  if (input->GetNumberOfPoints() > 0)
-  {
-    mesh->fix(tautline::chosenArray(this, tautline::ImproverArrays::Fixed, input, "of fixed points",
-                tautline::ArrayOf::Points),
-      false);
-    mesh->fixSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
-    regions = tautline::chosenArray(
-      this, tautline::ImproverArrays::Region, input, "of regions", tautline::ArrayOf::Cells);
-  }
+  mesh->fix(tautline::chosenArray(this, tautline::ImproverArrays::Fixed, input, "of fixed points",
+              tautline::ArrayOf::Points),
+    false);
+  const auto marked =
+    tautline::markSelected(input, vtkSelection::GetData(inputVector[SelectionPort]));
+  mesh->fixSelected(vtkDataSet::SafeDownCast(marked));
+  vtkDataArray* regions = tautline::chosenArray(
+    this, tautline::ImproverArrays::Region, input, "of regions", tautline::ArrayOf::Cells);
   tautline::ReconnectablePiece piece = tautline::takePiece(group, *mesh, input, regions);
   mesh.reset(); // its memory
   tautline::ReconnectionOptions options;

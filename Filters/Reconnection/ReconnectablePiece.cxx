@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ReconnectablePiece.h"
 
-#include "RankMesh.h"
+#include "MovableMesh.h"
 #include "ReconnectableMesh.h"
 #include "tautline/Core/Interruption.h"
 
@@ -17,7 +17,7 @@ namespace tautline
 namespace
 {
 /// The tetrahedra of a piece and the facets that its triangles mark.
-void takeCells(const RankMesh& mesh, ReconnectablePiece& piece)
+void takeCells(const MovableMesh& mesh, ReconnectablePiece& piece)
 {
   const MeshView& view = mesh.piece();
   RankTetrahedra& taken = piece.mesh;
@@ -105,7 +105,7 @@ CellKinds kindsOnRanks(RankGroup& group, vtkDataSet* input)
 
 //------------------------------------------------------------------------------
 ReconnectablePiece takePiece(
-  RankGroup& group, const RankMesh& mesh, vtkDataSet* input, vtkDataArray* regions)
+  RankGroup& group, const MovableMesh& mesh, vtkDataSet* input, vtkDataArray* regions)
 {
   ReconnectablePiece piece;
   piece.input = input;

@@ -17,7 +17,7 @@ class vtkDataSet;
 
 namespace tautline
 {
-class RankMesh;
+class MovableMesh;
 
 /// The sum of the values of the ranks before this one. Collective.
 Index sumBefore(RankGroup& group, Index value);
@@ -42,6 +42,6 @@ struct ReconnectablePiece
  * @param regions one value per cell, on all processes with cells or on none; or null
  */
 ReconnectablePiece takePiece(
-  RankGroup& group, const RankMesh& mesh, vtkDataSet* input, vtkDataArray* regions);
+  RankGroup& group, const MovableMesh& mesh, vtkDataSet* input, vtkDataArray* regions);
 }
 #endif

@@ -6,7 +6,7 @@
 #include "GatheredExecution.h"
 #include "ImprovedMesh.h"
 #include "ImproverReport.h"
-#include "RankMesh.h"
+#include "MovableMesh.h"
 #include "ReconnectableMesh.h"
 #include "TableRows.h"
 #include "tautline/Quality/Metrics.h"

@@ -98,7 +98,7 @@ class vtkDataSet;
 namespace tautline
 {
 class RankGroup;
-class RankMesh;
+class MovableMesh;
 class ReconnectableMesh;
 class TableRows;
 struct ImprovedCells;
@@ -417,7 +417,7 @@ private:
 
   /// Of an execution in which each process takes its piece: the mesh, or why it is an error.
   std::unique_ptr<tautline::RankGroup> Group;
-  std::unique_ptr<tautline::RankMesh> Pieces;
+  std::unique_ptr<tautline::MovableMesh> Pieces;
   std::string PieceError, LeftOut;
   std::string WhyGathered; ///< of one in which several processes do not; else ""
 

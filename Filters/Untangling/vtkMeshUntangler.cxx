@@ -5,9 +5,7 @@
 #include "GatheredExecution.h"
 #include "IterationHistory.h"
 #include "MovableMesh.h"
-#include "ProcessGroup.h"
 #include "ProgressStep.h"
-#include "RankMesh.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include "vtkCellData.h"
@@ -17,12 +15,12 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkSelection.h"
 #include "vtkSignedCharArray.h"
 #include "vtkTable.h"
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <sstream>
 
 vtkStandardNewMacro(vtkMeshUntangler);
@@ -56,35 +54,67 @@ void addFlags(vtkDataSet* output, const char* name, const std::vector<signed cha
 /// An element that is not valid.
 struct Remaining
 {
-  std::string name; ///< "Element 5"; of a mesh on several processes "Element": these have no ids
-  tautline::Obstacle obstacle;
+  std::string name; ///< "Element 3"; in pieces without the number, which the whole mesh has not
   tautline::Vec3 center;
+  std::size_t obstacle;
 };
 
-/// The elements with an obstacle, by id; on several processes by the numbers of their points.
+/// The result for a data set.
+struct Untangled
+{
+  tautline::UntangleResult result; ///< with obstacles per cell
+  std::vector<Remaining> remaining;
+  bool exceededMemory = false;
+};
+
+Untangled untangle(tautline::MovableMesh& mesh, const tautline::UntangleOptions& options)
+{
+  Untangled run;
+  if (!mesh.inPieces())
+  {
+    run.result = tautline::untangle(mesh.mesh(), options);
+    return run;
+  }
+  tautline::RankUntangleResult whole =
+    tautline::untangleOnRanks(mesh.distributed(), mesh.mirrored(), options);
+  run.result = std::move(whole.result);
+  run.exceededMemory = whole.exceededMemory;
+  run.result.obstacles.assign(mesh.mesh().view().numberOfCells, 0);
+  for (std::size_t cell = 0; cell < run.result.obstacles.size(); ++cell)
+  {
+    const auto found = whole.remaining.find(mesh.numbersOf(static_cast<tautline::Index>(cell)));
+    run.result.obstacles[cell] =
+      found == whole.remaining.end() ? 0 : static_cast<signed char>(found->second.obstacle);
+  }
+  for (const auto& [numbers, element] : whole.remaining)
+  {
+    run.remaining.push_back(
+      { "Element", element.center, static_cast<std::size_t>(element.obstacle) });
+  }
+  return run;
+}
+
+/// The elements with an obstacle, by id.
 std::vector<Remaining> remainingOf(
   const tautline::UntangleResult& result, const tautline::Mesh& moved)
 {
-  std::vector<Remaining> remaining;
-  for (std::size_t cell = 0; cell < result.obstacles.size(); ++cell)
+  std::map<tautline::Index, tautline::CellType> invalid;
+  for (const tautline::CellBlock& block : moved.blocks())
   {
     const auto obstacle = static_cast<tautline::Obstacle>(result.obstacles[cell]);
     if (obstacle != tautline::Obstacle::None)
     {
-      const auto id = static_cast<tautline::Index>(cell);
-      const auto type = tautline::cornerType(moved.view().cellTypes[cell]);
-      remaining.push_back({ "Element " + std::to_string(cell), obstacle, moved.center(id, type) });
+      if (result.obstacles[block.cell(i)] != static_cast<signed char>(tautline::Obstacle::None))
+      {
+        invalid[block.cell(i)] = block.type;
+      }
     }
   }
-  return remaining;
-}
-
-std::vector<Remaining> remainingOf(const tautline::UntangleResult& result)
-{
   std::vector<Remaining> remaining;
-  for (const auto& [numbers, element] : result.remaining)
+  for (const auto& [cell, type] : invalid)
   {
-    remaining.push_back({ "Element", element.obstacle, element.center });
+    remaining.push_back({ "Element " + std::to_string(cell), moved.center(cell, type),
+      static_cast<std::size_t>(result.obstacles[cell]) });
   }
   return remaining;
 }
@@ -112,10 +142,10 @@ std::string verdict(const tautline::UntangleResult& result, const std::vector<Re
   const auto listed = std::min<std::size_t>(remaining.size(), ListedElements);
   for (std::size_t i = 0; i < listed; ++i)
   {
-    const auto& [name, obstacle, at] = remaining[i];
+    const tautline::Vec3& at = remaining[i].center;
     text << "\n"
-         << name << " at (" << at[0] << ", " << at[1] << ", " << at[2]
-         << "): " << reasons[static_cast<std::size_t>(obstacle)] << ".";
+         << remaining[i].name << " at (" << at[0] << ", " << at[1] << ", " << at[2]
+         << "): " << reasons[remaining[i].obstacle] << ".";
   }
   if (remaining.size() > listed)
   {
@@ -145,19 +175,12 @@ int vtkMeshUntangler::RequestData(
     [&]
     {
       tautline::TableRows history;
-      if (this->Pieces || this->ReproducibleOrder)
-      {
-        this->UntangleOnRanks(inputVector, vtkDataObject::GetData(outputVector, MeshPort), history);
-        this->AddToSummary(this->WhyGathered);
-        history.fill(vtkTable::GetData(outputVector, HistoryPort));
-        return;
-      }
       this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, !this->FixBoundary,
         [&](const tautline::InputBlock& block) { this->Untangle(block, history); });
       this->AddToSummary(this->GetBlockNotice());
-      this->AddToSummary(this->WhyGathered);
+      this->AddToSummary(this->GetWhyGathered());
       history.fill(vtkTable::GetData(outputVector, HistoryPort));
-      if (this->NotValid > 0)
+      if (this->NotValid > 0 && this->IsFirst())
       {
         vtkWarningMacro(<< this->Summary);
       }
@@ -175,18 +198,19 @@ void vtkMeshUntangler::ClearResult()
 //------------------------------------------------------------------------------
 void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::TableRows& history)
 {
-  tautline::MovableMesh mesh(block.input, this->Threads, this->MergeCoincidentPoints, true);
+  const std::unique_ptr<tautline::MovableMesh> made = this->MakeMesh(block, true);
+  tautline::MovableMesh& mesh = *made;
   mesh.fix(tautline::chosenArray(
              this, FixedArray, block.input, "of fixed points", tautline::ArrayOf::Points),
     false);
-  tautline::fixSelected(mesh, block.selected);
+  mesh.fixSelected(block.selected);
   if (this->FixBoundary)
   {
     mesh.fixBoundary();
   }
 
-  const tautline::UntangleOptions options = this->GetOptions(mesh.fixed().data(), block.number);
-  tautline::UntangleResult result = tautline::untangle(mesh.mesh(), options);
+  Untangled run = untangle(mesh, this->GetOptions(mesh.fixed().data(), block.number));
+  tautline::UntangleResult& result = run.result;
   this->HaveBest();
   std::string unsettled;
   result.points = mesh.settle(result.points, unsettled);
@@ -202,19 +226,28 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   addFlags(block.output, "Obstacle", result.obstacles);
   block.output->GetPointData()->SetActiveScalars(nullptr);
   block.output->GetCellData()->SetActiveScalars("Validity");
-  tautline::addHistory(history, result.history, {}, block.name);
+  if (this->IsFirst())
+  {
+    tautline::addHistory(history, result.history, {}, block.name);
+  }
 
   this->Reason = tautline::describe(result.reason);
   this->InvertedBefore += result.invertedBefore;
   this->InvertedAfter += result.invertedAfter;
   this->Impossible += result.impossible;
-  const std::vector<double> points = mesh.actual(result.points);
-  const tautline::Mesh moved = mesh.actualMesh(points);
-  const std::vector<Remaining> remaining = remainingOf(result, moved);
-  this->NotValid += static_cast<vtkIdType>(remaining.size());
+  if (!mesh.inPieces())
+  {
+    const std::vector<double> points = mesh.actual(result.points);
+    run.remaining = remainingOf(result, mesh.actualMesh(points));
+  }
+  this->NotValid += static_cast<vtkIdType>(run.remaining.size());
   this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
-    verdict(result, remaining) +
+    verdict(result, run.remaining) +
     tautline::surfaceErrorSentence(mesh.frame().unit() * result.surfaceError));
+  this->AddToSummary(run.exceededMemory
+      ? "The whole mesh did not fit into the memory of the first process, where the elements that "
+        "are left would have been untangled: take fewer cells, or more memory."
+      : "");
   if (result.reason == tautline::StopReason::NoFreeVertices)
   {
     this->AddToSummary(mesh.whyNoneIsFree(BoundaryRemedy));
@@ -256,14 +289,7 @@ tautline::GatheredRules vtkMeshUntangler::GetGatheredRules()
 //------------------------------------------------------------------------------
 bool vtkMeshUntangler::TakesPieces(vtkInformationVector** inputs)
 {
-  this->Pieces.reset();
-  this->Group.reset();
-  std::string why;
-  this->Pieces =
-    tautline::takePieces(this->Group, vtkDataObject::GetData(inputs[MeshPort]), this->Threads,
-      this->MergeCoincidentPoints, static_cast<tautline::Redistribution>(this->Redistribute), &why);
-  this->WhyGathered = tautline::gatheredSentence(why);
-  return this->Pieces != nullptr;
+  return this->TakePiece(vtkDataObject::GetData(inputs[MeshPort]), "");
 }
 
 //------------------------------------------------------------------------------
@@ -271,76 +297,6 @@ void vtkMeshUntangler::ExchangeResult(tautline::ResultStream& stream)
 {
   this->Superclass::ExchangeResult(stream);
   stream(this->Reason, this->InvertedBefore, this->InvertedAfter, this->Impossible, this->NotValid);
-}
-
-//------------------------------------------------------------------------------
-void vtkMeshUntangler::UntangleOnRanks(
-  vtkInformationVector** inputVector, vtkDataObject* output, tautline::TableRows& history)
-{
-  std::unique_ptr<tautline::RankMesh> pieces = std::move(this->Pieces);
-  const auto group = pieces ? std::move(this->Group) : tautline::makeProcessGroup();
-  vtkDataObject* data = vtkDataObject::GetData(inputVector[MeshPort]);
-  if (!pieces)
-  {
-    pieces = std::make_unique<tautline::RankMesh>(
-      *group, tautline::requirePiece(data), this->Threads, this->MergeCoincidentPoints);
-  }
-  tautline::RankMesh& mesh = *pieces;
-  output->ShallowCopy(data);
-  auto* input = vtkDataSet::SafeDownCast(data);
-  if (input->GetNumberOfPoints() > 0)
-  {
-    mesh.fix(
-      tautline::chosenArray(this, FixedArray, input, "of fixed points", tautline::ArrayOf::Points),
-      false);
-    mesh.fixSelected(data, vtkSelection::GetData(inputVector[SelectionPort]));
-  }
-  const std::vector<unsigned char> fixed = mesh.fixed(this->FixBoundary);
-  constexpr int onlyBlock = 0;
-  const tautline::UntangleOptions options = this->GetOptions(fixed.data(), onlyBlock);
-  tautline::Mesh local(mesh.mesh().view(), this->Threads);
-  local.setMirrored(mesh.mirrored());
-  const tautline::UntangleResult result =
-    tautline::untangle(local, options, tautline::Ranks(mesh.mesh()));
-  const std::string note = mesh.move(vtkPointSet::SafeDownCast(output), result.points);
-  const std::vector<signed char> validity = mesh.validityAt(mesh.ofPiece(result.points));
-  std::vector<signed char> obstacles(validity.size(), 0);
-  for (std::size_t cell = 0; cell < validity.size(); ++cell)
-  {
-    const auto found = result.remaining.find(mesh.numbersOf(static_cast<tautline::Index>(cell)));
-    obstacles[cell] =
-      found == result.remaining.end() ? 0 : static_cast<signed char>(found->second.obstacle);
-  }
-  auto* set = vtkDataSet::SafeDownCast(output);
-  addFlags(set, "Validity", validity);
-  addFlags(set, "Obstacle", obstacles);
-  set->GetPointData()->SetActiveScalars(nullptr);
-  set->GetCellData()->SetActiveScalars("Validity");
-  this->Reason = tautline::describe(result.reason);
-  this->InvertedBefore = result.invertedBefore;
-  this->InvertedAfter = result.invertedAfter;
-  this->Impossible = result.impossible;
-  this->NotValid = static_cast<vtkIdType>(result.remaining.size());
-  this->AddToSummary(verdict(result, remainingOf(result)));
-  this->AddToSummary(result.exceededMemory
-      ? "The whole mesh did not fit into the memory of the first process, where the elements that "
-        "are left would have been untangled: take fewer cells, or more memory."
-      : "");
-  if (result.reason == tautline::StopReason::NoFreeVertices)
-  {
-    this->AddToSummary(mesh.whyNoneIsFree(this->FixBoundary, false, BoundaryRemedy));
-  }
-  this->AddToSummary(note);
-  this->AddToSummary(mesh.notice());
-  if (group->rank() > 0)
-  {
-    return; // the table and the warning are those of the first process
-  }
-  tautline::addHistory(history, result.history, {}, "");
-  if (this->NotValid > 0)
-  {
-    vtkWarningMacro(<< this->Summary);
-  }
 }
 
 //------------------------------------------------------------------------------

@@ -47,13 +47,10 @@
 #include "vtkMeshMotionAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
-#include <memory> // for Pieces
 #include <string> // for Reason
 
 namespace tautline
 {
-class RankGroup;
-class RankMesh;
 class TableRows;
 struct InputBlock;
 struct UntangleOptions;
@@ -148,17 +145,10 @@ private:
   void Untangle(const tautline::InputBlock& block, tautline::TableRows& history);
 
   tautline::UntangleOptions GetOptions(const unsigned char* fixed, int block);
-  void UntangleOnRanks(
-    vtkInformationVector** inputVector, vtkDataObject* output, tautline::TableRows& history);
 
   int Method = AUTOMATIC;
   int Effort = NORMAL;
   bool FixBoundary = true;
-  bool ReproducibleOrder = false;
-  // Of an execution on several processes:
-  std::unique_ptr<tautline::RankGroup> Group; ///< outlives Pieces
-  std::unique_ptr<tautline::RankMesh> Pieces; ///< null: gathered, or one process
-  std::string WhyGathered;                    ///< a sentence, or ""
   std::string Reason;
   vtkIdType InvertedBefore = 0;
   vtkIdType InvertedAfter = 0;

@@ -3,7 +3,7 @@
 // states the reason on all processes, and what one process refuses all refuse.
 #include "Registry.h"
 #include "MotionRanks.h"
-#include "RankMesh.h"
+#include "MovableMesh.h"
 #include "Surfaces.h"
 
 #include "vtkMeshOptimizer.h"

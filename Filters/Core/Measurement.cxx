@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "RankStatistics.h"
+#include "Measurement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@ namespace tautline
 namespace
 {
 /// The statistics of all lists together. Sums are rounded once, whatever the order of the values.
-MetricStatistics summarizeOnRanks(
+MetricStatistics summarizeTogether(
   RankGroup& group, const MetricInfo& info, int dimension, const std::vector<double>& own)
 {
   const MetricStatistics here = summarize(info, dimension, own, false);
@@ -46,45 +46,51 @@ MetricStatistics summarizeOnRanks(
 }
 
 //------------------------------------------------------------------------------
-Measurement measureOnRanks(RankGroup& group, const Mesh& piece, int dimension, Metric metric,
+Measurement measure(RankGroup* group, const Mesh& mesh, int dimension, Metric metric,
   const EvaluationOptions& options, const signed char* validity, const unsigned char* skip,
   double* values)
 {
-  if (piece.view().numberOfCells > 0)
+  if (mesh.view().numberOfCells > 0)
   {
-    evaluateMetric(piece, metric, options, values);
+    evaluateMetric(mesh, metric, options, values);
   }
-  return summarizeOnRanks(group, piece.view(), dimension, metric, validity, skip, values);
+  return measureValues(group, mesh.view(), dimension, metric, validity, skip, values);
 }
 
 //------------------------------------------------------------------------------
-Measurement summarizeOnRanks(RankGroup& group, const MeshView& view, int dimension, Metric metric,
+Measurement measureValues(RankGroup* group, const MeshView& view, int dimension, Metric metric,
   const signed char* validity, const unsigned char* skip, const double* values)
 {
   const MetricInfo& info = metricInfo(metric);
+  const CellValues data = { view.numberOfCells, values, validity, view.cellTypes, skip };
   std::vector<double> own;
-  std::vector<WorstElement> worstOfOwn, worst;
+  std::vector<WorstElement> worst;
   Measurement result;
   if (view.numberOfCells > 0)
   {
-    const CellValues data = { view.numberOfCells, values, validity, view.cellTypes, skip };
     own = measuredValues(info, data);
-    worstOfOwn = worstElements(info, data);
+    worst = worstElements(info, data);
     result.counts = countValidity(validity, skip, view.numberOfCells);
   }
-  for (const auto& list : group.gatherItems(worstOfOwn))
+  if (group)
   {
-    worst.insert(worst.end(), list.begin(), list.end());
+    const auto lists = group->gatherItems(worst);
+    worst.clear();
+    for (const auto& list : lists)
+    {
+      worst.insert(worst.end(), list.begin(), list.end());
+    }
+    std::sort(worst.begin(), worst.end(),
+      [&](const WorstElement& a, const WorstElement& b) { return isWorse(info, a, b); });
+    ValidityCounts& counts = result.counts;
+    for (Index* count : { &counts.valid, &counts.inverted, &counts.degenerate, &counts.notMeasured,
+           &counts.nonFinite })
+    {
+      *count = group->sum(*count);
+    }
   }
-  std::sort(worst.begin(), worst.end(),
-    [&](const WorstElement& a, const WorstElement& b) { return isWorse(info, a, b); });
-  ValidityCounts& counts = result.counts;
-  for (Index* count :
-    { &counts.valid, &counts.inverted, &counts.degenerate, &counts.notMeasured, &counts.nonFinite })
-  {
-    *count = group.sum(*count);
-  }
-  result.statistics = summarizeOnRanks(group, info, dimension, own);
+  result.statistics = group ? summarizeTogether(*group, info, dimension, own)
+                            : summarize(info, dimension, own, false);
   result.worst = worstValue(info, result.statistics, worst);
   return result;
 }

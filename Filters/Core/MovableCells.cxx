@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Values of cells, from the pieces to the processes that have the cells as their local ones.
-#include "RankMesh.h"
+#include "MovableMesh.h"
 
 #include "tautline/Mesh/CellTopology.h"
 
@@ -46,14 +46,14 @@ std::vector<Index> orderOf(
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> RankMesh::ofCells(const std::vector<double>& ofPiece, int components) const
+std::vector<double> MovableMesh::ofCells(const std::vector<double>& ofPiece, int components) const
 {
-  const DistributedMesh& mesh = *this->TheMesh;
+  const DistributedMesh& mesh = this->distributed();
   const MeshView& piece = this->piece();
-  const auto ranks = static_cast<std::size_t>(this->Group.size());
+  const auto ranks = static_cast<std::size_t>(this->group().size());
   std::vector<std::vector<CellKey>> sentKeys(ranks);
   std::vector<std::vector<double>> sentValues(ranks);
-  const bool any = this->Dimension > 0 && !ofPiece.empty();
+  const bool any = this->Spread->dimension > 0 && !ofPiece.empty();
   for (Index cell = 0; any && cell < piece.numberOfCells; ++cell)
   {
     if (this->Skip[cell])
@@ -78,12 +78,12 @@ std::vector<double> RankMesh::ofCells(const std::vector<double>& ofPiece, int co
     }
   }
   std::vector<CellKey> keys;
-  for (const auto& list : this->Group.exchangeItems(sentKeys))
+  for (const auto& list : this->group().exchangeItems(sentKeys))
   {
     keys.insert(keys.end(), list.begin(), list.end());
   }
   std::vector<double> values;
-  for (const auto& list : this->Group.exchangeItems(sentValues))
+  for (const auto& list : this->group().exchangeItems(sentValues))
   {
     values.insert(values.end(), list.begin(), list.end());
   }
