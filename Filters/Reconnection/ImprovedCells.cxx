@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ImprovedCells.h"
 
+#include "MeshAdapter.h"
 #include "MeshOutput.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Quality/Metrics.h"
@@ -12,6 +13,7 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
+#include "vtkPoints.h"
 
 #include <algorithm>
 
@@ -31,9 +33,7 @@ vtkSmartPointer<vtkDoubleArray> arrayOf(const char* name, const std::vector<doub
   return array;
 }
 
-}
-
-//------------------------------------------------------------------------------
+/// Measures cells with their points at some coordinates. @return whether all are valid
 bool measure(const Simplices& simplices, const std::vector<double>& coordinates, bool mirrored,
   int threads, ImprovedCells& measured)
 {
@@ -70,7 +70,7 @@ bool measure(const Simplices& simplices, const std::vector<double>& coordinates,
   return std::all_of(validity.begin(), validity.end(), [](signed char v) { return v == Valid; });
 }
 
-//------------------------------------------------------------------------------
+/// Whether the worst cells are worse than those of the input.
 bool isWorse(const ImprovedCells& measured, const ReconnectionRecord& before)
 {
   const std::vector<double>&angles = measured.smallestAngles, &ratios = measured.inverseMeanRatios;
@@ -82,13 +82,38 @@ bool isWorse(const ImprovedCells& measured, const ReconnectionRecord& before)
         before.worstInverseMeanRatio * (1.0 + Rounding));
 }
 
-//------------------------------------------------------------------------------
+/// The coordinates as single precision has them.
 std::vector<double> toSinglePrecision(const std::vector<double>& coordinates)
 {
   std::vector<double> rounded(coordinates.size());
   std::transform(coordinates.begin(), coordinates.end(), rounded.begin(),
     [](double x) { return static_cast<double>(static_cast<float>(x)); });
   return rounded;
+}
+}
+
+//------------------------------------------------------------------------------
+ImprovedCells writePoints(RankGroup* group, const Simplices& simplices,
+  const std::vector<double>& coordinates, bool mirrored, const ReconnectionRecord& before,
+  int threads, vtkPointSet* input, vtkPointSet* output)
+{
+  vtkPoints* given = input && input->GetNumberOfPoints() > 0 ? input->GetPoints() : nullptr;
+  const bool single = given && given->GetDataType() == VTK_FLOAT;
+  ImprovedCells improved;
+  const auto measureAt = [&](const std::vector<double>& places)
+  {
+    return simplices.cells() == 0 ||
+      (measure(simplices, places, mirrored, threads, improved) && !isWorse(improved, before));
+  };
+  const bool good = measureAt(single ? toSinglePrecision(coordinates) : coordinates);
+  const bool fails = group ? group->any(single && !good) : single && !good;
+  if (single && fails)
+  {
+    measureAt(coordinates);
+  }
+  output->SetPoints(single && !fails ? makePoints(coordinates, given) : makePoints(coordinates, 3));
+  improved.note = fails ? PrecisionNote : "";
+  return improved;
 }
 
 //------------------------------------------------------------------------------

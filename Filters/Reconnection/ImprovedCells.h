@@ -6,6 +6,7 @@
 #ifndef tautline_ImprovedCells_h
 #define tautline_ImprovedCells_h
 
+#include "tautline/Core/RankGroup.h"
 #include "tautline/Reconnection/ReconnectionOptions.h"
 
 #include <string>
@@ -38,13 +39,16 @@ struct Simplices
   std::size_t cells() const { return this->connectivity.size() / this->corners; }
 };
 
-/// Measures cells with their points at some coordinates. @return whether all are valid
-bool measure(const Simplices& simplices, const std::vector<double>& coordinates, bool mirrored,
-  int threads, ImprovedCells& measured);
-/// Whether the worst cells are worse than those of the input.
-bool isWorse(const ImprovedCells& measured, const ReconnectionRecord& before);
-/// The coordinates as single precision has them.
-std::vector<double> toSinglePrecision(const std::vector<double>& coordinates);
+/**
+ * @brief Gives the output points and measures its cells. The points are in single precision where
+ * those of the input are, unless a cell would not be valid or the worst one worse than before.
+ * @param group of a mesh in pieces, where the points of all are in double precision if a cell of
+ * any needs it; collective. Or null.
+ * @param before the record of the input
+ */
+ImprovedCells writePoints(RankGroup* group, const Simplices& simplices,
+  const std::vector<double>& coordinates, bool mirrored, const ReconnectionRecord& before,
+  int threads, vtkPointSet* input, vtkPointSet* output);
 /// Gives each cell of an output the data of the cell of the input that it comes from.
 void copyCellData(vtkCellData* from, const std::vector<Index>& originals, vtkCellData* to);
 /// Gives the cells of an output their numbers in the input, `min_angle` and `imr`.

@@ -50,30 +50,6 @@ Geometry geometryOf(const ReconnectableMesh& input, const ReconnectionResult& re
   return geometry;
 }
 
-/// Sets the points in the precision of the input where that does.
-ImprovedCells writePoints(const ReconnectableMesh& input, const ReconnectionResult& result,
-  const Geometry& geometry, int threads, vtkPointSet* output)
-{
-  const bool mirrored = input.mesh().mirrored();
-  ImprovedCells improved;
-  auto points = makePoints(geometry.coordinates, input.input()->GetPoints());
-  if (points->GetDataType() != VTK_DOUBLE)
-  {
-    const std::vector<double> rounded = toSinglePrecision(geometry.coordinates);
-    if (measure(geometry.cells, rounded, mirrored, threads, improved) &&
-      !isWorse(improved, result.history.front()))
-    {
-      output->SetPoints(points);
-      return improved;
-    }
-    points = makePoints(geometry.coordinates, 3);
-    improved.note = PrecisionNote;
-  }
-  measure(geometry.cells, geometry.coordinates, mirrored, threads, improved);
-  output->SetPoints(points);
-  return improved;
-}
-
 void writePointData(const ReconnectableMesh& input, const ReconnectionResult& result,
   const Geometry& geometry, vtkPointSet* output)
 {
@@ -150,7 +126,8 @@ ImprovedCells writeImproved(const ReconnectableMesh& input, const ReconnectionRe
 {
   const Geometry geometry = geometryOf(input, result);
   output->Initialize();
-  const ImprovedCells improved = writePoints(input, result, geometry, threads, output);
+  const ImprovedCells improved = writePoints(nullptr, geometry.cells, geometry.coordinates,
+    input.mesh().mirrored(), result.history.front(), threads, input.input(), output);
   const auto cells = makeCells(geometry.cells.connectivity, geometry.cells.corners);
   if (auto* grid = vtkUnstructuredGrid::SafeDownCast(output))
   {

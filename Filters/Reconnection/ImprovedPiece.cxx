@@ -14,7 +14,6 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkPoints.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -102,34 +101,6 @@ Simplices cellsOf(const std::vector<OutputPoint>& points, const RankReconnection
   return cells;
 }
 
-/// Sets the points in the precision of the input where that does, for the cells of all processes.
-ImprovedCells writePoints(RankGroup& group, const ReconnectablePiece& piece,
-  const RankReconnection& result, const std::vector<double>& coordinates, const Simplices& cells,
-  int threads, vtkPointSet* output)
-{
-  auto* set = vtkPointSet::SafeDownCast(piece.input);
-  vtkPoints* given = set && set->GetNumberOfPoints() > 0 ? set->GetPoints() : nullptr;
-  const bool single = given && given->GetDataType() == VTK_FLOAT;
-  ImprovedCells improved;
-  bool good = true;
-  const auto measureAt = [&](const std::vector<double>& places)
-  {
-    return cells.cells() == 0 ||
-      (measure(cells, places, piece.mirrored, threads, improved) &&
-        !isWorse(improved, result.history.front()));
-  };
-  good = measureAt(single ? toSinglePrecision(coordinates) : coordinates);
-  const bool rounded = !group.any(single && !good);
-  if (single && !rounded)
-  {
-    measureAt(coordinates);
-  }
-  output->SetPoints(
-    single && rounded ? makePoints(coordinates, given) : makePoints(coordinates, 3));
-  improved.note = rounded ? "" : PrecisionNote;
-  return improved;
-}
-
 void writePointData(RankGroup& group, const ReconnectablePiece& piece,
   const RankReconnection& result, const std::vector<OutputPoint>& points, vtkPointSet* output)
 {
@@ -206,8 +177,8 @@ ImprovedCells writePiece(RankGroup& group, const ReconnectablePiece& piece,
   points = pointsOf(piece, result);
   coordinates = coordinatesOf(points, piece, result);
   cells = cellsOf(points, result);
-  const ImprovedCells improved =
-    writePoints(group, piece, result, coordinates, cells, threads, output);
+  const ImprovedCells improved = writePoints(&group, cells, coordinates, piece.mirrored,
+    result.history.front(), threads, vtkPointSet::SafeDownCast(piece.input), output);
   writePointData(group, piece, result, points, output);
   if (auto* grid = vtkUnstructuredGrid::SafeDownCast(output))
   {

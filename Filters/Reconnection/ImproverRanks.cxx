@@ -138,52 +138,32 @@ void vtkMeshImprover::ImproveOnRanks(vtkInformationVector** inputVector, vtkData
     tautline::improveConnectivity(group, std::move(piece.mesh), options, this->Rounds);
   const tautline::ImprovedCells cells =
     tautline::writePiece(group, piece, result, this->Threads, vtkPointSet::SafeDownCast(output));
-  this->ReportOnRanks(result, cells, options.targetAngle, history, remaining);
-  if (group.rank() == 0)
-  {
-    this->AddToSummary(this->LeftOut);
-    this->Warn(this->LeftOut);
-    this->AddToSummary(piece.mirrored ? "The mesh is reversed: its cells list their points in the "
-                                        "opposite order, and it is treated as its mirror image."
-                                      : "");
-  }
-  this->Summary = group.fromFirst(this->Summary);
-}
-
-//------------------------------------------------------------------------------
-/// Numbers on all processes; tables and the text on the first one.
-void vtkMeshImprover::ReportOnRanks(const tautline::RankReconnection& result,
-  const tautline::ImprovedCells& cells, double targetAngle, tautline::TableRows& history,
-  tautline::TableRows& remaining)
-{
-  tautline::RankGroup& group = *this->Group;
-  const auto count = static_cast<tautline::Index>(result.originalCells.size());
   std::vector<std::vector<tautline::RemainingElement>> sent(group.size());
+  const auto count = static_cast<tautline::Index>(result.originalCells.size());
   sent[0] = tautline::remainingOf(
     result.obstacles, result.qualities, result.bounds, cells, tautline::sumBefore(group, count));
   this->Remaining = group.sum(static_cast<tautline::Index>(sent[0].size()));
-  tautline::ReconnectionResult whole;
-  whole.history = result.history;
-  whole.reason = result.reason;
-  whole.markedFacets = result.markedFacets;
-  this->TakeResult(whole);
-  std::vector<tautline::RemainingElement> left;
+  std::vector<tautline::RemainingElement> left; // on the first process
   for (const auto& list : group.exchangeItems(sent))
   {
     left.insert(left.end(), list.begin(), list.end());
   }
-  if (group.rank() > 0)
-  {
-    return;
-  }
-  tautline::sortWorstFirst(left);
-  tautline::addHistory(history, result.history, "");
-  tautline::addRemaining(remaining, left, false, "");
-  this->AddToSummary(tautline::describeResult(whole, false));
-  this->AddToSummary("In parts on " + std::to_string(group.size()) + " processes, in " +
-    std::to_string(result.history.size() - 1) + " rounds.");
-  this->AddToSummary(tautline::describeRemaining(
-    left, false, static_cast<tautline::ReconnectionBoundary>(this->Boundary), targetAngle));
-  this->AddToSummary(tautline::describeForced(left, false, result.forcedInverseMeanRatio));
-  this->AddToSummary(cells.note);
+  tautline::ReconnectionResult whole;
+  whole.history = result.history;
+  whole.reason = result.reason;
+  whole.markedFacets = result.markedFacets;
+  whole.forcedInverseMeanRatio = result.forcedInverseMeanRatio;
+  const bool first = group.rank() == 0;
+  tautline::TableRows unused; // tables of several processes would be joined
+  this->Report(whole, std::move(left),
+    { "",
+      "In parts on " + std::to_string(group.size()) + " processes, in " +
+        std::to_string(result.history.size() - 1) + " rounds.",
+      cells.note, first ? this->LeftOut : "",
+      piece.mirrored ? "The mesh is reversed: its cells list their points in the opposite order, "
+                       "and it is treated as its mirror image."
+                     : "",
+      false, options.targetAngle },
+    first ? history : unused, first ? remaining : unused);
+  this->Summary = group.fromFirst(this->Summary);
 }

@@ -43,6 +43,16 @@ std::vector<RemainingElement> remainingOf(const std::vector<signed char>& obstac
 /// Sorts them: the smallest angle first.
 void sortWorstFirst(std::vector<RemainingElement>& remaining);
 
+/// What the summary says of a run.
+struct ImproverRemarks
+{
+  std::string block;                      ///< or ""
+  std::string rounds;                     ///< a sentence on the work of several processes, or ""
+  std::string precision, leftOut, notice; ///< sentences, or ""
+  bool triangles;
+  double targetAngle;
+};
+
 /// Why a run ended.
 const char* reasonText(StopReason reason);
 

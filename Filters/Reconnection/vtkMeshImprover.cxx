@@ -298,20 +298,33 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
 
   std::vector<tautline::RemainingElement> left =
     tautline::remainingOf(result.obstacles, result.qualities, result.bounds, improved);
-  tautline::sortWorstFirst(left);
-  tautline::addHistory(history, result.history, block.name);
-  tautline::addRemaining(remaining, left, triangles, block.name);
   this->Remaining += static_cast<vtkIdType>(left.size());
-  this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
+  this->Report(result, std::move(left),
+    { block.name, "", improved.note, mesh.leftOut(), mesh.notice(), triangles, targetAngle },
+    history, remaining);
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshImprover::Report(const tautline::ReconnectionResult& result,
+  std::vector<tautline::RemainingElement> left, const tautline::ImproverRemarks& remarks,
+  tautline::TableRows& history, tautline::TableRows& remaining)
+{
+  const auto boundary = static_cast<tautline::ReconnectionBoundary>(this->Boundary);
+  const bool triangles = remarks.triangles;
+  tautline::sortWorstFirst(left);
+  tautline::addHistory(history, result.history, remarks.block);
+  tautline::addRemaining(remaining, left, triangles, remarks.block);
+  this->AddToSummary((remarks.block.empty() ? "" : "In " + remarks.block + ": ") +
     tautline::describeResult(result, triangles));
   this->TakeResult(result);
-  this->AddToSummary(tautline::describeRemaining(
-    left, triangles, static_cast<tautline::ReconnectionBoundary>(this->Boundary), targetAngle));
+  this->AddToSummary(remarks.rounds);
+  this->AddToSummary(tautline::describeRemaining(left, triangles, boundary, remarks.targetAngle));
   this->AddToSummary(tautline::describeForced(left, triangles, result.forcedInverseMeanRatio));
-  this->AddToSummary(improved.note);
-  this->AddToSummary(mesh.leftOut());
-  this->AddToSummary(mesh.notice());
-  this->Warn(mesh.leftOut());
+  for (const std::string& sentence : { remarks.precision, remarks.leftOut, remarks.notice })
+  {
+    this->AddToSummary(sentence);
+  }
+  this->Warn(remarks.leftOut);
 }
 
 //------------------------------------------------------------------------------

@@ -101,11 +101,11 @@ class RankGroup;
 class MovableMesh;
 class ReconnectableMesh;
 class TableRows;
-struct ImprovedCells;
+struct ImproverRemarks;
 struct InputBlock;
-struct RankReconnection;
 struct ReconnectionOptions;
 struct ReconnectionResult;
+struct RemainingElement;
 }
 
 class TAUTLINERECONNECTION_EXPORT vtkMeshImprover : public vtkTautlineTimedAlgorithm
@@ -409,11 +409,12 @@ private:
   void Improve(const tautline::InputBlock& block, int blocks, tautline::TableRows& history,
     tautline::TableRows& remaining);
   void TakeResult(const tautline::ReconnectionResult& result);
+  void Report(const tautline::ReconnectionResult& result,
+    std::vector<tautline::RemainingElement> left, const tautline::ImproverRemarks& remarks,
+    tautline::TableRows& history, tautline::TableRows& remaining);
   std::string FindReasonToGather(vtkDataObject* input);
   void ImproveOnRanks(vtkInformationVector** inputVector, vtkDataObject* output,
     tautline::TableRows& history, tautline::TableRows& remaining);
-  void ReportOnRanks(const tautline::RankReconnection& result, const tautline::ImprovedCells& cells,
-    double targetAngle, tautline::TableRows& history, tautline::TableRows& remaining);
 
   /// Of an execution in which each process takes its piece: the mesh, or why it is an error.
   std::unique_ptr<tautline::RankGroup> Group;
