@@ -198,23 +198,35 @@ int vtkElementQuality::FillOutputPortInformation(int port, vtkInformation* info)
 int vtkElementQuality::RequestData(
   vtkInformation*, vtkInformationVector** inputVector, vtkInformationVector* outputVector)
 {
-  vtkDataObject* output = vtkDataObject::GetData(outputVector, MeshPort);
   this->ClearResult();
-  // A block, or a file of criteria, may be wrong on some processes only: then all fail.
-  const auto anywhere = [this](const std::string& own)
-  { return this->Controller ? tautline::firstProblem(own) : own; };
-  tautline::CriteriaGrader grader;
-  const std::string wrong = anywhere(
-    FailureOf("use fewer criteria", [&] { grader = tautline::CriteriaGrader(this->Criteria); }));
-  if (!wrong.empty())
+  return this->Attempt(outputVector, "choose fewer metrics or measure the mesh in parts",
+    [&] { this->MeasureAll(inputVector, outputVector); });
+}
+
+//------------------------------------------------------------------------------
+/// What fails on some processes, as a block or a file of criteria may be wrong there, fails on all.
+void vtkElementQuality::Together(const char* memoryRemedy, const std::function<void()>& work)
+{
+  const std::string own = FailureOf(memoryRemedy, work);
+  const std::string failure = this->Controller ? tautline::firstProblem(own) : own;
+  if (!failure.empty())
   {
-    return this->Fail(outputVector, wrong);
+    throw tautline::Error(failure);
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkElementQuality::MeasureAll(
+  vtkInformationVector** inputVector, vtkInformationVector* outputVector)
+{
+  vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
+  tautline::CriteriaGrader grader;
+  this->Together("use fewer criteria", [&] { grader = tautline::CriteriaGrader(this->Criteria); });
   tautline::PieceOrientations orientations;
   const bool several = this->Controller && this->Controller->GetNumberOfProcesses() > 1;
-  if (several || tautline::hasPartitions(vtkDataObject::GetData(inputVector[0])))
+  if (several || tautline::hasPartitions(input))
   {
-    const std::string malformed = anywhere(FailureOf("divide the mesh",
+    this->Together("divide the mesh",
       [&]
       {
         const bool all =
@@ -223,34 +235,21 @@ int vtkElementQuality::RequestData(
         if (const auto group = all ? tautline::tryProcessGroup() : nullptr)
         {
           group->together(
-            [&]
-            {
-              orientations.find(
-                vtkDataObject::GetData(inputVector[0]), this->Threads, *group, this->ReversedMesh);
-            });
+            [&] { orientations.find(input, this->Threads, *group, this->ReversedMesh); });
         }
-      }));
-    if (!malformed.empty())
-    {
-      return this->Fail(outputVector, malformed);
-    }
+      });
     this->Notice = orientations.notice();
   }
   tautline::QualityTotals totals(grader.withMetrics(this->GetSelection().metrics()));
   tautline::BadElements bad;
-  const std::string failure =
-    anywhere(FailureOf("choose fewer metrics or measure the mesh in parts",
-      [&]
-      {
-        tautline::forEachBlock(vtkDataObject::GetData(inputVector[0]),
-          vtkDataObject::GetData(inputVector[1]), nullptr, output,
-          [&](const tautline::InputBlock& block)
-          { this->Measure(block, orientations, totals, grader, bad); });
-      }));
-  if (!failure.empty())
-  {
-    return this->Fail(outputVector, failure);
-  }
+  this->Together("choose fewer metrics or measure the mesh in parts",
+    [&]
+    {
+      tautline::forEachBlock(input, vtkDataObject::GetData(inputVector[1]), nullptr,
+        vtkDataObject::GetData(outputVector, MeshPort),
+        [&](const tautline::InputBlock& block)
+        { this->Measure(block, orientations, totals, grader, bad); });
+    });
   totals.gather(this->Controller);
   grader.gather(this->Controller);
   // Unlike the tables, each process has its own.
@@ -270,11 +269,7 @@ int vtkElementQuality::RequestData(
     this->Verdict = tautline::gradeName(grader.totals().verdict());
     this->QualityIndex = grader.totals().meanIndex();
   }
-  if (!this->Notice.empty())
-  {
-    vtkWarningMacro(<< this->Notice);
-  }
-  return 1;
+  this->Warn(this->Notice);
 }
 
 //------------------------------------------------------------------------------

@@ -286,6 +286,8 @@ private:
   vtkElementQuality(const vtkElementQuality&) = delete;
   void operator=(const vtkElementQuality&) = delete;
 
+  void Together(const char* memoryRemedy, const std::function<void()>& work);
+  void MeasureAll(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   void Measure(const tautline::InputBlock& block, const tautline::PieceOrientations& pieces,
     tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad);
   /// @param piece what was found of the whole mesh; null: that of this data set is
