@@ -266,12 +266,14 @@ int vtkTautlineAlgorithm::ExecuteGathered(tautline::GatheredRules rules, vtkInfo
 //------------------------------------------------------------------------------
 int vtkTautlineAlgorithm::ModifyRequest(vtkInformation* request, int when)
 {
-  const tautline::GatheredRules rules = this->GetGatheredRules();
+  const auto isTogether = [this]
+  {
+    const tautline::GatheredRules rules = this->GetGatheredRules();
+    return rules.onAll || rules.result != tautline::GatheredResult::None;
+  };
   const bool update = when == vtkExecutive::BeforeForward &&
     request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()) && this->GetNumberOfInputPorts() > 0 &&
-    (this->ExecutesAgain() ||
-      (tautline::severalProcesses() &&
-        (rules.onAll || rules.result != tautline::GatheredResult::None)));
+    (this->ExecutesAgain() || (tautline::severalProcesses() && isTogether()));
   return update ? this->UpdateInputs(request) : this->Superclass::ModifyRequest(request, when);
 }
 
