@@ -433,7 +433,6 @@ std::vector<std::size_t> connectedHere(const std::vector<Group>& groups)
 /// The same of the pieces on all processes. Collective.
 std::vector<std::size_t> connectedOnAll(const std::vector<Group>& groups, RankGroup& processes)
 {
-  const std::unique_ptr<RankGroup> group = makeProcessGroup();
   std::vector<Piece> all;
   std::vector<std::size_t> groupOf;
   for (std::size_t g = 0; g < groups.size(); ++g)
@@ -458,7 +457,7 @@ std::vector<std::size_t> connectedOnAll(const std::vector<Group>& groups, RankGr
       pieces.push_back({ parts.back(), number, false });
     }
   }
-  const MeshSpace whole = spaceOf(*group, parts);
+  const MeshSpace whole = spaceOnRanks(processes, parts);
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
     Mesh& mesh = adapters[i]->mesh();
@@ -467,7 +466,8 @@ std::vector<std::size_t> connectedOnAll(const std::vector<Group>& groups, RankGr
     mesh.classifyCells(validity.data());
     pieces[i].reversed = mesh.orientation(validity.data()).state == Orientation::Reversed;
   }
-  const std::vector<int> found = connectedBlocks(*group, pieces, static_cast<int>(groups.size()));
+  const std::vector<int> found =
+    connectedBlocks(processes, pieces, static_cast<int>(groups.size()));
   return { found.begin(), found.end() };
 }
 
