@@ -207,6 +207,33 @@ vtkSmartPointer<vtkDataObject> markSelected(vtkDataObject* input, vtkSelection* 
 }
 
 //------------------------------------------------------------------------------
+void markPoints(
+  const MeshView& view, vtkDataArray* array, bool ofCells, std::vector<unsigned char>& flags)
+{
+  for (Index cell = 0; array && ofCells && cell < view.numberOfCells; ++cell)
+  {
+    for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
+    {
+      flags[view.connectivity[n]] |= array->GetComponent(cell, 0) != 0;
+    }
+  }
+  for (Index i = 0; array && !ofCells && i < view.numberOfPoints; ++i)
+  {
+    flags[i] |= array->GetComponent(i, 0) != 0;
+  }
+}
+
+//------------------------------------------------------------------------------
+void markPoints(const MeshView& view, vtkDataSet* selected, std::vector<unsigned char>& flags)
+{
+  if (selected)
+  {
+    markPoints(view, selected->GetCellData()->GetArray(SelectedArray), true, flags);
+    markPoints(view, selected->GetPointData()->GetArray(SelectedArray), false, flags);
+  }
+}
+
+//------------------------------------------------------------------------------
 vtkDataArray* chosenArray(
   vtkAlgorithm* algorithm, int index, vtkDataSet* input, const char* purpose, ArrayOf of)
 {
@@ -218,7 +245,7 @@ vtkDataArray* chosenArray(
   }
   const bool ofCells =
     of == ArrayOf::Either ? chosenOfCells(algorithm, index) : of == ArrayOf::Cells;
-  if (input->GetNumberOfElements(ofCells ? vtkDataObject::CELL : vtkDataObject::POINT) == 0)
+  if (input->GetNumberOfPoints() == 0)
   {
     return nullptr;
   }

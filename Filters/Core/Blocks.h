@@ -9,13 +9,14 @@
 
 #include "TautlineCoreModule.h" // for export macro
 
-#include "tautline/Core/Types.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include "vtkSmartPointer.h"
 
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 class vtkAlgorithm;
 class vtkDataArray;
@@ -91,7 +92,7 @@ enum class ArrayOf
 
 /**
  * @brief The point or cell array that the user chose by SetInputArrayToProcess(); null if none is
- * chosen ("None" or ""), or the input has nothing it would be of, as an empty piece of a mesh.
+ * chosen ("None" or ""), or the input is empty, as a piece of a mesh may be.
  * @param index that of SetInputArrayToProcess()
  * @param purpose for the message, "of fixed points"
  * @param of what the filter needs. With Points or Cells the name alone counts, since a script that
@@ -101,6 +102,14 @@ enum class ArrayOf
  */
 TAUTLINECORE_EXPORT vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index, vtkDataSet* input,
   const char* purpose, ArrayOf of = ArrayOf::Either);
+
+/// Flags the points with a value other than 0 in a point array, or those of cells with one in a
+/// cell array. @param array null: none
+TAUTLINECORE_EXPORT void markPoints(
+  const MeshView& view, vtkDataArray* array, bool ofCells, std::vector<unsigned char>& flags);
+/// Flags the points that markSelected() found, and those of the cells it found; null: none.
+TAUTLINECORE_EXPORT void markPoints(
+  const MeshView& view, vtkDataSet* selected, std::vector<unsigned char>& flags);
 
 /// Whether the array chosen is one of cells.
 TAUTLINECORE_EXPORT bool chosenOfCells(vtkAlgorithm* algorithm, int index);

@@ -255,31 +255,10 @@ void MovableMesh::addFixed(const std::vector<unsigned char>& flags)
 }
 
 //------------------------------------------------------------------------------
-namespace
-{
-/// Flags the points with a value other than 0, or those of cells with one.
-void mark(
-  const MeshView& view, vtkDataArray* array, bool ofCells, std::vector<unsigned char>& flags)
-{
-  for (Index cell = 0; array && ofCells && cell < view.numberOfCells; ++cell)
-  {
-    for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
-    {
-      flags[view.connectivity[n]] |= array->GetComponent(cell, 0) != 0;
-    }
-  }
-  for (Index i = 0; array && !ofCells && i < view.numberOfPoints; ++i)
-  {
-    flags[i] |= array->GetComponent(i, 0) != 0;
-  }
-}
-}
-
-//------------------------------------------------------------------------------
 void MovableMesh::fix(vtkDataArray* array, bool ofCells)
 {
   std::vector<unsigned char> flags(this->piece().numberOfPoints, 0);
-  mark(this->piece(), array, ofCells, flags);
+  markPoints(this->piece(), array, ofCells, flags);
   this->addFixed(flags);
 }
 
@@ -287,11 +266,7 @@ void MovableMesh::fix(vtkDataArray* array, bool ofCells)
 void MovableMesh::fixSelected(vtkDataSet* selected)
 {
   std::vector<unsigned char> flags(this->piece().numberOfPoints, 0);
-  if (selected)
-  {
-    mark(this->piece(), selected->GetCellData()->GetArray(SelectedArray), true, flags);
-    mark(this->piece(), selected->GetPointData()->GetArray(SelectedArray), false, flags);
-  }
+  markPoints(this->piece(), selected, flags);
   this->addFixed(flags);
 }
 

@@ -214,24 +214,8 @@ PointFlags markedPoints(const Mesh& mesh, const PartChoice& choice)
     throw Error("Nothing is selected that could move: select points or cells and press Copy Active "
                 "Selection, or choose another Moved Part.");
   }
-  markPoints(mesh, choice.selected, flags);
+  markPoints(mesh.view(), choice.selected, flags);
   return flags;
-}
-
-//------------------------------------------------------------------------------
-void markPoints(const Mesh& mesh, vtkDataArray* array, bool ofCells, PointFlags& flags)
-{
-  markWhere(mesh, array, ofCells, flags, [](double value) { return value != 0; });
-}
-
-//------------------------------------------------------------------------------
-void markPoints(const Mesh& mesh, vtkDataSet* selected, PointFlags& flags)
-{
-  if (selected)
-  {
-    markPoints(mesh, selected->GetCellData()->GetArray(SelectedArray), true, flags);
-    markPoints(mesh, selected->GetPointData()->GetArray(SelectedArray), false, flags);
-  }
 }
 
 //------------------------------------------------------------------------------

@@ -62,10 +62,6 @@ PointFlags markedPoints(const Mesh& mesh, const PartChoice& choice);
 /// Throws Error if of the chosen points none is on the boundary.
 void requireMoved(Index moved, Index chosen);
 
-/// Marks points, or the points of cells, where the array is not 0.
-void markPoints(const Mesh& mesh, vtkDataArray* array, bool ofCells, PointFlags& flags);
-/// Marks what markSelected() found.
-void markPoints(const Mesh& mesh, vtkDataSet* selected, PointFlags& flags);
 /// Marks the points of ghost cells.
 void markGhosts(vtkDataSet* input, PointFlags& flags);
 

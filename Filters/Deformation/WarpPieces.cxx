@@ -67,7 +67,7 @@ private:
   WarpResult resultOfStep();
   WarpResult warpFromPrevious(const WarpResult& previous);
   WarpResult warp();
-  WarpResult run(const std::vector<double>& displacement);
+  WarpResult run(const WarpTask& task);
   void report(WarpResult& result, WarpFacts& facts, TableRows& history, TableRows& statistics,
     WarpTotals& totals);
 
@@ -78,10 +78,9 @@ private:
   const InputBlock& Piece; ///< at this time step; the mesh is that of the first
   vtkDataSet* Selected;    ///< with what is selected to move, or null
   std::vector<Index> Ids;  ///< per local point
-  PointFlags Boundary, Moved, Stay, Prescribed;
-  std::vector<double> Displacement; ///< 3 per local point, at the amount
-  MovedPoints Cloud;                ///< of a transform
-  std::vector<double> Tensors;      ///< 6 per local cell, or empty
+  PointFlags Boundary, Moved;
+  WarpTask Task;     ///< of the local points and cells
+  MovedPoints Cloud; ///< of a transform
 };
 
 //------------------------------------------------------------------------------
@@ -133,11 +132,7 @@ void PieceWarp::requireElements()
 /// The points of the boundary that a transform moves, per local point.
 PointFlags PieceWarp::chosenToMove()
 {
-  const WarpSettings& set = this->Settings;
-  PartChoice choice;
-  choice.part = set.part == MovedPart::Automatic ? MovedPart::Inner : set.part;
-  choice.numbers = set.partNumbers;
-  choice.values = set.partValues;
+  PartChoice choice = partChoice(this->Settings, this->Piece.input);
   const bool byPiece = choice.part == MovedPart::Values || choice.part == MovedPart::Selection;
   BoundaryParts parts;
   if (choice.part == MovedPart::Inner || choice.part == MovedPart::Numbered)
@@ -155,11 +150,6 @@ PointFlags PieceWarp::chosenToMove()
   PointFlags marked(this->Whole.piece().numberOfPoints, 0);
   choice.selected = this->Selected;
   choice.elsewhere = this->Group.any(this->Selected != nullptr);
-  if (choice.part == MovedPart::Values && this->here())
-  {
-    choice.array = chosenArray(set.arrays, MovedArray, this->Piece.input, "of the part that moves");
-    choice.ofCells = chosenOfCells(set.arrays, MovedArray);
-  }
   if (this->here())
   {
     marked = markedPoints(Mesh(this->Whole.piece()), choice);
@@ -177,15 +167,11 @@ PointFlags PieceWarp::chosenToMove()
 PointFlags PieceWarp::staying()
 {
   PointFlags marked(this->Whole.piece().numberOfPoints, 0);
-  if (this->here())
-  {
-    const Mesh piece(this->Whole.piece());
-    markPoints(piece,
-      chosenArray(
-        this->Settings.arrays, FixedArray, this->Piece.input, "of fixed points", ArrayOf::Points),
-      false, marked);
-    markPoints(piece, this->Piece.selected, marked);
-  }
+  markPoints(this->Whole.piece(),
+    chosenArray(
+      this->Settings.arrays, FixedArray, this->Piece.input, "of fixed points", ArrayOf::Points),
+    false, marked);
+  markPoints(this->Whole.piece(), this->Piece.selected, marked);
   return this->Whole.anyOf(marked);
 }
 
@@ -214,7 +200,7 @@ void PieceWarp::moveByArray()
     throw Error("Points at the same place are treated as one, but have different displacements: "
                 "make them equal, or switch Merge Coincident Points off.");
   }
-  this->Displacement = std::move(motion.displacement);
+  this->Task.displacement = std::move(motion.displacement);
 }
 
 //------------------------------------------------------------------------------
@@ -244,7 +230,7 @@ void PieceWarp::moveOverTime()
     throw Error("Points at the same place are treated as one, but have different positions at this "
                 "time step: make them equal, or switch Merge Coincident Points off.");
   }
-  this->Displacement = std::move(motion.displacement);
+  this->Task.displacement = std::move(motion.displacement);
 }
 
 //------------------------------------------------------------------------------
@@ -299,7 +285,8 @@ void PieceWarp::moveByTransform()
     this->Cloud.ids.push_back(point.id);
     this->Cloud.places.insert(this->Cloud.places.end(), point.place.begin(), point.place.end());
   }
-  this->Displacement = this->transformed(1.0);
+  this->Task.path = [this](double fraction) { return this->transformed(fraction); };
+  this->Task.displacement = this->transformed(1.0);
 }
 
 //------------------------------------------------------------------------------
@@ -311,46 +298,34 @@ void PieceWarp::findTensors()
   {
     return;
   }
-  std::vector<double> ofPiece;
-  if (this->here())
+  const std::vector<double> ofPiece = chosenTensors(set, this->Piece.input);
+  for (std::size_t cell = 0; 6 * cell < ofPiece.size(); ++cell)
   {
-    ofPiece = set.tensorsByRegion ? tensorsOf(chosenArray(set.arrays, RegionArray,
-                                                this->Piece.input, "of regions", ArrayOf::Cells),
-                                      set.regions, set.options.tensor.data())
-                                  : tensorsOf(chosenArray(set.arrays, TensorArray,
-                                      this->Piece.input, "of coefficients", ArrayOf::Cells));
-    for (std::size_t cell = 0; 6 * cell < ofPiece.size(); ++cell)
+    if (!this->Whole.skipped()[cell])
     {
-      if (!this->Whole.skipped()[cell])
-      {
-        requireTensor(&ofPiece[6 * cell], static_cast<Index>(cell), "piece");
-      }
+      requireTensor(&ofPiece[6 * cell], static_cast<Index>(cell), "piece");
     }
   }
-  this->Tensors = this->Whole.ofCells(ofPiece, 6);
+  this->Task.tensors = this->Whole.ofCells(ofPiece, 6);
 }
 
 //------------------------------------------------------------------------------
 /// The displacements and the points that are prescribed, with those that stay.
 void PieceWarp::prescribe(WarpFacts& facts)
 {
-  this->Stay = this->staying();
-  this->Prescribed = this->Boundary;
+  this->Task.stay = this->staying();
+  this->Task.prescribed = this->Boundary;
+  holdStaying(this->Task);
   for (Index p = 0; p < this->local().localPoints(); ++p)
   {
-    double* d = &this->Displacement[3 * p];
-    if (this->Stay[p])
-    {
-      this->Prescribed[p] = 1;
-      std::fill_n(d, 3, 0.0);
-    }
+    const double* d = &this->Task.displacement[3 * p];
     const double length = norm({ d[0], d[1], d[2] });
     facts.movedPoints += length > 0 && this->local().owned(p);
     facts.largestDisplacement = std::max(facts.largestDisplacement, length);
   }
   facts.movedPoints = this->Group.sum(facts.movedPoints);
   facts.largestDisplacement = this->Group.maximum(facts.largestDisplacement);
-  facts.boundaryPoints = this->countOwned(this->Prescribed);
+  facts.boundaryPoints = this->countOwned(this->Task.prescribed);
 }
 
 //------------------------------------------------------------------------------
@@ -393,15 +368,14 @@ WarpResult PieceWarp::warpFromPrevious(const WarpResult& previous)
   std::vector<double> points = localPoints(this->Whole, previous.points);
   if (this->countInvalid(points) > 0)
   {
-    WarpResult result = this->run(this->Displacement);
+    WarpResult result = this->run(this->Task);
     result.message += (result.message.empty() ? "" : " ") + std::string(PreviousInvalid);
     return result;
   }
-  std::vector<double> rise;
-  rise = this->Displacement;
-  for (std::size_t i = 0; i < rise.size(); ++i)
+  WarpTask rise = this->Task;
+  for (std::size_t i = 0; i < rise.displacement.size(); ++i)
   {
-    rise[i] += mesh.points()[i] - points[i];
+    rise.displacement[i] += mesh.points()[i] - points[i];
   }
   const PlacedPoints placed(mesh, std::move(points));
   return this->run(rise);
@@ -410,49 +384,23 @@ WarpResult PieceWarp::warpFromPrevious(const WarpResult& previous)
 //------------------------------------------------------------------------------
 WarpResult PieceWarp::warp()
 {
-  const bool transform = this->Settings.motion == MotionSource::Transform;
-  const auto zero = [](const std::vector<double>& values)
-  { return std::all_of(values.begin(), values.end(), [](double d) { return d == 0; }); };
-  bool rests = false;
-  // Full turns end where they began, but not on the way.
-  constexpr double somewhere = 1.0 / 3;
-  rests = zero(this->Displacement) && (!transform || zero(this->transformed(somewhere)));
-  if (!this->Group.any(!rests))
-  {
-    WarpResult result;
-    result.points = this->local().points();
-    result.history.resize(1);
-    result.history[0].stage = "rest";
-    return result;
-  }
-  return this->run(this->Displacement);
+  return this->Group.any(!staysAtRest(this->Task)) ? this->run(this->Task)
+                                                   : resultAtRest(this->local().points());
 }
 
 //------------------------------------------------------------------------------
 /// From where the points of the mesh are.
-WarpResult PieceWarp::run(const std::vector<double>& displacement)
+WarpResult PieceWarp::run(const WarpTask& task)
 {
   const WarpSettings& set = this->Settings;
   WarpOptions options = set.options;
-  options.prescribed = this->Prescribed.data();
-  options.tensors = this->Tensors.empty() ? nullptr : this->Tensors.data();
+  options.prescribed = task.prescribed.data();
+  options.tensors = task.tensors.empty() ? nullptr : task.tensors.data();
   options.maximumSeconds = set.secondsLeft();
   options.progress = [&set](double fraction) { return set.progress(0, fraction); };
   Warper warper(
     this->local(), this->Whole.mirrored(), this->Ids, this->Group.communicator(), options);
-  if (set.motion != MotionSource::Transform)
-  {
-    return warper.warp(displacement.data());
-  }
-  return warper.warp(
-    [this](double part, double* to)
-    {
-      const std::vector<double> d = this->transformed(part);
-      for (std::size_t i = 0; i < d.size(); ++i)
-      {
-        to[i] = this->Stay[i / 3] ? 0.0 : d[i];
-      }
-    });
+  return runWarp(warper, task);
 }
 
 //------------------------------------------------------------------------------
@@ -460,14 +408,11 @@ WarpResult PieceWarp::run(const std::vector<double>& displacement)
 void PieceWarp::report(WarpResult& result, WarpFacts& facts, TableRows& history,
   TableRows& statistics, WarpTotals& totals)
 {
-  this->Displacement = {};
-  this->Tensors = {};
+  this->Task = {};
   this->Ids = {};
   this->Cloud = {};
-  for (PointFlags* flags : { &this->Boundary, &this->Moved, &this->Stay, &this->Prescribed })
-  {
-    *flags = {};
-  }
+  this->Boundary = {};
+  this->Moved = {};
   addWarpOutput(this->Whole, result, facts, this->Piece, history, statistics, totals);
 }
 
@@ -502,20 +447,18 @@ void PieceWarp::run(TableRows& history, TableRows& statistics, WarpTotals& total
       "The mesh has no boundary (it is closed), so there is nothing its points could follow.");
   }
   this->findMotion();
-  WarpFacts facts;
-  this->prescribe(facts);
+  WarpFacts counts;
+  this->prescribe(counts);
   this->findTensors();
   WarpResult result = this->resultOfStep();
   if (!this->Session.atRequested())
   {
     return;
   }
-  facts.method = nameOf(this->Settings.options.method);
-  const WarpCoefficients coefficients = this->Settings.options.coefficients;
-  facts.coefficients = this->Settings.anisotropic() && this->Settings.amount > 0 &&
-    coefficients != WarpCoefficients::PerCell && coefficients != WarpCoefficients::LocalGradients;
-  facts.amount = this->Settings.amount;
-  facts.threads = this->Settings.options.threads;
+  WarpFacts facts = factsOf(this->Settings, this->Task);
+  facts.movedPoints = counts.movedPoints;
+  facts.boundaryPoints = counts.boundaryPoints;
+  facts.largestDisplacement = counts.largestDisplacement;
   facts.seconds = clock.seconds();
   this->report(result, facts, history, statistics, totals);
 }

@@ -88,13 +88,6 @@ bool allZero(const std::vector<double>& values)
 {
   return std::all_of(values.begin(), values.end(), [](double d) { return d == 0; });
 }
-
-/// Whether nothing moves, not even on the way: full turns end where they began.
-bool staysAtRest(const WarpTask& task)
-{
-  constexpr double somewhere = 1.0 / 3;
-  return allZero(task.displacement) && (!task.path || allZero(task.path(somewhere)));
-}
 }
 
 //------------------------------------------------------------------------------
@@ -114,6 +107,82 @@ vtkDataArray* displacementArray(vtkAlgorithm* algorithm, vtkDataSet* input)
   }
   vtkDataArray* named = input->GetPointData()->GetArray("Displacement");
   return named ? named : input->GetPointData()->GetVectors();
+}
+
+//------------------------------------------------------------------------------
+PartChoice partChoice(const WarpSettings& settings, vtkDataSet* input)
+{
+  PartChoice choice;
+  choice.part = settings.part == MovedPart::Automatic ? MovedPart::Inner : settings.part;
+  choice.numbers = settings.partNumbers;
+  choice.values = settings.partValues;
+  if (choice.part == MovedPart::Values)
+  {
+    choice.array = chosenArray(settings.arrays, MovedArray, input, "of the part that moves");
+    choice.ofCells = chosenOfCells(settings.arrays, MovedArray);
+  }
+  return choice;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> chosenTensors(const WarpSettings& settings, vtkDataSet* input)
+{
+  if (!settings.anisotropic() || input->GetNumberOfCells() == 0)
+  {
+    return {};
+  }
+  if (settings.tensorsByRegion)
+  {
+    return tensorsOf(chosenArray(settings.arrays, RegionArray, input, "of regions", ArrayOf::Cells),
+      settings.regions, settings.options.tensor.data());
+  }
+  return settings.options.coefficients == WarpCoefficients::PerCell
+    ? tensorsOf(chosenArray(settings.arrays, TensorArray, input, "of coefficients", ArrayOf::Cells))
+    : std::vector<double>();
+}
+
+//------------------------------------------------------------------------------
+void holdStaying(WarpTask& task)
+{
+  for (std::size_t p = 0; p < task.stay.size(); ++p)
+  {
+    if (task.stay[p])
+    {
+      task.prescribed[p] = 1;
+      std::fill_n(&task.displacement[3 * p], 3, 0.0);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+bool staysAtRest(const WarpTask& task)
+{
+  constexpr double somewhere = 1.0 / 3;
+  return allZero(task.displacement) && (!task.path || allZero(task.path(somewhere)));
+}
+
+//------------------------------------------------------------------------------
+WarpResult resultAtRest(std::vector<double> points)
+{
+  WarpResult result;
+  result.points = std::move(points); // bitwise
+  result.history.resize(1);
+  result.history[0].stage = "rest";
+  return result;
+}
+
+//------------------------------------------------------------------------------
+WarpFacts factsOf(const WarpSettings& settings, const WarpTask& task)
+{
+  WarpFacts facts;
+  facts.method = nameOf(settings.options.method);
+  facts.motion = task.correspondence;
+  facts.coefficients = settings.anisotropic() && settings.amount > 0 && task.tensors.empty() &&
+    settings.options.coefficients != WarpCoefficients::PerCell &&
+    settings.options.coefficients != WarpCoefficients::LocalGradients;
+  facts.amount = settings.amount;
+  facts.threads = settings.options.threads;
+  return facts;
 }
 
 //------------------------------------------------------------------------------
@@ -254,19 +323,14 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
   }
   requireOrderOverTime(*kept.rest.data, *input);
   WarpTask todo = this->task(block, kept.rest, target, selected);
-  WarpFacts facts;
-  WarpResult result = this->warp(kept, todo, block.number, facts.reused);
+  bool reused = false;
+  WarpResult result = this->warp(kept, todo, block.number, reused);
   if (!last)
   {
     return;
   }
-  facts.method = nameOf(this->settings.options.method);
-  facts.motion = todo.correspondence;
-  facts.coefficients = this->settings.anisotropic() && todo.tensors.empty() &&
-    this->settings.amount > 0 &&
-    this->settings.options.coefficients != WarpCoefficients::LocalGradients;
-  facts.amount = this->settings.amount;
-  facts.threads = this->settings.options.threads;
+  WarpFacts facts = factsOf(this->settings, todo);
+  facts.reused = reused;
   for (Index i = 0; i < view.numberOfPoints; ++i)
   {
     const double length = norm3(&todo.displacement[3 * i]);
@@ -364,17 +428,7 @@ WarpTask WarpSession::task(const InputBlock& block, const RestingMesh& rest, vtk
     }
   }
   this->prescribe(block, rest, task);
-  if (set.anisotropic() && set.tensorsByRegion)
-  {
-    task.tensors =
-      tensorsOf(chosenArray(set.arrays, RegionArray, block.input, "of regions", ArrayOf::Cells),
-        set.regions, set.options.tensor.data());
-  }
-  else if (set.anisotropic() && set.options.coefficients == WarpCoefficients::PerCell)
-  {
-    task.tensors = tensorsOf(
-      chosenArray(set.arrays, TensorArray, block.input, "of coefficients", ArrayOf::Cells));
-  }
+  task.tensors = chosenTensors(set, block.input);
   // As cells of the input; the warper's are without lines, vertices and the surfaces of volumes.
   const auto checked = rest.cells.empty() ? task.tensors.size() / 6 : rest.cells.size();
   for (std::size_t i = 0; i < checked && !task.tensors.empty(); ++i)
@@ -390,10 +444,10 @@ void WarpSession::prescribe(const InputBlock& block, const RestingMesh& rest, Wa
 {
   const Mesh& mesh = rest.mesh->mesh();
   task.stay.assign(rest.boundary.size(), 0);
-  markPoints(mesh,
+  markPoints(mesh.view(),
     chosenArray(this->settings.arrays, FixedArray, block.input, "of fixed points", ArrayOf::Points),
     false, task.stay);
-  markPoints(mesh, block.selected, task.stay);
+  markPoints(mesh.view(), block.selected, task.stay);
   markGhosts(block.input, task.stay);
   // Of points that are one, the representative is of the mesh.
   const std::vector<Index>& one = rest.mesh->representative();
@@ -403,14 +457,7 @@ void WarpSession::prescribe(const InputBlock& block, const RestingMesh& rest, Wa
     task.stay[p] = static_cast<std::size_t>(one[p]) == p && task.stay[p];
   }
   task.prescribed = rest.boundary;
-  for (std::size_t i = 0; i < task.stay.size(); ++i)
-  {
-    if (task.stay[i])
-    {
-      task.prescribed[i] = 1;
-      std::fill_n(&task.displacement[3 * i], 3, 0.0);
-    }
-  }
+  holdStaying(task);
 }
 
 //------------------------------------------------------------------------------
@@ -449,19 +496,10 @@ void WarpSession::moveOverTime(
 PointFlags WarpSession::movedPart(
   const InputBlock& block, const RestingMesh& rest, vtkDataObject* selected) const
 {
-  const WarpSettings& set = this->settings;
-  PartChoice choice;
+  PartChoice choice = partChoice(this->settings, block.input);
   choice.parts = [&rest]() -> const BoundaryParts& { return rest.parts(); };
-  choice.part = set.part == MovedPart::Automatic ? MovedPart::Inner : set.part;
-  choice.numbers = set.partNumbers;
-  choice.values = set.partValues;
   choice.selected = counterpartOf(block, selected);
   choice.elsewhere = selected && block.flatIndex > 0;
-  if (set.part == MovedPart::Values)
-  {
-    choice.array = chosenArray(set.arrays, MovedArray, block.input, "of the part that moves");
-    choice.ofCells = chosenOfCells(set.arrays, MovedArray);
-  }
   return movedPoints(rest.mesh->mesh(), rest.boundary, choice);
 }
 
@@ -564,14 +602,13 @@ WarpResult WarpSession::warp(WarpBlock& kept, WarpTask& task, int blockNumber, b
   const auto before = stepwise ? kept.frames.find(this->current - 1) : kept.frames.end();
   if (staysAtRest(task) && before == kept.frames.end())
   {
-    result.points = atRest; // bitwise
-    result.history.resize(1);
-    result.history[0].stage = "rest";
+    result = resultAtRest(atRest);
   }
   else if (before == kept.frames.end())
   {
     reused = this->prepare(rest, task, blockNumber);
-    result = this->run(*rest.warper, task);
+    rest.warper->setMaximumSeconds(this->settings.secondsLeft());
+    result = runWarp(*rest.warper, task);
   }
   else
   {
@@ -615,15 +652,15 @@ WarpResult WarpSession::warpFromPrevious(
   }
   RestingMesh& from = note.empty() ? step : rest;
   this->prepare(from, rise, blockNumber);
-  WarpResult result = this->run(*from.warper, rise);
+  from.warper->setMaximumSeconds(this->settings.secondsLeft());
+  WarpResult result = runWarp(*from.warper, rise);
   result.message += (result.message.empty() || note.empty() ? "" : " ") + note;
   return result;
 }
 
 //------------------------------------------------------------------------------
-WarpResult WarpSession::run(Warper& warper, const WarpTask& task) const
+WarpResult runWarp(Warper& warper, const WarpTask& task)
 {
-  warper.setMaximumSeconds(this->settings.secondsLeft());
   if (!task.path)
   {
     return warper.warp(task.displacement.data());

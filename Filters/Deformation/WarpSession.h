@@ -108,6 +108,20 @@ struct WarpTask
   std::string correspondence;  ///< or ""
 };
 
+/// Which part of the boundary moves, as far as the settings say; of a data set or piece.
+PartChoice partChoice(const WarpSettings& settings, vtkDataSet* input);
+/// The coefficients per cell of a data set or piece, 6 each; empty if the method has none of these.
+std::vector<double> chosenTensors(const WarpSettings& settings, vtkDataSet* input);
+/// Fixes points where they are: they are prescribed, and do not move.
+void holdStaying(WarpTask& task);
+/// Whether nothing moves, not even on the way: full turns end where they began.
+bool staysAtRest(const WarpTask& task);
+/// The result of that. @param points as they are
+WarpResult resultAtRest(std::vector<double> points);
+WarpResult runWarp(Warper& warper, const WarpTask& task);
+/// What the report says of the settings.
+WarpFacts factsOf(const WarpSettings& settings, const WarpTask& task);
+
 /**
  * @class tautline::WarpSession
  * @brief The executions of a filter: for each data set the mesh at rest with its matrices and, of
@@ -187,7 +201,6 @@ private:
   WarpResult warp(WarpBlock& kept, WarpTask& task, int blockNumber, bool& reused);
   WarpResult warpFromPrevious(
     RestingMesh& rest, const WarpResult& previous, const WarpTask& task, int blockNumber);
-  WarpResult run(Warper& warper, const WarpTask& task) const;
 
   std::map<int, WarpBlock> Blocks; ///< by number
   vtkMTimeType Upstream = 0, Own = 0;

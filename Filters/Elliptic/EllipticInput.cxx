@@ -63,23 +63,6 @@ const double* orNull(std::vector<double>& values, bool given)
   values.reserve(1);
   return given ? values.data() : nullptr;
 }
-
-/// Flags points where a point array is not 0, or those of cells where a cell array is not.
-void flag(
-  vtkDataArray* array, bool ofCells, const MeshView& view, std::vector<unsigned char>& flags)
-{
-  for (Index cell = 0; array && ofCells && cell < view.numberOfCells; ++cell)
-  {
-    for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
-    {
-      flags[view.connectivity[n]] |= array->GetComponent(cell, 0) != 0;
-    }
-  }
-  for (Index i = 0; array && !ofCells && i < view.numberOfPoints; ++i)
-  {
-    flags[i] |= array->GetComponent(i, 0) != 0;
-  }
-}
 }
 
 //------------------------------------------------------------------------------
@@ -359,12 +342,9 @@ void EllipticInput::markFixed(
   if (points > 0)
   {
     vtkDataArray* array = chosenArray(algorithm, choice.fixedArray, data, "of fixed points");
-    flag(array, array && data->GetCellData()->GetArray(array->GetName()) == array, view, chosen);
-    if (this->Local.selected)
-    {
-      flag(this->Local.selected->GetCellData()->GetArray(SelectedArray), true, view, chosen);
-      flag(this->Local.selected->GetPointData()->GetArray(SelectedArray), false, view, chosen);
-    }
+    const bool ofCells = array && data->GetCellData()->GetArray(array->GetName()) == array;
+    markPoints(view, array, ofCells, chosen);
+    markPoints(view, this->Local.selected, chosen);
     any = any || array || this->Local.selected;
     if (choice.fixedPart == EllipticChoice::PartOfBoundary)
     {

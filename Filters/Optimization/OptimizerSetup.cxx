@@ -189,9 +189,12 @@ void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const Inpu
 //------------------------------------------------------------------------------
 void OptimizerSetup::setWeights(const OptimizerSettings& settings, const InputBlock& block)
 {
-  this->Weights = scalarsOf(
-    chosenArray(settings.arrays, WeightArray, block.input, "of element weights", ArrayOf::Cells),
-    "weights");
+  if (block.input->GetNumberOfCells() > 0)
+  {
+    this->Weights = scalarsOf(
+      chosenArray(settings.arrays, WeightArray, block.input, "of element weights", ArrayOf::Cells),
+      "weights");
+  }
   if (!this->TheMesh.inPieces())
   {
     return;
