@@ -6,7 +6,7 @@
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Mesh/DistributedMesh.h"
-#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Mesh/Ranks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataArray.h"

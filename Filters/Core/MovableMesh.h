@@ -119,6 +119,8 @@ public:
   std::string notice() const;
   /// Cells to leave out of statistics, ghosts and those of lower dimension; null if there are none.
   const unsigned char* skipped() const;
+  /// The parts of the whole mesh among the processes; of a mesh of this process alone: itself.
+  Ranks division() { return this->inPieces() ? Ranks(this->distributed()) : Ranks(); }
   /// The processes that have pieces; null for a mesh of this process alone.
   RankGroup* ranks() const { return this->inPieces() ? &this->Spread->group : nullptr; }
   /// Of the whole mesh: 3, or 2 for planes and surfaces.

@@ -96,7 +96,7 @@ void MovableMesh::checkOrder()
     pieces.push_back({ mesh.get(), copies.data(), this->distributed().numbers().data() });
     validities.push_back(validity.data());
   }
-  const Orientation found = orientationOnRanks(this->group(), pieces, validities);
+  const Orientation found = orientation(this->group(), pieces, validities);
   // As on one process: a mesh with more inverted elements than others is not reversed by that.
   this->Adapter.mesh().setMirrored(found.state == Orientation::Reversed);
   this->Spread->inverted = this->mirrored() ? found.positiveCells : found.negativeCells;

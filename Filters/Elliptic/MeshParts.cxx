@@ -457,7 +457,7 @@ std::vector<std::size_t> connectedOnAll(const std::vector<Group>& groups, RankGr
       pieces.push_back({ parts.back(), number, false });
     }
   }
-  const MeshSpace whole = spaceOnRanks(processes, parts);
+  const MeshSpace whole = spaceOf(processes, parts);
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
     Mesh& mesh = adapters[i]->mesh();

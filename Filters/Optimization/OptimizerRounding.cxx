@@ -54,8 +54,11 @@ RoundedResult OptimizerSetup::measureAt(const std::vector<double>& points,
 {
   if (this->TheMesh.inPieces())
   {
-    return measureRoundedOnRanks(
-      this->TheMesh.distributed(), this->TheMesh.mirrored(), this->Options, result, points);
+    const Mesh local = this->TheMesh.local();
+    Mesh there = local.at(points.data());
+    there.setSpace(local.space());
+    return measureRounded(local, validityOf(local, this->Options.threads), this->Options, result,
+      there, this->TheMesh.division());
   }
   Mesh there = this->start().at(points.data());
   there.setSpace(this->start().space());

@@ -62,9 +62,8 @@ void OptimizerSetup::setFixed(const OptimizerSettings& settings, const InputBloc
   }
   else if (settings.boundary == BoundaryMotion::Sliding || onSurface)
   {
-    this->Shape = mesh.inPieces()
-      ? boundaryShapeOnRanks(mesh.distributed(), settings.flatAngle, settings.options.threads)
-      : boundaryShape(mesh.mesh(), settings.flatAngle, onSurface ? settings.featureAngle : 0.0);
+    this->Shape = boundaryShape(mesh.inPieces() ? mesh.local() : mesh.mesh(), settings.flatAngle,
+      onSurface ? settings.featureAngle : 0.0, mesh.division());
     mesh.fixCorners(this->Shape);
     for (std::size_t i = 0; i < 3 * mesh.fixed().size(); ++i)
     {
@@ -261,7 +260,7 @@ OptimizeResult OptimizerSetup::run()
   if (this->TheMesh.inPieces())
   {
     OptimizeResult result =
-      optimizeOnRanks(this->TheMesh.distributed(), this->TheMesh.mirrored(), this->Options);
+      optimize(this->TheMesh.local(), this->Options, {}, this->TheMesh.division());
     result.elements = {}; // not of the cells of the input
     return result;
   }

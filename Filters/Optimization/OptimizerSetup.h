@@ -15,7 +15,7 @@
 #include "tautline/Mesh/Features.h"
 #include "tautline/Optimization/GeometryMatch.h"
 #include "tautline/Optimization/Optimize.h"
-#include "tautline/Optimization/OptimizeOnRanks.h"
+#include "tautline/Optimization/Optimize.h"
 
 #include <array>
 #include <functional>

@@ -55,68 +55,54 @@ void addFlags(vtkDataSet* output, const char* name, const std::vector<signed cha
 struct Remaining
 {
   std::string name; ///< "Element 3"; in pieces without the number, which the whole mesh has not
+  tautline::Obstacle obstacle;
   tautline::Vec3 center;
-  std::size_t obstacle;
 };
 
-/// The result for a data set.
-struct Untangled
-{
-  tautline::UntangleResult result; ///< with obstacles per cell
-  std::vector<Remaining> remaining;
-  bool exceededMemory = false;
-};
-
-Untangled untangle(tautline::MovableMesh& mesh, const tautline::UntangleOptions& options)
-{
-  Untangled run;
-  if (!mesh.inPieces())
-  {
-    run.result = tautline::untangle(mesh.mesh(), options);
-    return run;
-  }
-  tautline::RankUntangleResult whole =
-    tautline::untangleOnRanks(mesh.distributed(), mesh.mirrored(), options);
-  run.result = std::move(whole.result);
-  run.exceededMemory = whole.exceededMemory;
-  run.result.obstacles.assign(mesh.mesh().view().numberOfCells, 0);
-  for (std::size_t cell = 0; cell < run.result.obstacles.size(); ++cell)
-  {
-    const auto found = whole.remaining.find(mesh.numbersOf(static_cast<tautline::Index>(cell)));
-    run.result.obstacles[cell] =
-      found == whole.remaining.end() ? 0 : static_cast<signed char>(found->second.obstacle);
-  }
-  for (const auto& [numbers, element] : whole.remaining)
-  {
-    run.remaining.push_back(
-      { "Element", element.center, static_cast<std::size_t>(element.obstacle) });
-  }
-  return run;
-}
-
-/// The elements with an obstacle, by id.
+/// The elements with an obstacle, by id; in pieces by the numbers of their points.
 std::vector<Remaining> remainingOf(
-  const tautline::UntangleResult& result, const tautline::Mesh& moved)
+  const tautline::UntangleResult& result, const tautline::MovableMesh& mesh)
 {
-  std::map<tautline::Index, tautline::CellType> invalid;
-  for (const tautline::CellBlock& block : moved.blocks())
+  std::vector<Remaining> remaining;
+  if (mesh.inPieces())
+  {
+    for (const auto& [numbers, element] : result.remaining)
+    {
+      remaining.push_back({ "Element", element.obstacle, element.center });
+    }
+    return remaining;
+  }
+  const std::vector<double> points = mesh.actual(result.points);
+  const tautline::Mesh moved = mesh.actualMesh(points);
+  for (std::size_t cell = 0; cell < result.obstacles.size(); ++cell)
   {
     const auto obstacle = static_cast<tautline::Obstacle>(result.obstacles[cell]);
     if (obstacle != tautline::Obstacle::None)
     {
-      if (result.obstacles[block.cell(i)] != static_cast<signed char>(tautline::Obstacle::None))
-      {
-        invalid[block.cell(i)] = block.type;
-      }
+      const auto id = static_cast<tautline::Index>(cell);
+      const auto type = tautline::cornerType(moved.view().cellTypes[cell]);
+      remaining.push_back({ "Element " + std::to_string(cell), obstacle, moved.center(id, type) });
     }
   }
-  std::vector<Remaining> remaining;
-  for (const auto& [cell, type] : invalid)
-  {
-    remaining.push_back({ "Element " + std::to_string(cell), moved.center(cell, type),
-      static_cast<std::size_t>(result.obstacles[cell]) });
-  }
   return remaining;
+}
+
+/// The obstacles of the cells of the input.
+std::vector<signed char> obstaclesOf(
+  const tautline::UntangleResult& result, const tautline::MovableMesh& mesh)
+{
+  if (!mesh.inPieces())
+  {
+    return result.obstacles;
+  }
+  std::vector<signed char> obstacles(mesh.mesh().view().numberOfCells, 0);
+  for (std::size_t cell = 0; cell < obstacles.size(); ++cell)
+  {
+    const auto found = result.remaining.find(mesh.numbersOf(static_cast<tautline::Index>(cell)));
+    obstacles[cell] =
+      found == result.remaining.end() ? 0 : static_cast<signed char>(found->second.obstacle);
+  }
+  return obstacles;
 }
 
 /// ", and N that were valid are not any more", or "".
@@ -142,10 +128,10 @@ std::string verdict(const tautline::UntangleResult& result, const std::vector<Re
   const auto listed = std::min<std::size_t>(remaining.size(), ListedElements);
   for (std::size_t i = 0; i < listed; ++i)
   {
-    const tautline::Vec3& at = remaining[i].center;
+    const auto& [name, obstacle, at] = remaining[i];
     text << "\n"
-         << remaining[i].name << " at (" << at[0] << ", " << at[1] << ", " << at[2]
-         << "): " << reasons[remaining[i].obstacle] << ".";
+         << name << " at (" << at[0] << ", " << at[1] << ", " << at[2]
+         << "): " << reasons[static_cast<std::size_t>(obstacle)] << ".";
   }
   if (remaining.size() > listed)
   {
@@ -209,8 +195,9 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
     mesh.fixBoundary();
   }
 
-  Untangled run = untangle(mesh, this->GetOptions(mesh.fixed().data(), block.number));
-  tautline::UntangleResult& result = run.result;
+  tautline::UntangleResult result =
+    tautline::untangle(mesh.inPieces() ? mesh.local() : mesh.mesh(),
+      this->GetOptions(mesh.fixed().data(), block.number), mesh.division());
   this->HaveBest();
   std::string unsettled;
   result.points = mesh.settle(result.points, unsettled);
@@ -223,7 +210,7 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
 
   const std::string note = mesh.move(vtkPointSet::SafeDownCast(block.output), result.points);
   addFlags(block.output, "Validity", mesh.validityAt(result.points));
-  addFlags(block.output, "Obstacle", result.obstacles);
+  addFlags(block.output, "Obstacle", obstaclesOf(result, mesh));
   block.output->GetPointData()->SetActiveScalars(nullptr);
   block.output->GetCellData()->SetActiveScalars("Validity");
   if (this->IsFirst())
@@ -235,16 +222,12 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   this->InvertedBefore += result.invertedBefore;
   this->InvertedAfter += result.invertedAfter;
   this->Impossible += result.impossible;
-  if (!mesh.inPieces())
-  {
-    const std::vector<double> points = mesh.actual(result.points);
-    run.remaining = remainingOf(result, mesh.actualMesh(points));
-  }
-  this->NotValid += static_cast<vtkIdType>(run.remaining.size());
+  const std::vector<Remaining> remaining = remainingOf(result, mesh);
+  this->NotValid += static_cast<vtkIdType>(remaining.size());
   this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
-    verdict(result, run.remaining) +
+    verdict(result, remaining) +
     tautline::surfaceErrorSentence(mesh.frame().unit() * result.surfaceError));
-  this->AddToSummary(run.exceededMemory
+  this->AddToSummary(result.exceededMemory
       ? "The whole mesh did not fit into the memory of the first process, where the elements that "
         "are left would have been untangled: take fewer cells, or more memory."
       : "");
