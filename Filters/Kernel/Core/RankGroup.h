@@ -92,7 +92,12 @@ public:
 
   /// The same, one after the other.
   template <class Item>
+  std::vector<Item> exchangeJoined(const std::vector<std::vector<Item>>& sent);
+  template <class Item>
   std::vector<Item> gatherJoined(const std::vector<Item>& own);
+  /// The same on the first rank; the others get none.
+  template <class Item>
+  std::vector<Item> gatherOnFirst(const std::vector<Item>& own);
 
   /// The text of the first rank.
   std::string fromFirst(const std::string& text);
@@ -181,15 +186,36 @@ std::vector<std::vector<Item>> RankGroup::gatherItems(const std::vector<Item>& o
   return all;
 }
 
+/// The items of lists, one after the other.
+template <class Item>
+std::vector<Item> joinLists(const std::vector<std::vector<Item>>& lists)
+{
+  std::vector<Item> joined;
+  for (const std::vector<Item>& list : lists)
+  {
+    joined.insert(joined.end(), list.begin(), list.end());
+  }
+  return joined;
+}
+
+template <class Item>
+std::vector<Item> RankGroup::exchangeJoined(const std::vector<std::vector<Item>>& sent)
+{
+  return joinLists(this->exchangeItems(sent));
+}
+
 template <class Item>
 std::vector<Item> RankGroup::gatherJoined(const std::vector<Item>& own)
 {
-  std::vector<Item> joined;
-  for (const std::vector<Item>& one : this->gatherItems(own))
-  {
-    joined.insert(joined.end(), one.begin(), one.end());
-  }
-  return joined;
+  return joinLists(this->gatherItems(own));
+}
+
+template <class Item>
+std::vector<Item> RankGroup::gatherOnFirst(const std::vector<Item>& own)
+{
+  std::vector<std::vector<Item>> sent(static_cast<std::size_t>(this->size()));
+  sent.front() = own;
+  return this->exchangeJoined(sent);
 }
 }
 #endif

@@ -88,14 +88,8 @@ std::vector<int> connectedBlocks(
 {
   std::vector<BlockBox> boxes;
   std::transform(pieces.begin(), pieces.end(), std::back_inserter(boxes), boxOf);
-  std::vector<BlockBox> allBoxes;
-  for (const std::vector<BlockBox>& list : group.gatherItems(boxes))
-  {
-    allBoxes.insert(allBoxes.end(), list.begin(), list.end());
-  }
-  std::vector<std::vector<BlockFacet>> facets;
-  facets = facetsToSend(group, pieces, allBoxes);
-  facets = group.exchangeItems(facets);
+  const std::vector<std::vector<BlockFacet>> facets =
+    group.exchangeItems(facetsToSend(group, pieces, group.gatherJoined(boxes)));
 
   using Pair = std::array<int, 2>;
   std::vector<Pair> pairs;
@@ -114,12 +108,9 @@ std::vector<int> connectedBlocks(
   std::sort(pairs.begin(), pairs.end());
   pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   UnionFind sets(blocks);
-  for (const std::vector<Pair>& list : group.gatherItems(pairs))
+  for (const Pair& pair : group.gatherJoined(pairs))
   {
-    for (const Pair& pair : list)
-    {
-      sets.join(pair[0], pair[1]);
-    }
+    sets.join(pair[0], pair[1]);
   }
   std::vector<int> connected;
   for (int block = 0; block < blocks; ++block)

@@ -408,27 +408,6 @@ OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPa
   return totals;
 }
 
-/// The lists of all ranks, one after the other.
-template <class Item>
-std::vector<Item> joined(const std::vector<std::vector<Item>>& lists)
-{
-  std::vector<Item> all;
-  for (const std::vector<Item>& list : lists)
-  {
-    all.insert(all.end(), list.begin(), list.end());
-  }
-  return all;
-}
-
-/// The lists of all ranks, on the first.
-template <class Item>
-std::vector<std::vector<Item>> onFirst(RankGroup& group, const std::vector<Item>& own)
-{
-  std::vector<std::vector<Item>> sent(group.size());
-  sent[0] = own;
-  return group.exchangeItems(sent);
-}
-
 /// What orderOf() looks for.
 enum class Search
 {
@@ -475,16 +454,15 @@ OrderTotals decideTogether(RankGroup& group, const PieceOrders& own, bool haveSi
     pairsAt(group.exchangeItems(sent), firsts, haveSigns && overlapping);
   unitePairs(pairs);
   const Index disagreeing = group.sum(own.Disagreeing);
-  const auto allParts = onFirst(group, own.Parts);
-  const auto allPairs = onFirst(group, pairs);
+  const auto allParts = group.gatherOnFirst(own.Parts);
+  std::vector<PartPair> allPairs = group.gatherOnFirst(pairs);
   std::vector<std::vector<Turn>> turnsOf(group.size());
   std::vector<OrderTotals> totals;
   if (group.rank() == 0)
   {
-    std::vector<PartPair> merged = joined(allPairs);
-    unitePairs(merged);
+    unitePairs(allPairs);
     std::vector<Turn> all;
-    totals.push_back(decide(joined(allParts), merged, haveSigns, sign, disagreeing, all));
+    totals.push_back(decide(allParts, allPairs, haveSigns, sign, disagreeing, all));
     for (int rank = 0; rank < group.size(); ++rank)
     {
       turnsOf[rank].assign(all.begin() + firsts[rank], all.begin() + firsts[rank + 1]);

@@ -240,13 +240,7 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::distribute(
   const std::vector<PointKey>& keys) const
 {
   RankGroup& group = *this->Group;
-  std::vector<PointKey> range;
-  const std::vector<std::vector<PointKey>> received =
-    group.exchangeItems(splitIntoRanges(group, keys));
-  for (const auto& list : received)
-  {
-    range.insert(range.end(), list.begin(), list.end());
-  }
+  std::vector<PointKey> range = group.exchangeJoined(splitIntoRanges(group, keys));
   std::sort(range.begin(), range.end(),
     [&](const PointKey& a, const PointKey& b)
     {

@@ -222,7 +222,7 @@ JoinedCopies joinCopies(RankGroup& group, const MeshView& view, const Index* ids
   }
   Index together = 0;
   std::vector<double> shortest;
-  std::vector<Box> boxes(1), all;
+  std::vector<Box> boxes(1);
   std::vector<std::vector<Copy>> sent;
   std::vector<std::vector<Moved>> moved;
   shortest = shortestEdges(view);
@@ -233,19 +233,9 @@ JoinedCopies joinCopies(RankGroup& group, const MeshView& view, const Index* ids
       boxes[0].add(view.points + 3 * p);
     }
   }
-  const auto gathered = group.gatherItems(boxes);
-  for (const std::vector<Box>& box : gathered)
-  {
-    all.push_back(box[0]);
-  }
-  sent = candidates(group, view, ids, shortest, all);
-  const auto received = group.exchangeItems(sent);
-  std::vector<Copy> copies;
-  for (const std::vector<Copy>& list : received)
-  {
-    copies.insert(copies.end(), list.begin(), list.end());
-  }
-  moved = findMoved(copies, received.size(), result, together);
+  sent = candidates(group, view, ids, shortest, group.gatherJoined(boxes));
+  std::vector<Copy> copies = group.exchangeJoined(sent);
+  moved = findMoved(copies, sent.size(), result, together);
   // Ids of which most are at several places are not those of one mesh.
   result.apart = group.sum(result.apart);
   if (group.sum(together) <= result.apart)

@@ -203,7 +203,7 @@ std::vector<Index> Ranks::numberSets(
     }
     changed = mesh.group().any(changed);
   }
-  std::vector<double> own, all;
+  std::vector<double> own;
   for (Index i = 0; i < n; ++i)
   {
     if (member[i] && mesh.owned(i))
@@ -217,10 +217,7 @@ std::vector<Index> Ranks::numberSets(
     list.erase(std::unique(list.begin(), list.end()), list.end());
   };
   simplify(own);
-  for (const std::vector<double>& list : mesh.group().gatherItems(own))
-  {
-    all.insert(all.end(), list.begin(), list.end());
-  }
+  std::vector<double> all = mesh.group().gatherJoined(own);
   simplify(all);
   count = static_cast<Index>(all.size());
   for (Index i = 0; i < n; ++i)

@@ -29,11 +29,11 @@ inline Vec3 commonOrigin(RankGroup& group, const std::vector<RankPiece>& pieces)
       own.push_back(finitePoint(piece.mesh->view()));
     }
   }
-  for (const std::vector<Vec3>& list : group.gatherItems(own))
+  for (const Vec3& point : group.gatherJoined(own))
   {
-    if (!list.empty() && std::isfinite(dot(list[0], list[0])))
+    if (std::isfinite(dot(point, point)))
     {
-      return list[0];
+      return point;
     }
   }
   return { 0, 0, 0 };

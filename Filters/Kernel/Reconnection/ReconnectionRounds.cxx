@@ -133,10 +133,7 @@ void RankRounds::take(const RankTetrahedra& mesh)
   unitePoints(this->Part.points);
   this->FirstInserted = this->NextPoint = this->Group.maximum(largest) + 1;
   this->FirstSize = this->Group.sum(static_cast<Index>(this->Part.cells.size()));
-  for (const auto& list : this->Group.gatherItems(mesh.markedFacets))
-  {
-    this->Marked.insert(this->Marked.end(), list.begin(), list.end());
-  }
+  this->Marked = this->Group.gatherJoined(mesh.markedFacets);
   for (std::array<Index, 3>& facet : this->Marked)
   {
     std::sort(facet.begin(), facet.end());

@@ -39,17 +39,6 @@ std::array<Index, 4> sorted(std::array<Index, 4> points)
   return points;
 }
 
-template <class Item>
-std::vector<Item> joined(std::vector<std::vector<Item>>&& lists)
-{
-  std::vector<Item> all;
-  for (const std::vector<Item>& list : lists)
-  {
-    all.insert(all.end(), list.begin(), list.end());
-  }
-  return all;
-}
-
 /// The points of cells. @param places those of the points of the part
 std::vector<PartPoint> pointsOf(
   const TetrahedronPiece& part, const PointPlaces& places, const std::vector<PartCell>& cells)
@@ -252,7 +241,7 @@ std::vector<Neighbour> findNeighbours(
   {
     sent[directoryOf(facet.facet[0], group.size())].push_back(facet);
   }
-  std::vector<OuterFacet> all = joined(group.exchangeItems(sent));
+  std::vector<OuterFacet> all = group.exchangeJoined(sent);
   std::sort(all.begin(), all.end());
   struct Answer
   {
@@ -276,7 +265,7 @@ std::vector<Neighbour> findNeighbours(
   }
   throwIfAny(group, tooMany);
   std::vector<Neighbour> neighbours;
-  for (const Answer& answer : joined(group.exchangeItems(answers)))
+  for (const Answer& answer : group.exchangeJoined(answers))
   {
     neighbours.push_back(answer.neighbour);
     paired.push_back(answer.facet);
@@ -300,7 +289,7 @@ std::vector<Index> findShared(RankGroup& group, const std::vector<OuterFacet>& o
     sent[directoryOf(number, group.size())].push_back(number);
   }
   const std::vector<std::vector<Index>> received = group.exchangeItems(sent);
-  std::vector<Index> all = joined(std::vector<std::vector<Index>>(received));
+  std::vector<Index> all = joinLists(received);
   std::sort(all.begin(), all.end());
   std::vector<std::vector<Index>> answers(group.size());
   for (std::size_t r = 0; r < received.size(); ++r)
@@ -312,7 +301,7 @@ std::vector<Index> findShared(RankGroup& group, const std::vector<OuterFacet>& o
         return range.second - range.first > 1;
       });
   }
-  std::vector<Index> shared = joined(group.exchangeItems(answers));
+  std::vector<Index> shared = group.exchangeJoined(answers);
   std::sort(shared.begin(), shared.end());
   return shared;
 }
@@ -379,9 +368,9 @@ void redistribute(RankGroup& group, const std::vector<int>& targets, Tetrahedron
       }
     }
   }
-  part.cells = joined(group.exchangeItems(cells));
-  part.points = joined(group.exchangeItems(points));
-  part.shares = joined(group.exchangeItems(shares));
+  part.cells = group.exchangeJoined(cells);
+  part.points = group.exchangeJoined(points);
+  part.shares = group.exchangeJoined(shares);
   sortCells(part.cells);
   unitePoints(part.points);
   const auto key = [](const PartShare& share) { return std::make_pair(share.point, share.number); };
@@ -468,8 +457,8 @@ PartSurroundings surroundingsOf(
     }
     points[r] = pointsOf(part, places, cells[r]);
   }
-  around.cells = joined(group.exchangeItems(cells));
-  around.points = joined(group.exchangeItems(points));
+  around.cells = group.exchangeJoined(cells);
+  around.points = group.exchangeJoined(points);
   sortCells(around.cells);
   unitePoints(around.points);
   return around;

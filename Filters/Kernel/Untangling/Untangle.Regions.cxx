@@ -56,29 +56,22 @@ void unify(std::vector<RegionPoint>& points)
     points.end());
 }
 
-/// @param cells type, number of points and their numbers of each, by ranks
-Region makeRegion(
-  const std::vector<std::vector<RegionPoint>>& points, const std::vector<std::vector<Index>>& cells)
+/// @param cells type, number of points and their numbers of each
+Region makeRegion(std::vector<RegionPoint> points, const std::vector<Index>& cells)
 {
   Region region;
-  for (const auto& list : points)
-  {
-    region.points.insert(region.points.end(), list.begin(), list.end());
-  }
+  region.points = std::move(points);
   unify(region.points);
-  for (const auto& list : cells)
+  for (auto next = cells.begin(); next != cells.end();)
   {
-    for (std::size_t i = 0; i < list.size();)
-    {
-      RegionCell cell;
-      cell.type = static_cast<unsigned char>(list[i]);
-      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 2;
-      cell.numbers.assign(begin, begin + list[i + 1]);
-      cell.sorted = cell.numbers;
-      std::sort(cell.sorted.begin(), cell.sorted.end());
-      i += 2 + cell.numbers.size();
-      region.cells.push_back(std::move(cell));
-    }
+    RegionCell cell;
+    cell.type = static_cast<unsigned char>(*next++);
+    const auto begin = next + 1;
+    next = begin + *next;
+    cell.numbers.assign(begin, next);
+    cell.sorted = cell.numbers;
+    std::sort(cell.sorted.begin(), cell.sorted.end());
+    region.cells.push_back(std::move(cell));
   }
   std::sort(region.cells.begin(), region.cells.end(),
     [](const RegionCell& a, const RegionCell& b) { return a.key() < b.key(); });
@@ -189,7 +182,7 @@ private:
     std::vector<Index>& cells) const;
   Region gather(int width);
   double solve(const Region& region, int width);
-  void note(const std::vector<std::vector<Index>>& lists, int width);
+  void note(const std::vector<Index>& list, int width);
   void take(const std::vector<RegionPoint>& moved);
   std::vector<Index> numbersOf(Index cell) const;
   void findObstacles();
@@ -296,19 +289,9 @@ Region RegionUntangler::gather(int width)
   std::vector<Index> cells;
   this->listNear(near, points, cells);
   const auto collect = [&](const auto& items)
-  {
-    if (width >= 0)
-    {
-      return this->Group.gatherItems(items);
-    }
-    std::vector<std::decay_t<decltype(items)>> sent;
-    sent.resize(this->Group.size());
-    sent.front() = items;
-    return this->Group.exchangeItems(sent);
-  };
-  const auto allPoints = collect(points);
-  const auto allCells = collect(cells);
-  return makeRegion(allPoints, allCells);
+  { return width < 0 ? this->Group.gatherOnFirst(items) : this->Group.gatherJoined(items); };
+  std::vector<RegionPoint> allPoints = collect(points);
+  return makeRegion(std::move(allPoints), collect(cells));
 }
 
 //------------------------------------------------------------------------------
@@ -356,28 +339,23 @@ double RegionUntangler::solve(const Region& region, int width)
     }
   }
   const double objective = this->Group.orderlessSum(objectives);
-  for (const auto& list : this->Group.gatherItems(moved))
-  {
-    this->take(list);
-  }
-  this->note(this->Group.gatherItems(obstacles), width);
+  this->take(this->Group.gatherJoined(moved));
+  this->note(this->Group.gatherJoined(obstacles), width);
   return objective;
 }
 
 //------------------------------------------------------------------------------
-/// @param lists by ranks, of elements: the obstacle, how many points, their numbers
-void RegionUntangler::note(const std::vector<std::vector<Index>>& lists, int width)
+/// @param list of elements: the obstacle, how many points, their numbers
+void RegionUntangler::note(const std::vector<Index>& list, int width)
 {
-  for (const std::vector<Index>& list : lists)
+  for (auto next = list.begin(); next != list.end();)
   {
-    for (std::size_t i = 0; i < list.size(); i += 2 + static_cast<std::size_t>(list[i + 1]))
-    {
-      const auto begin = list.begin() + static_cast<std::ptrdiff_t>(i) + 2;
-      // Points around a region that is not the whole mesh are held, but not fixed.
-      const bool known = width < 0 || list[i] == static_cast<Index>(Obstacle::FixedElement);
-      this->Obstacles[{ begin, begin + list[i + 1] }] =
-        known ? static_cast<Obstacle>(list[i]) : Obstacle::Unknown;
-    }
+    const Index obstacle = *next++;
+    const auto begin = next + 1;
+    next = begin + *next;
+    // Points around a region that is not the whole mesh are held, but not fixed.
+    const bool known = width < 0 || obstacle == static_cast<Index>(Obstacle::FixedElement);
+    this->Obstacles[{ begin, next }] = known ? static_cast<Obstacle>(obstacle) : Obstacle::Unknown;
   }
 }
 
