@@ -150,11 +150,26 @@ void testKinds()
   TAUTLINE_CHECK(two == onAll("In process 1: Of rank 1"));
   TAUTLINE_CHECK(endsOf([](RankGroup& group) { group.sum(Index(1)); }) == onAll(""));
 }
+
+/// The lists of all ranks, joined in the order of the ranks, on all of them or on the first.
+void testLists()
+{
+  onRanks(ranks,
+    [](RankGroup& group)
+    {
+      const std::vector<int> own(group.rank(), group.rank()), all = { 1, 2, 2 };
+      TAUTLINE_CHECK(group.gatherJoined(own) == all);
+      TAUTLINE_CHECK(group.gatherOnFirst(own) == (group.rank() == 0 ? all : std::vector<int>()));
+      const std::vector<std::vector<int>> sent(ranks, own);
+      TAUTLINE_CHECK(group.exchangeJoined(sent) == all);
+    });
+}
 }
 
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestRankGroup)
 {
+  TAUTLINE_RUN(testLists());
   TAUTLINE_RUN(testWaiting());
   TAUTLINE_RUN(testNested());
   TAUTLINE_RUN(testKinds());

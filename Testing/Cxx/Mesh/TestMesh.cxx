@@ -101,6 +101,28 @@ void testDimension()
 }
 
 //------------------------------------------------------------------------------
+/// Cells with a point that moved have the validity of a mesh there; the others keep theirs.
+void testMovedCells(const MeshData& data, bool mirrored)
+{
+  MeshData moved = data;
+  moved.setPoint(2, moved.point(2) + Vec3{ 1.5, 0.25, 0 });
+  Mesh mesh(data.view()), there(moved.view());
+  mesh.setMirrored(mirrored);
+  there.setMirrored(mirrored);
+  constexpr signed char unknown = 7;
+  std::vector<signed char> validity(data.numberOfCells(), unknown), all(data.numberOfCells());
+  mesh.classifyMovedCells(moved.points.data(), validity.data());
+  there.classifyCells(all.data());
+  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+  {
+    const auto* begin = data.connectivity.data() + data.offsets[cell];
+    const auto* end = data.connectivity.data() + data.offsets[cell + 1];
+    const bool touched = std::find(begin, end, 2) != end;
+    TAUTLINE_CHECK_EQUAL(int(validity[cell]), int(touched ? all[cell] : unknown));
+  }
+}
+
+//------------------------------------------------------------------------------
 /// At other points a mesh is what a new one there is: on a tilted plane, off it, in space, with a
 /// point that is not finite, and back.
 void testAtOtherPoints(MeshData data, bool mirrored)
@@ -339,6 +361,7 @@ TAUTLINE_TEST(TestMesh)
     TAUTLINE_RUN(testBoundary(type));
     TAUTLINE_RUN(testAdjacency(box(type)));
     TAUTLINE_RUN(testAtOtherPoints(box(type), topology(type).dimension == 3));
+    TAUTLINE_RUN(testMovedCells(box(type), topology(type).dimension == 3));
   }
   TAUTLINE_RUN(testAtOtherPoints(mixedMesh(), false));
   TAUTLINE_RUN(testMixed());
