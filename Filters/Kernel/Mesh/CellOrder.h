@@ -48,7 +48,7 @@ struct RankOrder
 };
 
 /**
- * @brief The orientation and the order of a mesh in pieces. Collective.
+ * @brief The orientation of a mesh in pieces on ranks, and the order of its cells. Collective.
  *
  * Points of different pieces, or of one, are one as RankPiece has it where they make two boundary
  * facets one. Two cells that walk round such a facet in one sense are neighbours in opposite orders

@@ -179,8 +179,10 @@ public:
    * this limit is Degenerate.
    */
   void classifyCells(signed char* validity, int threads = 0) const;
-  /// The same of the cells with a point whose place, 3 coordinates per point of the view, is not
-  /// its place in the view; the others keep theirs.
+  /**
+   * @brief Classifies the cells that have a moved point; the values of the others are kept.
+   * @param points 3 coordinates per point of the view; a point that differs from the view has moved
+   */
   void classifyMovedCells(const double* points, signed char* validity, int threads = 0) const;
   /**
    * @brief The same for one cell with the given vertices, which need not be those of the view.

@@ -37,7 +37,7 @@ public:
     , Comm(communicator)
   {
   }
-  /// Of a mesh by whose global numbers sums are ordered.
+  /// Sums over few points are in the order of their numbers in the mesh, which stays alive.
   explicit Ranks(DistributedMesh& mesh)
     : Ranks(mesh, mesh.numbers(), mesh.group().communicator())
   {
