@@ -57,6 +57,37 @@ const char* wording(const char* id)
 }
 
 //------------------------------------------------------------------------------
+RegisteredTest* findTest(const std::string& name)
+{
+  auto& tests = registeredTests();
+  const auto found =
+    std::find_if(tests.begin(), tests.end(), [&](const auto& test) { return name == test.name; });
+  return found == tests.end() ? nullptr : &*found;
+}
+
+namespace
+{
+RegisteredTest& testCalled(const std::string& name)
+{
+  if (!findTest(name))
+  {
+    registeredTests().push_back({ name, nullptr, {} });
+  }
+  return *findTest(name);
+}
+}
+
+Registration::Registration(const char* name, TestFunction run)
+{
+  testCalled(name).run = run;
+}
+
+Registration::Registration(const char* file, const RegisteredPart& part)
+{
+  testCalled(std::filesystem::path(file).stem().string()).parts.push_back(part);
+}
+
+//------------------------------------------------------------------------------
 TestPart::TestPart(const char* call, Pace pace)
   : Name(call + Context::all())
 {
@@ -120,13 +151,20 @@ void printUsage()
 
 int runTest(const RegisteredTest& test, std::vector<char*> arguments)
 {
-  arguments[0] = const_cast<char*>(test.name);
+  arguments[0] = const_cast<char*>(test.name.c_str());
   PartChoice& choice = partChoice();
   choice.run = choice.skipped = 0;
   const int before = failures();
   try
   {
-    test.run(static_cast<int>(arguments.size()) - 1, arguments.data());
+    if (test.run)
+    {
+      test.run(static_cast<int>(arguments.size()) - 1, arguments.data());
+    }
+    for (const RegisteredPart& part : test.parts)
+    {
+      TAUTLINE_RUN_CALL(part.call, part.pace, part.run());
+    }
   }
   catch (const SkippedTest& skipped)
   {
@@ -135,7 +173,7 @@ int runTest(const RegisteredTest& test, std::vector<char*> arguments)
   }
   catch (const std::exception& error)
   {
-    fail(test.name, 0) << "exception: " << error.what() << "\n";
+    fail(test.name.c_str(), 0) << "exception: " << error.what() << "\n";
     if (onSeveralRanks())
     {
       throw;
@@ -151,14 +189,6 @@ int runTest(const RegisteredTest& test, std::vector<char*> arguments)
     std::cout << test.name << ": " << choice.skipped << " slow parts left out, --slow runs them\n";
   }
   return failures() == before ? Passed : Failed;
-}
-
-const RegisteredTest* findTest(const std::string& name)
-{
-  const auto& tests = RegisteredTest::all();
-  const auto found =
-    std::find_if(tests.begin(), tests.end(), [&](const auto& test) { return name == test.name; });
-  return found == tests.end() ? nullptr : &*found;
 }
 }
 }
@@ -207,7 +237,7 @@ int main(int argc, char* argv[])
       printUsage();
       return WrongArguments;
     }
-    for (const RegisteredTest& test : RegisteredTest::all())
+    for (const RegisteredTest& test : registeredTests())
     {
       std::cout << test.name << "\n";
     }

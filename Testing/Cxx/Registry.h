@@ -3,13 +3,21 @@
  * @file Registry.h
  * @brief Registers the tests of the program TautlineTests and runs their parts one by one.
  *
- * A file TestName.cxx has one test, which calls its parts:
+ * A file TestName.cxx is one test. It consists of its parts:
+ *
+ *     TAUTLINE_PART(testValues)
+ *     {
+ *       ...
+ *     }
+ *     TAUTLINE_PART_SLOW(testLarge)
+ *     ...
+ *
+ * Parts with arguments or a set-up that they share are called, before the others:
  *
  *     TAUTLINE_TEST(TestName)
  *     {
- *       const MeshData mesh = ...;         // set-up that the parts share
- *       TAUTLINE_RUN(testValues(mesh));
- *       TAUTLINE_RUN_SLOW(testLarge(mesh));
+ *       const MeshData mesh = ...;
+ *       TAUTLINE_RUN(testSums(mesh));
  *     }
  *
  * `TautlineTests TestName` runs all parts except the slow ones, `TautlineTests TestName/testValues`
@@ -29,22 +37,42 @@ namespace tautline
 {
 using TestFunction = void (*)(int argc, char* argv[]);
 
+enum class Pace
+{
+  Fast,
+  Slow ///< runs with --slow only, or where it is named
+};
+
+/** A part of a test that is called without arguments. */
+struct RegisteredPart
+{
+  const char* call;
+  void (*run)();
+  Pace pace;
+};
+
 struct RegisteredTest
 {
-  RegisteredTest(const char* name, TestFunction run)
-    : name(name)
-    , run(run)
-  {
-    all().push_back(*this);
-  }
-  static std::vector<RegisteredTest>& all()
-  {
-    static std::vector<RegisteredTest> tests;
-    return tests;
-  }
+  std::string name;
+  TestFunction run = nullptr; ///< optional, before the parts
+  std::vector<RegisteredPart> parts;
+};
 
-  const char* name;
-  TestFunction run;
+/** In the order of their first registration. */
+inline std::vector<RegisteredTest>& registeredTests()
+{
+  static std::vector<RegisteredTest> tests;
+  return tests;
+}
+
+/** Null if there is none. */
+RegisteredTest* findTest(const std::string& name);
+
+/** Registers the function of a test, or a part of the test of a source file, when it is constructed. */
+struct Registration
+{
+  Registration(const char* name, TestFunction run);
+  Registration(const char* file, const RegisteredPart& part);
 };
 
 /** Which parts of a test run, and what became of them. */
@@ -68,12 +96,6 @@ inline bool slowParts()
 {
   return partChoice().slow;
 }
-
-enum class Pace
-{
-  Fast,
-  Slow ///< runs with --slow only, or where it is named
-};
 
 /** A part of a test, from its construction to its end. */
 class TestPart
@@ -105,28 +127,37 @@ std::string externalData(const std::string& folder);
 
 #define TAUTLINE_TEST(name)                                                   \
   static void name([[maybe_unused]] int argc, [[maybe_unused]] char* argv[]); \
-  static const tautline::RegisteredTest registered##name(#name, name);        \
+  static const tautline::Registration registered##name(#name, name);          \
   static void name([[maybe_unused]] int argc, [[maybe_unused]] char* argv[])
 
-#define TAUTLINE_RUN_PART(pace, ...)                           \
-  do                                                           \
-  {                                                            \
-    const tautline::TestPart tautlinePart(#__VA_ARGS__, pace); \
-    if (tautlinePart.chosen())                                 \
-    {                                                          \
-      try                                                      \
-      {                                                        \
-        __VA_ARGS__;                                           \
-      }                                                        \
-      catch (const std::exception& tautlineError)              \
-      {                                                        \
-        tautlinePart.failed(tautlineError);                    \
-      }                                                        \
-    }                                                          \
+#define TAUTLINE_PACED_PART(name, pace)                                                         \
+  static void name();                                                                           \
+  static const tautline::Registration registered##name(__FILE__, { #name "()", name, (pace) }); \
+  static void name()
+/** A part of the test of this file. */
+#define TAUTLINE_PART(name) TAUTLINE_PACED_PART(name, tautline::Pace::Fast)
+/** The same for a part that takes long: a large mesh, many random operations. */
+#define TAUTLINE_PART_SLOW(name) TAUTLINE_PACED_PART(name, tautline::Pace::Slow)
+
+#define TAUTLINE_RUN_CALL(call, pace, ...)             \
+  do                                                   \
+  {                                                    \
+    const tautline::TestPart tautlinePart(call, pace); \
+    if (tautlinePart.chosen())                         \
+    {                                                  \
+      try                                              \
+      {                                                \
+        __VA_ARGS__;                                   \
+      }                                                \
+      catch (const std::exception& tautlineError)      \
+      {                                                \
+        tautlinePart.failed(tautlineError);            \
+      }                                                \
+    }                                                  \
   } while (false)
+#define TAUTLINE_RUN_PART(pace, ...) TAUTLINE_RUN_CALL(#__VA_ARGS__, pace, __VA_ARGS__)
 /** Runs a call as a part of the test. */
 #define TAUTLINE_RUN(...) TAUTLINE_RUN_PART(tautline::Pace::Fast, __VA_ARGS__)
-/** The same for a part that takes long: a large mesh, many random operations. */
 #define TAUTLINE_RUN_SLOW(...) TAUTLINE_RUN_PART(tautline::Pace::Slow, __VA_ARGS__)
 
 #endif

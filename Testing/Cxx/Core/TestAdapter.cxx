@@ -31,7 +31,7 @@ bool contains(const std::string& text, const char* part)
 }
 
 //------------------------------------------------------------------------------
-void testUnstructuredGrid()
+TAUTLINE_PART(testUnstructuredGrid)
 {
   const MeshData data = blockMesh(CellType::Tetrahedron, 3, 2, 2);
   const Mesh expected(data.view());
@@ -82,7 +82,7 @@ void testUnstructuredGrid()
 
 /// Pixels and voxels count rows of points; polygons of three and four points are triangles and
 /// quadrilaterals.
-void testRelatedTypes()
+TAUTLINE_PART(testRelatedTypes)
 {
   MeshData data = blockMesh(CellType::Hexahedron, 1, 1, 1); // its points are those of a voxel
   data.connectivity = { 0, 1, 2, 3, 4, 5, 6, 7 };
@@ -110,7 +110,7 @@ void testRelatedTypes()
 }
 
 //------------------------------------------------------------------------------
-void testPolyData()
+TAUTLINE_PART(testPolyData)
 {
   const MeshData data = blockMesh(CellType::Triangle, 3, 2, 0);
   const auto poly = toPolyData(data);
@@ -168,7 +168,7 @@ void checkBlock(vtkDataSet* input, Dimension dimension, const std::vector<double
   }
 }
 
-void testStructured()
+TAUTLINE_PART(testStructured)
 {
   vtkNew<vtkImageData> image;
   image->SetSpacing(0.5, 2, 3);
@@ -221,7 +221,7 @@ void testStructured()
 }
 
 //------------------------------------------------------------------------------
-void testEmpty()
+TAUTLINE_PART(testEmpty)
 {
   vtkNew<vtkUnstructuredGrid> grid;
   vtkNew<vtkPolyData> poly;
@@ -242,7 +242,7 @@ void testEmpty()
   TAUTLINE_CHECK_EQUAL(MeshAdapter(grid).mesh().boundary().isBoundaryPoint.size(), 4u);
 }
 
-void testNotices()
+TAUTLINE_PART(testNotices)
 {
   MeshData data = blockMesh(CellType::Quadrilateral, 2, 2, 0);
   data.setPoint(4, { std::nan(""), 0, 0 });
@@ -262,7 +262,7 @@ void testNotices()
     adapter.ghostCells() && adapter.ghostCells()[1] == 1 && adapter.ghostCells()[2] == 0);
 }
 
-void testDescription()
+TAUTLINE_PART(testDescription)
 {
   MeshData data = blockMesh(CellType::Quadrilateral, 3, 3, 0);
   auto description = [](const MeshData& mesh)
@@ -284,7 +284,7 @@ void testDescription()
   TAUTLINE_CHECK(contains(description(data), "9 of 9"));
 }
 
-void testMakePoints()
+TAUTLINE_PART(testMakePoints)
 {
   const std::vector<double> coordinates = { 0.1, 0.2, 0.3, 4, 5, 6 };
   for (int precision : { VTK_FLOAT, VTK_DOUBLE })
@@ -298,16 +298,4 @@ void testMakePoints()
   }
   TAUTLINE_CHECK_EQUAL(makePoints(coordinates, nullptr)->GetDataType(), VTK_DOUBLE);
 }
-}
-
-TAUTLINE_TEST(TestAdapter)
-{
-  TAUTLINE_RUN(testUnstructuredGrid());
-  TAUTLINE_RUN(testRelatedTypes());
-  TAUTLINE_RUN(testPolyData());
-  TAUTLINE_RUN(testStructured());
-  TAUTLINE_RUN(testEmpty());
-  TAUTLINE_RUN(testNotices());
-  TAUTLINE_RUN(testDescription());
-  TAUTLINE_RUN(testMakePoints());
 }

@@ -14,7 +14,7 @@ using namespace tautline;
 namespace
 {
 /// The root is the smallest member, whatever the order of the joins.
-void testUnionFind()
+TAUTLINE_PART(testUnionFind)
 {
   constexpr Index n = 60, step = 7;
   UnionFind up(n), down(n);
@@ -85,7 +85,7 @@ void testCholesky()
 }
 
 /// Both orders sum all entries, in one pass with an update or in two, on any number of threads.
-void testSums()
+TAUTLINE_PART(testSums)
 {
   constexpr std::size_t size = 3 * ChunkSize + 5; // not a multiple of the lanes
   Random random(1);
@@ -114,7 +114,7 @@ void testSums()
 
 /// The secant equation: the approximate inverse takes y of the newest pair to s. Pairs along which
 /// the function curves downwards are not kept.
-void testLimitedMemory()
+TAUTLINE_PART(testLimitedMemory)
 {
   constexpr std::size_t size = 12;
   const VectorAlgebra algebra(size, 1);
@@ -168,7 +168,7 @@ void testLimitedMemory()
 }
 
 /// Copies run from the same start; 0 is no limit.
-void testStopwatch()
+TAUTLINE_PART(testStopwatch)
 {
   const Stopwatch clock;
   while (!clock.reached(1e-3))
@@ -184,13 +184,9 @@ void testStopwatch()
 
 TAUTLINE_TEST(TestAlgebra)
 {
-  TAUTLINE_RUN(testUnionFind());
   TAUTLINE_RUN(testCholesky<1, CholeskyDiagonal::Root>());
   TAUTLINE_RUN(testCholesky<3, CholeskyDiagonal::Root>());
   TAUTLINE_RUN(testCholesky<2, CholeskyDiagonal::InverseRoot>());
   TAUTLINE_RUN(testCholesky<3, CholeskyDiagonal::InverseRoot>());
   TAUTLINE_RUN(testCholesky<6, CholeskyDiagonal::InverseRoot>());
-  TAUTLINE_RUN(testSums());
-  TAUTLINE_RUN(testLimitedMemory());
-  TAUTLINE_RUN(testStopwatch());
 }

@@ -62,7 +62,7 @@ bool interrupts(const std::function<void()>& work)
 }
 
 //------------------------------------------------------------------------------
-void testScopes()
+TAUTLINE_PART(testScopes)
 {
   struct sigaction before = {}, own = {}, after = {};
   own.sa_handler = countSignal;
@@ -113,7 +113,7 @@ void testScopes()
 }
 
 //------------------------------------------------------------------------------
-void testPolls()
+TAUTLINE_PART(testPolls)
 {
   int outer = 0, inner = 0;
   const auto compute = [] { parallelFor(1000, 1, 1, [](Index) { throwIfInterrupted(); }); };
@@ -140,7 +140,7 @@ void testPolls()
 }
 
 //------------------------------------------------------------------------------
-void testLoop()
+TAUTLINE_PART(testLoop)
 {
   for (int threads : { 1, 4 })
   {
@@ -167,7 +167,7 @@ void testLoop()
 
 //------------------------------------------------------------------------------
 /// An iteration that would not end, and a factorization that takes much longer than the check.
-void testSolver()
+TAUTLINE_PART(testSolver)
 {
   const int n = 300;
   const SparseMatrix matrix = laplacian(n);
@@ -203,7 +203,7 @@ void testSolver()
 }
 
 //------------------------------------------------------------------------------
-void testAbort()
+TAUTLINE_PART(testAbort)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 30, 30, 30);
   vtkNew<vtkElementQuality> filter;
@@ -246,7 +246,7 @@ void testAbort()
 }
 
 /// A filter that is none of vtkTautlineAlgorithm, with a scope of its own.
-void testHorizonNeighbors()
+TAUTLINE_PART(testHorizonNeighbors)
 {
   vtkNew<vtkHorizonNeighbors> filter;
   constexpr Index side = 300;
@@ -277,7 +277,7 @@ void testHorizonNeighbors()
 
 //------------------------------------------------------------------------------
 /// What a thread computes between two polls counts, not what it waits, nor what is polled.
-void testMeasure()
+TAUTLINE_PART(testMeasure)
 {
   constexpr double span = 0.05; // seconds of CPU time
   const auto cpu = []
@@ -340,7 +340,7 @@ void testMeasure()
 
 //------------------------------------------------------------------------------
 /// After the first block the time is over: the others get one iteration at most.
-void testBlocksShareTheTime()
+TAUTLINE_PART(testBlocksShareTheTime)
 {
   const MeshData data = movedBlock(CellType::Tetrahedron, 24, 0.1);
   constexpr unsigned blocks = 4;
@@ -432,7 +432,7 @@ bool interruptsWaitingCaller()
   return begun;
 }
 
-void testWaitingCaller()
+TAUTLINE_PART(testWaitingCaller)
 {
   constexpr int attempts = 20; // a worker may come too late on a crowded machine
   bool came = resolveThreads(0) == 1;
@@ -443,17 +443,4 @@ void testWaitingCaller()
   }
   TAUTLINE_CHECK(came);
 }
-}
-
-TAUTLINE_TEST(TestInterruption)
-{
-  TAUTLINE_RUN(testScopes());
-  TAUTLINE_RUN(testPolls());
-  TAUTLINE_RUN(testLoop());
-  TAUTLINE_RUN(testWaitingCaller());
-  TAUTLINE_RUN(testSolver());
-  TAUTLINE_RUN(testAbort());
-  TAUTLINE_RUN(testHorizonNeighbors());
-  TAUTLINE_RUN(testMeasure());
-  TAUTLINE_RUN(testBlocksShareTheTime());
 }

@@ -156,7 +156,7 @@ void testFilter(const char* name, const MeshData& mesh, const std::function<void
   }
 }
 
-void testMotions()
+TAUTLINE_PART(testMotions)
 {
   const MeshData moved = rough(CellType::Tetrahedron, 4);
   for (const int boundary : { vtkMeshOptimizer::FIXED, vtkMeshOptimizer::SLIDING })
@@ -176,7 +176,7 @@ void testMotions()
 }
 
 /// Without ids by coordinates; kept apart where the user wants it.
-void testSeams()
+TAUTLINE_PART(testSeams)
 {
   const MeshData moved = rough(CellType::Tetrahedron, 4);
   vtkNew<vtkMeshOptimizer> whole, joined, apart;
@@ -207,7 +207,7 @@ void testSeams()
   TAUTLINE_CHECK(messages.has(wording("marks-of-fixed-points-in-partition-2")));
 }
 
-void testOthers()
+TAUTLINE_PART(testOthers)
 {
   const MeshData moved = rough(CellType::Tetrahedron, 4);
   vtkNew<vtkMeshComparison> compared;
@@ -231,7 +231,7 @@ void testOthers()
 }
 
 /// A part of a mesh whose cells list their points in the other order, as its neighbours have not.
-void testQuality()
+TAUTLINE_PART(testQuality)
 {
   MeshData mesh = rough(CellType::Tetrahedron, 4);
   for (Index cell = 0; cell < mesh.numberOfCells(); cell += Parts)
@@ -290,7 +290,7 @@ void expectName(vtkDataObject* data, vtkUnstructuredGrid* wrong, const std::stri
 }
 
 /// Numbers of blocks do not depend on how many partitions there are.
-void testNames()
+TAUTLINE_PART(testNames)
 {
   const auto make = [] { return toGrid(rough(CellType::Tetrahedron, 2)); };
   const auto grid = make();
@@ -317,14 +317,4 @@ void testNames()
     expectName(blocks, grid, "block 3");
   }
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestPartitions)
-{
-  TAUTLINE_RUN(testMotions());
-  TAUTLINE_RUN(testSeams());
-  TAUTLINE_RUN(testOthers());
-  TAUTLINE_RUN(testQuality());
-  TAUTLINE_RUN(testNames());
 }

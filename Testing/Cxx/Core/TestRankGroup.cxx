@@ -52,7 +52,7 @@ std::vector<std::string> onAll(const std::string& end)
 }
 
 /// The collectives that the others are in when one fails.
-void testWaiting()
+TAUTLINE_PART(testWaiting)
 {
   const std::vector<std::function<void(RankGroup&)>> collectives = {
     [](RankGroup& group) { group.sum(Index(1)); }, [](RankGroup& group) { group.sum(1.0); },
@@ -91,7 +91,7 @@ void testWaiting()
 }
 
 /// Calls within calls, at other depths on the rank that fails.
-void testNested()
+TAUTLINE_PART(testNested)
 {
   const auto deep = [](RankGroup& group, int depth, const std::function<void()>& last)
   {
@@ -117,7 +117,7 @@ void testNested()
 }
 
 /// What all throw alike is what they get; an interruption is one on its own rank.
-void testKinds()
+TAUTLINE_PART(testKinds)
 {
   TAUTLINE_CHECK(endsOf([](RankGroup&) { throw MemoryError("Not enough."); }) == onAll("memory"));
   TAUTLINE_CHECK(endsOf([](RankGroup&) { throw Error("Wrong."); }) == onAll("Wrong."));
@@ -152,7 +152,7 @@ void testKinds()
 }
 
 /// The lists of all ranks, joined in the order of the ranks, on all of them or on the first.
-void testLists()
+TAUTLINE_PART(testLists)
 {
   onRanks(ranks,
     [](RankGroup& group)
@@ -164,13 +164,4 @@ void testLists()
       TAUTLINE_CHECK(group.exchangeJoined(sent) == all);
     });
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestRankGroup)
-{
-  TAUTLINE_RUN(testLists());
-  TAUTLINE_RUN(testWaiting());
-  TAUTLINE_RUN(testNested());
-  TAUTLINE_RUN(testKinds());
 }

@@ -117,7 +117,7 @@ void testMoving(const char* name, bool tangled, const std::function<void(Filter*
   }
 }
 
-void testStatistics()
+TAUTLINE_PART(testStatistics)
 {
   const MeshData data = perturbed(CellType::Tetrahedron);
   vtkNew<vtkMeshOptimizer> filter;
@@ -140,7 +140,7 @@ void testStatistics()
 }
 
 /// An objective that compares with a target of length 1 is refused; with a reference it is not.
-void testTargets()
+TAUTLINE_PART(testTargets)
 {
   const MeshData data = scaled(perturbed(CellType::Triangle), -498);
   vtkNew<vtkMeshOptimizer> filter;
@@ -164,7 +164,7 @@ void testTargets()
 //------------------------------------------------------------------------------
 /// Far from the origin points move as near to it, to the digits of the coordinates; where these are
 /// too few for the elements, a warning says so.
-void testOffsets()
+TAUTLINE_PART(testOffsets)
 {
   const MeshData data = perturbed(CellType::Triangle);
   vtkNew<vtkMeshOptimizer> filter;
@@ -211,7 +211,7 @@ void testOffsets()
 }
 
 //------------------------------------------------------------------------------
-void testMeasuring()
+TAUTLINE_PART(testMeasuring)
 {
   const MeshData data = perturbed(CellType::Tetrahedron);
   vtkNew<vtkElementQuality> quality;
@@ -245,7 +245,7 @@ void testMeasuring()
 }
 
 /// What assembles matrices refuses extreme sizes by name.
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const auto refuses = [](vtkAlgorithm* filter, const MeshData& data, const char* text)
   {
@@ -300,9 +300,4 @@ TAUTLINE_TEST(TestScaleFilters)
     }));
   TAUTLINE_RUN(testMoving<vtkMeshUntangler>("untangle", true, [](vtkMeshUntangler*) {}));
   TAUTLINE_RUN(testMoving<vtkMeshPerturbation>("perturb", false, [](vtkMeshPerturbation*) {}));
-  TAUTLINE_RUN(testStatistics());
-  TAUTLINE_RUN(testTargets());
-  TAUTLINE_RUN(testOffsets());
-  TAUTLINE_RUN(testMeasuring());
-  TAUTLINE_RUN(testRefusals());
 }

@@ -24,7 +24,7 @@ namespace
 {
 constexpr double Tight = 1e-12;
 
-void testElliptic()
+TAUTLINE_PART(testElliptic)
 {
   for (CellType type : allTypes)
   {
@@ -143,7 +143,7 @@ std::vector<vtkSmartPointer<vtkUnstructuredGrid>> gridsOf(const Case& both, doub
   return grids;
 }
 
-void testBlocks()
+TAUTLINE_PART(testBlocks)
 {
   const Case both = quarters(CellType::Triangle, 8, 0.1);
   const auto grids = gridsOf(both, 4.0);
@@ -225,7 +225,7 @@ void testBlocks()
   TAUTLINE_CHECK(none.empty());
 }
 
-void testPeridynamics()
+TAUTLINE_PART(testPeridynamics)
 {
   MeshData square = blockMesh(CellType::Triangle, 8, 8, 0);
   square.transform([](Vec3 p) { return 0.125 * p; });
@@ -293,12 +293,4 @@ void testPeridynamics()
   stiffness->Update();
   TAUTLINE_CHECK(messages.has(wording("1-duplicate-cell-has-the-same-points")));
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestSeamSystems)
-{
-  TAUTLINE_RUN(testElliptic());
-  TAUTLINE_RUN(testBlocks());
-  TAUTLINE_RUN(testPeridynamics());
 }

@@ -19,7 +19,7 @@ using namespace tautline;
 
 namespace
 {
-void testOptimize()
+TAUTLINE_PART(testOptimize)
 {
   for (CellType type :
     { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron, CellType::Hexahedron })
@@ -89,7 +89,7 @@ void testOptimize()
   TAUTLINE_CHECK_EQUAL(moved(), 0.0);
 }
 
-void testUntangle()
+TAUTLINE_PART(testUntangle)
 {
   const Case both = quarters(CellType::Triangle, 8, 0.9);
   vtkNew<vtkMeshUntangler> pieces, whole;
@@ -104,7 +104,7 @@ void testUntangle()
   TAUTLINE_CHECK(pieces->GetInvertedAfter() > 0); // tangled points of the seam stay
 }
 
-void testPerturb()
+TAUTLINE_PART(testPerturb)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
@@ -154,7 +154,7 @@ void addDisplacement(vtkDataSet* grid, double difference, Index at)
   grid->GetPointData()->AddArray(displacement);
 }
 
-void testWarp()
+TAUTLINE_PART(testWarp)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
@@ -206,7 +206,7 @@ void testWarp()
   TAUTLINE_CHECK(messages.empty());
 }
 
-void testQuality()
+TAUTLINE_PART(testQuality)
 {
   const Case both = quarters(CellType::Tetrahedron, 4, 0.1);
   vtkNew<vtkElementQuality> filter;
@@ -244,7 +244,7 @@ void testQuality()
       " (those of 7), " + std::to_string(cells + 1) + " (those of 9)."));
 }
 
-void testDuplicateCells()
+TAUTLINE_PART(testDuplicateCells)
 {
   // The boundary is fixed at duplicate cells, too.
   const MeshData data = rough(CellType::Tetrahedron, 4, 0.2);
@@ -297,7 +297,7 @@ void testDuplicateCells()
   }
 }
 
-void testNothingFree()
+TAUTLINE_PART(testNothingFree)
 {
   const Case all(exploded(blockMesh(CellType::Triangle, 4, 4, 0)));
   vtkNew<vtkMeshOptimizer> filter;
@@ -341,16 +341,4 @@ void testNothingFree()
   untangler->Update();
   TAUTLINE_CHECK(contains(untangler->GetSummary(), wording("switch-fix-boundary-off")));
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestSeams)
-{
-  TAUTLINE_RUN(testOptimize());
-  TAUTLINE_RUN(testUntangle());
-  TAUTLINE_RUN(testPerturb());
-  TAUTLINE_RUN(testWarp());
-  TAUTLINE_RUN(testQuality());
-  TAUTLINE_RUN(testDuplicateCells());
-  TAUTLINE_RUN(testNothingFree());
 }

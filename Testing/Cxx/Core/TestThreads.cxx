@@ -199,7 +199,7 @@ void testSums(const MeshData& data, const std::vector<Metric>& metrics)
 }
 
 /// The gradient of a sum along random directions against central differences.
-void testDifferences()
+TAUTLINE_PART(testDifferences)
 {
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 6, 0.1);
   Random random(25);
@@ -234,7 +234,7 @@ void testDifferences()
 }
 
 /// Cells that are not finite add nothing, wherever they are along the space-filling curve.
-void testNonFinite()
+TAUTLINE_PART_SLOW(testNonFinite)
 {
   const MeshData good = shuffled(perturbedBlock(CellType::Tetrahedron, manyCubes, 0.1), 26);
   MeshData bad = good;
@@ -256,7 +256,7 @@ void testNonFinite()
 }
 
 /// A fan of so many triangles that no colouring is left is refused in words.
-void testExtremeVertex()
+TAUTLINE_PART(testExtremeVertex)
 {
   constexpr Index triangles = 65 * 4096 + 1; // one more than 65 chunks of 4096
   MeshData fan;
@@ -287,7 +287,4 @@ TAUTLINE_TEST(TestThreads)
   }
   TAUTLINE_RUN(testSums(shuffled(perturbedBlock(CellType::Tetrahedron, manyCubes, 0.15), 27),
     { Metric::InverseMeanRatio }));
-  TAUTLINE_RUN(testDifferences());
-  TAUTLINE_RUN_SLOW(testNonFinite());
-  TAUTLINE_RUN(testExtremeVertex());
 }

@@ -50,7 +50,7 @@ vtkSmartPointer<vtkUnstructuredGrid> solid()
 }
 
 /// The place is the first, with any number of threads, wherever it is.
-void testSearches()
+TAUTLINE_PART(testSearches)
 {
   std::vector<std::int64_t> wide(Many, 5);
   std::vector<std::int32_t> narrow(Many, 5);
@@ -97,7 +97,7 @@ void testSearches()
   TAUTLINE_CHECK_EQUAL(findTooShort(offsets.data(), Many, 0, 2), 70000);
 }
 
-void testArrays()
+TAUTLINE_PART(testArrays)
 {
   const auto add = [](auto array, const char* name, vtkIdType tuples, bool ofCells)
   {
@@ -124,7 +124,7 @@ void testArrays()
   expect(noPoints, wording("but-the-mesh-has-20-points-0"));
 }
 
-void testCells()
+TAUTLINE_PART(testCells)
 {
   using Array = vtkAOSDataArrayTemplate<vtkTypeInt64>;
   const auto wrong = [](const std::string& text, const std::function<void(Array*, Array*)>& how)
@@ -168,7 +168,7 @@ void testCells()
   expect(poly, wording("cell-9-is-not-a-proper-polygon"));
 }
 
-void testOthers()
+TAUTLINE_PART(testOthers)
 {
   const auto mesh = solid();
   mesh->GetPoints()->SetPoint(5, 0, NaN, 0);
@@ -202,7 +202,7 @@ void testOthers()
   expect(nullptr, "");
 }
 
-void testSelections()
+TAUTLINE_PART(testSelections)
 {
   const auto problem = [](vtkAbstractArray* ids, int field, vtkDataObject* mesh)
   {
@@ -229,14 +229,4 @@ void testSelections()
     "The selection lists text instead of ids: select again.");
   TAUTLINE_CHECK_EQUAL(selectionProblem(nullptr, mesh), "");
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestValidateInput)
-{
-  TAUTLINE_RUN(testSearches());
-  TAUTLINE_RUN(testArrays());
-  TAUTLINE_RUN(testCells());
-  TAUTLINE_RUN(testOthers());
-  TAUTLINE_RUN(testSelections());
 }

@@ -155,7 +155,7 @@ void checkNumbers(const WholeMesh& whole, const std::vector<Grid>& pieces)
   }
 }
 
-void testPartitions()
+TAUTLINE_PART(testPartitions)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 3, 2, 2);
   const Index cells = data.numberOfCells();
@@ -225,7 +225,7 @@ void testPartitions()
 }
 
 /// Points at one place in one piece stay apart, everywhere.
-void testCrack()
+TAUTLINE_PART(testCrack)
 {
   MeshData data;
   data.points = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 1, 0, 0, 1, 1, 0, 2, 0, 0, 2, 1, 0 };
@@ -240,7 +240,7 @@ void testCrack()
   TAUTLINE_CHECK_EQUAL(apart.mesh->GetNumberOfPoints(), 8);
 }
 
-void testOtherTypes()
+TAUTLINE_PART(testOtherTypes)
 {
   // An image in two parts.
   vtkNew<vtkImageData> image;
@@ -293,7 +293,7 @@ void testOtherTypes()
   TAUTLINE_CHECK_EQUAL(poly.mesh->GetCellType(2), VTK_TRIANGLE);
 }
 
-void testErrors()
+TAUTLINE_PART(testErrors)
 {
   const MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
   const Owner halves = [](Index cell) { return static_cast<int>(cell % 2); };
@@ -308,7 +308,7 @@ void testErrors()
   TAUTLINE_CHECK(assemble({ empty, a }).mesh == a);
 }
 
-void testExtraction()
+TAUTLINE_PART(testExtraction)
 {
   const MeshData data = blockMesh(CellType::Triangle, 2, 1, 0);
   const Grid grid = piece(data, [](Index) { return 0; }, 0, { false, false });
@@ -319,14 +319,4 @@ void testExtraction()
     vtkStringArray::SafeDownCast(part->GetCellData()->GetAbstractArray("name"))->GetValue(0) ==
     "cell 0");
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestWholeMesh)
-{
-  TAUTLINE_RUN(testPartitions());
-  TAUTLINE_RUN(testCrack());
-  TAUTLINE_RUN(testOtherTypes());
-  TAUTLINE_RUN(testErrors());
-  TAUTLINE_RUN(testExtraction());
 }

@@ -41,7 +41,7 @@ vtkSmartPointer<vtkDoubleArray> motionTo(const char* name, const MeshData& from,
 }
 
 /// Proposition 4: every method that solves equations, every choice of coefficients.
-void testAffine()
+TAUTLINE_PART(testAffine)
 {
   for (CellType type : warpedTypes)
   {
@@ -92,7 +92,7 @@ void testAffine()
 }
 
 /// 0 is the input, bit by bit; also in single precision, and with errors for what is wrong.
-void testAmountZero()
+TAUTLINE_PART(testAmountZero)
 {
   for (int precision : { VTK_DOUBLE, VTK_FLOAT })
   {
@@ -118,7 +118,7 @@ void testAmountZero()
 }
 
 /// The arrays and tables agree with the kernel.
-void testOutputs()
+TAUTLINE_PART(testOutputs)
 {
   const MeshData data = holedBlock(CellType::Tetrahedron, 5);
   vtkNew<vtkMeshWarp> filter;
@@ -203,7 +203,7 @@ void testOutputs()
 
 /// Matrices are kept as long as mesh, given points and options are the same, whatever object holds
 /// them.
-void testReuse()
+TAUTLINE_PART(testReuse)
 {
   const MeshData data = holedBlock(CellType::Tetrahedron, 7);
   const std::vector<int> parts = partsOf(data, 7);
@@ -276,7 +276,7 @@ void testReuse()
 }
 
 /// Hybrid keeps shapes: a motion that changes none of them comes out exactly.
-void testSimilarity()
+TAUTLINE_PART(testSimilarity)
 {
   for (CellType type : warpedTypes)
   {
@@ -306,7 +306,7 @@ void testSimilarity()
 }
 
 /// In any unit of length the same.
-void testScales()
+TAUTLINE_PART(testScales)
 {
   std::vector<double> first;
   for (double scale : { 1.0, 1e-8, 1e8 })
@@ -344,7 +344,7 @@ void testScales()
 }
 
 /// A mesh reversed throughout warps as its mirror image; blocks on their own.
-void testBlocks()
+TAUTLINE_PART(testBlocks)
 {
   const MeshData data = holedBlock(CellType::Tetrahedron, 5);
   MeshData reversed = data;
@@ -385,16 +385,4 @@ void testBlocks()
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetReused(), 2);
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMeshWarp)
-{
-  TAUTLINE_RUN(testAffine());
-  TAUTLINE_RUN(testAmountZero());
-  TAUTLINE_RUN(testOutputs());
-  TAUTLINE_RUN(testReuse());
-  TAUTLINE_RUN(testSimilarity());
-  TAUTLINE_RUN(testScales());
-  TAUTLINE_RUN(testBlocks());
 }

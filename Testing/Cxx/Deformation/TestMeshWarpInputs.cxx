@@ -19,7 +19,7 @@ namespace
 constexpr auto OnPoints = vtkDataObject::FIELD_ASSOCIATION_POINTS;
 
 /// What cannot be warped, and why.
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
@@ -144,7 +144,7 @@ void testRefusals()
 }
 
 /// A moved boundary that intersects itself: a warning with numbers, and the best mesh.
-void testImpossible()
+TAUTLINE_PART(testImpossible)
 {
   const MeshData data = holedBlock(CellType::Triangle, 7);
   const std::vector<int> parts = partsOf(data, 7);
@@ -172,7 +172,7 @@ void testImpossible()
 }
 
 /// Points of ghost cells stay, and cells that carry no shape go along.
-void testOtherCells()
+TAUTLINE_PART(testOtherCells)
 {
   MeshData data = blockMesh(CellType::Triangle, 6, 6, 0);
   data.addCell(VTK_LINE, { 0, 1 });
@@ -248,12 +248,4 @@ void testOtherCells()
     withPointsOf(solid, meshOf(mixed)).points == withPointsOf(solid, meshOf(plain)).points);
   TAUTLINE_CHECK_EQUAL(value(mixed->GetStatistics(), "Elements"), solid.numberOfCells());
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMeshWarpInputs)
-{
-  TAUTLINE_RUN(testRefusals());
-  TAUTLINE_RUN(testImpossible());
-  TAUTLINE_RUN(testOtherCells());
 }

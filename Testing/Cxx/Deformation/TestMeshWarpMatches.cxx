@@ -19,7 +19,7 @@ constexpr auto OnPoints = vtkDataObject::FIELD_ASSOCIATION_POINTS;
 
 /// The boundary turned and shifted, given in every possible way: the same result, and the summary
 /// names the way.
-void testTargets()
+TAUTLINE_PART(testTargets)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
@@ -125,7 +125,7 @@ void testTargets()
 }
 
 /// The boundary goes to the closest point; the summary has the maximum distance.
-void testProjection()
+TAUTLINE_PART(testProjection)
 {
   const Index n = 5;
   const MeshData data = holedBlock(CellType::Tetrahedron, n);
@@ -214,11 +214,4 @@ void testProjection()
   planar->Update();
   TAUTLINE_CHECK(others.has(wording("there-is-no-target")));
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMeshWarpMatches)
-{
-  TAUTLINE_RUN(testTargets());
-  TAUTLINE_RUN(testProjection());
 }

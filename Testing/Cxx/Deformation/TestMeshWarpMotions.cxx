@@ -18,7 +18,7 @@ using namespace tautline;
 namespace
 {
 /// The point where another takes it, over the paths of all kinds of transforms.
-void testPaths()
+TAUTLINE_PART(testPaths)
 {
   const Index n = 5;
   const MeshData data = holedBlock(CellType::Triangle, n);
@@ -119,7 +119,7 @@ void testPaths()
 }
 
 /// A bar bends into an arc: its axis keeps its length, its sections stay straight, its end is held.
-void testBending()
+TAUTLINE_PART(testBending)
 {
   MeshData data = blockMesh(CellType::Quadrilateral, 20, 2, 0);
   data.transform([](const Vec3& p) { return Vec3{ p[0], p[1] - 1, 0 }; });
@@ -166,7 +166,7 @@ void testBending()
 }
 
 /// Steps of a transform follow its path; displacements that turn a part do so, too.
-void testSteps()
+TAUTLINE_PART(testSteps)
 {
   const MeshData data = holedBlock(CellType::Triangle, 15);
   const std::vector<int> parts = partsOf(data, 15);
@@ -240,7 +240,7 @@ vtkSmartPointer<vtkSelection> select(int field, const std::vector<Index>& ids)
 }
 
 /// Which points move by each choice, and which stay.
-void testParts()
+TAUTLINE_PART(testParts)
 {
   const Index n = 7;
   const MeshData data = holedBlock(CellType::Triangle, n);
@@ -345,7 +345,7 @@ void testParts()
 }
 
 /// Two components with a hole each: four parts, by size; each component has an outer part.
-void testBoundaryParts()
+TAUTLINE_PART(testBoundaryParts)
 {
   for (CellType type :
     { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron, CellType::Hexahedron })
@@ -387,7 +387,7 @@ void testBoundaryParts()
 
 /// The time steps of an animation are fractions of the way; without a request for a time it is gone
 /// to the end.
-void testAnimation()
+TAUTLINE_PART(testAnimation)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;
   const Index n = 5;
@@ -435,15 +435,4 @@ void testAnimation()
   }
   TAUTLINE_CHECK(messages.empty());
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMeshWarpMotions)
-{
-  TAUTLINE_RUN(testAnimation());
-  TAUTLINE_RUN(testPaths());
-  TAUTLINE_RUN(testBending());
-  TAUTLINE_RUN(testSteps());
-  TAUTLINE_RUN(testParts());
-  TAUTLINE_RUN(testBoundaryParts());
 }

@@ -94,7 +94,7 @@ vtkSmartPointer<MovingMesh> movingMesh()
 
 /// Any order of times gives the same meshes, from the first or from the one before; the latter
 /// differ from the former.
-void testTimeSteps()
+TAUTLINE_PART(testTimeSteps)
 {
   for (int motion : { vtkMeshWarp::TIME_STEPS, vtkMeshWarp::DISPLACEMENT, vtkMeshWarp::TARGET })
   {
@@ -190,7 +190,7 @@ void testTimeSteps()
 
 /// Matrices are kept over time; times in between are read once; a mesh that changes its cells is
 /// refused.
-void testTimeCosts()
+TAUTLINE_PART(testTimeCosts)
 {
   auto source = movingMesh();
   vtkNew<vtkMeshWarp> filter;
@@ -271,11 +271,4 @@ void testTimeCosts()
   without->Update();
   TAUTLINE_CHECK(others.has(wording("the-input-has-no-time-steps")));
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMeshWarpTimeSteps)
-{
-  TAUTLINE_RUN(testTimeSteps());
-  TAUTLINE_RUN(testTimeCosts());
 }

@@ -34,7 +34,7 @@ void checkBounds(vtkPolyData* data, double low, double high, double lowZ, double
   }
 }
 
-void testHoles()
+TAUTLINE_PART(testHoles)
 {
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Hexahedron })
   {
@@ -58,7 +58,7 @@ void testHoles()
 }
 
 /// A single point of the boundary is in no edge that moves; a point inside never moves.
-void testSinglePoint()
+TAUTLINE_PART(testSinglePoint)
 {
   const MeshData data = holedBlock(CellType::Triangle, N);
   const auto grid = toGrid(data);
@@ -76,7 +76,7 @@ void testSinglePoint()
   checkBounds(corner, 0, 0, 0, 0);
 }
 
-void testDisplacementsAndTarget()
+TAUTLINE_PART(testDisplacementsAndTarget)
 {
   const MeshData data = holedBlock(CellType::Triangle, N);
   const auto grid = toGrid(data);
@@ -102,7 +102,7 @@ void testDisplacementsAndTarget()
   checkBounds(boundaryOf(filter), 3, 4, 0, 0);
 }
 
-void testBlocks()
+TAUTLINE_PART(testBlocks)
 {
   MeshData far = holedBlock(CellType::Triangle, N);
   for (Index i = 0; i < far.numberOfPoints(); ++i)
@@ -120,7 +120,7 @@ void testBlocks()
 }
 
 /// What is not chosen yet is no error, but a message in the summary; the next choice works.
-void testNothingChosen()
+TAUTLINE_PART(testNothingChosen)
 {
   vtkNew<vtkMovingBoundary> filter;
   const Messages messages(filter);
@@ -134,14 +134,4 @@ void testNothingChosen()
   TAUTLINE_CHECK(boundaryOf(filter)->GetNumberOfPoints() == 0);
   TAUTLINE_CHECK(messages.empty());
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMovingBoundary)
-{
-  TAUTLINE_RUN(testHoles());
-  TAUTLINE_RUN(testSinglePoint());
-  TAUTLINE_RUN(testDisplacementsAndTarget());
-  TAUTLINE_RUN(testBlocks());
-  TAUTLINE_RUN(testNothingChosen());
 }

@@ -46,7 +46,7 @@ MeshData rectangle(CellType type, const std::vector<double>& x, const std::vecto
 
 //------------------------------------------------------------------------------
 /// alpha = 0, beta = 1: columns are independent (1), and keep their relative spacing (2, 3).
-void testPropositions()
+TAUTLINE_PART(testPropositions)
 {
   for (const double growth : { 1.0, 1.3 })
   {
@@ -131,7 +131,7 @@ void testPropositions()
 //------------------------------------------------------------------------------
 /// Proposition 4 for every cell type, method and choice of coefficients, whatever tolerance and
 /// scale.
-void testAffine()
+TAUTLINE_PART(testAffine)
 {
   const Columns linear = { Vec3{ 0.1, -0.3, 0.2 }, Vec3{ 0.4, 0.2, -0.1 }, Vec3{ -0.2, 0.3, 0.3 } };
   for (const CellType type : elementTypes)
@@ -200,7 +200,7 @@ void testAffine()
 
 //------------------------------------------------------------------------------
 /// (4.10): the rows of the interior, applied to the new points.
-void testEquation()
+TAUTLINE_PART(testEquation)
 {
   for (const CellType type : elementTypes)
   {
@@ -243,7 +243,7 @@ void testEquation()
 }
 
 //------------------------------------------------------------------------------
-void testCoefficients()
+TAUTLINE_PART(testCoefficients)
 {
   // Absolute sums, the largest 1: displacements that cancel count.
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 4, 0.2);
@@ -320,7 +320,7 @@ void testCoefficients()
 
 //------------------------------------------------------------------------------
 /// The same tensor in every cell is one tensor; a stiff region keeps its shape.
-void testPerCell()
+TAUTLINE_PART(testPerCell)
 {
   const MeshData data = boxInBox(CellType::Triangle, 16, 4);
   const Field motion = [](const Vec3& p) {
@@ -369,7 +369,7 @@ void testPerCell()
 
 //------------------------------------------------------------------------------
 /// Points that no prescribed one determines.
-void testDecoupled()
+TAUTLINE_PART(testDecoupled)
 {
   // Only columns up to the fifth have prescribed points; beta alone couples along columns.
   for (const CellType type : { CellType::Triangle, CellType::Quadrilateral })
@@ -445,7 +445,7 @@ void testDecoupled()
 
 //------------------------------------------------------------------------------
 /// Former solutions help; they do not change the result.
-void testReuse()
+TAUTLINE_PART(testReuse)
 {
   for (const bool direct : { true, false })
   {
@@ -500,15 +500,4 @@ void testReuse()
     }
   }
 }
-}
-
-TAUTLINE_TEST(TestWarp)
-{
-  TAUTLINE_RUN(testPropositions());
-  TAUTLINE_RUN(testAffine());
-  TAUTLINE_RUN(testEquation());
-  TAUTLINE_RUN(testCoefficients());
-  TAUTLINE_RUN(testPerCell());
-  TAUTLINE_RUN(testDecoupled());
-  TAUTLINE_RUN(testReuse());
 }

@@ -14,7 +14,7 @@ namespace
 const Field nowhere = [](const Vec3&) { return Vec3{ 0, 0, 0 }; };
 
 /// The classes of all methods, written out: a class must not depend on the order of the numbers.
-void testMethodClasses()
+TAUTLINE_PART(testMethodClasses)
 {
   struct Expected
   {
@@ -51,7 +51,7 @@ void testMethodClasses()
   }
 }
 
-void testRefused()
+TAUTLINE_PART(testRefused)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const MeshData data = boxInBox(CellType::Triangle, 8, 2);
@@ -166,7 +166,7 @@ void testRefused()
 }
 
 //------------------------------------------------------------------------------
-void testParts()
+TAUTLINE_PART(testParts)
 {
   // No interior: two triangles; the boundary moves as prescribed.
   const MeshData square = blockMesh(CellType::Triangle, 1, 1, 0);
@@ -233,7 +233,7 @@ void testParts()
 
 //------------------------------------------------------------------------------
 /// Boundaries that no mesh can follow.
-void testImpossible()
+TAUTLINE_PART(testImpossible)
 {
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
@@ -300,7 +300,7 @@ void testImpossible()
 }
 
 //------------------------------------------------------------------------------
-void testStopping()
+TAUTLINE_PART(testStopping)
 {
   const MeshData data = boxInBox(CellType::Tetrahedron, 9, 3);
   for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
@@ -334,13 +334,4 @@ void testStopping()
       result.points.begin(), result.points.end(), [](double x) { return std::isfinite(x); }));
   }
 }
-}
-
-TAUTLINE_TEST(TestWarpInputs)
-{
-  TAUTLINE_RUN(testMethodClasses());
-  TAUTLINE_RUN(testRefused());
-  TAUTLINE_RUN(testParts());
-  TAUTLINE_RUN(testImpossible());
-  TAUTLINE_RUN(testStopping());
 }

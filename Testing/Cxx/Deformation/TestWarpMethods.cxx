@@ -40,7 +40,7 @@ void checkValid(const MeshData& data, const Field& motion, const WarpResult& res
 
 //------------------------------------------------------------------------------
 /// The inner box turned by up to half a turn, in the plane and in space, for every element type.
-void testTurnedBox()
+TAUTLINE_PART_SLOW(testTurnedBox)
 {
   for (const CellType type :
     { CellType::Tetrahedron, CellType::Triangle, CellType::Hexahedron, CellType::Quadrilateral })
@@ -74,7 +74,7 @@ void testTurnedBox()
 
 //------------------------------------------------------------------------------
 /// Shape (4.22) agrees with the metric of the registry, and is 0 for similar elements.
-void testSimilarity()
+TAUTLINE_PART(testSimilarity)
 {
   Random random(2);
   for (const CellType type : allTypes)
@@ -122,7 +122,7 @@ void testSimilarity()
 //------------------------------------------------------------------------------
 /// (4.24) as it stands, and what replaces it: both end valid, and the shape is better than
 /// untangling leaves it.
-void testSecondStep()
+TAUTLINE_PART(testSecondStep)
 {
   const MeshData data = boxInBox(CellType::Triangle, 20, 8);
   const Field motion = turnedBox(60, true);
@@ -199,7 +199,7 @@ void testSecondStep()
 //------------------------------------------------------------------------------
 /// Objectives without a barrier, one of which is smaller with some elements inverted, do not get
 /// that by small steps.
-void testNoBarrier()
+TAUTLINE_PART(testNoBarrier)
 {
   const MeshData data = boxInBox(CellType::Tetrahedron, 10, 3);
   MeshData moved = data;
@@ -223,7 +223,7 @@ void testNoBarrier()
 
 //------------------------------------------------------------------------------
 /// K M^-1 K x = 0 inside, with motions whose affine part vanishes by symmetry.
-void testBiharmonic()
+TAUTLINE_PART(testBiharmonic)
 {
   MeshData data = blockMesh(CellType::Triangle, 12, 12, 0);
   data.transform([](const Vec3& p) { return (1.0 / 12) * p - Vec3{ 0.5, 0.5, 0 }; });
@@ -259,7 +259,7 @@ void testBiharmonic()
 }
 
 //------------------------------------------------------------------------------
-void testElasticity()
+TAUTLINE_PART(testElasticity)
 {
   const MeshData data = boxInBox(CellType::Triangle, 20, 8);
   const Field turn = turnedBox(90, true);
@@ -342,7 +342,7 @@ void testElasticity()
 }
 
 //------------------------------------------------------------------------------
-void testSteps()
+TAUTLINE_PART(testSteps)
 {
   // Small steps follow farther than one; steps of automatic length stop in time.
   const MeshData data = boxInBox(CellType::Triangle, 20, 8);
@@ -418,7 +418,7 @@ void testSteps()
 }
 
 //------------------------------------------------------------------------------
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   const MeshData data = boxInBox(CellType::Tetrahedron, 10, 3);
   for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
@@ -443,7 +443,7 @@ void testThreads()
 
 //------------------------------------------------------------------------------
 /// A mesh whose cells are all listed the other way round gives the mirror image.
-void testMirrored()
+TAUTLINE_PART(testMirrored)
 {
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
@@ -480,17 +480,4 @@ void testMirrored()
     }
   }
 }
-}
-
-TAUTLINE_TEST(TestWarpMethods)
-{
-  TAUTLINE_RUN_SLOW(testTurnedBox());
-  TAUTLINE_RUN(testSimilarity());
-  TAUTLINE_RUN(testSecondStep());
-  TAUTLINE_RUN(testNoBarrier());
-  TAUTLINE_RUN(testBiharmonic());
-  TAUTLINE_RUN(testElasticity());
-  TAUTLINE_RUN(testSteps());
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testMirrored());
 }

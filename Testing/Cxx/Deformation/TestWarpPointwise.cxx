@@ -215,7 +215,7 @@ void testInvariances(CellType type)
 }
 
 /// Centres that are equally bad, by a symmetry: rounding does not choose among them.
-void testTies()
+TAUTLINE_PART(testTies)
 {
   constexpr Index n = 16;
   Problem problem = boundaryProblem(blockMesh(CellType::Tetrahedron, n, n, n));
@@ -246,7 +246,7 @@ void testTies()
 
 /// The groups of the tree against the sum over all points, for powers with a formula of their own
 /// and without.
-void testInverseDistance()
+TAUTLINE_PART(testInverseDistance)
 {
   Problem problem = boundaryProblem(blockMesh(CellType::Tetrahedron, 14, 14, 14));
   problem.prescribe([](const Vec3& p) { return wave(p, 14); });
@@ -283,7 +283,7 @@ void testInverseDistance()
 }
 
 /// Interpolation of all prescribed points against a dense elimination, and what a tolerance means.
-void testRadialBasis()
+TAUTLINE_PART(testRadialBasis)
 {
   Problem problem = boundaryProblem(blockMesh(CellType::Triangle, 20, 20, 0));
   problem.prescribe([](const Vec3& p) { return wave(p, 20); });
@@ -351,7 +351,7 @@ void testRadialBasis()
 }
 
 /// More prescribed points than the first candidates: the others are met as well.
-void testManyCenters()
+TAUTLINE_PART(testManyCenters)
 {
   Problem problem = boundaryProblem(blockMesh(CellType::Hexahedron, 30, 30, 30));
   TAUTLINE_CHECK(std::count(problem.prescribed.begin(), problem.prescribed.end(), 1) > 5000);
@@ -414,7 +414,7 @@ void testFourNeighbors(double a, double b, double c, double d)
   }
 }
 
-void testWeights()
+TAUTLINE_PART(testWeights)
 {
   testFourNeighbors(1, 3, 2, 0.5);
   testFourNeighbors(1e-5, 3e-5, 2, 0.5); // the weights do not account for stretching
@@ -452,7 +452,7 @@ void testWeights()
 }
 
 /// Square and cube that turn in a larger one: how many elements each method inverts.
-void testTurning()
+TAUTLINE_PART(testTurning)
 {
   // weighted Laplacian and inverse distances fail early, as the dissertation states for methods of
   // this kind
@@ -470,7 +470,7 @@ void testTurning()
 }
 
 /// No prescribed points, only such, a part without any, points at one place, a surface in space.
-void testLimits()
+TAUTLINE_PART(testLimits)
 {
   Problem problem = boundaryProblem(blockMesh(CellType::Quadrilateral, 4, 4, 0));
   problem.prescribe([](const Vec3& p) { return wave(p, 4); });
@@ -537,7 +537,7 @@ void testLimits()
 }
 
 /// Options out of range; an observer that stops; fractions that grow.
-void testControl()
+TAUTLINE_PART(testControl)
 {
   Problem problem = boundaryProblem(blockMesh(CellType::Tetrahedron, 6, 6, 6));
   problem.prescribe([](const Vec3& p) { return wave(p, 6); });
@@ -588,12 +588,4 @@ TAUTLINE_TEST(TestWarpPointwise)
   TAUTLINE_RUN(testInvariances(CellType::Triangle));
   TAUTLINE_RUN(testInvariances(CellType::Tetrahedron));
   TAUTLINE_RUN(testInvariances(CellType::Hexahedron));
-  TAUTLINE_RUN(testTies());
-  TAUTLINE_RUN(testInverseDistance());
-  TAUTLINE_RUN(testRadialBasis());
-  TAUTLINE_RUN(testManyCenters());
-  TAUTLINE_RUN(testWeights());
-  TAUTLINE_RUN(testTurning());
-  TAUTLINE_RUN(testLimits());
-  TAUTLINE_RUN(testControl());
 }

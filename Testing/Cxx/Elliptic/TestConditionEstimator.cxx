@@ -29,7 +29,7 @@ double sumOf(vtkDataSet* mesh, const char* name)
 
 /// The five-point matrix has eigenvalues 4 sin^2(i pi / 2n) + 4 sin^2(j pi / 2n); its diagonal
 /// is 4.
-void testKnown()
+TAUTLINE_PART(testKnown)
 {
   constexpr Index n = 12;
   const double condition = 1 / std::pow(std::tan(Pi / (2 * n)), 2);
@@ -79,7 +79,7 @@ void testKnown()
 }
 
 /// One flat element has nearly all of the largest eigenvalue, and the summary names it.
-void testCulprit()
+TAUTLINE_PART(testCulprit)
 {
   MeshData data = blockMesh(CellType::Triangle, 8, 8, 0);
   const Index point = 4 + 9 * 4; // the centre moves next to an edge opposite to it
@@ -121,7 +121,7 @@ void testCulprit()
     std::string(filter->GetSummary()).find(wording("largest-eigenvalue")) != std::string::npos);
 }
 
-void testOthers()
+TAUTLINE_PART(testOthers)
 {
   // Elasticity, blocks, and what is refused.
   vtkNew<vtkMultiBlockDataSet> blocks;
@@ -147,11 +147,4 @@ void testOthers()
   filter->Update();
   TAUTLINE_CHECK(messages.has("-nonsense"));
 }
-}
-
-TAUTLINE_TEST(TestConditionEstimator)
-{
-  TAUTLINE_RUN(testKnown());
-  TAUTLINE_RUN(testCulprit());
-  TAUTLINE_RUN(testOthers());
 }

@@ -156,7 +156,7 @@ std::array<double, 2> errorOf(CellType type, Index n, Pde pde, PlaneState plane)
     });
 }
 
-void testConvergence()
+TAUTLINE_PART(testConvergence)
 {
   for (CellType type : allTypes)
   {
@@ -182,7 +182,7 @@ void testConvergence()
 }
 
 //------------------------------------------------------------------------------
-void testLinearFields()
+TAUTLINE_PART(testLinearFields)
 {
   SolverOptions direct;
   direct.method = KrylovMethod::Direct;
@@ -283,7 +283,7 @@ void testLinearFields()
 
 //------------------------------------------------------------------------------
 /// A ring pushed outwards at its inner circle, its outer circle free: u_r = A r + B / r (Lame).
-void testRing()
+TAUTLINE_PART(testRing)
 {
   const Index around = 96, layers = 24;
   const double inner = 1, outer = 2, push = 0.1;
@@ -350,7 +350,7 @@ void testRing()
 }
 
 //------------------------------------------------------------------------------
-void testSystem()
+TAUTLINE_PART(testSystem)
 {
   // The five-point matrix: 4 on the diagonal, -1 beside, h^2 on the right.
   const Index n = 5;
@@ -426,7 +426,7 @@ void testSystem()
 
 //------------------------------------------------------------------------------
 /// With f = 1 solutions grow with the square of the size, gradients with the size.
-void testScales()
+TAUTLINE_PART(testScales)
 {
   SolverOptions options;
   options.method = KrylovMethod::Direct;
@@ -482,7 +482,7 @@ MeshData twoParts(CellType type)
   return data;
 }
 
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const auto make = [](const MeshData& data, const EllipticProblem& problem)
   {
@@ -595,15 +595,4 @@ void testRefusals()
   problem.pde = Pde::Elasticity;
   TAUTLINE_CHECK_THROWS(make(sphere, problem), "");
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestEllipticProblem)
-{
-  TAUTLINE_RUN(testConvergence());
-  TAUTLINE_RUN(testLinearFields());
-  TAUTLINE_RUN(testRing());
-  TAUTLINE_RUN(testSystem());
-  TAUTLINE_RUN(testScales());
-  TAUTLINE_RUN(testRefusals());
 }

@@ -90,7 +90,7 @@ vtkSmartPointer<vtkDoubleArray> arrayOf(
 //------------------------------------------------------------------------------
 /// A linear function is its own solution, whatever the cells, the precision and the size of the
 /// mesh.
-void testLinear()
+TAUTLINE_PART(testLinear)
 {
   for (CellType type : allTypes)
   {
@@ -133,7 +133,7 @@ void testLinear()
 
 //------------------------------------------------------------------------------
 /// u = L x - x^2 / 2 on a strip held on the left: the nodes are exact. Described in all ways.
-void testWays()
+TAUTLINE_PART(testWays)
 {
   constexpr Index n = 6;
   const MeshData data = block(CellType::Quadrilateral, n);
@@ -225,7 +225,7 @@ void testWays()
 
 //------------------------------------------------------------------------------
 /// Coefficients, constant and as arrays.
-void testCoefficients()
+TAUTLINE_PART(testCoefficients)
 {
   for (CellType type : allTypes)
   {
@@ -262,7 +262,7 @@ void testCoefficients()
 
 //------------------------------------------------------------------------------
 /// A uniform strain has a known stress.
-void testElasticity()
+TAUTLINE_PART(testElasticity)
 {
   constexpr double E = 200, nu = 0.25, strain = 0.01;
   const double lambda = E * nu / ((1 + nu) * (1 - 2 * nu)), mu = E / (2 * (1 + nu));
@@ -318,7 +318,7 @@ void testElasticity()
 
 //------------------------------------------------------------------------------
 /// Every solver finds the same; the result does not depend on threads, nor on filters before it.
-void testSolvers()
+TAUTLINE_PART(testSolvers)
 {
   auto grid = toGrid(block(CellType::Triangle, 12));
   vtkNew<vtkEllipticSolver> filter;
@@ -367,7 +367,7 @@ void testSolvers()
 
 //------------------------------------------------------------------------------
 /// Blocks are meshes of their own; partitions are one mesh.
-void testBlocks()
+TAUTLINE_PART(testBlocks)
 {
   const MeshData data = block(CellType::Quadrilateral, 6);
   vtkNew<vtkEllipticSolver> whole;
@@ -502,7 +502,7 @@ void refuses(vtkEllipticSolver* filter, const std::string& text)
   TAUTLINE_CHECK_EQUAL(mesh->GetNumberOfPoints(), 0);
 }
 
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const MeshData data = block(CellType::Triangle, 4);
   const vtkIdType points = data.numberOfPoints();
@@ -597,7 +597,7 @@ void testRefusals()
 }
 
 //------------------------------------------------------------------------------
-void testNotices()
+TAUTLINE_PART(testNotices)
 {
   MeshData data = block(CellType::Triangle, 4);
   vtkNew<vtkEllipticSolver> filter;
@@ -645,16 +645,4 @@ void testNotices()
   filter->RemoveObserver(tag);
   filter->SetAbortExecute(0);
 }
-}
-
-TAUTLINE_TEST(TestEllipticSolver)
-{
-  TAUTLINE_RUN(testLinear());
-  TAUTLINE_RUN(testWays());
-  TAUTLINE_RUN(testCoefficients());
-  TAUTLINE_RUN(testElasticity());
-  TAUTLINE_RUN(testSolvers());
-  TAUTLINE_RUN(testBlocks());
-  TAUTLINE_RUN(testRefusals());
-  TAUTLINE_RUN(testNotices());
 }

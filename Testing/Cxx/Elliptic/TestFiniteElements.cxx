@@ -68,7 +68,7 @@ bool exactlySymmetric(SparseMatrix a)
 }
 
 //------------------------------------------------------------------------------
-void testSmallMatrices()
+TAUTLINE_PART(testSmallMatrices)
 {
   DiffusionOperator pde;
   // Dissertation (4.12): the right triangle with unit legs, coefficients alpha and beta.
@@ -154,7 +154,7 @@ MeshData mixedMesh()
   return shuffled(data, 9);
 }
 
-void testLinearFields()
+TAUTLINE_PART(testLinearFields)
 {
   const Vec3 slope = { 2, -3, 0.5 };
   for (const MeshData& data : sampleMeshes())
@@ -239,7 +239,7 @@ void testLinearFields()
 }
 
 //------------------------------------------------------------------------------
-void testMassAndLoad()
+TAUTLINE_PART(testMassAndLoad)
 {
   for (const MeshData& data : sampleMeshes())
   {
@@ -279,7 +279,7 @@ void testMassAndLoad()
 }
 
 //------------------------------------------------------------------------------
-void testInvariance()
+TAUTLINE_PART(testInvariance)
 {
   Random random(21);
   const Columns turn = randomRotation(random);
@@ -360,7 +360,7 @@ void testInvariance()
 }
 
 //------------------------------------------------------------------------------
-void testSurface()
+TAUTLINE_PART(testSurface)
 {
   // A cylinder of triangles or quadrilaterals: it can be unrolled, so its matrix is that of the
   // plane.
@@ -392,7 +392,7 @@ void testSurface()
 }
 
 //------------------------------------------------------------------------------
-void testCoefficientsPerCell()
+TAUTLINE_PART(testCoefficientsPerCell)
 {
   for (const MeshData& data : { shuffled(movedBlock(CellType::Triangle, 5, 0.1), 2), mixedMesh() })
   {
@@ -441,7 +441,7 @@ void testCoefficientsPerCell()
 }
 
 //------------------------------------------------------------------------------
-void testThreadsAndReuse()
+TAUTLINE_PART(testThreadsAndReuse)
 {
   // Enough cells for several chunks and batches; a cell may list a point twice.
   MeshData triangles = shuffled(movedBlock(CellType::Triangle, 140, 0.1), 4);
@@ -495,7 +495,7 @@ void testThreadsAndReuse()
 }
 
 //------------------------------------------------------------------------------
-void testBadElements()
+TAUTLINE_PART(testBadElements)
 {
   // A flat element and a point outside all cells contribute nothing; an inverted element its
   // absolute value.
@@ -538,7 +538,7 @@ void testBadElements()
 }
 
 //------------------------------------------------------------------------------
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const MeshData good = blockMesh(CellType::Tetrahedron, 1, 1, 1);
   const DiffusionOperator poisson;
@@ -612,18 +612,4 @@ void testRefusals()
   op.stiffening = stiffening.data();
   TAUTLINE_CHECK_THROWS(stiffnessMatrix(mesh, op), wording("stiffening-factor-of-cell-2"));
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestFiniteElements)
-{
-  TAUTLINE_RUN(testSmallMatrices());
-  TAUTLINE_RUN(testLinearFields());
-  TAUTLINE_RUN(testMassAndLoad());
-  TAUTLINE_RUN(testInvariance());
-  TAUTLINE_RUN(testSurface());
-  TAUTLINE_RUN(testCoefficientsPerCell());
-  TAUTLINE_RUN(testThreadsAndReuse());
-  TAUTLINE_RUN(testBadElements());
-  TAUTLINE_RUN(testRefusals());
 }

@@ -82,7 +82,7 @@ double areaOf(vtkPolyData* sections, const std::array<double, 3>& place, double 
   return area;
 }
 
-void testCube()
+TAUTLINE_PART(testCube)
 {
   // The planes pass through elements (3 layers), or between them (4).
   for (const CellType type :
@@ -110,7 +110,7 @@ void testCube()
   }
 }
 
-void testBlocks()
+TAUTLINE_PART(testBlocks)
 {
   // Two cubes with a gap: the plane normal to x is in the middle of one, the other two are in both.
   vtkNew<vtkMultiBlockDataSet> blocks;
@@ -155,10 +155,4 @@ void testBlocks()
   TAUTLINE_CHECK_EQUAL(planar->GetSections()->GetNumberOfPoints(), 0);
   TAUTLINE_CHECK(planar->GetConverged());
 }
-}
-
-TAUTLINE_TEST(TestSections)
-{
-  TAUTLINE_RUN(testCube());
-  TAUTLINE_RUN(testBlocks());
 }

@@ -12,7 +12,7 @@ using namespace tautline;
 namespace
 {
 /// Another time step is shown without an assembly; a change of a property or the input is not.
-void testTimeSteps()
+TAUTLINE_PART(testTimeSteps)
 {
   vtkNew<vtkMultiBlockDataSet> blocks; // a system each
   blocks->SetBlock(0, toGrid(blockMesh(CellType::Triangle, 6, 6, 0)));
@@ -69,9 +69,4 @@ void testTimeSteps()
   TAUTLINE_CHECK(at(filter, 0.01) != doubled);
   TAUTLINE_CHECK_EQUAL(filter->GetAssemblies(), 6);
 }
-}
-
-TAUTLINE_TEST(TestShownTimeSteps)
-{
-  TAUTLINE_RUN(testTimeSteps());
 }

@@ -18,7 +18,7 @@ bool contains(const std::string& text, const std::string& part)
 }
 
 //------------------------------------------------------------------------------
-void testCombinations()
+TAUTLINE_PART(testCombinations)
 {
   const std::vector<SolverCombination> all = dissertationCombinations();
   TAUTLINE_CHECK_EQUAL(all.size(), std::size_t(16));
@@ -34,7 +34,7 @@ void testCombinations()
 }
 
 //------------------------------------------------------------------------------
-void testPoisson()
+TAUTLINE_PART(testPoisson)
 {
   const Index n = 24; // even: f = 1 has a part in the eigenvectors of both ends
   const MeshData data = blockMesh(CellType::Triangle, n, n, 0);
@@ -109,7 +109,7 @@ void testPoisson()
 }
 
 //------------------------------------------------------------------------------
-void testElasticity()
+TAUTLINE_PART(testElasticity)
 {
   // Multigrid needs fewer iterations when it is given the points and the rigid body modes.
   const MeshData data = movedBlock(CellType::Triangle, 40, 0.1);
@@ -143,7 +143,7 @@ void testElasticity()
 }
 
 //------------------------------------------------------------------------------
-void testFailuresAndWarnings()
+TAUTLINE_PART(testFailuresAndWarnings)
 {
   // One flat triangle: a warning that names it. Too few iterations: nothing to recommend.
   MeshData data = blockMesh(CellType::Triangle, 10, 10, 0);
@@ -174,7 +174,7 @@ void testFailuresAndWarnings()
 }
 
 //------------------------------------------------------------------------------
-void testLimits()
+TAUTLINE_PART(testLimits)
 {
   const MeshData data = blockMesh(CellType::Triangle, 60, 60, 0);
   const Mesh mesh(data.view());
@@ -217,14 +217,4 @@ void testLimits()
   options.combinations.clear();
   TAUTLINE_CHECK_THROWS(studySolvers(system, options), wording("no-combination"));
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestSolverStudy)
-{
-  TAUTLINE_RUN(testCombinations());
-  TAUTLINE_RUN(testPoisson());
-  TAUTLINE_RUN(testElasticity());
-  TAUTLINE_RUN(testFailuresAndWarnings());
-  TAUTLINE_RUN(testLimits());
 }

@@ -23,7 +23,7 @@ std::string text(vtkSolverStudy* filter, vtkIdType row, const char* column)
   return filter->GetStudy()->GetValueByName(row, column).ToString();
 }
 
-void testTable()
+TAUTLINE_PART(testTable)
 {
   vtkNew<vtkSolverStudy> filter;
   Messages messages(filter);
@@ -79,7 +79,7 @@ void testTable()
   TAUTLINE_CHECK(messages.empty());
 }
 
-void testFailures()
+TAUTLINE_PART(testFailures)
 {
   // Without iterations there is no solution: marked as in the dissertation's tables.
   vtkNew<vtkSolverStudy> filter;
@@ -127,7 +127,7 @@ void testFailures()
   TAUTLINE_CHECK(messages.has("-nonsense"));
 }
 
-void testNames()
+TAUTLINE_PART(testNames)
 {
   std::set<std::string> names;
   for (int i = 1; i <= vtkSolverStudy::GetNumberOfCombinations(); ++i)
@@ -148,11 +148,4 @@ void testNames()
   TAUTLINE_CHECK(number(filter, 1, "N iterations") < number(filter, 0, "N iterations"));
   TAUTLINE_CHECK(number(filter, 2, "N iterations") < number(filter, 3, "N iterations"));
 }
-}
-
-TAUTLINE_TEST(TestSolverStudyFilter)
-{
-  TAUTLINE_RUN(testTable());
-  TAUTLINE_RUN(testFailures());
-  TAUTLINE_RUN(testNames());
 }

@@ -112,7 +112,7 @@ double difference(const std::vector<double>& x, const std::vector<double>& y, do
 }
 
 //------------------------------------------------------------------------------
-void testEigenmodes()
+TAUTLINE_PART(testEigenmodes)
 {
   const Index n = 10;
   for (const bool lumped : { true, false })
@@ -151,7 +151,7 @@ void testEigenmodes()
 }
 
 /// Orders in time, against the exact exponential or cosine of the same eigenvalue.
-void testOrders()
+TAUTLINE_PART(testOrders)
 {
   const Index n = 8;
   const MeshData data = unitSquare(CellType::Triangle, n);
@@ -181,7 +181,7 @@ void testOrders()
 }
 
 /// Order 2 in space with both mass matrices, with steps that are short enough.
-void testSpace()
+TAUTLINE_PART(testSpace)
 {
   const double end = 0.05;
   for (const MassMatrix mass : { MassMatrix::Consistent, MassMatrix::Lumped })
@@ -207,7 +207,7 @@ void testSpace()
 
 /// The entries of mass matrices add up to the area of the free points; the stationary solution is
 /// kept, and reached.
-void testStationary()
+TAUTLINE_PART(testStationary)
 {
   const MeshData data = unitSquare(CellType::Triangle, 6);
   const Mesh mesh(data.view());
@@ -262,7 +262,7 @@ void testStationary()
 }
 
 /// Elastic waves: the energy of a body that is let go stays the same.
-void testElasticWaves()
+TAUTLINE_PART(testElasticWaves)
 {
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
@@ -321,7 +321,7 @@ void testElasticWaves()
 }
 
 /// A solution that decays below the smallest number goes on being solved, by all methods.
-void testDecay()
+TAUTLINE_PART(testDecay)
 {
   const MeshData data = unitSquare(CellType::Triangle, 6);
   const Mesh mesh(data.view());
@@ -344,7 +344,7 @@ void testDecay()
   }
 }
 
-void testRefused()
+TAUTLINE_PART(testRefused)
 {
   const MeshData data = unitSquare(CellType::Triangle, 4);
   const Mesh mesh(data.view());
@@ -401,15 +401,4 @@ void testRefused()
   TAUTLINE_CHECK(ended.reason == SolveReason::Aborted && ended.values.size() == 3);
   TAUTLINE_CHECK(seen == (std::vector<int>{ 1, 2 }));
 }
-}
-
-TAUTLINE_TEST(TestTimeStepping)
-{
-  TAUTLINE_RUN(testEigenmodes());
-  TAUTLINE_RUN(testOrders());
-  TAUTLINE_RUN(testSpace());
-  TAUTLINE_RUN(testStationary());
-  TAUTLINE_RUN(testElasticWaves());
-  TAUTLINE_RUN(testDecay());
-  TAUTLINE_RUN(testRefused());
 }

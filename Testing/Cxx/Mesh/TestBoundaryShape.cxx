@@ -17,7 +17,7 @@ Vec3 at(const std::vector<double>& values, Index i)
 }
 
 /// Of a cube: faces slide in their plane, edges along themselves, eight corners stay.
-void testCube()
+TAUTLINE_PART(testCube)
 {
   for (CellType type :
     { CellType::Tetrahedron, CellType::Hexahedron, CellType::Wedge, CellType::Pyramid })
@@ -54,7 +54,7 @@ void testCube()
 }
 
 /// A top that bends by 1.1 degrees at each row of points: folds at 1 degree, flat at 5.
-void testAngle()
+TAUTLINE_PART(testAngle)
 {
   MeshData data = blockMesh(CellType::Hexahedron, 3, 3, 3);
   data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], p[2] + 0.01 * p[0] * p[0] }; });
@@ -68,7 +68,7 @@ void testAngle()
 }
 
 /// Of a square: the sides slide along themselves, inner points are free, corners stay.
-void testFlat()
+TAUTLINE_PART(testFlat)
 {
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral })
   {
@@ -85,7 +85,7 @@ void testFlat()
 
 /// A disk of a square: its rim is smooth at 30 degrees but for the square's corners, at 60 all of
 /// it.
-void testSmooth()
+TAUTLINE_PART(testSmooth)
 {
   MeshData disk = blockMesh(CellType::Triangle, 16, 16, 0);
   const auto onRim = Mesh(disk.view()).boundary().isBoundaryPoint;
@@ -152,7 +152,7 @@ MeshData ring(CellType type, Index around)
 
 /// Fine circles bend by half a degree at each point, but are not straight: nothing slides along
 /// their tangents. On the flat ends of a thick ring points slide.
-void testFineCircle()
+TAUTLINE_PART(testFineCircle)
 {
   constexpr Index around = 720;
   for (CellType type : { CellType::Triangle, CellType::Hexahedron })
@@ -177,7 +177,7 @@ void testFineCircle()
 
 /// A side that is straight at first and then a fine arc, and one that is rough by less than the
 /// tolerance: the straight and the rough points slide, those of the arc do not.
-void testBentSide()
+TAUTLINE_PART(testBentSide)
 {
   constexpr Index n = 400, straight = 200;
   MeshData data = blockMesh(CellType::Quadrilateral, n, 1, 0);
@@ -205,7 +205,7 @@ void testBentSide()
 
 /// Three cells at one edge, a sheet without thickness, an edge without length: nothing slides
 /// there.
-void testFaulty()
+TAUTLINE_PART(testFaulty)
 {
   MeshData fan;
   for (const Vec3& p :
@@ -229,16 +229,4 @@ void testFaulty()
     TAUTLINE_CHECK(std::isfinite(value));
   }
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestBoundaryShape)
-{
-  TAUTLINE_RUN(testCube());
-  TAUTLINE_RUN(testAngle());
-  TAUTLINE_RUN(testFlat());
-  TAUTLINE_RUN(testSmooth());
-  TAUTLINE_RUN(testFineCircle());
-  TAUTLINE_RUN(testBentSide());
-  TAUTLINE_RUN(testFaulty());
 }

@@ -136,7 +136,7 @@ void testDivision(CellType type, Cut cut, int ranks)
 }
 
 /// Points without an owner leave their cells where they are; else the highest owner counts.
-void testOwners()
+TAUTLINE_PART(testOwners)
 {
   const MeshData whole = blockMesh(CellType::Triangle, 1, 1, 0);
   onRanks(3,
@@ -171,5 +171,4 @@ TAUTLINE_TEST(TestCellDivision)
     const Context context(topology(type).plural);
     forEachCut({ 1, 2, 3, 4 }, [type](Cut cut, int ranks) { testDivision(type, cut, ranks); });
   }
-  TAUTLINE_RUN(testOwners());
 }

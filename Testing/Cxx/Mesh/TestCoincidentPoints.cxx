@@ -86,7 +86,7 @@ void checkAgainstWhole(const Pieces& pieces, const MeshData& whole)
   }
 }
 
-void testPieces()
+TAUTLINE_PART(testPieces)
 {
   for (CellType type : allTypes)
   {
@@ -116,7 +116,7 @@ void testPieces()
   }
 }
 
-void testInvariance()
+TAUTLINE_PART(testInvariance)
 {
   const MeshData whole = block(CellType::Tetrahedron, 4);
   const Pieces pieces = inQuarters(whole, 2.0);
@@ -163,7 +163,7 @@ void testInvariance()
   TAUTLINE_CHECK_EQUAL(nearPoints(whole), 0);
 }
 
-void testApart()
+TAUTLINE_PART(testApart)
 {
   // Two squares that touch at a corner have no facet in common.
   MeshData corner = block(CellType::Quadrilateral, 2);
@@ -227,7 +227,7 @@ void testApart()
   TAUTLINE_CHECK(!found(nan.mesh).any());
 }
 
-void testSurfaces()
+TAUTLINE_PART(testSurfaces)
 {
   // Sheets in space, of any orientation; three at an edge stay apart.
   const auto sheet = [](double angle, bool reversed)
@@ -330,7 +330,7 @@ void checkDuplicates(const MeshData& data, const std::vector<DuplicateCell>& exp
   TAUTLINE_CHECK(mesh.boundary().isBoundaryPoint == boundary);
 }
 
-void testDuplicates()
+TAUTLINE_PART(testDuplicates)
 {
   for (CellType type : allTypes)
   {
@@ -389,7 +389,7 @@ void testDuplicates()
 }
 
 /// What several threads find in meshes large enough for them is what one finds.
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   constexpr int several = 3;
   const MeshData whole = block(CellType::Quadrilateral, 360);
@@ -439,7 +439,7 @@ void testThreads()
 
 /// Two pieces with the cells of each other as ghosts: these have no facets, and their points are
 /// those of the cells that they are copies of.
-void testGhosts()
+TAUTLINE_PART(testGhosts)
 {
   for (CellType type : allTypes)
   {
@@ -469,16 +469,4 @@ void testGhosts()
     TAUTLINE_CHECK_EQUAL(countForeignCells(Mesh(whole.view()), ghosts.data()), second);
   }
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestCoincidentPoints)
-{
-  TAUTLINE_RUN(testPieces());
-  TAUTLINE_RUN(testInvariance());
-  TAUTLINE_RUN(testApart());
-  TAUTLINE_RUN(testSurfaces());
-  TAUTLINE_RUN(testDuplicates());
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testGhosts());
 }

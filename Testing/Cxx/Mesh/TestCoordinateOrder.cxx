@@ -25,7 +25,7 @@ std::vector<Index> placesOf(const MeshData& data)
   return places;
 }
 
-void testOrder()
+TAUTLINE_PART(testOrder)
 {
   const Context context("order of coordinates");
   const MeshData whole = blockMesh(CellType::Tetrahedron, 5, 5, 5);
@@ -46,10 +46,4 @@ void testOrder()
       });
   }
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestCoordinateOrder)
-{
-  TAUTLINE_RUN(testOrder());
 }

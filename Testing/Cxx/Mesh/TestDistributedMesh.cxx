@@ -199,7 +199,7 @@ std::vector<std::string> messagesOf(int ranks, const Change& change)
 
 /// Divided anew: the numbers are the same, every point has one owner, all ranks own about as many,
 /// whoever has the cells; a random cut gets halos like surfaces.
-void testDivision()
+TAUTLINE_PART(testDivision)
 {
   const MeshData whole = jittered(CellType::Tetrahedron, 9);
   const auto points = static_cast<double>(whole.numberOfPoints());
@@ -260,7 +260,7 @@ void testDivision()
 }
 
 /// Points in a plane, on a line, at one place, fewer than ranks.
-void testDivisionOfFew()
+TAUTLINE_PART(testDivisionOfFew)
 {
   for (const int ranks : { 1, 2, 5 })
   {
@@ -293,7 +293,7 @@ void testDivisionOfFew()
 }
 
 /// An error on one rank is one on all.
-void testErrors()
+TAUTLINE_PART(testErrors)
 {
   const auto all = [](const std::vector<std::string>& messages, const char* text)
   {
@@ -329,7 +329,7 @@ void testErrors()
 }
 
 /// Every number arrives where it is sent, in few messages.
-void testTranspose()
+TAUTLINE_PART(testTranspose)
 {
   for (const int ranks : { 1, 2, 3, 4, 5, 6, 7, 8, 13, 16, 21 })
   {
@@ -384,7 +384,7 @@ protected:
 };
 
 /// A rank without memory for what it is sent ends in an error on all ranks.
-void testMemoryOfMessages()
+TAUTLINE_PART(testMemoryOfMessages)
 {
 #if !TAUTLINE_ADDRESS_SANITIZER // which ends the program
   for (const int ranks : { 2, 3, 4 })
@@ -422,7 +422,7 @@ void testMemoryOfMessages()
 }
 
 /// The exact sum, in any order and on any ranks.
-void testSum()
+TAUTLINE_PART(testSum)
 {
   Random random(11);
   std::vector<double> values;
@@ -457,7 +457,7 @@ void testSum()
 }
 
 /// Numbers that are dense, far apart, in two clusters, below zero, and none: as std::lower_bound.
-void testIntervals()
+TAUTLINE_PART(testIntervals)
 {
   Random random(8);
   constexpr Index many = 1000, far = Index(1) << 40;
@@ -489,13 +489,6 @@ void testIntervals()
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestDistributedMesh)
 {
-  TAUTLINE_RUN(testMemoryOfMessages());
-  TAUTLINE_RUN(testSum());
-  TAUTLINE_RUN(testTranspose());
-  TAUTLINE_RUN(testIntervals());
   TAUTLINE_RUN(testLayout(CellType::Tetrahedron));
   TAUTLINE_RUN(testLayout(CellType::Hexahedron));
-  TAUTLINE_RUN(testDivision());
-  TAUTLINE_RUN(testDivisionOfFew());
-  TAUTLINE_RUN(testErrors());
 }

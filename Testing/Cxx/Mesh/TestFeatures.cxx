@@ -41,7 +41,7 @@ std::vector<double> twoRegions(const MeshData& data)
   return regions;
 }
 
-void testSurfaces()
+TAUTLINE_PART(testSurfaces)
 {
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral })
   {
@@ -85,7 +85,7 @@ void testSurfaces()
   }
 }
 
-void testBoundaries()
+TAUTLINE_PART(testBoundaries)
 {
   for (CellType type :
     { CellType::Tetrahedron, CellType::Hexahedron, CellType::Wedge, CellType::Pyramid })
@@ -122,7 +122,7 @@ void testBoundaries()
 }
 
 /// The border of two regions of a surface is a curve without corners, whatever the order of cells.
-void testNumbering()
+TAUTLINE_PART(testNumbering)
 {
   MeshData cube = cubeSurface(CellType::Triangle, 4);
   cube.transform([](const Vec3& p) { return 4.0 * p; });
@@ -138,7 +138,7 @@ void testNumbering()
 }
 
 /// Given kinds replace those found.
-void testKinds()
+TAUTLINE_PART(testKinds)
 {
   const MeshData cube = cubeSurface(CellType::Triangle, 4);
   const Features found = featuresOf(cube);
@@ -169,12 +169,4 @@ void testKinds()
   options.angle = 200;
   TAUTLINE_CHECK_THROWS(featuresOf(sphere, options), wording("between-0-and-180"));
 }
-}
-
-TAUTLINE_TEST(TestFeatures)
-{
-  TAUTLINE_RUN(testSurfaces());
-  TAUTLINE_RUN(testBoundaries());
-  TAUTLINE_RUN(testNumbering());
-  TAUTLINE_RUN(testKinds());
 }

@@ -38,7 +38,7 @@ void checkPlane(const MeshData& data, const Vec3& expected)
   TAUTLINE_CHECK(*largest > 0);
 }
 
-void testDimension()
+TAUTLINE_PART(testDimension)
 {
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral })
   {
@@ -244,7 +244,7 @@ MeshData mixedMesh()
   return data;
 }
 
-void testMixed()
+TAUTLINE_PART(testMixed)
 {
   const MeshData data = mixedMesh();
   const Mesh mesh(data.view());
@@ -259,7 +259,7 @@ void testMixed()
   TAUTLINE_CHECK_EQUAL(boundary.facets, faces - shared);
 }
 
-void testNonManifold()
+TAUTLINE_PART(testNonManifold)
 {
   MeshData fans; // three triangles at an edge, as the pages of a book
   for (const Vec3& p : { Vec3{ 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { -1, 1, 0 }, { -1, -1, 0 } })
@@ -296,7 +296,7 @@ void testNonManifold()
 
 //------------------------------------------------------------------------------
 /// Quadratic cells count as their corners, among linear ones.
-void testHigherOrder()
+TAUTLINE_PART(testHigherOrder)
 {
   constexpr int vtkQuadraticTriangle = 22;
   MeshData data = box(CellType::Triangle);
@@ -316,7 +316,7 @@ void testHigherOrder()
   }
 }
 
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const MeshData good = box(CellType::Tetrahedron);
   MeshData bad = good;
@@ -354,7 +354,6 @@ void testRefusals()
 
 TAUTLINE_TEST(TestMesh)
 {
-  TAUTLINE_RUN(testDimension());
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);
@@ -364,8 +363,4 @@ TAUTLINE_TEST(TestMesh)
     TAUTLINE_RUN(testMovedCells(box(type), topology(type).dimension == 3));
   }
   TAUTLINE_RUN(testAtOtherPoints(mixedMesh(), false));
-  TAUTLINE_RUN(testMixed());
-  TAUTLINE_RUN(testNonManifold());
-  TAUTLINE_RUN(testHigherOrder());
-  TAUTLINE_RUN(testRefusals());
 }

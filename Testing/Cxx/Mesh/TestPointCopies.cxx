@@ -73,7 +73,7 @@ void testParts(CellType type)
 
 /// Pieces that number their points each from 0 are joined by equal coordinates alone; and points
 /// that have no ids on one rank.
-void testOtherIds()
+TAUTLINE_PART(testOtherIds)
 {
   const MeshData whole = jittered(CellType::Tetrahedron, cubes, 0.2);
   const auto rankOf = cutBy(whole, Cut::Random, 3);
@@ -94,7 +94,7 @@ void testOtherIds()
 }
 
 /// Copies that are farther apart, of a few points: they stay, and are counted.
-void testApart()
+TAUTLINE_PART(testApart)
 {
   const MeshData whole = jittered(CellType::Tetrahedron, cubes, 0.2);
   for (const int ranks : { 2, 3, 5 })
@@ -126,7 +126,7 @@ void testApart()
 }
 
 /// Pieces that are one data set: the copies are on one rank.
-void testOneRank()
+TAUTLINE_PART(testOneRank)
 {
   const MeshData whole = jittered(CellType::Tetrahedron, cubes, 0.2);
   const auto rankOf = cutBy(whole, Cut::Slabs, 2);
@@ -174,7 +174,4 @@ TAUTLINE_TEST(TestPointCopies)
   TAUTLINE_RUN(testParts(CellType::Tetrahedron));
   TAUTLINE_RUN(testParts(CellType::Hexahedron));
   TAUTLINE_RUN(testParts(CellType::Triangle));
-  TAUTLINE_RUN(testOtherIds());
-  TAUTLINE_RUN(testApart());
-  TAUTLINE_RUN(testOneRank());
 }

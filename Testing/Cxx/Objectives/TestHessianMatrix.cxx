@@ -103,7 +103,7 @@ Vector times(const HessianMatrix& matrix, const Mesh& mesh, const Vector& d)
 
 //------------------------------------------------------------------------------
 /// Without projection the product is the derivative of the gradient; every type, mirrored ones too.
-void testDifferences()
+TAUTLINE_PART(testDifferences)
 {
   struct Case
   {
@@ -167,7 +167,7 @@ void testDifferences()
 }
 
 /// A convex quadratic is reproduced.
-void testConvex()
+TAUTLINE_PART(testConvex)
 {
   const MeshData data = movedBlock(CellType::Tetrahedron, 3, 0.6); // tangled: it does not matter
   const Mesh mesh(data.view());
@@ -198,7 +198,7 @@ bool isSymmetric(const HessianMatrix& matrix)
 }
 
 /// Finite, symmetric, blind to translations; any template on tangled meshes.
-void testTangled()
+TAUTLINE_PART(testTangled)
 {
   for (CellType type : types)
   {
@@ -243,7 +243,7 @@ void testTangled()
   }
 }
 
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   const MeshData data = shuffled(movedBlock(CellType::Tetrahedron, 13, 0.4), 44);
   const Mesh mesh(data.view());
@@ -274,7 +274,7 @@ void testThreads()
 
 //------------------------------------------------------------------------------
 /// Preconditioners: symmetric, positive definite, and for the diagonal pattern the inverse blocks.
-void testPreconditioners()
+TAUTLINE_PART(testPreconditioners)
 {
   for (CellType type : { CellType::Tetrahedron, CellType::Quadrilateral })
   {
@@ -316,7 +316,7 @@ void testPreconditioners()
 }
 
 /// A point that slides along a line: the matrix is P A P there.
-void testRestriction()
+TAUTLINE_PART(testRestriction)
 {
   const MeshData data = movedBlock(CellType::Hexahedron, 3, 0.1);
   const Mesh mesh(data.view());
@@ -423,7 +423,7 @@ struct Smoothing : SmoothFunction
 
 /// Newton and preconditioned L-BFGS reach the same mesh, the one in few iterations, the other in
 /// few evaluations.
-void testNewton()
+TAUTLINE_PART(testNewton)
 {
   // Inner points only: the boundary stays a cube.
   MeshData data = blockMesh(CellType::Tetrahedron, 10, 10, 10);
@@ -461,15 +461,4 @@ void testNewton()
       method != Optimizer::LimitedMemoryBFGS || m.evaluations <= 1.2 * m.iterations + 3);
   }
 }
-}
-
-TAUTLINE_TEST(TestHessianMatrix)
-{
-  TAUTLINE_RUN(testDifferences());
-  TAUTLINE_RUN(testConvex());
-  TAUTLINE_RUN(testTangled());
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testPreconditioners());
-  TAUTLINE_RUN(testRestriction());
-  TAUTLINE_RUN(testNewton());
 }

@@ -72,7 +72,7 @@ Vector times(const HessianMatrix& matrix, const Vector& d)
 
 //------------------------------------------------------------------------------
 /// No direction curves downwards, also where the whole Hessian has such.
-void testSemidefinite()
+TAUTLINE_PART(testSemidefinite)
 {
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron,
          CellType::Hexahedron, CellType::Wedge })
@@ -109,7 +109,7 @@ void testSemidefinite()
 }
 
 /// What is left out cancels in a grid of equal cells: both Hessians have the same rows inside.
-void testCancellation()
+TAUTLINE_PART(testCancellation)
 {
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral, CellType::Hexahedron })
   {
@@ -171,7 +171,7 @@ int solve(HessianMatrix& matrix, const Vector& b, Vector& x)
 }
 
 /// A solution is found again, in few iterations whatever the size of the grid and its stretching.
-void testSolve()
+TAUTLINE_PART(testSolve)
 {
   struct Case
   {
@@ -212,7 +212,7 @@ void testSolve()
 }
 
 /// Where no point is held, translations are no part of what it gives, whatever is in the residual.
-void testFloating()
+TAUTLINE_PART(testFloating)
 {
   for (const auto& [type, n] :
     { std::pair(CellType::Quadrilateral, Index(5)), std::pair(CellType::Quadrilateral, Index(24)),
@@ -241,7 +241,7 @@ void testFloating()
 }
 
 /// The same numbers for any number of threads, and with the aggregates of an earlier matrix.
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   const MeshData data = stretched(CellType::Quadrilateral, 150, 1.5);
   const Mesh mesh(data.view());
@@ -271,7 +271,7 @@ void testThreads()
 }
 
 /// A point without elements, and a mesh of one free point.
-void testSmall()
+TAUTLINE_PART(testSmall)
 {
   const MeshData data = stretched(CellType::Quadrilateral, 2, 1);
   const Mesh mesh(data.view());
@@ -291,14 +291,4 @@ void testSmall()
   matrix.precondition(r.data(), z.data());
   TAUTLINE_CHECK(std::isfinite(z[0]) && std::isfinite(z[1]));
 }
-}
-
-TAUTLINE_TEST(TestMultigrid)
-{
-  TAUTLINE_RUN(testSemidefinite());
-  TAUTLINE_RUN(testCancellation());
-  TAUTLINE_RUN(testSolve());
-  TAUTLINE_RUN(testFloating());
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testSmall());
 }

@@ -99,7 +99,7 @@ void testSlopes(const Scalarizer& scalarizer, const Values& f, double step = 3e-
   }
 }
 
-void testClosedForms()
+TAUTLINE_PART(testClosedForms)
 {
   const Values weights = { 0.5, 2, 1 }, initial = { 3, 40, 7 };
   for (Scalarization method : methods)
@@ -137,7 +137,7 @@ void testClosedForms()
     Scalarizer(optionsFor(Scalarization::WeightedMinMax), { 2, 5 }, { 7, 3 }).c(), 0.5, 1e-15);
 }
 
-void testExtremes()
+TAUTLINE_PART(testExtremes)
 {
   Values slopes;
   ScalarizationOptions options = optionsFor(Scalarization::ExponentialSum);
@@ -190,7 +190,7 @@ void testExtremes()
   }
 }
 
-void testLexicographic()
+TAUTLINE_PART(testLexicographic)
 {
   ScalarizationOptions options = optionsFor(Scalarization::Lexicographic);
   options.tolerance = 0.1;
@@ -219,7 +219,7 @@ void testLexicographic()
     !Scalarizer(optionsFor(Scalarization::EqualSum), { 1, 1 }, { 1, 1 }).next({ 1, 1 }));
 }
 
-void testErrors()
+TAUTLINE_PART(testErrors)
 {
   const ScalarizationOptions good;
   TAUTLINE_CHECK_THROWS(Scalarizer(good, {}, {}), wording("no-objective"));
@@ -244,12 +244,4 @@ void testErrors()
   TAUTLINE_CHECK_THROWS(
     with([](auto& o) { o.method = static_cast<Scalarization>(8); }), "number 8");
 }
-}
-
-TAUTLINE_TEST(TestScalarization)
-{
-  TAUTLINE_RUN(testClosedForms());
-  TAUTLINE_RUN(testExtremes());
-  TAUTLINE_RUN(testLexicographic());
-  TAUTLINE_RUN(testErrors());
 }

@@ -78,7 +78,7 @@ double offFaces(const MeshData& data, const std::vector<double>& points, bool bu
 }
 
 /// Planes that are not at right angles to an axis: coarse grids mix the coordinates.
-void testSlantedPlanes()
+TAUTLINE_PART(testSlantedPlanes)
 {
   for (CellType type : { CellType::Hexahedron, CellType::Tetrahedron })
   {
@@ -131,7 +131,7 @@ struct Sliding
 
 /// Points on flat faces and straight edges get their directions; those on the bump, and on the
 /// straight edges beside it, are held.
-void testDirections()
+TAUTLINE_PART(testDirections)
 {
   const MeshData data = shearedBlock(CellType::Hexahedron, height);
   const Mesh mesh(data.view());
@@ -193,7 +193,7 @@ void testDirections()
 }
 
 /// Sheared blocks, which sweeps alone bring to the minimum in hundreds of iterations.
-void testSurface()
+TAUTLINE_PART_SLOW(testSurface)
 {
   for (const bool bump : { false, true })
   {
@@ -232,7 +232,7 @@ void testSurface()
 
 /// Objectives of the size, which shrink a mesh whose boundary is free, are minimized where points
 /// slide on the surface.
-void testSizes()
+TAUTLINE_PART(testSizes)
 {
   const MeshData data = shearedBlock(CellType::Hexahedron, 0);
   const Mesh mesh(data.view());
@@ -247,7 +247,7 @@ void testSizes()
 }
 
 /// Metrics that cannot judge the worst element, and those whose values may all be 0.
-void testWorstMetrics()
+TAUTLINE_PART(testWorstMetrics)
 {
   const MeshData data = perturbedBlock(CellType::Quadrilateral, 5, 0.2);
   const Mesh mesh(data.view());
@@ -271,13 +271,4 @@ void testWorstMetrics()
   TAUTLINE_CHECK_THROWS(
     optimize(Mesh(folded.view()), OptimizeOptions()), wording("no-element-is-valid"));
 }
-}
-
-TAUTLINE_TEST(TestFlatParts)
-{
-  TAUTLINE_RUN(testSizes());
-  TAUTLINE_RUN(testWorstMetrics());
-  TAUTLINE_RUN(testSlantedPlanes());
-  TAUTLINE_RUN(testDirections());
-  TAUTLINE_RUN_SLOW(testSurface());
 }

@@ -108,7 +108,7 @@ MeshData wavy(CellType type)
 }
 
 /// Metrics whose small values are better, and whose large ones are; in closed form and not.
-void testRounds()
+TAUTLINE_PART(testRounds)
 {
   const std::tuple<CellType, Metric, ObjectiveTemplate> cases[] = {
     { CellType::Tetrahedron, Metric::InverseMeanRatio, ObjectiveTemplate::SumOfSquares },
@@ -160,7 +160,7 @@ void testRounds()
 
 /// Where the worst element is worse than that of the input, no cost counts until it is as good; and
 /// that is all, if no more is wanted.
-void testBackToInput()
+TAUTLINE_PART(testBackToInput)
 {
   for (const CellType type : { CellType::Tetrahedron, CellType::Hexahedron })
   {
@@ -199,7 +199,7 @@ void testBackToInput()
 /// Where cells have several corners, the worst element counts more and more, until that no longer
 /// pays; where a round costs too much, less once more. Bounds are between what is reached so and
 /// what otherwise: 1.2984 (1.5498 of wedges) always, and 1.28705 (1.53746) where the cost ends it.
-void testPull()
+TAUTLINE_PART(testPull)
 {
   using Bounds = std::vector<std::pair<double, double>>; // of allowances
   const std::pair<CellType, Bounds> cases[] = {
@@ -229,7 +229,7 @@ void testPull()
 
 /// The first sweep of a round visits the free points of elements with a share of at least 1e-5 in
 /// the p-mean, next to that of the worst one; and no others.
-void testVerticesNear()
+TAUTLINE_PART(testVerticesNear)
 {
   for (const CellType type : { CellType::Tetrahedron, CellType::Hexahedron })
   {
@@ -276,7 +276,7 @@ void testVerticesNear()
 
 /// Metrics without a barrier, on many meshes: no round that counts makes the worst element worse,
 /// or inverts one where that is allowed to single steps.
-void testManyMeshes()
+TAUTLINE_PART(testManyMeshes)
 {
   std::size_t rounds = 0;
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Quadrilateral })
@@ -312,7 +312,7 @@ void testManyMeshes()
 
 /// A point in a flat triangle, whose edges become equal outside of it: a round that takes it there
 /// is not kept, also where single steps may invert.
-void testInversion()
+TAUTLINE_PART(testInversion)
 {
   MeshData data;
   const Index left = data.addPoint({ -1, 0, 0 }), right = data.addPoint({ 1, 0, 0 }),
@@ -329,21 +329,10 @@ void testInversion()
 }
 
 /// Sizes are neither good nor bad: there is no worst one.
-void testNeutral()
+TAUTLINE_PART(testNeutral)
 {
   const MeshData data = wavy(CellType::Tetrahedron);
   Rounds rounds(data, Metric::Size, ObjectiveTemplate::SumOfSquares);
   TAUTLINE_CHECK_EQUAL(rounds.from(data.points, { 0.5, false }).size(), std::size_t(1));
 }
-}
-
-TAUTLINE_TEST(TestImproveWorst)
-{
-  TAUTLINE_RUN(testRounds());
-  TAUTLINE_RUN(testBackToInput());
-  TAUTLINE_RUN(testPull());
-  TAUTLINE_RUN(testVerticesNear());
-  TAUTLINE_RUN(testManyMeshes());
-  TAUTLINE_RUN(testInversion());
-  TAUTLINE_RUN(testNeutral());
 }

@@ -155,7 +155,7 @@ Vec3 at(const std::vector<double>& points, Index p)
 }
 
 /// The facets of an interface face out of the cells of the smaller region, whatever their order.
-void testSense()
+TAUTLINE_PART(testSense)
 {
   for (CellType type : { CellType::Hexahedron, CellType::Tetrahedron })
   {
@@ -210,7 +210,7 @@ void testRuns(TwoRegions mesh, int boundary, double off, double fullVolume)
   }
 }
 
-void testShapes()
+TAUTLINE_PART_SLOW(testShapes)
 {
   for (CellType type : { CellType::Hexahedron, CellType::Tetrahedron })
   {
@@ -227,7 +227,7 @@ void testShapes()
 
 /// Fine facets, stretched in the input: the volume within them grows towards that of the ball, as
 /// they become regular, and stays there.
-void testFineBall()
+TAUTLINE_PART_SLOW(testFineBall)
 {
   TwoRegions mesh = ballInBall(CellType::Hexahedron, 12, 8);
   const double radius = 2.0 / 3, full = 4 * Pi / 3 * radius * radius * radius,
@@ -248,7 +248,7 @@ void testFineBall()
 }
 
 /// The surface tolerance holds interfaces, too, whatever the boundary does; the summary says so.
-void testTolerance()
+TAUTLINE_PART(testTolerance)
 {
   for (int boundary : { vtkMeshOptimizer::FIXED, vtkMeshOptimizer::SLIDING, vtkMeshOptimizer::FREE,
          vtkMeshOptimizer::ON_SURFACE })
@@ -279,7 +279,7 @@ void testTolerance()
  * @brief A twisted cylinder through a block, run after run: where the worst element would get
  * worse, a run is to find points that keep it, not to go back to the input.
  */
-void testHeldWorst()
+TAUTLINE_PART(testHeldWorst)
 {
   constexpr double tolerance = 1e-3, twist = 0.2, worthwhile = 1e-3;
   TwoRegions mesh = cylinderInBlock(CellType::Hexahedron, 6, 6);
@@ -322,7 +322,7 @@ void testHeldWorst()
 
 /// A run from points that have converged, where the rest would make the worst element worse, keeps
 /// them and calls them converged.
-void testConverged()
+TAUTLINE_PART(testConverged)
 {
   TwoRegions mesh = cylinderInBlock(CellType::Tetrahedron, 8, 8);
   bool kept = false;
@@ -340,14 +340,4 @@ void testConverged()
   }
   TAUTLINE_CHECK(kept);
 }
-}
-
-TAUTLINE_TEST(TestInterfaces)
-{
-  TAUTLINE_RUN(testSense());
-  TAUTLINE_RUN_SLOW(testShapes());
-  TAUTLINE_RUN_SLOW(testFineBall());
-  TAUTLINE_RUN(testTolerance());
-  TAUTLINE_RUN(testHeldWorst());
-  TAUTLINE_RUN(testConverged());
 }

@@ -9,7 +9,7 @@ namespace
 {
 /// Conjugate directions reach the minimum of an elongated patch in a few steps; steepest descent
 /// goes to and fro and is far from it after as many.
-void testConjugateSteps()
+TAUTLINE_PART(testConjugateSteps)
 {
   const double stretch = 12;
   for (bool flat : { true, false })
@@ -47,9 +47,4 @@ void testConjugateSteps()
     TAUTLINE_CHECK(left < 1e-4);
   }
 }
-}
-
-TAUTLINE_TEST(TestLocalDirections)
-{
-  TAUTLINE_RUN(testConjugateSteps());
 }

@@ -84,7 +84,7 @@ void testValues(CellType type, bool slides)
 
 //------------------------------------------------------------------------------
 /// Of a vertex that no other one influences, by differences.
-void testGradient()
+TAUTLINE_PART(testGradient)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
@@ -118,7 +118,7 @@ void testGradient()
 }
 
 /// The relaxation is the part of Newton's step that is made; steps that short are all taken.
-void testRelaxation()
+TAUTLINE_PART(testRelaxation)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
@@ -149,7 +149,7 @@ void testRelaxation()
 
 //------------------------------------------------------------------------------
 /// Regular but for one vertex: with culling, sweeps stay near it.
-void testCulling()
+TAUTLINE_PART(testCulling)
 {
   constexpr Index n = 24;
   MeshData data = blockMesh(CellType::Triangle, n, n, 0);
@@ -194,7 +194,7 @@ void testCulling()
 }
 
 /// A sweep that culling has kept to a few vertices does not tell that the others have converged.
-void testConvergenceOfAll()
+TAUTLINE_PART(testConvergenceOfAll)
 {
   constexpr double tolerance = 1e-3;
   const MeshData data = waveAndQuickVertex();
@@ -219,7 +219,7 @@ void testConvergenceOfAll()
 //------------------------------------------------------------------------------
 /// The worst element is improved as long as the mean does not rise by more than is allowed; the
 /// result is the last round that keeps to it.
-void testAllowance()
+TAUTLINE_PART(testAllowance)
 {
   MeshData data = perturbedBlock(CellType::Tetrahedron, 5, 0.25);
   data.transform([](const Vec3& p) { return Vec3{ p[0] * (1 + 0.15 * p[1]), p[1], p[2] }; });
@@ -255,9 +255,4 @@ TAUTLINE_TEST(TestLocalSweep)
     TAUTLINE_RUN(testValues(CellType::Triangle, slides));
     TAUTLINE_RUN(testValues(CellType::Tetrahedron, slides));
   }
-  TAUTLINE_RUN(testGradient());
-  TAUTLINE_RUN(testRelaxation());
-  TAUTLINE_RUN(testCulling());
-  TAUTLINE_RUN(testConvergenceOfAll());
-  TAUTLINE_RUN(testAllowance());
 }

@@ -91,7 +91,7 @@ double cell(vtkTable* table, vtkIdType row, const char* column)
 }
 
 /// Presets and rows of objectives give bitwise what the kernel gives.
-void testAgainstKernel()
+TAUTLINE_PART(testAgainstKernel)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 4);
   const Mesh mesh(data.view());
@@ -122,7 +122,7 @@ void testAgainstKernel()
 }
 
 /// The metric that judges the worst element is stated, chosen or not, once.
-void testWorstMetric()
+TAUTLINE_PART(testWorstMetric)
 {
   for (const CellType type :
     { CellType::Hexahedron, CellType::Quadrilateral, CellType::Tetrahedron })
@@ -152,7 +152,7 @@ void testWorstMetric()
   }
 }
 
-void testCustom()
+TAUTLINE_PART(testCustom)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 4);
   const auto boundary = boundaryOf(data);
@@ -234,7 +234,7 @@ void testCustom()
 }
 
 /// Every scalarization, optimizer and stopping criterion reaches the kernel.
-void testOptions()
+TAUTLINE_PART(testOptions)
 {
   const MeshData data = perturbed(CellType::Triangle, 8);
   const auto boundary = boundaryOf(data);
@@ -325,7 +325,7 @@ void testOptions()
   }
 }
 
-void testArrays()
+TAUTLINE_PART(testArrays)
 {
   for (CellType type : allTypes)
   {
@@ -387,7 +387,7 @@ void testArrays()
 }
 
 /// What stays: by array, by a selection of points or cells, ghost cells, lines.
-void testFixed()
+TAUTLINE_PART(testFixed)
 {
   const MeshData data = perturbed(CellType::Triangle, 8);
   const Index center = 4 * 9 + 4;
@@ -455,7 +455,7 @@ bool isOnBlock(const Vec3& p, double size)
 }
 
 /// Sliding keeps planes, edges and corners of the block; free does not.
-void testBoundary()
+TAUTLINE_PART(testBoundary)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 4, 4, 4);
   // Shift the points of faces and edges within them, so that sliding has work to do.
@@ -517,7 +517,7 @@ void testBoundary()
 }
 
 /// Points that slide keep to their planes and edges also while a tangled mesh is untangled first.
-void testSlidingTangled()
+TAUTLINE_PART(testSlidingTangled)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 4, 4, 4);
   const auto pushed = [](const Vec3& p) { return p[2] == 1 && !isOnBlock(p, 4); };
@@ -541,7 +541,7 @@ void testSlidingTangled()
 }
 
 /// On a ball, points of the sphere slide on it; with fixed points the mesh is worse.
-void testOnSurface()
+TAUTLINE_PART(testOnSurface)
 {
   MeshData ball = perturbed(CellType::Tetrahedron, 6);
   ball.transform(
@@ -577,7 +577,7 @@ void testOnSurface()
   TAUTLINE_CHECK_EQUAL(std::count(validity.begin(), validity.end(), Valid), ball.numberOfCells());
 }
 
-void testLimits()
+TAUTLINE_PART(testLimits)
 {
   const MeshData data = perturbed(CellType::Triangle, 8);
   vtkNew<vtkMeshOptimizer> filter;
@@ -604,7 +604,7 @@ void testLimits()
 }
 
 /// With the target elements as reference, sizes or tensors, the mesh reaches them.
-void testTargets()
+TAUTLINE_PART(testTargets)
 {
   const MeshData data = perturbed(CellType::Triangle, 6);
   MeshData wanted = blockMesh(CellType::Triangle, 6, 6, 0);
@@ -642,7 +642,7 @@ void testTargets()
     0.1 * cell(filter->GetStatistics(), 0, "MeanBefore"));
 }
 
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   const auto grid = toGrid(perturbed(CellType::Tetrahedron, 8));
   std::vector<double> first;
@@ -656,21 +656,4 @@ void testThreads()
     TAUTLINE_CHECK(pointsOf(filter) == first);
   }
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMeshOptimizer)
-{
-  TAUTLINE_RUN(testAgainstKernel());
-  TAUTLINE_RUN(testWorstMetric());
-  TAUTLINE_RUN(testCustom());
-  TAUTLINE_RUN(testOptions());
-  TAUTLINE_RUN(testArrays());
-  TAUTLINE_RUN(testFixed());
-  TAUTLINE_RUN(testBoundary());
-  TAUTLINE_RUN(testSlidingTangled());
-  TAUTLINE_RUN(testOnSurface());
-  TAUTLINE_RUN(testLimits());
-  TAUTLINE_RUN(testTargets());
-  TAUTLINE_RUN(testThreads());
 }

@@ -63,7 +63,7 @@ bool contains(const std::string& text, const std::string& part)
 }
 
 /// Each is refused with a message that names what is wrong and what to do; the output is empty.
-void testRefused()
+TAUTLINE_PART(testRefused)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 3);
   const auto refuse = [](
@@ -139,7 +139,7 @@ void testRefused()
 /// Empty, without a free point, with one, reversed, disconnected, far from the origin, not finite.
 /// Of an array the name counts, where only points or only cells can have it: ParaView's Python
 /// leaves the association of a property that is set to a name.
-void testAssociations()
+TAUTLINE_PART(testAssociations)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 3);
   const auto grid = toGrid(data);
@@ -186,7 +186,7 @@ void testAssociations()
   }
 }
 
-void testTaken()
+TAUTLINE_PART(testTaken)
 {
   vtkNew<vtkMeshOptimizer> filter;
   Messages messages(filter);
@@ -307,7 +307,7 @@ void testTaken()
 }
 
 /// Points stay in single precision where that keeps the elements valid.
-void testPrecision()
+TAUTLINE_PART(testPrecision)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 4, 0.5);
   for (int type : { VTK_FLOAT, VTK_DOUBLE })
@@ -343,7 +343,7 @@ void testPrecision()
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("given-in-double-precision")));
 }
 
-void testBlocks()
+TAUTLINE_PART(testBlocks)
 {
   const MeshData flat = perturbed(CellType::Triangle, 5),
                  solid = perturbed(CellType::Hexahedron, 3);
@@ -390,7 +390,7 @@ void testBlocks()
 }
 
 /// A time is an iteration: the mesh the kernel's observer saw.
-void testAnimation()
+TAUTLINE_PART(testAnimation)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 4);
   const auto on = Mesh(data.view()).boundary().isBoundaryPoint;
@@ -479,7 +479,7 @@ void testAnimation()
 }
 
 /// Stops on request, keeps the result so far; a time limit of almost 0 too.
-void testStops()
+TAUTLINE_PART(testStops)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 6);
   vtkNew<vtkMeshOptimizer> filter;
@@ -513,7 +513,7 @@ void testStops()
 }
 
 /// The points of a sphere stay on it, and the error is reported.
-void testSurface()
+TAUTLINE_PART(testSurface)
 {
   vtkNew<vtkSphereSource> sphere;
   sphere->SetThetaResolution(24);
@@ -537,17 +537,4 @@ void testSurface()
   TAUTLINE_CHECK(filter->GetStatistics()->GetValueByName(0, "MeanAfter").ToDouble() <
     filter->GetStatistics()->GetValueByName(0, "MeanBefore").ToDouble());
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMeshOptimizerInputs)
-{
-  TAUTLINE_RUN(testRefused());
-  TAUTLINE_RUN(testAssociations());
-  TAUTLINE_RUN(testTaken());
-  TAUTLINE_RUN(testPrecision());
-  TAUTLINE_RUN(testBlocks());
-  TAUTLINE_RUN(testAnimation());
-  TAUTLINE_RUN(testStops());
-  TAUTLINE_RUN(testSurface());
 }

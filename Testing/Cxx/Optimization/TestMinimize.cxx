@@ -240,7 +240,7 @@ struct Convex : SmoothFunction
 };
 
 /// Each direction is -g + beta d with the formula of the method, not with that of the other.
-void testConjugateDirections()
+TAUTLINE_PART(testConjugateDirections)
 {
   const auto dot = [](const Vector& a, const Vector& b)
   { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); };
@@ -299,7 +299,7 @@ void testConjugateDirections()
 }
 
 //------------------------------------------------------------------------------
-void testRosenbrock()
+TAUTLINE_PART(testRosenbrock)
 {
   for (std::size_t n : { 2, 100, 10000 })
   {
@@ -341,7 +341,7 @@ void testRosenbrock()
   }
 }
 
-void testQuadratic()
+TAUTLINE_PART(testQuadratic)
 {
   for (Optimizer method : methods)
   {
@@ -392,7 +392,7 @@ struct LateHessian : Quadratic
 
 /// Newton's method takes one other step then, and its own ones from there: steepest descent would
 /// take thousands.
-void testLateHessian()
+TAUTLINE_PART(testLateHessian)
 {
   LateHessian f;
   Vector x(f.size(), 0.0);
@@ -404,7 +404,7 @@ void testLateHessian()
   TAUTLINE_CHECK(distance(x, f.a) < 1e-4);
 }
 
-void testBarrier()
+TAUTLINE_PART(testBarrier)
 {
   for (Optimizer method : methods)
   {
@@ -433,7 +433,7 @@ void testBarrier()
   }
 }
 
-void testRough()
+TAUTLINE_PART(testRough)
 {
   for (Optimizer method : methods)
   {
@@ -463,7 +463,7 @@ void testRough()
   }
 }
 
-void testStopping()
+TAUTLINE_PART(testStopping)
 {
   for (Optimizer method : methods)
   {
@@ -549,7 +549,7 @@ struct Stairs : SmoothFunction
 };
 
 /// Three iterations in a row without a visible change end the run; two, and then a change, do not.
-void testStalled()
+TAUTLINE_PART(testStalled)
 {
   constexpr int stalled = 3, iterations = 30;
   for (Optimizer method : methods)
@@ -603,7 +603,7 @@ struct FirstTrial : SmoothFunction
 
 /// A step has to reach 1e-4 of the decrease that the slope promises: half of that is refused, twice
 /// as much is taken.
-void testArmijo()
+TAUTLINE_PART(testArmijo)
 {
   constexpr double constant = 1e-4;
   for (Optimizer method : methods)
@@ -623,17 +623,4 @@ void testArmijo()
     }
   }
 }
-}
-
-TAUTLINE_TEST(TestMinimize)
-{
-  TAUTLINE_RUN(testConjugateDirections());
-  TAUTLINE_RUN(testRosenbrock());
-  TAUTLINE_RUN(testQuadratic());
-  TAUTLINE_RUN(testLateHessian());
-  TAUTLINE_RUN(testBarrier());
-  TAUTLINE_RUN(testRough());
-  TAUTLINE_RUN(testStopping());
-  TAUTLINE_RUN(testStalled());
-  TAUTLINE_RUN(testArmijo());
 }

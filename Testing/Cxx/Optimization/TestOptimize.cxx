@@ -21,7 +21,7 @@ constexpr Optimizer optimizers[] = { Optimizer::Automatic, Optimizer::LocalNewto
   Optimizer::NewtonConjugateGradient };
 
 /// All algorithms find the same minimum, and keep the boundary.
-void testMinima()
+TAUTLINE_PART(testMinima)
 {
   for (CellType type : allTypes)
   {
@@ -65,7 +65,7 @@ void testMinima()
 }
 
 /// One free vertex goes to the centre of a regular hexagon.
-void testSingleVertex()
+TAUTLINE_PART(testSingleVertex)
 {
   MeshData data;
   data.addPoint({ 0.3, -0.2, 0 });
@@ -91,7 +91,7 @@ void testSingleVertex()
 }
 
 /// Rotated, shifted, scaled and relabelled meshes come to the same.
-void testInvariance()
+TAUTLINE_PART(testInvariance)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Hexahedron })
   {
@@ -140,7 +140,7 @@ void testInvariance()
 
 /// Bitwise the same on 1, 2 and 4 threads, in closed form and through a metric, one or several
 /// objectives.
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 14, 0.12);
   for (int which = 0; which < 4; ++which)
@@ -169,7 +169,7 @@ void testThreads()
 
 /// Several objectives under each scalarization: the scalarized value falls, and no objective is
 /// forgotten.
-void testScalarizations()
+TAUTLINE_PART(testScalarizations)
 {
   const MeshData data = perturbedBlock(CellType::Triangle, 8, 0.25);
   for (int method = 0; method <= 7; ++method)
@@ -202,7 +202,7 @@ void testScalarizations()
 }
 
 /// The last objective of the lexicographic method is not the first one, which may be smaller.
-void testLexicographic()
+TAUTLINE_PART(testLexicographic)
 {
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 6, 0.25);
   OptimizeOptions options;
@@ -225,7 +225,7 @@ void testLexicographic()
 
 /// Points that are put back raise the first objective beyond the bound that the lexicographic
 /// method keeps: the history has the second one instead of an infinite number.
-void testLexicographicBeyondBound()
+TAUTLINE_PART(testLexicographicBeyondBound)
 {
   ScalarizationOptions options;
   options.method = Scalarization::Lexicographic;
@@ -243,7 +243,7 @@ void testLexicographicBeyondBound()
 
 /// Blocks of one colour, each of which reduces a product by itself, together leave its domain: the
 /// sweep is taken back.
-void testSweepTakenBack()
+TAUTLINE_PART(testSweepTakenBack)
 {
   const MeshData data = perturbedBlock(CellType::Quadrilateral, 40, 0.25);
   const auto objective = [](Metric metric)
@@ -277,7 +277,7 @@ void testSweepTakenBack()
 
 /// Other metrics and templates, in patches and globally: each reduces its own objective and inverts
 /// nothing.
-void testMetrics()
+TAUTLINE_PART(testMetrics)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
@@ -320,7 +320,7 @@ void testMetrics()
 }
 
 /// A reference mesh is found again from its perturbed copy; weights of 0 free an element.
-void testTargetsAndWeights()
+TAUTLINE_PART(testTargetsAndWeights)
 {
   for (CellType type : { CellType::Tetrahedron, CellType::Hexahedron, CellType::Triangle })
   {
@@ -358,7 +358,7 @@ void testTargetsAndWeights()
 }
 
 /// Each criterion ends the run, and is the reason given.
-void testStopping()
+TAUTLINE_PART(testStopping)
 {
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 8, 0.12);
   OptimizeOptions options;
@@ -424,7 +424,7 @@ void testStopping()
 
 /// One time limit holds for untangling and optimization together: where untangling has used it up,
 /// no iteration follows.
-void testTimeLimitOfWholeRun()
+TAUTLINE_PART(testTimeLimitOfWholeRun)
 {
   MeshData data = perturbedBlock(CellType::Tetrahedron, 6, 0.1);
   const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
@@ -459,7 +459,7 @@ void testTimeLimitOfWholeRun()
 }
 
 /// The classes of the optimizers do not depend on the order of their numbers.
-void testReachOfOptimizers()
+TAUTLINE_PART(testReachOfOptimizers)
 {
   for (Optimizer optimizer : optimizers)
   {
@@ -480,7 +480,7 @@ void testReachOfOptimizers()
 }
 
 /// 0 is an ordinary best known objective: that of an untangling objective.
-void testBestKnownOfZero()
+TAUTLINE_PART(testBestKnownOfZero)
 {
   const MeshData data = perturbedBlock(CellType::Triangle, 12, 0.8);
   TAUTLINE_CHECK(invalid(data, data.points) > 0);
@@ -503,7 +503,7 @@ void testBestKnownOfZero()
 }
 
 /// The worst element gets better, and the mean hardly worse.
-void testWorst()
+TAUTLINE_PART(testWorst)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Quadrilateral })
   {
@@ -527,7 +527,7 @@ void testWorst()
 }
 
 /// The dissertation's method: an untangling metric beside a signed one repairs inverted elements.
-void testUntanglingObjectives()
+TAUTLINE_PART(testUntanglingObjectives)
 {
   MeshData data = blockMesh(CellType::Triangle, 6, 6, 0);
   const Index middle = 3 * 7 + 3;
@@ -564,7 +564,7 @@ void testUntanglingObjectives()
 }
 
 /// Inputs with nothing to do or something wrong.
-void testFaulty()
+TAUTLINE_PART(testFaulty)
 {
   OptimizeOptions options;
   MeshData empty;
@@ -610,25 +610,4 @@ void testFaulty()
   options.stopping.reduction = 0;
   TAUTLINE_CHECK_THROWS(run(data, options), "reduction");
 }
-}
-
-TAUTLINE_TEST(TestOptimize)
-{
-  TAUTLINE_RUN(testMinima());
-  TAUTLINE_RUN(testSingleVertex());
-  TAUTLINE_RUN(testInvariance());
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testScalarizations());
-  TAUTLINE_RUN(testLexicographic());
-  TAUTLINE_RUN(testLexicographicBeyondBound());
-  TAUTLINE_RUN(testSweepTakenBack());
-  TAUTLINE_RUN(testMetrics());
-  TAUTLINE_RUN(testTargetsAndWeights());
-  TAUTLINE_RUN(testStopping());
-  TAUTLINE_RUN(testTimeLimitOfWholeRun());
-  TAUTLINE_RUN(testReachOfOptimizers());
-  TAUTLINE_RUN(testBestKnownOfZero());
-  TAUTLINE_RUN(testWorst());
-  TAUTLINE_RUN(testUntanglingObjectives());
-  TAUTLINE_RUN(testFaulty());
 }

@@ -13,7 +13,7 @@ using namespace tautline;
 namespace
 {
 /// Fixed points, limits, planes and lines.
-void testConstraints()
+TAUTLINE_PART(testConstraints)
 {
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 5, 0.1);
   const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
@@ -119,7 +119,7 @@ void testConstraints()
 }
 
 /// Points of a curved side slide on the facets (in 2D edges) it has.
-void testSlidingSurface()
+TAUTLINE_PART(testSlidingSurface)
 {
   for (CellType type : { CellType::Tetrahedron, CellType::Hexahedron, CellType::Triangle })
   {
@@ -180,7 +180,7 @@ void testSlidingSurface()
 }
 
 /// Points of a sphere's mesh stay on it.
-void testSurface()
+TAUTLINE_PART(testSurface)
 {
   MeshData data = blockMesh(CellType::Triangle, 12, 12, 0);
   Random random(2);
@@ -212,11 +212,4 @@ void testSurface()
   options.optimizer = Optimizer::LimitedMemoryBFGS;
   TAUTLINE_CHECK_THROWS(run(data, options), wording("local-optimizer"));
 }
-}
-
-TAUTLINE_TEST(TestOptimizeConstraints)
-{
-  TAUTLINE_RUN(testConstraints());
-  TAUTLINE_RUN(testSlidingSurface());
-  TAUTLINE_RUN(testSurface());
 }

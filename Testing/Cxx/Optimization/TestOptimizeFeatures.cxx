@@ -55,7 +55,7 @@ double offCube(const MeshData& data, const std::vector<double>& points, double s
   return most;
 }
 
-void testCube()
+TAUTLINE_PART(testCube)
 {
   for (double size : { 1.0, std::ldexp(1.0, -26), std::ldexp(1.0, 27) })
   {
@@ -106,7 +106,7 @@ void testCube()
   TAUTLINE_CHECK(volumeWithin(cube, cut.points) < 0.997);
 }
 
-void testCylinder()
+TAUTLINE_PART(testCylinder)
 {
   const MeshData data = cylinderSurface(32, 8);
   const double volume = volumeWithin(data, data.points);
@@ -140,7 +140,7 @@ void testCylinder()
 }
 
 /// A sphere keeps its volume, and further runs stay on it.
-void testSphere()
+TAUTLINE_PART(testSphere)
 {
   for (CellType type : { CellType::Quadrilateral, CellType::Triangle })
   {
@@ -183,7 +183,7 @@ double offEllipsoid(const Vec3& p, const Vec3& axes)
 /// An ellipsoid: runs in a row, each of which makes its model anew from the points of the
 /// last. Twice the resolution divides the distance by eight or so; it does not grow from run to
 /// run.
-void testEllipsoid()
+TAUTLINE_PART_SLOW(testEllipsoid)
 {
   const Vec3 axes = { 1, 0.7, 0.5 };
   for (CellType type : { CellType::Quadrilateral, CellType::Triangle })
@@ -222,7 +222,7 @@ void testEllipsoid()
 }
 
 /// A torus whose points crowd on one side of the tube.
-void testTorus()
+TAUTLINE_PART(testTorus)
 {
   const double turn = 2 * std::acos(-1.0), tube = 0.4;
   for (CellType type : { CellType::Quadrilateral, CellType::Triangle })
@@ -274,7 +274,7 @@ void testTorus()
 }
 
 /// The boundary of a volume mesh, and the interface of its regions.
-void testVolume()
+TAUTLINE_PART(testVolume)
 {
   for (CellType type : { CellType::Tetrahedron, CellType::Hexahedron })
   {
@@ -326,7 +326,7 @@ void testVolume()
 }
 
 /// The points of a coarse sphere and of a coarse cube go to fine ones.
-void testGeometry()
+TAUTLINE_PART(testGeometry)
 {
   const auto match = [](const MeshData& data, const MeshData& geometry)
   {
@@ -367,15 +367,4 @@ void testGeometry()
   options.parts = nullptr;
   TAUTLINE_CHECK_THROWS(run(placed, options), wording("part-of-it"));
 }
-}
-
-TAUTLINE_TEST(TestOptimizeFeatures)
-{
-  TAUTLINE_RUN(testCube());
-  TAUTLINE_RUN(testCylinder());
-  TAUTLINE_RUN(testSphere());
-  TAUTLINE_RUN_SLOW(testEllipsoid());
-  TAUTLINE_RUN(testTorus());
-  TAUTLINE_RUN(testVolume());
-  TAUTLINE_RUN(testGeometry());
 }

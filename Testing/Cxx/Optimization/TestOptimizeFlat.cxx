@@ -46,7 +46,7 @@ double minimumOf(const MeshData& data, OptimizeOptions options)
 
 /// Elements of an aspect ratio of two million beside those of 1: Newton's directions are nearly at
 /// right angles to the gradient.
-void testNewton()
+TAUTLINE_PART_SLOW(testNewton)
 {
   for (const CellType type : { CellType::Quadrilateral, CellType::Triangle })
   {
@@ -75,7 +75,7 @@ void testNewton()
 }
 
 /// The default with objectives other than one sum.
-void testObjectives()
+TAUTLINE_PART_SLOW(testObjectives)
 {
   constexpr int cells = 48;
   OptimizeOptions uniform;
@@ -113,7 +113,7 @@ void testObjectives()
 }
 
 /// Methods that end by their criteria are near the minimum; others end at a limit.
-void testConvergence()
+TAUTLINE_PART(testConvergence)
 {
   const std::pair<const char*, MeshData> cases[] = {
     { "rows", stretchedRows(CellType::Quadrilateral, 32, 3) },
@@ -141,7 +141,7 @@ void testConvergence()
 }
 
 /// "The requested fraction of the possible reduction is reached": nearly true, where it is said.
-void testReduction()
+TAUTLINE_PART(testReduction)
 {
   const std::pair<const char*, MeshData> cases[] = {
     { "rows", stretchedRows(CellType::Quadrilateral, 64, 4) },
@@ -170,7 +170,7 @@ void testReduction()
 }
 
 /// Row 0 of the history is the input, whatever Automatic starts from; no iterations: no motion.
-void testFirstRow()
+TAUTLINE_PART(testFirstRow)
 {
   const MeshData data = stretchedRows(CellType::Quadrilateral, 16, 2);
   const double start = sumOfSquares(data, data.points, Metric::InverseMeanRatio);
@@ -189,7 +189,7 @@ void testFirstRow()
 
 /// A tangled mesh that is barely planar: untangling moves points into a plane, from which that of
 /// the boundary that is highest is then farther. It stays planar: a global method may go on.
-void testBarelyPlanar()
+TAUTLINE_PART(testBarelyPlanar)
 {
   int less = 0;
   for (unsigned seed = 0; seed < 4; ++seed)
@@ -225,15 +225,4 @@ void testBarelyPlanar()
   }
   TAUTLINE_CHECK(less > 0);
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestOptimizeFlat)
-{
-  TAUTLINE_RUN_SLOW(testNewton());
-  TAUTLINE_RUN_SLOW(testObjectives());
-  TAUTLINE_RUN(testConvergence());
-  TAUTLINE_RUN(testReduction());
-  TAUTLINE_RUN(testFirstRow());
-  TAUTLINE_RUN(testBarelyPlanar());
 }

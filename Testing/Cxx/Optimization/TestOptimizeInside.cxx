@@ -46,7 +46,7 @@ Index lost(const MeshData& data, const std::vector<double>& points)
 
 //------------------------------------------------------------------------------
 /// No optimizer folds an element, whatever the boundary.
-void testKeepsValid()
+TAUTLINE_PART(testKeepsValid)
 {
   for (CellType type : types)
   {
@@ -74,7 +74,7 @@ void testKeepsValid()
 }
 
 /// An objective that pulls towards folded elements: the target of each is itself, folded.
-void testFoldedTargets()
+TAUTLINE_PART(testFoldedTargets)
 {
   for (CellType type : types)
   {
@@ -114,7 +114,7 @@ void testFoldedTargets()
 }
 
 /// Untangling unfolds elements by themselves and in a block whose boundary is fixed.
-void testUnfolds()
+TAUTLINE_PART(testUnfolds)
 {
   for (CellType type : types)
   {
@@ -145,7 +145,7 @@ void testUnfolds()
 }
 
 /// Folded elements that nothing can repair end the run, and are counted.
-void testEnds()
+TAUTLINE_PART(testEnds)
 {
   for (CellType type : types)
   {
@@ -171,12 +171,4 @@ void testEnds()
     }
   }
 }
-}
-
-TAUTLINE_TEST(TestOptimizeInside)
-{
-  TAUTLINE_RUN(testKeepsValid());
-  TAUTLINE_RUN(testFoldedTargets());
-  TAUTLINE_RUN(testUnfolds());
-  TAUTLINE_RUN(testEnds());
 }

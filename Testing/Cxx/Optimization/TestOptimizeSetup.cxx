@@ -17,7 +17,7 @@ namespace
 constexpr int Several = 4; // threads
 
 /// Keys in an order that repeats, by several uses of an item: sorted, and in their order.
-void testCountingSort()
+TAUTLINE_PART(testCountingSort)
 {
   constexpr Index items = 200001; // more than one part
   constexpr std::int32_t keys = 1009;
@@ -137,7 +137,7 @@ void checkDuplicateAmongMany(MeshData data)
 }
 
 /// Of meshes large enough for several parts, of one cell type and of two.
-void testSimplexMesh()
+TAUTLINE_PART(testSimplexMesh)
 {
   for (const CellType type : { CellType::Tetrahedron, CellType::Triangle, CellType::Quadrilateral,
          CellType::Hexahedron, CellType::Wedge })
@@ -159,7 +159,7 @@ void testSimplexMesh()
 }
 
 /// A cell twice, also one without a point on the boundary, is found among the others.
-void testDuplicates()
+TAUTLINE_PART(testDuplicates)
 {
   for (const CellType type : { CellType::Tetrahedron, CellType::Hexahedron, CellType::Triangle })
   {
@@ -180,7 +180,7 @@ void testDuplicates()
 }
 
 /// What the result says of its elements is what is measured on its points.
-void testVerified()
+TAUTLINE_PART(testVerified)
 {
   for (const CellType type : { CellType::Tetrahedron, CellType::Quadrilateral })
   {
@@ -207,12 +207,4 @@ void testVerified()
     }
   }
 }
-}
-
-TAUTLINE_TEST(TestOptimizeSetup)
-{
-  TAUTLINE_RUN(testCountingSort());
-  TAUTLINE_RUN(testSimplexMesh());
-  TAUTLINE_RUN(testDuplicates());
-  TAUTLINE_RUN(testVerified());
 }

@@ -103,7 +103,7 @@ MeshData fan(bool flat, double x)
 }
 
 /// A step goes nine tenths of the way to where the first element vanishes, not to it.
-void testSafety()
+TAUTLINE_PART(testSafety)
 {
   constexpr double left = 0.1;
   for (const bool flat : { true, false })
@@ -118,7 +118,7 @@ void testSafety()
 
 //------------------------------------------------------------------------------
 /// A curve on which triangles are inverted, and smaller: only a step that may invert goes there.
-void testInvertedOnCurve()
+TAUTLINE_PART(testInvertedOnCurve)
 {
   const MeshData data = fan(true, 0.2);
   const Vec3 start = data.point(Free);
@@ -133,7 +133,7 @@ void testInvertedOnCurve()
 }
 
 /// A curve through worse places, and one through better ones.
-void testWorseOnCurve()
+TAUTLINE_PART(testWorseOnCurve)
 {
   MeshData data;
   data.addPoint({ 0.4, 0, 0 });
@@ -160,7 +160,7 @@ void testWorseOnCurve()
 
 /// Triangles that are unfolded along a curve are always positive: that they turn over is noticed in
 /// space. Flat triangles, which do not count, cannot turn over.
-void testTurnedOnCurve()
+TAUTLINE_PART(testTurnedOnCurve)
 {
   MeshData data;
   data.addPoint({ -3, 0, 0 });
@@ -232,7 +232,7 @@ struct Corner
 };
 
 /// What is valid at its corners, but folded between them, is not placed on the surface.
-void testFoldedOnSurface()
+TAUTLINE_PART(testFoldedOnSurface)
 {
   constexpr CellType type = CellType::Hexahedron;
   Random random(41);
@@ -267,13 +267,4 @@ void testFoldedOnSurface()
   TAUTLINE_CHECK_EQUAL(cases, 10);
   TAUTLINE_CHECK(moved > cases / 2);
 }
-}
-
-TAUTLINE_TEST(TestStepChecks)
-{
-  TAUTLINE_RUN(testSafety());
-  TAUTLINE_RUN(testInvertedOnCurve());
-  TAUTLINE_RUN(testWorseOnCurve());
-  TAUTLINE_RUN(testTurnedOnCurve());
-  TAUTLINE_RUN(testFoldedOnSurface());
 }

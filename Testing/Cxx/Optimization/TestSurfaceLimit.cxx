@@ -77,7 +77,7 @@ Outcome runOn(const MeshData& data, double tolerance, int threads = 1)
   return outcome;
 }
 
-void testLimit()
+TAUTLINE_PART(testLimit)
 {
   const MeshData data = ridge();
   TAUTLINE_CHECK_EQUAL(invalid(data, data.points), Index(0));
@@ -108,7 +108,7 @@ void testLimit()
 }
 
 /// The filter's limit is relative to the diagonal, whatever the unit.
-void testFilter()
+TAUTLINE_PART(testFilter)
 {
   for (double unit : { 1.0, 1e-3 })
   {
@@ -205,7 +205,7 @@ Leaving leave(const MeshData& data, const std::function<void(vtkMeshOptimizer*)>
 }
 
 /// Where the surface itself bounds the worst element, points leave it, as far as they may.
-void testLeaving()
+TAUTLINE_PART_SLOW(testLeaving)
 {
   const MeshData data = slantedBlock();
   const double diagonal = unit * side * norm({ 1 + 1 / tangent, 1, 1 });
@@ -280,7 +280,7 @@ void testLeaving()
 
 /// Planar meshes and simplices, too; points on interfaces stay on them; with a Geometry, none
 /// leaves.
-void testOtherMeshes()
+TAUTLINE_PART(testOtherMeshes)
 {
   constexpr double tolerance = 0.005;
   for (CellType type : { CellType::Quadrilateral, CellType::Triangle, CellType::Tetrahedron,
@@ -368,7 +368,7 @@ void testOtherMeshes()
 
 /// A request to stop in the rounds in which points leave is stated as the reason, with the best so
 /// far.
-void testStopping()
+TAUTLINE_PART(testStopping)
 {
   const MeshData data = slantedBlock();
   const Mesh mesh(data.view());
@@ -461,7 +461,7 @@ private:
 };
 
 /// Vertices slide on flat parts and along straight edges, and nowhere else.
-void testFlatParts()
+TAUTLINE_PART(testFlatParts)
 {
   constexpr Index n = 4;
   for (CellType type : { CellType::Hexahedron, CellType::Tetrahedron })
@@ -513,7 +513,7 @@ void testFlatParts()
 
 /// The tip of a slit, and the front of a crack, do not move on, though facets on both sides are
 /// flat; places on the sides do.
-void testCracks()
+TAUTLINE_PART(testCracks)
 {
   constexpr Index n = 4;
   for (CellType type : { CellType::Quadrilateral, CellType::Hexahedron })
@@ -547,15 +547,4 @@ void testCracks()
     TAUTLINE_CHECK(cracked.allows({ 2, 0, z }, { 0.3, 0, 0 }));
   }
 }
-}
-
-TAUTLINE_TEST(TestSurfaceLimit)
-{
-  TAUTLINE_RUN(testFlatParts());
-  TAUTLINE_RUN(testCracks());
-  TAUTLINE_RUN(testLimit());
-  TAUTLINE_RUN(testFilter());
-  TAUTLINE_RUN_SLOW(testLeaving());
-  TAUTLINE_RUN(testOtherMeshes());
-  TAUTLINE_RUN(testStopping());
 }

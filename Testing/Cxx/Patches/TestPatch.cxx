@@ -15,7 +15,7 @@ namespace
 const double step = 1e-4;
 
 /// Boundary flags by fingerprints and by sorting, on each type and on a mixture.
-void testBoundary()
+TAUTLINE_PART(testBoundary)
 {
   for (CellType type : allTypes)
   {
@@ -208,7 +208,7 @@ void testEnergies()
 }
 
 /// Points off a cube's surface come back to it.
-void testProjection()
+TAUTLINE_PART(testProjection)
 {
   MeshData data = blockMesh(CellType::Quadrilateral, 4, 4, 0);
   data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.25 * p[0] * p[0] }; });
@@ -234,7 +234,6 @@ void testProjection()
 
 TAUTLINE_TEST(TestPatch)
 {
-  TAUTLINE_RUN(testBoundary());
   for (CellType type : allTypes)
   {
     TAUTLINE_RUN(testBlocks(type));
@@ -247,5 +246,4 @@ TAUTLINE_TEST(TestPatch)
   TAUTLINE_RUN(testPatches<3>(CellType::Pyramid));
   TAUTLINE_RUN(testEnergies<2>());
   TAUTLINE_RUN(testEnergies<3>());
-  TAUTLINE_RUN(testProjection());
 }

@@ -71,7 +71,7 @@ double column(vtkAlgorithm* filter, const char* name)
 }
 
 //------------------------------------------------------------------------------
-void testStiffness()
+TAUTLINE_PART(testStiffness)
 {
   const auto mesh = squareWithLayer();
   vtkNew<vtkPeridynamicStiffness> filter;
@@ -142,7 +142,7 @@ void testStiffness()
 
 //------------------------------------------------------------------------------
 /// u = 1 + x in the interaction layer and no source: u = 1 + x everywhere.
-void testGiven()
+TAUTLINE_PART(testGiven)
 {
   const auto mesh = squareWithLayer();
   vtkNew<vtkDoubleArray> given, onCells;
@@ -180,7 +180,7 @@ void testGiven()
 
 //------------------------------------------------------------------------------
 /// A mesh in any plane, of any precision, of any class; and its interaction layer.
-void testInteractionLayer()
+TAUTLINE_PART(testInteractionLayer)
 {
   double first = 0.0;
   for (const bool slanted : { false, true })
@@ -229,7 +229,7 @@ void testInteractionLayer()
 }
 
 //------------------------------------------------------------------------------
-void testNeighbors()
+TAUTLINE_PART(testNeighbors)
 {
   vtkNew<vtkHorizonNeighbors> filter;
   filter->SetInputData(squareWithLayer());
@@ -256,7 +256,7 @@ void testNeighbors()
 }
 
 //------------------------------------------------------------------------------
-void testErrors()
+TAUTLINE_PART(testErrors)
 {
   const auto check = [](vtkAlgorithm* filter, const char* text)
   {
@@ -306,13 +306,4 @@ void testErrors()
   layer->SetWidth(0.0);
   check(layer, "above 0");
 }
-}
-
-TAUTLINE_TEST(TestPeridynamicFilters)
-{
-  TAUTLINE_RUN(testStiffness());
-  TAUTLINE_RUN(testGiven());
-  TAUTLINE_RUN(testInteractionLayer());
-  TAUTLINE_RUN(testNeighbors());
-  TAUTLINE_RUN(testErrors());
 }

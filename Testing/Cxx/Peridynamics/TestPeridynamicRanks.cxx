@@ -52,7 +52,7 @@ HorizonMesh meshFor(const PeridynamicOptions& options, double shake)
   return shakenSquare(Elements, layers, shake);
 }
 
-void testEqual()
+TAUTLINE_PART_SLOW(testEqual)
 {
   for (const bool shaken : { false, true })
   {
@@ -102,7 +102,7 @@ void testEqual()
   }
 }
 
-void testEnds()
+TAUTLINE_PART(testEnds)
 {
   const PeridynamicOptions options = optionsOf(cases[0]);
   const HorizonMesh mesh = meshFor(options, 0.0);
@@ -168,7 +168,7 @@ void testEnds()
 }
 
 /// A rank that stops while pairs are integrated, the first half of the work, ends the others soon.
-void testSoon()
+TAUTLINE_PART(testSoon)
 {
   constexpr double stop = 0.1, soon = 0.15;
   const PeridynamicOptions options = optionsOf(cases[0]);
@@ -192,11 +192,4 @@ void testSoon()
     TAUTLINE_CHECK(part > 0 && part < soon);
   }
 }
-}
-
-TAUTLINE_TEST(TestPeridynamicRanks)
-{
-  TAUTLINE_RUN_SLOW(testEqual());
-  TAUTLINE_RUN(testEnds());
-  TAUTLINE_RUN(testSoon());
 }

@@ -53,7 +53,7 @@ std::vector<double> unitLoad(
 }
 
 //------------------------------------------------------------------------------
-void testModulus()
+TAUTLINE_PART(testModulus)
 {
   const auto modulus = [](KernelShape shape, double p, PeridynamicModel model)
   {
@@ -79,7 +79,7 @@ void testModulus()
 }
 
 /// On a square grid the scalar matrix is the five-point formula.
-void testLocalMatrix()
+TAUTLINE_PART(testLocalMatrix)
 {
   constexpr int n = 8;
   const HorizonMesh mesh = horizonSquare(1.0 / n, 1, 0.25);
@@ -137,7 +137,7 @@ double energyRatio(int n, double delta, double p, bool elastic)
 }
 
 /// The difference of both energies goes to 0 with delta^2.
-void testEnergies()
+TAUTLINE_PART(testEnergies)
 {
   for (const bool elastic : { false, true })
   {
@@ -154,7 +154,7 @@ void testEnergies()
 
 /// On the shortest waves the local form of an integrable kernel is larger, by more with each
 /// refinement: why it is not a preconditioner alone.
-void testShortWaves()
+TAUTLINE_PART(testShortWaves)
 {
   double before = 0.0;
   for (const int n : { 10, 20, 40 })
@@ -211,7 +211,7 @@ void checkCoarseSpace(
   }
 }
 
-void testOperators()
+TAUTLINE_PART(testOperators)
 {
   const HorizonMesh mesh = shakenSquare(8, 2, 0.2);
   for (const PeridynamicBasis basis : bases)
@@ -242,7 +242,7 @@ void testOperators()
 
 //------------------------------------------------------------------------------
 /// The same solution with each, on irregular meshes.
-void testSolutions()
+TAUTLINE_PART_SLOW(testSolutions)
 {
   const HorizonMesh mesh = shakenSquare(8, 2, 0.2);
   for (const PeridynamicBasis basis : bases)
@@ -312,7 +312,7 @@ Found solveAll(const HorizonMesh& mesh, const PeridynamicOptions& options)
 
 /// Tables 4.1 to 4.3: the iterations of Jacobi see the condition numbers of the notes; the others
 /// have none above a bound.
-void testTables()
+TAUTLINE_PART(testTables)
 {
   constexpr double worst[] = { 0.0, 3.5, 3.6 };
   constexpr Index most[] = { 0, 18, 18 };
@@ -344,7 +344,7 @@ void testTables()
 
 /// With a horizon of two elements the diagonal takes nearly twice the iterations on elements of
 /// half the size; the others take three more at most.
-void testSmallHorizons()
+TAUTLINE_PART(testSmallHorizons)
 {
   constexpr double worst[] = { 0.0, 2.6, 3.2 };
   constexpr Index more = 3;
@@ -395,7 +395,7 @@ Index iterationsAt(int n, int layers, double nu, NonlocalPreconditioner kind)
 
 /// Up to a Poisson's ratio of 0.49 the two-level method takes about the same number of iterations,
 /// with wide and narrow horizons; that the others do not shows that the range is a hard one.
-void testNearlyIncompressible()
+TAUTLINE_PART_SLOW(testNearlyIncompressible)
 {
   constexpr Index most = 16, more = 4;
   for (const int layers : { 2, 4 })
@@ -417,7 +417,7 @@ void testNearlyIncompressible()
 }
 
 //------------------------------------------------------------------------------
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const HorizonMesh mesh = horizonSquare(0.1, 1, 0.2);
   PeridynamicOptions options;
@@ -454,18 +454,4 @@ void testRefusals()
     TAUTLINE_CHECK(x[0] > 0.0 && std::abs(x[0] - x[1]) < 1e-4 * x[0]);
   }
 }
-}
-
-TAUTLINE_TEST(TestPeridynamicSolve)
-{
-  TAUTLINE_RUN(testModulus());
-  TAUTLINE_RUN(testLocalMatrix());
-  TAUTLINE_RUN(testEnergies());
-  TAUTLINE_RUN(testShortWaves());
-  TAUTLINE_RUN(testOperators());
-  TAUTLINE_RUN_SLOW(testSolutions());
-  TAUTLINE_RUN(testTables());
-  TAUTLINE_RUN(testSmallHorizons());
-  TAUTLINE_RUN_SLOW(testNearlyIncompressible());
-  TAUTLINE_RUN(testRefusals());
 }

@@ -9,7 +9,7 @@ using namespace tautline;
 
 namespace
 {
-void testDissertation()
+TAUTLINE_PART(testDissertation)
 {
   int right = 0;
   for (const TableCell& cell : tableCells())
@@ -34,7 +34,7 @@ void testDissertation()
   TAUTLINE_CHECK_EQUAL(right, 31);
 }
 
-void testExact()
+TAUTLINE_PART_SLOW(testExact)
 {
   for (const TableCell& cell : tableCells())
   {
@@ -54,7 +54,7 @@ void testExact()
 
 /// One outer and three inner points, as in the text: column A of the notes; indefinite for p
 /// = 2.5.
-void testLiteral()
+TAUTLINE_PART(testLiteral)
 {
   struct Case
   {
@@ -81,7 +81,7 @@ void testLiteral()
 
 /// The errors of the matrix that PeridynamicOptions::tolerance states, in parts of its largest
 /// entry.
-void testTolerance()
+TAUTLINE_PART_SLOW(testTolerance)
 {
   constexpr int n = 6;
   constexpr double tolerances[] = { 1e-3, 1e-5, 1e-7 }, reference = 1e-8;
@@ -119,7 +119,7 @@ void testTolerance()
 }
 
 /// The tolerance converges; so do irregular meshes, to what the regular ones tend to.
-void testConvergence()
+TAUTLINE_PART(testConvergence)
 {
   PeridynamicOptions options;
   options.kernel.exponent = 2.5;
@@ -158,13 +158,4 @@ void testConvergence()
   const double fine = std::abs(smallest[1][0] / smallest[1][1] - 1.0);
   TAUTLINE_CHECK(coarse < 0.02 && fine < 0.01);
 }
-}
-
-TAUTLINE_TEST(TestPeridynamicTables)
-{
-  TAUTLINE_RUN(testDissertation());
-  TAUTLINE_RUN_SLOW(testExact());
-  TAUTLINE_RUN(testLiteral());
-  TAUTLINE_RUN_SLOW(testTolerance());
-  TAUTLINE_RUN(testConvergence());
 }

@@ -70,7 +70,7 @@ std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>&
 //------------------------------------------------------------------------------
 /// Exactly symmetric; constants, and rigid motions, are in the null space before constraints;
 /// definite after.
-void testStructure()
+TAUTLINE_PART(testStructure)
 {
   const HorizonMesh mesh = shakenSquare(4, 1, 0.2);
   for (const PeridynamicBasis basis : bases)
@@ -134,7 +134,7 @@ void testStructure()
 
 //------------------------------------------------------------------------------
 /// What is known in closed form.
-void testFormulas()
+TAUTLINE_PART(testFormulas)
 {
   // Constant kernel, constant basis: the diagonal is delta^-4 (|T| pi delta^2 - |T|^2).
   const HorizonMesh mesh = horizonSquare(0.125, 1, 0.25);
@@ -210,7 +210,7 @@ double solutionError(int n, double delta, double p, bool quadratic)
 
 /// The operator tends to pi / (2 (4-p)) times the Laplacian: with delta^2 for smooth functions; on
 /// a fixed mesh with delta, as functions have kinks.
-void testLocalLimit()
+TAUTLINE_PART(testLocalLimit)
 {
   for (const double p : { 1.0, 2.5 })
   {
@@ -268,7 +268,7 @@ void testLocalLimit()
 }
 
 //------------------------------------------------------------------------------
-void testKernels()
+TAUTLINE_PART(testKernels)
 {
   const HorizonMesh mesh = horizonSquare(0.125, 1, 0.25);
   PeridynamicOptions options;
@@ -316,7 +316,7 @@ void testKernels()
 }
 
 //------------------------------------------------------------------------------
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   const HorizonMesh regular = horizonSquare(0.1, 1, 0.2), shaken = shakenSquare(5, 1, 0.2);
   for (const HorizonMesh* mesh : { &regular, &shaken })
@@ -361,7 +361,7 @@ void testThreads()
 }
 
 //------------------------------------------------------------------------------
-void testInteractionLayer()
+TAUTLINE_PART(testInteractionLayer)
 {
   // The matrix of the exact discretization does not depend on how the interaction layer is cut, as
   // the functions are 0 there.
@@ -472,7 +472,7 @@ void testInteractionLayer()
 }
 
 //------------------------------------------------------------------------------
-void testDisc()
+TAUTLINE_PART(testDisc)
 {
   const double triangle[] = { 0, 0, 4, 0, 0, 4 };
   DiscIntersection d = intersectDisc(triangle, 1, 1, 0.5);
@@ -495,7 +495,7 @@ void testDisc()
 }
 
 //------------------------------------------------------------------------------
-void testEigenvalues()
+TAUTLINE_PART(testEigenvalues)
 {
   // The second difference: 2 - 2 cos(k pi / (n + 1)).
   const Index n = 200;
@@ -540,7 +540,7 @@ void testEigenvalues()
 }
 
 //------------------------------------------------------------------------------
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const HorizonMesh mesh = horizonSquare(0.25, 1, 0.25);
   PeridynamicOptions good;
@@ -630,17 +630,4 @@ void testRefusals()
   good.horizon = 0.2;
   TAUTLINE_CHECK_RELATIVE(conditionOf(horizonSquare(1.0 / 20, 16, 0.2), good), 16.23, 0.05);
 }
-}
-
-TAUTLINE_TEST(TestPeridynamics)
-{
-  TAUTLINE_RUN(testStructure());
-  TAUTLINE_RUN(testFormulas());
-  TAUTLINE_RUN(testLocalLimit());
-  TAUTLINE_RUN(testKernels());
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testInteractionLayer());
-  TAUTLINE_RUN(testDisc());
-  TAUTLINE_RUN(testEigenvalues());
-  TAUTLINE_RUN(testRefusals());
 }

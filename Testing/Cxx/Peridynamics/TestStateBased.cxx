@@ -74,7 +74,7 @@ std::vector<double> unknownValues(const PeridynamicSystem& system, const std::ve
 }
 
 //------------------------------------------------------------------------------
-void testLameRatio()
+TAUTLINE_PART(testLameRatio)
 {
   TAUTLINE_CHECK_NEAR(lameRatio(stateBased(0.25)), 1.0, 1e-15);
   TAUTLINE_CHECK_NEAR(lameRatio(stateBased(1.0 / 3.0, PlaneState::Stress)), 1.0, 1e-15);
@@ -86,7 +86,7 @@ void testLameRatio()
 
 /// Every homogeneous motion is in equilibrium and has the energy density of Hooke's law; rigid ones
 /// have none.
-void testPatch()
+TAUTLINE_PART_SLOW(testPatch)
 {
   const HorizonMesh mesh = shakenSquare(8, 4, 0.2);
   constexpr double motions[][4] = { { 0, -1, 1, 0 }, { 1, 0, 0, 1 }, { 0, 0.5, 0.5, 0 },
@@ -145,7 +145,7 @@ void testPatch()
 //------------------------------------------------------------------------------
 /// At the Poisson's ratio of the bond-based model the matrices are the same; elsewhere they differ
 /// by the square of the dilatation.
-void testReduction()
+TAUTLINE_PART(testReduction)
 {
   const HorizonMesh mesh = shakenSquare(6, 3, 0.2);
   for (const PeridynamicBasis basis : bases)
@@ -249,7 +249,7 @@ double energyOfPoints(const HorizonMesh& mesh, const PeridynamicOptions& options
 }
 
 /// Energy and forces are those of the formulas: of a free body, whose matrix has all functions.
-void testEnergy()
+TAUTLINE_PART(testEnergy)
 {
   HorizonMesh mesh = shakenSquare(4, 0, 0.0);
   PeridynamicOptions options = stateBased(0.4);
@@ -330,7 +330,7 @@ double energyRatio(int n, int layers, double nu)
 }
 
 /// Tends to Hooke's law with the square of the horizon.
-void testLocalLimit()
+TAUTLINE_PART_SLOW(testLocalLimit)
 {
   for (const double nu : { 0.0, 0.45 })
   {
@@ -344,7 +344,7 @@ void testLocalLimit()
 //------------------------------------------------------------------------------
 /// Positive definite for all Poisson's ratios and bases, rigid motions free of forces, the same for
 /// any threads and scale.
-void testMatrix()
+TAUTLINE_PART(testMatrix)
 {
   const HorizonMesh mesh = shakenSquare(6, 3, 0.2);
   for (const PeridynamicBasis basis : bases)
@@ -395,7 +395,7 @@ void testMatrix()
 
 //------------------------------------------------------------------------------
 /// The same solution with each preconditioner; those other than Jacobi take fewer iterations.
-void testSolutions()
+TAUTLINE_PART(testSolutions)
 {
   const HorizonMesh mesh = shakenSquare(16, 4, 0.1);
   PeridynamicOptions options = stateBased(0.3);
@@ -491,7 +491,7 @@ double acrossSlit(const HorizonMesh& mesh, const PeridynamicSystem& system, doub
 }
 
 /// Bonds do not cross a crack or a hole; nothing is cut inside a layer that is wide enough.
-void testCuts()
+TAUTLINE_PART(testCuts)
 {
   PeridynamicOptions options;
   options.horizon = 0.2;
@@ -545,7 +545,7 @@ void testCuts()
 
 /// Two triangles beside a notch: where they share the vertex at its end they interact, though the
 /// segment between them leaves the mesh; a little apart they do not.
-void testSharedVertex()
+TAUTLINE_PART(testSharedVertex)
 {
   PeridynamicOptions options;
   options.horizon = 1.2;
@@ -609,7 +609,7 @@ double energyOfVisiblePoints(double inner, double outer, double delta, int n, do
   return scale * seen;
 }
 
-void testCutEnergy()
+TAUTLINE_PART(testCutEnergy)
 {
   constexpr double inner = 0.3, outer = 0.6;
   PeridynamicOptions options;
@@ -638,7 +638,7 @@ void testCutEnergy()
 }
 
 //------------------------------------------------------------------------------
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const HorizonMesh mesh = shakenSquare(8, 2, 0.0);
   TAUTLINE_CHECK_THROWS(assemblePeridynamics(mesh, stateBased(0.3)), wording("twice-the-horizon"));
@@ -653,19 +653,4 @@ void testRefusals()
   TAUTLINE_CHECK_THROWS(peridynamicStrain(mesh, options, {}), wording("choose-one-of-them"));
   TAUTLINE_CHECK_THROWS(peridynamicStrain(mesh, stateBased(0.3), { 1.0 }), "1 values");
 }
-}
-
-TAUTLINE_TEST(TestStateBased)
-{
-  TAUTLINE_RUN(testLameRatio());
-  TAUTLINE_RUN_SLOW(testPatch());
-  TAUTLINE_RUN(testReduction());
-  TAUTLINE_RUN(testEnergy());
-  TAUTLINE_RUN_SLOW(testLocalLimit());
-  TAUTLINE_RUN(testMatrix());
-  TAUTLINE_RUN(testSolutions());
-  TAUTLINE_RUN(testCuts());
-  TAUTLINE_RUN(testSharedVertex());
-  TAUTLINE_RUN(testCutEnergy());
-  TAUTLINE_RUN(testRefusals());
 }

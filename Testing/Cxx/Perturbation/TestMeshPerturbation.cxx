@@ -88,7 +88,7 @@ Index count(const std::vector<signed char>& validity, signed char value)
   return std::count(validity.begin(), validity.end(), value);
 }
 
-void testNothingInverts()
+TAUTLINE_PART(testNothingInverts)
 {
   for (const Sample& sample : samples())
   {
@@ -142,7 +142,7 @@ double reach(const MeshData& mesh, const std::vector<Index>& cells, Index vertex
   return low;
 }
 
-void testStepsAreWithinTheFraction()
+TAUTLINE_PART(testStepsAreWithinTheFraction)
 {
   for (const Sample& sample : samples())
   {
@@ -178,7 +178,7 @@ void testStepsAreWithinTheFraction()
   }
 }
 
-void testPercentageAndSeed()
+TAUTLINE_PART(testPercentageAndSeed)
 {
   const MeshData data = blockMesh(CellType::Tetrahedron, 8, 8, 8);
   const Mesh mesh(data.view());
@@ -207,7 +207,7 @@ void testPercentageAndSeed()
   TAUTLINE_CHECK(first != perturb(mesh, nullptr, options).points);
 }
 
-void testSameOnEveryMachine()
+TAUTLINE_PART(testSameOnEveryMachine)
 {
   const MeshData data = blockMesh(CellType::Quadrilateral, 2, 2, 0);
   PerturbOptions options;
@@ -218,7 +218,7 @@ void testSameOnEveryMachine()
   TAUTLINE_CHECK_NEAR(after.point(4)[1], 0.9279608648967268, 1e-15);
 }
 
-void testTangling()
+TAUTLINE_PART(testTangling)
 {
   for (const Sample& sample : samples())
   {
@@ -239,7 +239,7 @@ void testTangling()
   }
 }
 
-void testTanglingOneElement()
+TAUTLINE_PART(testTanglingOneElement)
 {
   // A single vertex can move; as little as one element is never overdone.
   for (CellType type : allTypes)
@@ -262,7 +262,7 @@ void testTanglingOneElement()
   }
 }
 
-void testTangledInput()
+TAUTLINE_PART(testTangledInput)
 {
   // Perturbing a tangled mesh tangles no further element.
   const MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
@@ -282,7 +282,7 @@ void testTangledInput()
   }
 }
 
-void testSurface()
+TAUTLINE_PART(testSurface)
 {
   vtkNew<vtkSphereSource> sphere;
   sphere->SetThetaResolution(24);
@@ -328,7 +328,7 @@ void testSurface()
   TAUTLINE_CHECK_NEAR(double(turned()), 0.1 * double(before->GetNumberOfCells()), 0.5);
 }
 
-void testTiltedPlane()
+TAUTLINE_PART(testTiltedPlane)
 {
   MeshData data = blockMesh(CellType::Triangle, 10, 10, 0);
   const Columns turn = rotation({ 1, 2, 3 }, 0.7);
@@ -345,7 +345,7 @@ void testTiltedPlane()
   }
 }
 
-void testFloatPoints()
+TAUTLINE_PART(testFloatPoints)
 {
   // Cells of eight units in the last place: rounding alone can invert them.
   for (CellType type : allTypes)
@@ -374,7 +374,7 @@ void testFloatPoints()
   }
 }
 
-void testWhatStays()
+TAUTLINE_PART(testWhatStays)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
   auto grid = toGrid(data);
@@ -436,7 +436,7 @@ void testWhatStays()
   TAUTLINE_CHECK(result.movable < 120 && result.moved > 0 && result.invertedAfter == 0);
 }
 
-void testReversed()
+TAUTLINE_PART(testReversed)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
   data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], -p[2] }; });
@@ -451,7 +451,7 @@ void testReversed()
     count(validityOf(withPointsOf(data, output)), Inverted), data.numberOfCells());
 }
 
-void testKindsOfInput()
+TAUTLINE_PART(testKindsOfInput)
 {
   vtkNew<vtkMeshPerturbation> filter;
   Messages messages(filter);
@@ -516,7 +516,7 @@ void testKindsOfInput()
   TAUTLINE_CHECK(messages.has(wording("run-tetrahedralize-first")));
 }
 
-void testAbortAndProgress()
+TAUTLINE_PART(testAbortAndProgress)
 {
   const MeshData data = blockMesh(CellType::Triangle, 100, 100, 0);
   vtkNew<vtkMeshPerturbation> filter;
@@ -540,7 +540,7 @@ void testAbortAndProgress()
     std::string(filter->GetSummary()).find(wording("stopped-early")) != std::string::npos);
 }
 
-void testRefusedOptions()
+TAUTLINE_PART(testRefusedOptions)
 {
   const MeshData data = blockMesh(CellType::Triangle, 3, 3, 0);
   PerturbOptions options;
@@ -549,22 +549,3 @@ void testRefusedOptions()
 }
 
 } // anonymous namespace
-
-TAUTLINE_TEST(TestMeshPerturbation)
-{
-  TAUTLINE_RUN(testNothingInverts());
-  TAUTLINE_RUN(testStepsAreWithinTheFraction());
-  TAUTLINE_RUN(testPercentageAndSeed());
-  TAUTLINE_RUN(testSameOnEveryMachine());
-  TAUTLINE_RUN(testTangling());
-  TAUTLINE_RUN(testTanglingOneElement());
-  TAUTLINE_RUN(testTangledInput());
-  TAUTLINE_RUN(testSurface());
-  TAUTLINE_RUN(testTiltedPlane());
-  TAUTLINE_RUN(testFloatPoints());
-  TAUTLINE_RUN(testWhatStays());
-  TAUTLINE_RUN(testReversed());
-  TAUTLINE_RUN(testKindsOfInput());
-  TAUTLINE_RUN(testAbortAndProgress());
-  TAUTLINE_RUN(testRefusedOptions());
-}

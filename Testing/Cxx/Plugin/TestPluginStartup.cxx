@@ -13,7 +13,7 @@ using tautline::wording;
 namespace
 {
 
-void testVersionCheck()
+TAUTLINE_PART(testVersionCheck)
 {
   const tautline::ParaViewVersion built = { 5, 11, 0, "9.2.20230111" };
   TAUTLINE_CHECK(tautline::versionMismatch(built, built).empty());
@@ -27,7 +27,7 @@ void testVersionCheck()
   }
 }
 
-void testColorMapSettings()
+TAUTLINE_PART(testColorMapSettings)
 {
   const double infinity = std::numeric_limits<double>::infinity();
   const std::string json = tautline::colorMapSettings(
@@ -47,7 +47,7 @@ void testColorMapSettings()
   TAUTLINE_CHECK(!has("inf") && !has("nan"));
 }
 
-void testMetricColorMaps()
+TAUTLINE_PART(testMetricColorMaps)
 {
   const auto specs = tautline::metricColorMaps();
   TAUTLINE_CHECK(!specs.empty());
@@ -75,10 +75,3 @@ void testMetricColorMaps()
 }
 
 } // anonymous namespace
-
-TAUTLINE_TEST(TestPluginStartup)
-{
-  TAUTLINE_RUN(testVersionCheck());
-  TAUTLINE_RUN(testColorMapSettings());
-  TAUTLINE_RUN(testMetricColorMaps());
-}

@@ -27,7 +27,7 @@ std::string json(const std::string& metric, const std::string& limits)
 const std::string rising = R"({ "ideal": 1, "good": 1.5, "warn": 3, "fail": 10, "worst": 100 })";
 const std::string falling = R"({ "ideal": 1, "good": 0.6, "warn": 0.3, "fail": 0.1, "worst": 0 })";
 
-void testGrades()
+TAUTLINE_PART(testGrades)
 {
   const QualityLimits up = { 1, 1.5, 3, 10, 100 };
   TAUTLINE_CHECK(gradeOf(up, 3) == Grade::Passed); // a limit belongs to the better side
@@ -51,7 +51,7 @@ void testGrades()
   TAUTLINE_CHECK_NEAR(penaltyOf(step, 0.5), 0.125, 1e-15);
 }
 
-void testParse()
+TAUTLINE_PART(testParse)
 {
   const QualityCriteria criteria = parseCriteria(
     R"({ "name": "mine", "source": [ "a", "b" ], "criteria": [ { "metric": "IMR", "weight": 2,
@@ -74,7 +74,7 @@ void testParse()
   TAUTLINE_CHECK_THROWS(presetCriteria("nastrin"), wording("there-are-fem-skewness-optistruct"));
 }
 
-void testRefused()
+TAUTLINE_PART(testRefused)
 {
   const auto all = [](const std::string& limits) { return R"({ "all": )" + limits + " }"; };
   TAUTLINE_CHECK_THROWS(parseCriteria(""), wording("not-valid-json"));
@@ -115,7 +115,7 @@ void testRefused()
 }
 
 /// Limits warn and fail of the presets, as their sources have them.
-void testPresets()
+TAUTLINE_PART(testPresets)
 {
   using Limits = std::array<double, 2>;
   const auto limits = [](const char* preset, const char* metric, CellType type)
@@ -226,9 +226,5 @@ void testFilter(const std::string& folder)
 
 TAUTLINE_TEST(TestCriteria)
 {
-  TAUTLINE_RUN(testGrades());
-  TAUTLINE_RUN(testParse());
-  TAUTLINE_RUN(testPresets());
-  TAUTLINE_RUN(testRefused());
   TAUTLINE_RUN(testFilter(argv[2]));
 }

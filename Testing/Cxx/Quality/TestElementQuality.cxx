@@ -55,7 +55,7 @@ double statistic(vtkElementQuality* filter, const char* column, vtkIdType row = 
   return filter->GetStatistics()->GetValueByName(row, column).ToDouble();
 }
 
-void testTables()
+TAUTLINE_PART(testTables)
 {
   vtkNew<vtkElementQuality> filter;
   filter->SetInputData(toGrid(triangles({ height, 0.2, -0.3, 0.0, 0.1, 2.0 })));
@@ -130,7 +130,7 @@ void testTables()
 
 /// One meaning for all statistics: of larger-is-better metrics the minimum is the worst, also where
 /// it is of an inverted element; a degenerate element is listed but no statistic has its value.
-void testWorst()
+TAUTLINE_PART(testWorst)
 {
   vtkNew<vtkElementQuality> filter;
   const auto measure = [&](const std::vector<double>& heights)
@@ -159,7 +159,7 @@ void testWorst()
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Worst"), 0);
 }
 
-void testAngles()
+TAUTLINE_PART(testAngles)
 {
   vtkNew<vtkElementQuality> filter;
   // Angles 60 60 60, and 90 45 45.
@@ -183,7 +183,7 @@ void testAngles()
 }
 
 /// Every kind of data set of unit squares or cubes: mean ratio 1 everywhere, sizes 1.
-void testDataSets()
+TAUTLINE_PART(testDataSets)
 {
   vtkNew<vtkImageData> image, layer;
   image->SetDimensions(3, 4, 5);
@@ -239,7 +239,7 @@ void testDataSets()
 }
 
 /// Two blocks count as one data set, in the order of the blocks.
-void testBlocks()
+TAUTLINE_PART(testBlocks)
 {
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, toGrid(triangles({ height, 0.2 })));
@@ -257,7 +257,7 @@ void testBlocks()
   TAUTLINE_CHECK_NEAR(component(last->GetCellData(), "imr", 0), imrOf(0.1), 1e-14);
 }
 
-void testSpecialCells()
+TAUTLINE_PART(testSpecialCells)
 {
   // Nothing, one unused point, a NaN, and ghosts.
   vtkNew<vtkElementQuality> filter;
@@ -301,7 +301,7 @@ void testSpecialCells()
   TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Validity", 2), -2);
 }
 
-void testReversed()
+TAUTLINE_PART(testReversed)
 {
   MeshData mesh = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   const std::vector<double> values = valuesOf(Mesh(mesh.view()), Metric::InverseMeanRatio);
@@ -365,7 +365,7 @@ void testReversed()
 }
 
 /// A surface without a consistent orientation can be measured.
-void testMoebius()
+TAUTLINE_PART(testMoebius)
 {
   constexpr int count = 12;
   vtkNew<vtkElementQuality> filter;
@@ -376,7 +376,7 @@ void testMoebius()
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), count);
 }
 
-void testTargets()
+TAUTLINE_PART(testTargets)
 {
   const MeshData data = triangles({ 0.3, 2.0 });
   vtkNew<vtkElementQuality> filter;
@@ -426,7 +426,7 @@ void testTargets()
   TAUTLINE_CHECK(component(cellsOf(filter), "mu_shape_size", 0) > 1);
 }
 
-void testErrors()
+TAUTLINE_PART(testErrors)
 {
   vtkNew<vtkElementQuality> filter;
   Messages messages(filter);
@@ -466,7 +466,7 @@ void testErrors()
   refused(wording("epsilon-positive"));
 }
 
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   MeshData mesh = shuffled(blockMesh(CellType::Tetrahedron, 12, 12, 12), 3);
   Random random(5);
@@ -493,7 +493,7 @@ void testThreads()
 
 /// The bad elements of a volume: one flat, one inverted of three; with criteria, those that fail. A
 /// planar mesh has none inside.
-void testBad()
+TAUTLINE_PART(testBad)
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -540,7 +540,7 @@ void testBad()
 #if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 4, 0)
 /// Lists of faces as VTK's reader of .pvtu files leaves them are not passed on, and the input keeps
 /// them; those of a polyhedron are.
-void testStrayFaces()
+TAUTLINE_PART(testStrayFaces)
 {
   const auto grid = toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2));
   vtkNew<vtkIdTypeArray> faces, places;
@@ -575,7 +575,7 @@ void testStrayFaces()
 #endif
 
 /// An abort between metrics leaves the mesh with the metrics measured so far.
-void testAbort()
+TAUTLINE_PART(testAbort)
 {
   vtkNew<vtkElementQuality> filter;
   filter->SetInputData(toGrid(triangles({ height, 0.2 })));
@@ -596,24 +596,4 @@ void testAbort()
   TAUTLINE_CHECK(cellsOf(filter)->GetArray("imr") != nullptr);
   TAUTLINE_CHECK(cellsOf(filter)->GetArray("rr") == nullptr);
 }
-}
-
-TAUTLINE_TEST(TestElementQuality)
-{
-  TAUTLINE_RUN(testTables());
-  TAUTLINE_RUN(testWorst());
-  TAUTLINE_RUN(testAngles());
-  TAUTLINE_RUN(testDataSets());
-  TAUTLINE_RUN(testBlocks());
-  TAUTLINE_RUN(testSpecialCells());
-  TAUTLINE_RUN(testReversed());
-  TAUTLINE_RUN(testMoebius());
-  TAUTLINE_RUN(testTargets());
-  TAUTLINE_RUN(testErrors());
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testBad());
-#if VTK_VERSION_NUMBER < VTK_VERSION_CHECK(9, 4, 0)
-  TAUTLINE_RUN(testStrayFaces());
-#endif
-  TAUTLINE_RUN(testAbort());
 }

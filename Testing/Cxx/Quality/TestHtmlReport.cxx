@@ -35,7 +35,7 @@ bool has(const std::string& text, const std::string& part)
   return text.find(part) != std::string::npos;
 }
 
-void testText()
+TAUTLINE_PART(testText)
 {
   vtkNew<vtkHtmlReport> report;
   report->Begin("<a> & \"b\"", "line");
@@ -55,7 +55,7 @@ void testText()
   TAUTLINE_CHECK(!has(report->GetHtml(), "name"));
 }
 
-void testTable()
+TAUTLINE_PART(testTable)
 {
   vtkNew<vtkHtmlReport> report;
   report->Begin("t", "");
@@ -100,7 +100,7 @@ vtkSmartPointer<vtkUnstructuredGrid> strip(const std::vector<double>& heights)
   return toGrid(data);
 }
 
-void testQuality()
+TAUTLINE_PART(testQuality)
 {
   vtkNew<vtkElementQuality> filter;
   const double height = std::sqrt(0.75);
@@ -139,7 +139,7 @@ void testQuality()
   TAUTLINE_CHECK(has(message, wording("no-cell-array-si-measure-it-first")));
 }
 
-void testComposite()
+TAUTLINE_PART(testComposite)
 {
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(0, strip({ 0.8, 0.5 }));
@@ -155,12 +155,4 @@ void testComposite()
   report->AddImage(nullptr, "nothing");
   TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "<img "), 1);
 }
-}
-
-TAUTLINE_TEST(TestHtmlReport)
-{
-  TAUTLINE_RUN(testText());
-  TAUTLINE_RUN(testTable());
-  TAUTLINE_RUN(testQuality());
-  TAUTLINE_RUN(testComposite());
 }

@@ -48,7 +48,7 @@ vtkCellData* cellsOf(vtkMeshComparison* filter)
   return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetCellData();
 }
 
-void testKnownChanges()
+TAUTLINE_PART(testKnownChanges)
 {
   const MeshData before = triangles({ flat, ideal, inverted, ideal, flat, inverted });
   const MeshData after = triangles({ ideal, flat, flat, ideal, inverted, inverted });
@@ -103,7 +103,7 @@ void testKnownChanges()
     std::string::npos);
 }
 
-void testSeveralMetrics()
+TAUTLINE_PART(testSeveralMetrics)
 {
   // Larger by size-dependent metrics but a worse shape: neither better nor worse on the whole.
   vtkNew<vtkMeshComparison> filter;
@@ -127,7 +127,7 @@ void testSeveralMetrics()
   TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Change", 0), 0);
 }
 
-void testTolerance()
+TAUTLINE_PART(testTolerance)
 {
   vtkNew<vtkMeshComparison> filter;
   filter->SetInputData(0, toGrid(triangles({ flat })));
@@ -148,7 +148,7 @@ void testTolerance()
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 1);
 }
 
-void testReversed()
+TAUTLINE_PART(testReversed)
 {
   // Both clockwise throughout: compared as mirror images.
   auto reversed = [](std::vector<Vec3> apexes)
@@ -171,7 +171,7 @@ void testReversed()
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 2);
 }
 
-void testEveryCellAndMetric()
+TAUTLINE_PART(testEveryCellAndMetric)
 {
   // Nothing moved: everything is equal, for every cell and metric; and in a chain with a
   // perturbation.
@@ -212,7 +212,7 @@ void testEveryCellAndMetric()
   }
 }
 
-void testKindsOfInput()
+TAUTLINE_PART(testKindsOfInput)
 {
   vtkNew<vtkMeshComparison> filter;
   Messages messages(filter);
@@ -267,7 +267,7 @@ void testKindsOfInput()
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 0);
 }
 
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   vtkNew<vtkMeshComparison> filter;
   Messages messages(filter);
@@ -308,14 +308,3 @@ void testRefusals()
 }
 
 } // anonymous namespace
-
-TAUTLINE_TEST(TestMeshComparison)
-{
-  TAUTLINE_RUN(testKnownChanges());
-  TAUTLINE_RUN(testSeveralMetrics());
-  TAUTLINE_RUN(testTolerance());
-  TAUTLINE_RUN(testReversed());
-  TAUTLINE_RUN(testEveryCellAndMetric());
-  TAUTLINE_RUN(testKindsOfInput());
-  TAUTLINE_RUN(testRefusals());
-}

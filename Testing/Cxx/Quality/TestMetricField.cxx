@@ -23,7 +23,7 @@ void setPoint(vtkMetricField* field, double x, double y, double z)
   field->SetDimensions(1, 1, 1);
 }
 
-void testDefaults()
+TAUTLINE_PART(testDefaults)
 {
   vtkNew<vtkMetricField> field;
   field->Update();
@@ -55,7 +55,7 @@ void testDefaults()
 }
 
 // (3.3): (|A - beta| - (A - beta)) / 2 with A = y / 2, everywhere on the default grid.
-void testBeta()
+TAUTLINE_PART(testBeta)
 {
   vtkNew<vtkMetricField> field;
   field->ClearMetrics();
@@ -77,7 +77,7 @@ void testBeta()
   }
 }
 
-void testIdealApex()
+TAUTLINE_PART(testIdealApex)
 {
   vtkNew<vtkMetricField> field;
   for (int cell : { vtkMetricField::TRIANGLE, vtkMetricField::TETRAHEDRON })
@@ -119,7 +119,7 @@ void testIdealApex()
   }
 }
 
-void testTetrahedronAgainstCells()
+TAUTLINE_PART(testTetrahedronAgainstCells)
 {
   vtkNew<vtkMetricField> field;
   field->SetCellToTetrahedron();
@@ -148,7 +148,7 @@ void testTetrahedronAgainstCells()
   }
 }
 
-void testPieces()
+TAUTLINE_PART(testPieces)
 {
   vtkNew<vtkMetricField> whole, part;
   for (vtkMetricField* field : { whole.Get(), part.Get() })
@@ -181,7 +181,7 @@ void testPieces()
   }
 }
 
-void testContour()
+TAUTLINE_PART(testContour)
 {
   // Where the inverse mean ratio of a triangle is q, its apex is on a circle.
   vtkNew<vtkMetricField> field;
@@ -203,7 +203,7 @@ void testContour()
   TAUTLINE_CHECK(onCircle > 100);
 }
 
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   vtkNew<vtkMetricField> field;
   Messages messages(field);
@@ -259,7 +259,7 @@ vtkPointData* fieldAt(
 
 /// At extreme scales and far from the origin the values are those of an ordinary place, times a
 /// power of the scale, or refused by name.
-void testScales()
+TAUTLINE_PART(testScales)
 {
   for (int cell : { vtkMetricField::TRIANGLE, vtkMetricField::TETRAHEDRON })
   {
@@ -336,15 +336,3 @@ void testScales()
 }
 
 } // anonymous namespace
-
-TAUTLINE_TEST(TestMetricField)
-{
-  TAUTLINE_RUN(testDefaults());
-  TAUTLINE_RUN(testBeta());
-  TAUTLINE_RUN(testIdealApex());
-  TAUTLINE_RUN(testTetrahedronAgainstCells());
-  TAUTLINE_RUN(testPieces());
-  TAUTLINE_RUN(testContour());
-  TAUTLINE_RUN(testRefusals());
-  TAUTLINE_RUN(testScales());
-}

@@ -19,7 +19,7 @@ double valueOnIdeal(const MetricInfo& info, CellType type)
   return valueOf(type, idealCell(type), info.metric);
 }
 
-void testNames()
+TAUTLINE_PART(testNames)
 {
   std::set<std::string> names;
   const auto& registry = metricRegistry();
@@ -60,7 +60,7 @@ void testNames()
   }
 }
 
-void testConsistency()
+TAUTLINE_PART(testConsistency)
 {
   for (const MetricInfo& info : metricRegistry())
   {
@@ -213,7 +213,7 @@ void testKink(const MetricInfo& info, CellType type)
 }
 
 //------------------------------------------------------------------------------
-void testRefusedOptions()
+TAUTLINE_PART(testRefusedOptions)
 {
   const MeshData data = singleCell(CellType::Triangle, idealCell(CellType::Triangle));
   const Mesh mesh(data.view());
@@ -245,9 +245,6 @@ void testRefusedOptions()
 
 TAUTLINE_TEST(TestMetricRegistry)
 {
-  TAUTLINE_RUN(testNames());
-  TAUTLINE_RUN(testConsistency());
-  TAUTLINE_RUN(testRefusedOptions());
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);

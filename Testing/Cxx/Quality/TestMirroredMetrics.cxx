@@ -74,7 +74,7 @@ std::string sentBy(MetricDescription d, const std::string& name)
   return "1234567" + list;
 }
 
-void testFacts()
+TAUTLINE_PART(testFacts)
 {
   const MetricDescription d = description("mirrored");
   const std::string list = sentBy(d, "mirrored");
@@ -137,7 +137,7 @@ void testFacts()
   TAUTLINE_CHECK(!findMetric("spoiled_"));
 }
 
-void testFilters()
+TAUTLINE_PART(testFilters)
 {
   constexpr int elsewhere = 1234567890;
   const auto grid = toGrid(movedBlock(CellType::Tetrahedron, 2, 0.1));
@@ -177,10 +177,4 @@ void testFilters()
     vtkDataSet::SafeDownCast(optimizer->GetOutputDataObject(0))->GetNumberOfCells(),
     grid->GetNumberOfCells());
 }
-}
-
-TAUTLINE_TEST(TestMirroredMetrics)
-{
-  TAUTLINE_RUN(testFacts());
-  TAUTLINE_RUN(testFilters());
 }

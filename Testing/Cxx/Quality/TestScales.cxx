@@ -161,7 +161,7 @@ void testTargets(CellType type)
 }
 
 /// Against a tensor in which the edges have length 1.
-void testTensors()
+TAUTLINE_PART(testTensors)
 {
   MeshData data;
   Random random(6);
@@ -203,7 +203,7 @@ void testTensors()
 }
 
 /// What double precision cannot hold is counted, and the error names metric and remedy.
-void testBeyond()
+TAUTLINE_PART(testBeyond)
 {
   const auto beyond = [](CellType type, int exponent, Metric metric, bool inverted = false)
   {
@@ -237,7 +237,7 @@ void testBeyond()
 }
 
 /// Cells of very different size in one mesh are each measured for themselves.
-void testTogether()
+TAUTLINE_PART(testTogether)
 {
   MeshData data;
   const CellType type = CellType::Hexahedron;
@@ -260,7 +260,7 @@ void testTogether()
 }
 
 /// A vertex astray in a mesh of ordinary size is no reason to refuse it: its cells are not finite.
-void testStray()
+TAUTLINE_PART(testStray)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 3, 3, 3);
   data.setPoint(0, { 1e200, 0, 0 });
@@ -275,7 +275,7 @@ void testStray()
 }
 
 //------------------------------------------------------------------------------
-void testRange()
+TAUTLINE_PART(testRange)
 {
   MeshData data = blockMesh(CellType::Triangle, 40, 40, 0);
   data.transform([](const Vec3& p) { return Vec3{ 1e6 + 0.25 * p[0], 0.25 * p[1], -2 }; });
@@ -297,7 +297,7 @@ void testRange()
 }
 
 /// A frame is the identity unless needed; entering it is exact, and so is leaving by scaling.
-void testFrame()
+TAUTLINE_PART(testFrame)
 {
   const MeshData data = movedBlock(CellType::Tetrahedron, 3, 0.2);
   const auto frameOf = [](const MeshData& mesh, bool shifted = true)
@@ -334,7 +334,7 @@ void testFrame()
 }
 
 /// What sums over elements refuses cells of extreme size by name.
-void testRefusal()
+TAUTLINE_PART(testRefusal)
 {
   const MeshData data = scaled(blockMesh(CellType::Triangle, 2, 2, 0), -498);
   requireOrdinaryScale(scaled(data, 450).view(), "Anything");
@@ -357,11 +357,4 @@ TAUTLINE_TEST(TestScales)
     }
     TAUTLINE_RUN(testTargets(type));
   }
-  TAUTLINE_RUN(testTensors());
-  TAUTLINE_RUN(testBeyond());
-  TAUTLINE_RUN(testTogether());
-  TAUTLINE_RUN(testStray());
-  TAUTLINE_RUN(testRange());
-  TAUTLINE_RUN(testFrame());
-  TAUTLINE_RUN(testRefusal());
 }

@@ -42,7 +42,7 @@ struct Cells
 };
 
 //------------------------------------------------------------------------------
-void testMeasured()
+TAUTLINE_PART(testMeasured)
 {
   Cells cells;
   cells.add(1);
@@ -71,7 +71,7 @@ void testMeasured()
 
 /// The worst value is one of the measured ones: of an inverted element if there are any, else the
 /// extreme in the direction of the metric.
-void testWorstValue()
+TAUTLINE_PART(testWorstValue)
 {
   const auto worst = [](const MetricInfo& info, const Cells& cells)
   {
@@ -95,7 +95,7 @@ void testWorstValue()
   TAUTLINE_CHECK_EQUAL(worst(size, cells), -3.0);
 }
 
-void testByHand()
+TAUTLINE_PART(testByHand)
 {
   std::vector<double> values = { 4, 1, 3, 2 };
   const MetricStatistics s = summarize(imr, 2, values); // acceptable: 1 to 3
@@ -135,7 +135,7 @@ void testByHand()
   TAUTLINE_CHECK_EQUAL(summarize(angle, 3, angles).outsideAcceptable, 1);
 }
 
-void testRandom()
+TAUTLINE_PART(testRandom)
 {
   Random random(19);
   for (int n : { 2, 3, 7, 100, 101, 4999 })
@@ -174,7 +174,7 @@ void testRandom()
   }
 }
 
-void testMagnitudes()
+TAUTLINE_PART(testMagnitudes)
 {
   for (double unit : { 1e-300, 1e-200, 1e200, 1e300 })
   {
@@ -213,7 +213,7 @@ void testMagnitudes()
 }
 
 //------------------------------------------------------------------------------
-void testHistogram()
+TAUTLINE_PART(testHistogram)
 {
   // The upper end belongs to the last bin, every other edge to the bin above it.
   const Histogram h = histogram({ 0, 0.5, 1, 1.5, 2, 3, 4, 4 }, 4);
@@ -243,7 +243,7 @@ void testHistogram()
 }
 
 //------------------------------------------------------------------------------
-void testAcceptableHistogram()
+TAUTLINE_PART(testAcceptableHistogram)
 {
   // The acceptable inverse mean ratios are 1 to 3: one extreme value does not widen the bins.
   const AcceptableHistogram h =
@@ -270,7 +270,7 @@ void testAcceptableHistogram()
 }
 
 //------------------------------------------------------------------------------
-void testWorst()
+TAUTLINE_PART(testWorst)
 {
   Cells cells;
   cells.add(1.5);
@@ -337,7 +337,7 @@ Counts distributionOf(const MeshData& data, const std::vector<unsigned char>& sk
 }
 
 /// The bins of Table 2.7: up to 20, 40, 80, 100 and 180 degrees.
-void testAngles()
+TAUTLINE_PART(testAngles)
 {
   // A triangle of 10, 30 and 140 degrees, and one of 90, 60 and 30.
   auto withAngles = [](double first, double second)
@@ -397,17 +397,4 @@ void testAngles()
     TAUTLINE_CHECK(angleDistribution(mesh, validity.data(), nullptr, threads) == expected);
   }
 }
-}
-
-TAUTLINE_TEST(TestStatistics)
-{
-  TAUTLINE_RUN(testMeasured());
-  TAUTLINE_RUN(testWorstValue());
-  TAUTLINE_RUN(testByHand());
-  TAUTLINE_RUN(testRandom());
-  TAUTLINE_RUN(testMagnitudes());
-  TAUTLINE_RUN(testHistogram());
-  TAUTLINE_RUN(testAcceptableHistogram());
-  TAUTLINE_RUN(testWorst());
-  TAUTLINE_RUN(testAngles());
 }

@@ -149,7 +149,7 @@ std::vector<Number> functionsOf(const Number& x, const Number& y)
 }
 
 /// First and second derivatives by two numbers, against differences.
-void testNumbers()
+TAUTLINE_PART(testNumbers)
 {
   using Number = DualNumber<ByInvariants>;
   constexpr double x = 0.7, y = 1.3, step = 1e-5;
@@ -181,7 +181,7 @@ void testNumbers()
 }
 
 /// Derivatives by a displacement are the sums of those by the arguments.
-void testAlong()
+TAUTLINE_PART(testAlong)
 {
   const std::vector<Metric> metrics = {
     registerJacobianMetric(describe("s_mixed", false, false, false), Mixed()),
@@ -262,7 +262,7 @@ double distance(const std::vector<double>& a, const std::vector<double>& b)
 }
 
 /// Sweeps by a copy go where those of the original go; the cheapest derivatives suffice.
-void testSweeps()
+TAUTLINE_PART(testSweeps)
 {
   const Metric ratio = registerJacobianMetric(describe("s_ratio", true, true, true), Ratio());
   const Metric entries =
@@ -298,7 +298,7 @@ void testSweeps()
 }
 
 /// Every template of single elements, and a metric that depends on the size.
-void testTemplates()
+TAUTLINE_PART(testTemplates)
 {
   MetricDescription d = describe("s_size", true, false, true);
   const Metric size = registerJacobianMetric(d, Sized());
@@ -333,12 +333,4 @@ void testTemplates()
     }
   }
 }
-}
-
-TAUTLINE_TEST(TestUserMetricSweeps)
-{
-  TAUTLINE_RUN(testNumbers());
-  TAUTLINE_RUN(testAlong());
-  TAUTLINE_RUN(testSweeps());
-  TAUTLINE_RUN(testTemplates());
 }

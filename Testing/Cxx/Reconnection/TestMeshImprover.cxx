@@ -87,7 +87,7 @@ vtkSmartPointer<vtkUnstructuredGrid> withArrays(const MeshData& data, int type =
 }
 
 /// The output is what the kernel returns, with its tables.
-void testKernel()
+TAUTLINE_PART(testKernel)
 {
   const MeshData data = sliverBlock(Cubes);
   for (int preset = vtkMeshImprover::REMOVE_SLIVERS; preset <= vtkMeshImprover::AGGRESSIVE;
@@ -139,7 +139,7 @@ void testKernel()
 }
 
 /// No remedy is what the boundary does already.
-void testRemedies()
+TAUTLINE_PART(testRemedies)
 {
   constexpr double highest = 60; // degrees; no mesh of the cube reaches it
   for (const int boundary :
@@ -163,7 +163,7 @@ void testRemedies()
 
 /// Points of the input keep their data, new ones interpolate a linear field exactly; cells have the
 /// data of the original one; regions keep their volumes.
-void testData()
+TAUTLINE_PART(testData)
 {
   const MeshData data = sliverBlock(Cubes);
   const auto input = withArrays(data);
@@ -225,7 +225,7 @@ void testData()
 }
 
 /// Points that an array or a selection fixes are where they were.
-void testFixed()
+TAUTLINE_PART(testFixed)
 {
   const MeshData data = sliverBlock(Cubes);
   const auto input = toGrid(data);
@@ -262,7 +262,7 @@ void testFixed()
 }
 
 /// What is refused, by text; an error leaves all outputs empty.
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   vtkNew<vtkMeshImprover> filter;
   Messages messages(filter);
@@ -323,7 +323,7 @@ void testRefusals()
 }
 
 /// Triangles beside the tetrahedra are left out with a warning; ids are those of the input.
-void testSurfaceCells()
+TAUTLINE_PART(testSurfaceCells)
 {
   const MeshData data = sliverBlock(3);
   MeshData mixed;
@@ -353,7 +353,7 @@ void testSurfaceCells()
 }
 
 /// A facet inside the mesh that is lost without a mark stays where a triangle marks it.
-void testMarkedFacet()
+TAUTLINE_PART(testMarkedFacet)
 {
   const MeshData data = sliverBlock(3, 3, 1.0);
   const auto facetsOf = [](vtkUnstructuredGrid* mesh)
@@ -407,7 +407,7 @@ void testMarkedFacet()
 }
 
 /// Each tetrahedron with points of its own: one mesh if merged, else all facets are boundary.
-void testSeams()
+TAUTLINE_PART(testSeams)
 {
   const MeshData data = sliverBlock(3);
   MeshData pieces;
@@ -437,7 +437,7 @@ void testSeams()
 }
 
 /// Blocks one by one; empty data; single precision; a mirrored mesh.
-void testInputs()
+TAUTLINE_PART(testInputs)
 {
   vtkNew<vtkMeshImprover> filter;
   Messages messages(filter);
@@ -490,7 +490,7 @@ void testInputs()
 }
 
 /// An abort and the time limit return the best mesh so far.
-void testStops()
+TAUTLINE_PART(testStops)
 {
   const MeshData data = sliverBlock(12);
   vtkNew<vtkMeshImprover> filter;
@@ -519,19 +519,4 @@ void testStops()
   check();
   TAUTLINE_CHECK(contains(filter->GetReason(), wording("time-limit")));
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMeshImprover)
-{
-  TAUTLINE_RUN(testKernel());
-  TAUTLINE_RUN(testRemedies());
-  TAUTLINE_RUN(testData());
-  TAUTLINE_RUN(testFixed());
-  TAUTLINE_RUN(testRefusals());
-  TAUTLINE_RUN(testSurfaceCells());
-  TAUTLINE_RUN(testMarkedFacet());
-  TAUTLINE_RUN(testSeams());
-  TAUTLINE_RUN(testInputs());
-  TAUTLINE_RUN(testStops());
 }

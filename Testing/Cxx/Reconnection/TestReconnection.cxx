@@ -79,7 +79,7 @@ void checkOrigins(const MeshData& input, const ReconnectionResult& result)
   TAUTLINE_CHECK_EQUAL(inserted, result.interpolations.size());
 }
 
-void testPresets()
+TAUTLINE_PART(testPresets)
 {
   for (unsigned seed = 1; seed <= 4; ++seed)
   {
@@ -107,7 +107,7 @@ void testPresets()
   }
 }
 
-void testSwapOnly()
+TAUTLINE_PART(testSwapOnly)
 {
   const MeshData data = sliverBlock(5, 9, 1.2);
   const ReconnectionResult result = reconnect(data, optionsOf(Kind::SwapOnly));
@@ -118,7 +118,7 @@ void testSwapOnly()
 }
 
 /// RemoveSlivers leaves good tetrahedra alone and reaches its angle; the target ends a run.
-void testTargets()
+TAUTLINE_PART(testTargets)
 {
   const MeshData data = sliverBlock(6, 5, 0.9);
   const ReconnectionResult slivers = reconnect(data, optionsOf(Kind::RemoveSlivers));
@@ -148,7 +148,7 @@ void testTargets()
   }
 }
 
-void testCount()
+TAUTLINE_PART(testCount)
 {
   const MeshData data = sliverBlock(5, 6, 1.2);
   for (const auto& bounds : { std::array<double, 2>{ 1.0, 1.02 }, { 0.97, 1.0 }, { 0.5, 2.0 } })
@@ -185,7 +185,7 @@ void testCount()
 /// Scales that are powers of two change nothing but the scale. Others, and rotations, round the
 /// coordinates: swaps are the same where no two tetrahedra have the same quality. Smoothing makes
 /// the worst tetrahedra equally good; then the result is only as good as before.
-void testScales()
+TAUTLINE_PART(testScales)
 {
   MeshData data = sliverBlock(3, 4, 1.2);
   data.transform(
@@ -230,7 +230,7 @@ void testScales()
   }
 }
 
-void testRegions()
+TAUTLINE_PART(testRegions)
 {
   const MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
   MeshData slivers = sliverBlock(6, 8, 1.0);
@@ -295,7 +295,7 @@ void testRegions()
 }
 
 /// Points are inserted on straight edges and in flat parts where facets are too long.
-void testDividedBoundary()
+TAUTLINE_PART(testDividedBoundary)
 {
   constexpr double length = 6.0;
   MeshData data = blockMesh(CellType::Tetrahedron, 1, 1, 1);
@@ -324,7 +324,7 @@ void testDividedBoundary()
 }
 
 /// Points of the boundary of a block stay on its faces, edges and corners.
-void testFlat()
+TAUTLINE_PART(testFlat)
 {
   MeshData data = sliverBlock(5, 2, 1.2);
   // Points of the faces move in these, too.
@@ -373,7 +373,7 @@ void testFlat()
   TAUTLINE_CHECK_RELATIVE(area, 6.0 * 25.0, 1e-13);
 }
 
-void testLimits()
+TAUTLINE_PART(testLimits)
 {
   const MeshData data = sliverBlock(8, 7, 1.2);
   ReconnectionOptions options;
@@ -400,7 +400,7 @@ void testLimits()
 }
 
 /// What remains below the target has a reason; points that are fixed stay and are used.
-void testObstacles()
+TAUTLINE_PART(testObstacles)
 {
   const MeshData data = sliverBlock(5, 6, 1.2);
   std::vector<unsigned char> fixed(data.numberOfPoints(), 0);
@@ -439,7 +439,7 @@ void testObstacles()
 
 /// Blocks of a mesh: the same result with any number of threads, as good as without blocks, walls
 /// and volumes of regions kept, every cell of the input covered.
-void testBlocks()
+TAUTLINE_PART_SLOW(testBlocks)
 {
   const MeshData data = sliverBlock(9, 11, 0.9);
   std::vector<Index> regions;
@@ -512,7 +512,7 @@ std::set<std::array<Vec3, 2>> edgesOf(const MeshData& data)
 }
 
 /// Target lengths bound the edges that insertions and contractions make.
-void testSizes()
+TAUTLINE_PART(testSizes)
 {
   const MeshData data = sliverBlock(5, 7, 1.0);
   const std::set<std::array<Vec3, 2>> before = edgesOf(data);
@@ -598,7 +598,7 @@ void testSizes()
 }
 
 /// With the worst held, the mean becomes about that of Best shape alone on the same cells.
-void testMean()
+TAUTLINE_PART(testMean)
 {
   const MeshData data = sliverBlock(6, 9, 0.9);
   const auto meanOf = [](const MeshData& mesh)
@@ -631,7 +631,7 @@ void testMean()
 }
 
 /// Overlaps cover each cell of the input, averages are exact for constants and keep the integral.
-void testOverlaps()
+TAUTLINE_PART(testOverlaps)
 {
   const MeshData data = sliverBlock(4, 5, 0.9);
   std::vector<double> field;
@@ -680,22 +680,4 @@ void testOverlaps()
     TAUTLINE_CHECK_NEAR(after, before, 1e-12 * size);
   }
 }
-}
-
-TAUTLINE_TEST(TestReconnection)
-{
-  TAUTLINE_RUN(testPresets());
-  TAUTLINE_RUN(testSwapOnly());
-  TAUTLINE_RUN(testTargets());
-  TAUTLINE_RUN(testCount());
-  TAUTLINE_RUN(testScales());
-  TAUTLINE_RUN(testRegions());
-  TAUTLINE_RUN(testDividedBoundary());
-  TAUTLINE_RUN(testFlat());
-  TAUTLINE_RUN(testLimits());
-  TAUTLINE_RUN(testObstacles());
-  TAUTLINE_RUN_SLOW(testBlocks());
-  TAUTLINE_RUN(testSizes());
-  TAUTLINE_RUN(testMean());
-  TAUTLINE_RUN(testOverlaps());
 }

@@ -38,7 +38,7 @@ double searchFacet(const Vec3& a, const Vec3& b, const Vec3& c, const QualityWei
   return value;
 }
 
-void testFacetQuality()
+TAUTLINE_PART(testFacetQuality)
 {
   StarSmoothing smoothing;
   const Vec3 a = { 0, 0, 0 };
@@ -87,7 +87,7 @@ MeshData bipyramid()
 }
 
 /// The point goes where each objective is largest: each is best in its own figure.
-void testObjectives()
+TAUTLINE_PART(testObjectives)
 {
   const MeshData data = bipyramid();
   ReconnectionOptions options;
@@ -116,7 +116,7 @@ void testObjectives()
 }
 
 /// What remains below the target is within its bound, and the reason Facets says that it is at it.
-void testBounds()
+TAUTLINE_PART(testBounds)
 {
   const MeshData data = bipyramid();
   ReconnectionOptions options;
@@ -159,7 +159,7 @@ void testBounds()
 }
 
 /// In a child process, whose limit may be set: the error names the memory and a remedy.
-void testMemory()
+TAUTLINE_PART(testMemory)
 {
   const MeshData data = sliverBlock(30, 3, 0.2);
   const Mesh mesh(data.view());
@@ -193,7 +193,7 @@ void testMemory()
 }
 
 /// The records of a mesh of several chunks have its worst values, wherever these are.
-void testRecords()
+TAUTLINE_PART(testRecords)
 {
   const MeshData data = sliverBlock(12, 5);
   ReconnectionOptions options = optionsOf(ReconnectionPreset::SwapAndSmooth);
@@ -227,7 +227,7 @@ void testRecords()
 }
 
 /// Nothing is inserted or contracted at postponed points.
-void testPostponed()
+TAUTLINE_PART(testPostponed)
 {
   const MeshData data = sliverBlock(9, 11, 0.9);
   ReconnectionOptions options = optionsOf(ReconnectionPreset::Aggressive);
@@ -245,14 +245,4 @@ void testPostponed()
     TAUTLINE_CHECK_EQUAL(result.points.size(), data.points.size());
   }
 }
-}
-
-TAUTLINE_TEST(TestReconnectionBounds)
-{
-  TAUTLINE_RUN(testFacetQuality());
-  TAUTLINE_RUN(testObjectives());
-  TAUTLINE_RUN(testBounds());
-  TAUTLINE_RUN(testRecords());
-  TAUTLINE_RUN(testMemory());
-  TAUTLINE_RUN(testPostponed());
 }

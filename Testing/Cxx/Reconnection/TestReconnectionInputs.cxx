@@ -10,7 +10,7 @@ using namespace tautline;
 
 namespace
 {
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const ReconnectionOptions defaults;
   MeshData mixed = blockMesh(CellType::Tetrahedron, 2, 2, 2);
@@ -53,7 +53,7 @@ void testRefusals()
   TAUTLINE_CHECK_THROWS(reconnect(overlapping, defaults), wording("same-side"));
 }
 
-void testOptions()
+TAUTLINE_PART(testOptions)
 {
   const MeshData data = blockMesh(CellType::Tetrahedron, 2, 2, 2);
   const auto refused = [&](const auto& change, const char* text)
@@ -82,7 +82,7 @@ void testOptions()
   refused([](ReconnectionOptions& o) { o.maximumSeconds = -1; }, "time limit");
 }
 
-void testSmall()
+TAUTLINE_PART(testSmall)
 {
   ReconnectionOptions options;
   options.smallestCount = 0.0;
@@ -123,7 +123,7 @@ void testSmall()
 
 /// Two blocks that share one vertex or one edge, or lie beside each other with points of their own:
 /// the boundary is not manifold at the shared points.
-void testNonManifold()
+TAUTLINE_PART(testNonManifold)
 {
   for (const Vec3& shift : { Vec3{ 3, 3, 3 }, Vec3{ 3, 3, 0 }, Vec3{ 3, 0, 0 } })
   {
@@ -174,7 +174,7 @@ void testNonManifold()
 }
 
 /// Regions in the pattern of a chessboard meet at edges and at a point; each keeps its facets.
-void testRegionsAtPoint()
+TAUTLINE_PART(testRegionsAtPoint)
 {
   const MeshData data = sliverBlock(4, 6, 1.0);
   std::vector<Index> regions;
@@ -223,7 +223,7 @@ std::map<std::array<Vec3, 3>, int> usesOfFacets(const MeshData& data)
 
 /// Facets of the plane x = 2 that are marked are kept, whether they divide the mesh, end inside it
 /// or reach its surface; without marks some of them are lost.
-void testMarkedFacets()
+TAUTLINE_PART(testMarkedFacets)
 {
   const MeshData plain = blockMesh(CellType::Tetrahedron, 4, 4, 4), data = sliverBlock(4, 6, 1.0);
   constexpr int faces[4][3] = { { 1, 2, 3 }, { 0, 2, 3 }, { 0, 1, 3 }, { 0, 1, 2 } };
@@ -289,7 +289,7 @@ void testMarkedFacets()
 }
 
 /// One layer of cells: every cavity touches the boundary on two sides.
-void testThinPlate()
+TAUTLINE_PART(testThinPlate)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 8, 8, 1);
   Random random(2);
@@ -319,7 +319,7 @@ void testThinPlate()
 }
 
 /// Points at the same place in two parts that touch: both parts stay as they are there.
-void testDuplicatePoints()
+TAUTLINE_PART(testDuplicatePoints)
 {
   MeshData data = sliverBlock(3, 3, 1.0);
   const Index first = data.numberOfPoints();
@@ -341,7 +341,7 @@ void testDuplicatePoints()
 }
 
 /// All cells listed in the opposite order: the result is, too.
-void testMirrored()
+TAUTLINE_PART(testMirrored)
 {
   const MeshData data = sliverBlock(4, 5, 1.0);
   MeshData reversed = data;
@@ -360,17 +360,4 @@ void testMirrored()
   }
   TAUTLINE_CHECK(result.tetrahedra == expected.tetrahedra && result.points == expected.points);
 }
-}
-
-TAUTLINE_TEST(TestReconnectionInputs)
-{
-  TAUTLINE_RUN(testRefusals());
-  TAUTLINE_RUN(testOptions());
-  TAUTLINE_RUN(testSmall());
-  TAUTLINE_RUN(testNonManifold());
-  TAUTLINE_RUN(testRegionsAtPoint());
-  TAUTLINE_RUN(testMarkedFacets());
-  TAUTLINE_RUN(testThinPlate());
-  TAUTLINE_RUN(testDuplicatePoints());
-  TAUTLINE_RUN(testMirrored());
 }

@@ -28,7 +28,7 @@ double worstOf(const MeshData& data, const MetricInfo& info)
 }
 
 /// Every metric that has an order and no orientation: its worst value improves, and is reported.
-void testEveryMetric()
+TAUTLINE_PART(testEveryMetric)
 {
   const MeshData data = sliverBlock(3, 7, 0.9);
   int improved = 0;
@@ -65,7 +65,7 @@ void testEveryMetric()
 }
 
 /// For the radius ratio better than by angles and shape, in units of any size, in blocks, too.
-void testMetric()
+TAUTLINE_PART(testMetric)
 {
   const MeshData data = sliverBlock(5, 3, 0.9);
   const MetricInfo& info = metricInfo(Metric::RadiusRatio);
@@ -103,7 +103,7 @@ double excessOf(const MeshData& data)
   return std::accumulate(values.begin(), values.end(), 0.0) - static_cast<double>(values.size());
 }
 
-void testSum()
+TAUTLINE_PART(testSum)
 {
   const MeshData data = sliverBlock(6, 9, 0.9);
   for (ReconnectionBoundary boundary :
@@ -131,11 +131,4 @@ void testSum()
     checkResult(data, one);
   }
 }
-}
-
-TAUTLINE_TEST(TestReconnectionObjectives)
-{
-  TAUTLINE_RUN(testEveryMetric());
-  TAUTLINE_RUN(testMetric());
-  TAUTLINE_RUN(testSum());
 }

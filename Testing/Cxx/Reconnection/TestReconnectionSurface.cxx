@@ -121,7 +121,7 @@ double diagonalOf(const MeshData& data)
 }
 
 /// The facets of the block's edges and corners limit a fixed boundary; on the sphere all move.
-void testBall()
+TAUTLINE_PART(testBall)
 {
   const Context context("ball");
   const MeshData ball = roundMesh(3);
@@ -146,7 +146,7 @@ void testBall()
 }
 
 /// The rims are sharp edges: caps stay in their planes, and the points of rims on these.
-void testCylinder()
+TAUTLINE_PART(testCylinder)
 {
   const Context context("cylinder");
   const MeshData cylinder = roundMesh(2);
@@ -183,7 +183,7 @@ void testCylinder()
 }
 
 /// Facets between regions stay as they are, and fixed points where they are.
-void testKept()
+TAUTLINE_PART(testKept)
 {
   const Context context("kept");
   const MeshData ball = roundMesh(3);
@@ -236,7 +236,7 @@ void testKept()
 }
 
 /// In blocks on any number of threads the same; with the best shape at the end, too.
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   const Context context("threads");
   const MeshData ball = roundMesh(3);
@@ -251,7 +251,7 @@ void testThreads()
   checkBoundary(ball, one, options.surfaceDistance * diagonalOf(ball));
 }
 
-void testOptions()
+TAUTLINE_PART(testOptions)
 {
   const Context context("options");
   const MeshData ball = roundMesh(3);
@@ -262,13 +262,4 @@ void testOptions()
   options.featureAngle = 181.0;
   TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("feature-angle-must-be-0-to-180"));
 }
-}
-
-TAUTLINE_TEST(TestReconnectionSurface)
-{
-  TAUTLINE_RUN(testBall());
-  TAUTLINE_RUN(testCylinder());
-  TAUTLINE_RUN(testKept());
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testOptions());
 }

@@ -95,7 +95,7 @@ std::set<TriangleVertices> wallsOf(const TetrahedronMesh& mesh)
 /// On a lattice with integer coordinates the determinant is exact in integers; scaled by a number
 /// that is not a power of two, the points are no longer in one plane, and the sign is that of the
 /// rounded coordinates.
-void testOrientation()
+TAUTLINE_PART(testOrientation)
 {
   Random random(5);
   const auto integer = [&]() { return static_cast<double>(random.integer(7)) - 3.0; };
@@ -136,7 +136,7 @@ void testOrientation()
   }
 }
 
-void testQuality()
+TAUTLINE_PART(testQuality)
 {
   const std::vector<Vec3> ideal = idealCell(CellType::Tetrahedron);
   const auto best = measure(ideal[0], ideal[1], ideal[2], ideal[3]);
@@ -165,7 +165,7 @@ void testQuality()
 
 /// The best point in a regular octahedron is its centre, from any start; the value of a point that
 /// moves in a plane or on a line is at least that of each of many points there.
-void testSmoothing()
+TAUTLINE_PART(testSmoothing)
 {
   const Vec3 v[6] = { { 1, 0, 0 }, { -1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 },
     { 0, 0, -1 } };
@@ -248,7 +248,7 @@ double bruteForce(const MeshData& data, int i, int j)
   return best;
 }
 
-void testEdgeRemoval()
+TAUTLINE_PART(testEdgeRemoval)
 {
   Random random(11);
   int removed = 0, kept = 0;
@@ -287,7 +287,7 @@ void testEdgeRemoval()
 }
 
 /// n - 2 faces between two near points, removed at once: n tetrahedra round the new edge.
-void testFaceRemoval()
+TAUTLINE_PART(testFaceRemoval)
 {
   Random random(12);
   for (int n = 3; n <= 6; ++n)
@@ -442,11 +442,6 @@ void testRandomOperations(int wanted)
 
 TAUTLINE_TEST(TestTetrahedronMesh)
 {
-  TAUTLINE_RUN(testOrientation());
-  TAUTLINE_RUN(testQuality());
-  TAUTLINE_RUN(testSmoothing());
-  TAUTLINE_RUN(testEdgeRemoval());
-  TAUTLINE_RUN(testFaceRemoval());
   TAUTLINE_RUN(testRandomOperations(400));
   TAUTLINE_RUN_SLOW(testRandomOperations(4000));
 }

@@ -37,7 +37,7 @@ std::set<std::array<Index, 3>> cellsOf(const MeshData& data)
 
 /// Flips lead from any triangulation to that of Delaunay: no point in any circumcircle. Its
 /// smallest angle is the largest of all triangulations of the points.
-void testDelaunay()
+TAUTLINE_PART(testDelaunay)
 {
   for (unsigned seed = 1; seed <= 8; ++seed)
   {
@@ -87,7 +87,7 @@ double bestOfPolygon(const MeshData& data, Index n)
   return best[0][n - 1];
 }
 
-void testPolygon()
+TAUTLINE_PART(testPolygon)
 {
   constexpr Index corners = 11;
   for (unsigned seed = 1; seed <= 6; ++seed)
@@ -114,7 +114,7 @@ void testPolygon()
 }
 
 /// A point within a regular hexagon goes to its middle: all angles are then 60 degrees.
-void testHexagon()
+TAUTLINE_PART(testHexagon)
 {
   MeshData data;
   for (int k = 0; k < 6; ++k)
@@ -135,7 +135,7 @@ void testHexagon()
 }
 
 /// Every preset on a sheet of slivers: never worse, the border and the area stay.
-void testPresets()
+TAUTLINE_PART(testPresets)
 {
   for (Preset preset : presets)
   {
@@ -181,7 +181,7 @@ void testPresets()
 }
 
 /// The same triangulation for other units, directions and numbers.
-void testInvariance()
+TAUTLINE_PART(testInvariance)
 {
   const MeshData data = randomlyFlipped(delaunaySquare(200, 3), 3000, 3);
   const TriangleOptions swap = triangleOptions(Preset::SwapOnly);
@@ -261,7 +261,7 @@ void testInvariance()
 }
 
 /// Regions keep their areas, their common edges and their cells.
-void testRegions()
+TAUTLINE_PART(testRegions)
 {
   const MeshData data = sliverSheet(14, 7);
   std::vector<Index> regions(data.numberOfCells());
@@ -292,7 +292,7 @@ void testRegions()
 }
 
 /// Straight parts of the border: points slide, are removed and added there; the shape stays.
-void testFlat()
+TAUTLINE_PART(testFlat)
 {
   // Points of the border that are unevenly spaced.
   MeshData data = sliverSheet(12, 3, 0.3);
@@ -321,7 +321,7 @@ void testFlat()
 }
 
 /// Then best shape: the mean becomes better, the worst does not become worse, the shape stays.
-void testMean()
+TAUTLINE_PART(testMean)
 {
   for (ReconnectionBoundary boundary :
     { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
@@ -362,7 +362,7 @@ void testMean()
   }
 }
 
-void testCount()
+TAUTLINE_PART(testCount)
 {
   const MeshData data = sliverSheet(14, 11);
   for (double factor : { 1.0, 1.02, 1.1 })
@@ -383,7 +383,7 @@ void testCount()
 }
 
 /// Marked edges and fixed points stay; what they hold below the target is said to be so.
-void testKept()
+TAUTLINE_PART(testKept)
 {
   const MeshData data = sliverSheet(12, 13);
   TriangleOptions options = triangleOptions(Preset::Aggressive);
@@ -440,7 +440,7 @@ void testKept()
 }
 
 /// A corner of 20 degrees: no mesh has a larger smallest angle, and that is reported.
-void testForced()
+TAUTLINE_PART(testForced)
 {
   constexpr double corner = 20.0 * Pi / 180.0;
   MeshData data;
@@ -457,7 +457,7 @@ void testForced()
     result.forcedInverseMeanRatio, valuesOf(data, Metric::InverseMeanRatio)[0], 1e-12);
 }
 
-void testLimits()
+TAUTLINE_PART(testLimits)
 {
   const MeshData data = sliverSheet(40, 3);
   TriangleOptions options = triangleOptions(Preset::Aggressive);
@@ -494,20 +494,4 @@ void testLimits()
   TAUTLINE_CHECK_EQUAL(calls, 2);
   checkTriangles(data, within);
 }
-}
-
-TAUTLINE_TEST(TestTriangleReconnection)
-{
-  TAUTLINE_RUN(testDelaunay());
-  TAUTLINE_RUN(testPolygon());
-  TAUTLINE_RUN(testHexagon());
-  TAUTLINE_RUN(testPresets());
-  TAUTLINE_RUN(testInvariance());
-  TAUTLINE_RUN(testRegions());
-  TAUTLINE_RUN(testFlat());
-  TAUTLINE_RUN(testMean());
-  TAUTLINE_RUN(testCount());
-  TAUTLINE_RUN(testKept());
-  TAUTLINE_RUN(testForced());
-  TAUTLINE_RUN(testLimits());
 }

@@ -101,7 +101,7 @@ double enclosedVolume(const MeshData& data)
 }
 
 /// Points of the sphere stay on its facets; triangles are near it and turned like it.
-void testSphere()
+TAUTLINE_PART(testSphere)
 {
   const MeshData data = slid(sphereSurface(CellType::Triangle, 7), 3, 0.45, true);
   const auto turnOf = [](const MeshData& mesh)
@@ -152,7 +152,7 @@ void testSphere()
 }
 
 /// Then best shape on the sphere: points stay on the facets, the mean improves, the worst is held.
-void testMean()
+TAUTLINE_PART(testMean)
 {
   const MeshData data = slid(sphereSurface(CellType::Triangle, 7), 3, 0.45, true);
   TriangleOptions options = triangleOptions(Preset::Aggressive);
@@ -185,7 +185,7 @@ void testMean()
 }
 
 /// A cube keeps its edges and corners; its faces are flat, so that area and volume stay.
-void testCube()
+TAUTLINE_PART(testCube)
 {
   const MeshData data = slid(cubeSurface(CellType::Triangle, 8), 5, 0.95, false);
   for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
@@ -204,7 +204,7 @@ void testCube()
 }
 
 /// Rims of a cylinder stay when they are features, and its radius is kept within the distance.
-void testCylinder()
+TAUTLINE_PART(testCylinder)
 {
   const MeshData data = slid(cylinderSurface(48, 14), 7, 0.9, false);
   TriangleOptions options = triangleOptions(Preset::Aggressive);
@@ -245,7 +245,7 @@ MeshData roof(double degrees)
 }
 
 /// A fold is flipped only where it is flat within the angle and the distance, and not at a feature.
-void testFold()
+TAUTLINE_PART(testFold)
 {
   const auto flips = [](double fold, double angle, double distance, double feature)
   {
@@ -263,7 +263,7 @@ void testFold()
 }
 
 /// Edges of three triangles, points where sheets touch, bands without orientation: kept.
-void testNonManifold()
+TAUTLINE_PART(testNonManifold)
 {
   // Three sheets of 6 x 6 squares that share the edges on the line y = z = 0.
   MeshData sheets;
@@ -340,7 +340,7 @@ void testNonManifold()
   checkTriangles(band, turned);
 }
 
-void testSmall()
+TAUTLINE_PART(testSmall)
 {
   MeshData one;
   one.addPoint({ 0, 0, 0 });
@@ -375,7 +375,7 @@ void testSmall()
   TAUTLINE_CHECK(none.triangles.empty() && none.history.empty());
 }
 
-void testRefusals()
+TAUTLINE_PART(testRefusals)
 {
   const TriangleOptions defaults = triangleOptions(Preset::Aggressive);
   MeshData quads = blockMesh(CellType::Quadrilateral, 2, 2, 0);
@@ -424,7 +424,7 @@ void testRefusals()
 }
 
 /// The same results for other units.
-void testScales()
+TAUTLINE_PART_SLOW(testScales)
 {
   const MeshData data = slid(sphereSurface(CellType::Triangle, 8), 3, 0.8, true);
   const ReconnectionResult expected = reconnect(data, triangleOptions(Preset::Aggressive));
@@ -442,17 +442,4 @@ void testScales()
       result.history.back().smallestAngle > 0.9 * expected.history.back().smallestAngle);
   }
 }
-}
-
-TAUTLINE_TEST(TestTriangleSurfaces)
-{
-  TAUTLINE_RUN(testSphere());
-  TAUTLINE_RUN(testMean());
-  TAUTLINE_RUN(testCube());
-  TAUTLINE_RUN(testCylinder());
-  TAUTLINE_RUN(testFold());
-  TAUTLINE_RUN(testNonManifold());
-  TAUTLINE_RUN(testSmall());
-  TAUTLINE_RUN(testRefusals());
-  TAUTLINE_RUN_SLOW(testScales());
 }

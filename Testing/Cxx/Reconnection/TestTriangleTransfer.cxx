@@ -42,7 +42,7 @@ MeshData tilted(const MeshData& data, Vec3& first, Vec3& second)
   return result;
 }
 
-void testSizes()
+TAUTLINE_PART_SLOW(testSizes)
 {
   const Context context("sizes");
   const MeshData data = delaunaySquare(60, 4);
@@ -87,7 +87,7 @@ void testSizes()
 }
 
 /// A length per point is the tensor with that length; tensors are in space, not in the plane.
-void testMetrics()
+TAUTLINE_PART(testMetrics)
 {
   const Context context("metrics");
   Vec3 first, second;
@@ -173,7 +173,7 @@ std::vector<double> averages(const ReconnectionResult& result, const std::vector
 }
 
 /// In a plane, with two regions: every cell of the input is covered, totals of each region stay.
-void testPlanarOverlaps()
+TAUTLINE_PART(testPlanarOverlaps)
 {
   const Context context("planar overlaps");
   for (ReconnectionBoundary boundary :
@@ -229,7 +229,7 @@ void testPlanarOverlaps()
 }
 
 /// On a sphere: exact for constants, and totals to the change of the area.
-void testSurfaceOverlaps()
+TAUTLINE_PART(testSurfaceOverlaps)
 {
   const Context context("surface overlaps");
   MeshData data = blockMesh(CellType::Triangle, 12, 12, 0);
@@ -254,12 +254,4 @@ void testSurfaceOverlaps()
   const MeshData output = trianglesOf(result);
   TAUTLINE_CHECK_RELATIVE(totalOf(output, averages(result, field)), totalOf(data, field), 5e-3);
 }
-}
-
-TAUTLINE_TEST(TestTriangleTransfer)
-{
-  TAUTLINE_RUN_SLOW(testSizes());
-  TAUTLINE_RUN(testMetrics());
-  TAUTLINE_RUN(testPlanarOverlaps());
-  TAUTLINE_RUN(testSurfaceOverlaps());
 }

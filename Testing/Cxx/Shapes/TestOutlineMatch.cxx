@@ -41,7 +41,7 @@ Silhouette figure(double extent, double angle, bool mirrored, int kind)
 }
 
 /// Energies of copies of one shape with another, relative to those of the first copy.
-void testInvariance()
+TAUTLINE_PART_SLOW(testInvariance)
 {
   const OutlineOptions options;
   const OutlineModel other = prepareOutline(figure(180.0, 0.0, false, 1), options);
@@ -71,7 +71,7 @@ void testInvariance()
 }
 
 /// The bounds leave out nothing; a shape fits itself best.
-void testExact()
+TAUTLINE_PART(testExact)
 {
   OutlineOptions options;
   OutlineOptions plain = options;
@@ -116,7 +116,7 @@ void testExact()
 }
 
 /// The energy with all weights but one at 0, of a shape and itself on all its locations.
-void testTerms()
+TAUTLINE_PART(testTerms)
 {
   OutlineOptions options;
   options.deformation = options.distortion = options.descriptor = 0.0;
@@ -135,7 +135,7 @@ void testTerms()
   TAUTLINE_CHECK(match.energy < 0.4);
 }
 
-void testErrors()
+TAUTLINE_PART(testErrors)
 {
   const Silhouette shape = traceSilhouette(blob(120, 60, 60, 30).view());
   OutlineOptions options;
@@ -153,12 +153,4 @@ void testErrors()
   TAUTLINE_CHECK_THROWS(matchOutlines(model, model, wrong), wording("prepared-with"));
   TAUTLINE_CHECK_THROWS(prepareOutline(Silhouette(), options), wording("no-area"));
 }
-}
-
-TAUTLINE_TEST(TestOutlineMatch)
-{
-  TAUTLINE_RUN_SLOW(testInvariance());
-  TAUTLINE_RUN(testExact());
-  TAUTLINE_RUN(testTerms());
-  TAUTLINE_RUN(testErrors());
 }

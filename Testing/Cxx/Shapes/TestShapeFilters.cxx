@@ -64,7 +64,7 @@ vtkSmartPointer<vtkImageData> makeImage(
   return image;
 }
 
-void testMesher()
+TAUTLINE_PART(testMesher)
 {
   const Picture picture = blob(100, 50, 50, 25);
   vtkNew<vtkSilhouetteMesher> mesher;
@@ -111,7 +111,7 @@ void testMesher()
 }
 
 /// Values of cells are pixels, half a pixel off: as the GDAL reader of ParaView gives PNG files.
-void testCellPixels()
+TAUTLINE_PART(testCellPixels)
 {
   const Picture picture = blob(80, 40, 40, 20);
   auto points = makeImage(picture);
@@ -142,7 +142,7 @@ std::string errorOf(vtkAlgorithm* algorithm)
   return errors->GetErrorMessage();
 }
 
-void testMesherErrors()
+TAUTLINE_PART(testMesherErrors)
 {
   const auto with = [](vtkImageData* image, const char* part)
   {
@@ -169,7 +169,7 @@ void testMesherErrors()
   TAUTLINE_CHECK(errorOf(empty).empty());
 }
 
-void testMatcher()
+TAUTLINE_PART(testMatcher)
 {
   auto source = makeImage(blob(100, 50, 50, 25)), target = makeImage(blob(120, 60, 58, 30, 0.3));
   vtkNew<vtkSilhouetteMesher> mesher;
@@ -388,9 +388,5 @@ void testRetrieval(const std::string& output)
 
 TAUTLINE_TEST(TestShapeFilters)
 {
-  TAUTLINE_RUN(testMesher());
-  TAUTLINE_RUN(testCellPixels());
-  TAUTLINE_RUN(testMesherErrors());
-  TAUTLINE_RUN(testMatcher());
   TAUTLINE_RUN(testRetrieval(argv[2]));
 }

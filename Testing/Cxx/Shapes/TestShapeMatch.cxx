@@ -20,7 +20,7 @@ ShapeEnergy plain()
 }
 
 /// Known values of each term of the energy.
-void testTerms()
+TAUTLINE_PART(testTerms)
 {
   const std::array<Vec2, 3> s = { Vec2{ 0, 0 }, Vec2{ 1, 0 }, Vec2{ 0, 1 } };
   // A similarity costs nothing but what its size differs by.
@@ -60,7 +60,7 @@ void testTerms()
 }
 
 /// The edge cost on the edge of a half plane, and far away from it.
-void testEdgeCost()
+TAUTLINE_PART(testEdgeCost)
 {
   const Picture picture = paint(120, 120,
     [](double x, double y) { return x > 59.5 && x < 110 && y > 5 && y < 115 ? 1.0 : -1.0; });
@@ -104,7 +104,7 @@ double bruteForce(const ShapeSource& source, const ShapeTarget& target, const Sh
   }
 }
 
-void testBruteForce()
+TAUTLINE_PART(testBruteForce)
 {
   const Silhouette shape = traceSilhouette(blob(64, 30, 33, 16).view());
   const ShapeSource triangle = makeShapeSource({ { 14, 20 }, { 47, 25 }, { 30, 50 } });
@@ -140,7 +140,7 @@ void testBruteForce()
 }
 
 /// Descriptors count as much in the search as in the energy.
-void testDescriptorWeight()
+TAUTLINE_PART(testDescriptorWeight)
 {
   const Silhouette from = traceSilhouette(blob(64, 30, 33, 16).view());
   const Silhouette to = traceSilhouette(blob(70, 33, 30, 18, 0.7).view());
@@ -163,7 +163,7 @@ void testDescriptorWeight()
 }
 
 /// Bounds skip work and change nothing: on grids and contours, for all terms.
-void testPlainLoop()
+TAUTLINE_PART(testPlainLoop)
 {
   const Silhouette from = traceSilhouette(blob(100, 50, 50, 25).view());
   const Silhouette to = traceSilhouette(blob(110, 55, 50, 28, 0.6).view());
@@ -220,7 +220,7 @@ void testPlainLoop()
 
 /// Moved by grid steps, scaled, mirrored and turned shapes are found with the energy they should
 /// have.
-void testInvariance()
+TAUTLINE_PART(testInvariance)
 {
   MatchOptions options;
   LocationOptions grid;
@@ -280,7 +280,7 @@ void testInvariance()
 }
 
 /// The centre-of-mass rule passes solutions over, in the order of their energy.
-void testCentreRule()
+TAUTLINE_PART(testCentreRule)
 {
   MatchOptions options;
   LocationOptions grid;
@@ -303,7 +303,7 @@ void testCentreRule()
   TAUTLINE_CHECK(!none.centreAccepted && std::isfinite(none.energy));
 }
 
-void testThreadsAndStops()
+TAUTLINE_PART(testThreadsAndStops)
 {
   const Silhouette shape = traceSilhouette(blob(120, 60, 60, 32).view());
   const ShapeSource source =
@@ -350,7 +350,7 @@ void testThreadsAndStops()
   }
 }
 
-void testRefused()
+TAUTLINE_PART(testRefused)
 {
   const Silhouette shape = traceSilhouette(disc(60, 30, 30, 20).view());
   LocationOptions one;
@@ -394,7 +394,7 @@ void testRefused()
 
 /// A target without the shape, a 3-vertex source, a source larger than the target: an answer, and
 /// finite.
-void testOddTargets()
+TAUTLINE_PART(testOddTargets)
 {
   const ShapeSource source = makeShapeSource(traceSilhouette(blob(200, 100, 100, 60).view()), 25.0);
   const Picture bar = paint(
@@ -419,18 +419,4 @@ void testOddTargets()
       sized.energy <= match.energy * (1 + 1e-6) || sized.centreAccepted > match.centreAccepted);
   }
 }
-}
-
-TAUTLINE_TEST(TestShapeMatch)
-{
-  TAUTLINE_RUN(testTerms());
-  TAUTLINE_RUN(testEdgeCost());
-  TAUTLINE_RUN(testBruteForce());
-  TAUTLINE_RUN(testDescriptorWeight());
-  TAUTLINE_RUN(testPlainLoop());
-  TAUTLINE_RUN(testInvariance());
-  TAUTLINE_RUN(testCentreRule());
-  TAUTLINE_RUN(testThreadsAndStops());
-  TAUTLINE_RUN(testRefused());
-  TAUTLINE_RUN(testOddTargets());
 }

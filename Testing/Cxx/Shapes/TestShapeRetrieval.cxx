@@ -11,7 +11,7 @@ using namespace tautline;
 
 namespace
 {
-void testCounting()
+TAUTLINE_PART(testCounting)
 {
   // Two classes of two: shape 0 finds its own class first, 1 does not, 2 and 3 do.
   const std::vector<double> distances = { 0, 1, 2, 3, /**/ 4, 0, 1, 2, /**/ 5, 6, 0, 1, /**/ 3, 3,
@@ -34,7 +34,7 @@ void testCounting()
     (rankShapes({ 0, -1, 2, 1, 0, -1, -1, -1, 0 }, 3) == std::vector<Index>{ 2, 1, 0, 2, 0, 1 }));
 }
 
-void testFamilies()
+TAUTLINE_PART(testFamilies)
 {
   std::vector<Silhouette> shapes;
   std::vector<Index> labels;
@@ -162,7 +162,7 @@ Silhouette animal(int kind, int member)
     }).view());
 }
 
-void testArticulation()
+TAUTLINE_PART(testArticulation)
 {
   std::vector<Silhouette> shapes;
   std::vector<Index> labels;
@@ -213,7 +213,7 @@ void testArticulation()
 }
 
 /// On ranks that are threads: the distances of one rank, bitwise; what ends one ends all.
-void testRanks()
+TAUTLINE_PART(testRanks)
 {
   std::vector<Silhouette> shapes;
   std::vector<Index> labels;
@@ -282,12 +282,4 @@ void testRanks()
   TAUTLINE_CHECK_THROWS(runOn(1, [](RetrievalOptions&, Shapes& here) { here[3].outline.clear(); }),
     wording("in-process-1-shape-3"));
 }
-}
-
-TAUTLINE_TEST(TestShapeRetrieval)
-{
-  TAUTLINE_RUN(testCounting());
-  TAUTLINE_RUN(testFamilies());
-  TAUTLINE_RUN(testArticulation());
-  TAUTLINE_RUN(testRanks());
 }

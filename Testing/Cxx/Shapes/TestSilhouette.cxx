@@ -11,7 +11,7 @@ using namespace tautline;
 
 namespace
 {
-void testDisc()
+TAUTLINE_PART(testDisc)
 {
   const Picture picture = disc(101, 48.3, 51.6, 30.0);
   const Silhouette shape = traceSilhouette(picture.view());
@@ -35,7 +35,7 @@ void testDisc()
   }
 }
 
-void testSubPixel()
+TAUTLINE_PART(testSubPixel)
 {
   // A grey ramp across an edge at x = 20.25: linear interpolation finds it exactly.
   Picture picture = paint(60, 40, [](double, double) { return -1.0; });
@@ -56,7 +56,7 @@ void testSubPixel()
   TAUTLINE_CHECK_NEAR(left, 20.25, 1e-5);
 }
 
-void testPolarityAndComponents()
+TAUTLINE_PART(testPolarityAndComponents)
 {
   Picture picture = disc(80, 40, 40, 20);
   const double area = traceSilhouette(picture.view()).area;
@@ -98,7 +98,7 @@ void testPolarityAndComponents()
   TAUTLINE_CHECK(isSimple(chain.outline));
 }
 
-void testExtremes()
+TAUTLINE_PART(testExtremes)
 {
   // At the border, one pixel, a thin line, all but one pixel.
   const Silhouette whole =
@@ -123,7 +123,7 @@ void testExtremes()
   TAUTLINE_CHECK_THROWS(traceSilhouette(single.view()), wording("one-value"));
 }
 
-void testRefused()
+TAUTLINE_PART(testRefused)
 {
   TAUTLINE_CHECK_THROWS(traceSilhouette(ImageView{}), "empty");
   Picture white = paint(10, 10, [](double, double) { return 1.0; });
@@ -145,13 +145,4 @@ void testRefused()
   picture.at(3, 3) = std::nanf("");
   TAUTLINE_CHECK_THROWS(traceSilhouette(picture.view()), wording("not-finite"));
 }
-}
-
-TAUTLINE_TEST(TestSilhouette)
-{
-  TAUTLINE_RUN(testDisc());
-  TAUTLINE_RUN(testSubPixel());
-  TAUTLINE_RUN(testPolarityAndComponents());
-  TAUTLINE_RUN(testExtremes());
-  TAUTLINE_RUN(testRefused());
 }

@@ -59,7 +59,7 @@ std::string nameOf(const SolverOptions& options)
 }
 
 //------------------------------------------------------------------------------
-void testAllPairs()
+TAUTLINE_PART(testAllPairs)
 {
   const int n = 40;
   for (const double scale : { 1e-8, 1.0, 1e8 })
@@ -99,7 +99,7 @@ void testAllPairs()
 }
 
 /// Unsymmetric and symmetric indefinite matrices, directly and by the methods made for them.
-void testOtherMatrices()
+TAUTLINE_PART(testOtherMatrices)
 {
   const int n = 20;
   const SparseMatrix upwind = gridMatrix(n,
@@ -162,7 +162,7 @@ void testOtherMatrices()
 }
 
 /// Singular matrices: an empty row, and the Neumann problem.
-void testSingular()
+TAUTLINE_PART(testSingular)
 {
   const int n = 12;
   const std::vector<double> b = someVector(n * n);
@@ -214,7 +214,7 @@ void testSingular()
 }
 
 //------------------------------------------------------------------------------
-void testOptions()
+TAUTLINE_PART(testOptions)
 {
   const SparseMatrix a = laplacian(40);
   const std::vector<double> b = someVector(a.size);
@@ -297,7 +297,7 @@ void testOptions()
 }
 
 /// Restart, relaxation, limits, the observer, the initial guess and Ritz values.
-void testControls()
+TAUTLINE_PART(testControls)
 {
   const int n = 60;
   const SparseMatrix a = laplacian(n);
@@ -409,7 +409,7 @@ PetscErrorCode strangersHandler(
   return code;
 }
 
-void testStranger()
+TAUTLINE_PART(testStranger)
 {
   const SparseMatrix a = laplacian(30);
   const std::vector<double> b = someVector(a.size);
@@ -456,7 +456,7 @@ void testStranger()
 }
 
 /// Solvers do not disturb each other, be they interleaved, in threads, or called from an observer.
-void testTogether()
+TAUTLINE_PART(testTogether)
 {
   const SparseMatrix a = laplacian(30), c = laplacian(25, 2.0, 0.5);
   const std::vector<double> b = someVector(a.size), d = someVector(c.size, 2);
@@ -504,7 +504,7 @@ void testTogether()
 }
 
 /// What PETSc is lent stays as it is, even if an option has it scaled or overwritten.
-void testUnchanged()
+TAUTLINE_PART(testUnchanged)
 {
   const SparseMatrix a = laplacian(15, 3.0), copy = a;
   const std::vector<double> b = someVector(a.size);
@@ -521,7 +521,7 @@ void testUnchanged()
 }
 
 /// A long elastic strip held at one end bends: smoothed aggregation needs its rigid body modes.
-void testRigidBodyModes()
+TAUTLINE_PART(testRigidBodyModes)
 {
   const int columns = 120, rows = 8;
   std::vector<double> points;
@@ -567,7 +567,7 @@ void testRigidBodyModes()
 }
 
 /// The cheap multigrid options: as accurate, in not many more iterations.
-void testFastMultigrid()
+TAUTLINE_PART(testFastMultigrid)
 {
   const int n = 28;
   SparseMatrix a;
@@ -596,7 +596,7 @@ void testFastMultigrid()
   TAUTLINE_CHECK(two.iterations <= 3 * one.iterations);
 }
 
-void testRefused()
+TAUTLINE_PART(testRefused)
 {
   const SparseMatrix none;
   TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(none), {}), wording("no-unknowns"));
@@ -633,19 +633,4 @@ void testRefused()
     }
   }
 }
-}
-
-TAUTLINE_TEST(TestLinearSolver)
-{
-  TAUTLINE_RUN(testAllPairs());
-  TAUTLINE_RUN(testOtherMatrices());
-  TAUTLINE_RUN(testSingular());
-  TAUTLINE_RUN(testOptions());
-  TAUTLINE_RUN(testControls());
-  TAUTLINE_RUN(testStranger());
-  TAUTLINE_RUN(testTogether());
-  TAUTLINE_RUN(testUnchanged());
-  TAUTLINE_RUN(testRigidBodyModes());
-  TAUTLINE_RUN(testFastMultigrid());
-  TAUTLINE_RUN(testRefused());
 }

@@ -50,7 +50,7 @@ bool contains(const std::string& text, const std::string& part)
   return text.find(part) != std::string::npos;
 }
 
-void testValid()
+TAUTLINE_PART(testValid)
 {
   for (CellType type : allTypes)
   {
@@ -101,7 +101,7 @@ void testValid()
 }
 
 /// What cannot be: an element of fixed points; one whose fixed neighbours leave no place.
-void testImpossible()
+TAUTLINE_PART(testImpossible)
 {
   MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
   data.setPoint(6, { 2.5, 2.6, 0 }); // a point of the second row beyond its neighbours
@@ -162,7 +162,7 @@ void testImpossible()
   TAUTLINE_CHECK_EQUAL(chosen->GetImpossible(), chosen->GetInvertedAfter());
 }
 
-void testInputs()
+TAUTLINE_PART(testInputs)
 {
   vtkNew<vtkMeshUntangler> filter;
   Messages messages(filter);
@@ -227,7 +227,7 @@ void testInputs()
 }
 
 /// A part, then all of the inner points anywhere: valid, or each element left has its reason.
-void testRandom()
+TAUTLINE_PART(testRandom)
 {
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron })
   {
@@ -258,7 +258,7 @@ void testRandom()
   }
 }
 
-void testStops()
+TAUTLINE_PART(testStops)
 {
   const MeshData data = tangled(CellType::Tetrahedron, 6, 0.3);
   vtkNew<vtkMeshUntangler> filter;
@@ -303,14 +303,4 @@ void testStops()
   }
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
 }
-}
-
-//------------------------------------------------------------------------------
-TAUTLINE_TEST(TestMeshUntangler)
-{
-  TAUTLINE_RUN(testValid());
-  TAUTLINE_RUN(testImpossible());
-  TAUTLINE_RUN(testInputs());
-  TAUTLINE_RUN(testRandom());
-  TAUTLINE_RUN(testStops());
 }

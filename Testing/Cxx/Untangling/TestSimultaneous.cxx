@@ -52,7 +52,7 @@ MeshData tangled(const MeshData& data, double part)
 }
 
 /// Six equilateral triangles around a vertex that is outside: its best place is the centre.
-void testHexagon()
+TAUTLINE_PART(testHexagon)
 {
   for (const Vec3& start : { Vec3{ 1.6, 0.4, 0 }, Vec3{ -0.2, 3.0, 0 }, Vec3{ -1.3, 0.2, 0 } })
   {
@@ -83,7 +83,7 @@ void testHexagon()
 }
 
 /// All elements become valid, and those far from inverted ones better, which automatic leaves.
-void testTangledMeshes()
+TAUTLINE_PART(testTangledMeshes)
 {
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron,
          CellType::Hexahedron, CellType::Wedge })
@@ -123,7 +123,7 @@ void testTangledMeshes()
 }
 
 /// Valid meshes stay; a limit ends the run with no more inverted elements than before.
-void testLimits()
+TAUTLINE_PART(testLimits)
 {
   const MeshData valid = blockMesh(CellType::Triangle, 6, 6, 0);
   TAUTLINE_CHECK(untangle(Mesh(valid.view()), simultaneous()).points == valid.points);
@@ -143,11 +143,4 @@ void testLimits()
     TAUTLINE_CHECK_EQUAL(countInvalid(Mesh(after.view())), result.invertedAfter);
   }
 }
-}
-
-TAUTLINE_TEST(TestSimultaneous)
-{
-  TAUTLINE_RUN(testHexagon());
-  TAUTLINE_RUN(testTangledMeshes());
-  TAUTLINE_RUN(testLimits());
 }
