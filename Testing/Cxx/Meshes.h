@@ -8,6 +8,7 @@
 #ifndef tautline_Meshes_h
 #define tautline_Meshes_h
 
+#include "Set.h"
 #include "tautline/Quality/Metrics.h"
 #include "tautline/Quality/Targets.h"
 

@@ -26,8 +26,7 @@ namespace tautline
 inline vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
 {
   auto grid = toGrid(part.data);
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
   for (const unsigned char ghost : part.ghosts)
   {
     ghosts->InsertNextValue(ghost ? vtkDataSetAttributes::DUPLICATECELL : 0);
@@ -44,17 +43,15 @@ inline vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
     limits->InsertNextValue(p % 3 == 0 ? 0.05 : -1);
     kinds->InsertNextValue(p % 11 == 0 ? 2 : -1); // a corner, or as found
   }
-  grid->GetPointData()->AddArray(fixed);
-  grid->GetPointData()->AddArray(limits);
-  grid->GetPointData()->AddArray(kinds);
+  TAUTLINE_SET(grid, GetPointData()->AddArray(fixed), GetPointData()->AddArray(limits),
+    GetPointData()->AddArray(kinds));
   // Weights (0 of the first half), sizes, regions and metric tensors, by the cells.
   vtkNew<vtkDoubleArray> weights, wrong, sizes, regions, tensors;
   weights->SetName("weights");
   wrong->SetName("wrong");
   sizes->SetName("sizes");
   regions->SetName("regions");
-  tensors->SetName("tensors");
-  tensors->SetNumberOfComponents(9);
+  TAUTLINE_SET(tensors, SetName("tensors"), SetNumberOfComponents(9));
   for (std::size_t i = 0; i < part.cellOf.size(); ++i)
   {
     const auto cell = static_cast<double>(part.cellOf[i]);
@@ -65,11 +62,9 @@ inline vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
     const double tensor[9] = { 1.0 + 0.001 * cell, 0, 0, 0, 1, 0, 0, 0, 1 };
     tensors->InsertNextTuple(tensor);
   }
-  grid->GetCellData()->AddArray(weights);
-  grid->GetCellData()->AddArray(wrong);
-  grid->GetCellData()->AddArray(sizes);
-  grid->GetCellData()->AddArray(regions);
-  grid->GetCellData()->AddArray(tensors);
+  TAUTLINE_SET(grid, GetCellData()->AddArray(weights), GetCellData()->AddArray(wrong),
+    GetCellData()->AddArray(sizes), GetCellData()->AddArray(regions),
+    GetCellData()->AddArray(tensors));
   return grid;
 }
 
@@ -88,8 +83,7 @@ inline vtkSmartPointer<vtkUnstructuredGrid> numberedGridOf(const RankPart& part)
   {
     cells->InsertNextValue(cell);
   }
-  grid->GetPointData()->SetGlobalIds(points);
-  grid->GetCellData()->SetGlobalIds(cells);
+  TAUTLINE_SET(grid, GetPointData()->SetGlobalIds(points), GetCellData()->SetGlobalIds(cells));
   return grid;
 }
 

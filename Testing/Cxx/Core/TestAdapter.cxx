@@ -122,12 +122,9 @@ TAUTLINE_PART(testPolyData)
   // Cells of a vtkPolyData are numbered vertices, lines, polygons, strips.
   vtkNew<vtkCellArray> verts, lines, strips;
   verts->InsertNextCell({ 0 });
-  lines->InsertNextCell({ 0, 1 });
-  lines->InsertNextCell({ 1, 2, 3 });
+  TAUTLINE_SET(lines, InsertNextCell({ 0, 1 }), InsertNextCell({ 1, 2, 3 }));
   strips->InsertNextCell({ 0, 4, 1, 5 });
-  poly->SetVerts(verts);
-  poly->SetLines(lines);
-  poly->SetStrips(strips);
+  TAUTLINE_SET(poly, SetVerts(verts), SetLines(lines), SetStrips(strips));
   const MeshAdapter all(poly);
   const std::vector<double> values = sizes(all);
   TAUTLINE_CHECK_EQUAL(values.size(), static_cast<std::size_t>(data.numberOfCells() + 4));
@@ -170,10 +167,8 @@ void checkBlock(vtkDataSet* input, Dimension dimension, const std::vector<double
 
 TAUTLINE_PART(testStructured)
 {
-  vtkNew<vtkImageData> image;
-  image->SetSpacing(0.5, 2, 3);
-  image->SetOrigin(1, 2, 3);
-  image->SetDimensions(3, 4, 5);
+  TAUTLINE_NEW(
+    vtkImageData, image, SetSpacing(0.5, 2, 3), SetOrigin(1, 2, 3), SetDimensions(3, 4, 5));
   checkBlock(image, Dimension::Volume, std::vector<double>(2 * 3 * 4, 3.0));
   image->SetDimensions(3, 4, 1);
   checkBlock(image, Dimension::Planar, std::vector<double>(2 * 3, 1.0));
@@ -193,10 +188,8 @@ TAUTLINE_PART(testStructured)
     y->InsertNextValue(2 * value);
     z->InsertNextValue(3 * value);
   }
-  rectilinear->SetDimensions(3, 3, 3);
-  rectilinear->SetXCoordinates(x);
-  rectilinear->SetYCoordinates(y);
-  rectilinear->SetZCoordinates(z);
+  TAUTLINE_SET(rectilinear, SetDimensions(3, 3, 3), SetXCoordinates(x), SetYCoordinates(y),
+    SetZCoordinates(z));
   checkBlock(rectilinear, Dimension::Volume, { 6, 12, 12, 24, 12, 24, 24, 48 });
 
   for (int layers : { 1, 2 })
@@ -213,8 +206,7 @@ TAUTLINE_PART(testStructured)
         }
       }
     }
-    structured->SetDimensions(4, 3, layers);
-    structured->SetPoints(points);
+    TAUTLINE_SET(structured, SetDimensions(4, 3, layers), SetPoints(points));
     checkBlock(
       structured, layers == 1 ? Dimension::Planar : Dimension::Volume, std::vector<double>(6, 1.0));
   }
@@ -250,8 +242,7 @@ TAUTLINE_PART(testNotices)
   TAUTLINE_CHECK(contains(MeshAdapter(broken).notice(), wording("1-points-have-a-nan")));
 
   const auto grid = toGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0));
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
   for (unsigned char flag : { 0, 1, 0, 0 })
   {
     ghosts->InsertNextValue(flag);
@@ -289,8 +280,7 @@ TAUTLINE_PART(testMakePoints)
   const std::vector<double> coordinates = { 0.1, 0.2, 0.3, 4, 5, 6 };
   for (int precision : { VTK_FLOAT, VTK_DOUBLE })
   {
-    vtkNew<vtkPoints> like;
-    like->SetDataType(precision);
+    TAUTLINE_NEW(vtkPoints, like, SetDataType(precision));
     const auto points = makePoints(coordinates, like);
     TAUTLINE_CHECK_EQUAL(points->GetDataType(), precision);
     TAUTLINE_CHECK_EQUAL(points->GetNumberOfPoints(), 2);

@@ -46,10 +46,8 @@ vtkSmartPointer<vtkUnstructuredGrid> pieceOf(
   const MeshData& whole, const Owner& owner, int rank, int ranks)
 {
   const int takers = ranks > 2 ? ranks - 1 : ranks;
-  MeshData data;
-  data.points = whole.points;
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("ids");
+  TAUTLINE_LET(MeshData, data, points = whole.points);
+  TAUTLINE_NEW(vtkIdTypeArray, ids, SetName("ids"));
   for (Index cell = 0; cell < whole.numberOfCells(); ++cell)
   {
     if (owner(cell, takers) == rank)
@@ -75,8 +73,7 @@ void setUp(vtkElementQuality* filter)
   {
     filter->AddMetricByName(metric);
   }
-  filter->SetCriteria("fem");
-  filter->SetExtractBad(true);
+  TAUTLINE_SET(filter, SetCriteria("fem"), SetExtractBad(true));
 }
 
 /// Two values of tables or arrays of all types.
@@ -175,9 +172,7 @@ void testQuality(int rank, int ranks)
   const auto grid = toGrid(tangled);
   vtkNew<vtkElementQuality> measured;
   setUp(measured);
-  measured->SetController(nullptr);
-  measured->SetInputData(grid);
-  measured->Update();
+  TAUTLINE_SET(measured, SetController(nullptr), SetInputData(grid), Update());
   auto* of = vtkDataSet::SafeDownCast(measured->GetOutputDataObject(0));
   compareQuality(
     "inverted apart", tangled,
@@ -219,8 +214,7 @@ void repeatCell(vtkUnstructuredGrid* grid)
 {
   grid->GetCellData()->Initialize();
   vtkNew<vtkIdList> ids;
-  grid->GetCellPoints(0, ids);
-  grid->InsertNextCell(grid->GetCellType(0), ids);
+  TAUTLINE_SET(grid, GetCellPoints(0, ids), InsertNextCell(grid->GetCellType(0), ids));
 }
 
 void moveToNaN(vtkUnstructuredGrid* grid)
@@ -236,10 +230,8 @@ void removeSizes(vtkUnstructuredGrid* grid)
 vtkSmartPointer<vtkUnstructuredGrid> blockWithSizes(Index n)
 {
   auto grid = toGrid(blockMesh(CellType::Tetrahedron, n, n, n));
-  vtkNew<vtkDoubleArray> sizes;
-  sizes->SetName("sizes");
-  sizes->SetNumberOfValues(grid->GetNumberOfCells());
-  sizes->Fill(0.2);
+  TAUTLINE_NEW(vtkDoubleArray, sizes, SetName("sizes"), SetNumberOfValues(grid->GetNumberOfCells()),
+    Fill(0.2));
   grid->GetCellData()->AddArray(sizes);
   return grid;
 }
@@ -264,8 +256,7 @@ void testSpoiled(const char* name, int rank, int ranks, const std::vector<Spoil>
       for (vtkIdType p = 0; p < grid->GetNumberOfPoints(); ++p)
       {
         double x[3];
-        grid->GetPoint(p, x);
-        grid->GetPoints()->SetPoint(p, x[0] + 10.0 * i, x[1], x[2]);
+        TAUTLINE_SET(grid, GetPoint(p, x), GetPoints()->SetPoint(p, x[0] + 10.0 * i, x[1], x[2]));
       }
       if (change && i == ranks - 1)
       {
@@ -274,8 +265,7 @@ void testSpoiled(const char* name, int rank, int ranks, const std::vector<Spoil>
       blocks->SetBlock(i, i == rank ? grid.Get() : nullptr);
     }
     messages.clear();
-    filter->SetInputDataObject(0, blocks);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputDataObject(0, blocks), Update());
     auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
     return output->GetNumberOfCells();
   };
@@ -298,9 +288,8 @@ void testWrongBlocks(int rank, int ranks)
   testSpoiled<vtkElementQuality>("Element Quality", rank, ranks, { ids, { removeSizes, "size" } },
     [](vtkElementQuality* filter)
     {
-      filter->AddMetricByName("imr");
-      filter->SetTargetType(vtkElementQuality::SIZE);
-      filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sizes");
+      TAUTLINE_SET(filter, AddMetricByName("imr"), SetTargetType(vtkElementQuality::SIZE),
+        SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sizes"));
     });
   const std::vector<Spoil> ways = { ids, { addQuadraticCell, "Tessellate" },
     { repeatCell, "the same points" }, { moveToNaN, "finite" } };
@@ -336,8 +325,7 @@ vtkSmartPointer<vtkMultiBlockDataSet> blocksOf(
       continue;
     }
     auto grid = toGrid(part.data);
-    vtkNew<vtkIdTypeArray> numbers;
-    numbers->SetName("numbers");
+    TAUTLINE_NEW(vtkIdTypeArray, numbers, SetName("numbers"));
     for (const Index p : part.pointOf)
     {
       numbers->InsertNextValue(ids ? known[meshes[i].point(p)] : p);
@@ -377,12 +365,9 @@ void compareBlocks(const char* name, const std::vector<MeshData>& meshes, bool j
   const int rank = controller->GetLocalProcessId(), ranks = controller->GetNumberOfProcesses();
   const auto update = [&](vtkEllipticSolver* filter, const BlockOwner& owns)
   {
-    filter->SetSourceType(vtkEllipticSolver::EXPRESSION);
-    filter->SetSourceExpression("x + y*z");
-    filter->SetRelativeTolerance(1e-12);
-    filter->SetMergeCoincidentPoints(merge);
-    filter->SetInputDataObject(0, blocksOf(meshes, owns, ids));
-    filter->Update();
+    TAUTLINE_SET(filter, SetSourceType(vtkEllipticSolver::EXPRESSION),
+      SetSourceExpression("x + y*z"), SetRelativeTolerance(1e-12), SetMergeCoincidentPoints(merge),
+      SetInputDataObject(0, blocksOf(meshes, owns, ids)), Update());
   };
   vtkNew<vtkEllipticSolver> serial;
   vtkMultiProcessController::SetGlobalController(nullptr);
@@ -465,8 +450,7 @@ void testSeams(vtkMultiProcessController* controller)
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestBlockRanks)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(controller);
   const int rank = controller->GetLocalProcessId(), ranks = controller->GetNumberOfProcesses();
   TAUTLINE_RUN(testQuality(rank, ranks));

@@ -110,17 +110,14 @@ struct Outcome
 
 Outcome outcomeOf(const char* text, const RankPart& part, const Change& change, bool merge)
 {
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetMergeCoincidentPoints(merge);
-  filter->SetInputDataObject(0, change(part));
+  TAUTLINE_NEW(
+    vtkMeshOptimizer, filter, SetMergeCoincidentPoints(merge), SetInputDataObject(0, change(part)));
   Messages messages(filter);
   filter->Update();
-  Outcome outcome;
-  outcome.refused = messages.has("ERROR: ");
-  outcome.named = messages.has(text);
-  outcome.image = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0));
-  outcome.cells = filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL);
-  outcome.summary = filter->GetSummary() ? filter->GetSummary() : "";
+  TAUTLINE_LET(Outcome, outcome, refused = messages.has("ERROR: "), named = messages.has(text),
+    image = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0)),
+    cells = filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL),
+    summary = filter->GetSummary() ? filter->GetSummary() : "");
   return outcome;
 }
 
@@ -195,9 +192,7 @@ void testNotFinite(vtkMPIController* controller)
   const MeshData whole = block();
   const auto pointsOf = [&](const RankPart& part)
   {
-    vtkNew<vtkMeshOptimizer> filter;
-    filter->SetInputDataObject(0, change(part));
-    filter->Update();
+    TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputDataObject(0, change(part)), Update());
     TAUTLINE_CHECK(
       std::string(filter->GetSummary()).find(wording("1-points-have-a-nan")) != std::string::npos);
     TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 26); // of 3 x 3 x 3
@@ -287,8 +282,7 @@ void testErrors(vtkMPIController* controller)
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestGatheredMotion)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(controller);
   TAUTLINE_RUN(testSettings(controller));
   TAUTLINE_RUN(testPieces(controller));

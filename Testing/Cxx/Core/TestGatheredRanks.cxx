@@ -174,9 +174,8 @@ void testMeshes()
   const auto one = [](auto* filter, vtkDataObject* data) { filter->SetInputDataObject(0, data); };
   const auto warp = [](vtkMeshWarp* filter, vtkDataObject* data)
   {
-    filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
-    filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
-    filter->SetInputDataObject(0, data);
+    TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::TRANSLATION),
+      SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY), SetInputDataObject(0, data));
   };
   testFilter<vtkMeshWarp>("Warp Mesh", square(), false, warp);
   testFilter<vtkMeshPerturbation>("Perturb Mesh", square(), false, one);
@@ -184,37 +183,25 @@ void testMeshes()
   testFilter<vtkInteractionLayer>("Interaction Layer", square(), false, one);
   testFilter<vtkHorizonNeighbors>("Horizon Neighbors", square(), true,
     [](vtkHorizonNeighbors* filter, vtkDataObject* data)
-    {
-      filter->SetCenter(0.5, 0.5, 0);
-      filter->SetInputDataObject(0, data);
-    });
+    { TAUTLINE_SET(filter, SetCenter(0.5, 0.5, 0), SetInputDataObject(0, data)); });
   testFilter<vtkPeridynamicStiffness>("Peridynamic Condition", square(), false,
     [](vtkPeridynamicStiffness* filter, vtkDataObject* data)
-    {
-      filter->SetConstrained(false);
-      filter->SetInputDataObject(0, data);
-    });
+    { TAUTLINE_SET(filter, SetConstrained(false), SetInputDataObject(0, data)); });
   testFilter<vtkMeshComparison>("Compare Meshes", square(), false,
     [](vtkMeshComparison* filter, vtkDataObject* data)
-    {
-      filter->SetInputDataObject(0, data);
-      filter->SetInputDataObject(1, data);
-    });
+    { TAUTLINE_SET(filter, SetInputDataObject(0, data), SetInputDataObject(1, data)); });
 }
 
 /// Summary and numbers are the same on all processes, the table is on the first one.
 void testNumbers()
 {
   const Context context("numbers");
-  vtkNew<vtkMeshPerturbation> filter;
-  filter->SetInputData(part(square(), rank(), ranks()));
-  filter->Update();
+  TAUTLINE_NEW(
+    vtkMeshPerturbation, filter, SetInputData(part(square(), rank(), ranks())), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 25);
   TAUTLINE_CHECK(
     std::string(filter->GetSummary()).find(wording("of-25-movable")) != std::string::npos);
-  vtkNew<vtkMeshImprover> improver;
-  improver->SetInputData(part(cube(), rank(), ranks()));
-  improver->Update();
+  TAUTLINE_NEW(vtkMeshImprover, improver, SetInputData(part(cube(), rank(), ranks())), Update());
   TAUTLINE_CHECK(improver->GetWorstBefore() > 1);
   TAUTLINE_CHECK_EQUAL(improver->GetHistory()->GetNumberOfRows() > 0, rank() == 0);
   // An error of the whole mesh is one on all processes.
@@ -240,8 +227,7 @@ void testBlocks()
   {
     blocks->SetBlock(2, part(far, 0, 1));
   }
-  filter->SetInputData(blocks);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(blocks), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 50);
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
@@ -268,18 +254,12 @@ void testSelection()
       ++chosen;
     }
   }
-  vtkNew<vtkSelectionNode> node;
-  node->SetContentType(vtkSelectionNode::INDICES);
-  node->SetFieldType(vtkSelectionNode::POINT);
-  node->SetSelectionList(ids);
-  vtkNew<vtkSelection> selection;
-  selection->AddNode(node);
-  filter->SetInputData(mesh);
-  filter->SetInputDataObject(2, selection);
-  filter->SetMovedPart(vtkMeshWarp::SELECTION);
-  filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
-  filter->SetTranslation(-0.1, 0, 0);
-  filter->Update();
+  TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+    SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
+  TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
+  TAUTLINE_SET(filter, SetInputData(mesh), SetInputDataObject(2, selection),
+    SetMovedPart(vtkMeshWarp::SELECTION), SetTransformKind(vtkMeshWarp::TRANSLATION),
+    SetTranslation(-0.1, 0, 0), Update());
   TAUTLINE_CHECK(messages.empty());
   // Exactly the points chosen on process 1 are moved as far, wherever they are.
   auto* result = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
@@ -295,20 +275,16 @@ void testSelection()
   // The preview of what moves is on the first process.
   vtkNew<vtkMovingBoundary> preview;
   Messages said(preview);
-  preview->SetInputData(mesh);
-  preview->SetInputDataObject(2, selection);
-  preview->SetMovedPart(vtkMeshWarp::SELECTION);
-  preview->Update();
+  TAUTLINE_SET(preview, SetInputData(mesh), SetInputDataObject(2, selection),
+    SetMovedPart(vtkMeshWarp::SELECTION), Update());
   TAUTLINE_CHECK(said.empty());
   auto* seen = vtkPolyData::SafeDownCast(preview->GetOutputDataObject(0));
   const auto all = sum(chosen);
   TAUTLINE_CHECK_EQUAL(seen->GetNumberOfPoints(), rank() == 0 ? all : 0);
 
   // A new mesh has nothing of what the selection was gathered by.
-  vtkNew<vtkMeshImprover> improver;
-  improver->SetInputData(mesh);
-  improver->SetInputDataObject(1, selection);
-  improver->Update();
+  TAUTLINE_NEW(
+    vtkMeshImprover, improver, SetInputData(mesh), SetInputDataObject(1, selection), Update());
   auto* improved = vtkDataSet::SafeDownCast(improver->GetOutputDataObject(0));
   TAUTLINE_CHECK(improved->GetNumberOfCells() > 0);
   TAUTLINE_CHECK(!improved->GetPointData()->GetArray("Tautline selected by input 1"));
@@ -339,8 +315,7 @@ void testUpstream()
 {
   const Context context("upstream");
   vtkNew<FailingSource> source;
-  vtkNew<vtkMeshPerturbation> filter;
-  filter->SetInputConnection(source->GetOutputPort());
+  TAUTLINE_NEW(vtkMeshPerturbation, filter, SetInputConnection(source->GetOutputPort()));
   for (int time = 0; time < 2; ++time)
   {
     Messages messages(filter);
@@ -358,9 +333,8 @@ void testUpstream()
 vtkSmartPointer<vtkImageData> disc(double radius, double stretch = 1.0)
 {
   constexpr int side = 24;
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(side, side, 1);
-  image->AllocateScalars(VTK_UNSIGNED_CHAR, 1);
+  TAUTLINE_NEW(
+    vtkImageData, image, SetDimensions(side, side, 1), AllocateScalars(VTK_UNSIGNED_CHAR, 1));
   for (int y = 0; y < side; ++y)
   {
     for (int x = 0; x < side; ++x)
@@ -375,8 +349,7 @@ vtkSmartPointer<vtkImageData> disc(double radius, double stretch = 1.0)
 /// The upper or lower half of an image on two processes, the whole on others.
 vtkSmartPointer<vtkImageData> half(vtkImageData* image)
 {
-  vtkNew<vtkImageData> copy;
-  copy->DeepCopy(image);
+  TAUTLINE_NEW(vtkImageData, copy, DeepCopy(image));
   int extent[6];
   image->GetExtent(extent);
   constexpr int middle = 11;
@@ -444,8 +417,7 @@ void testNotJoined()
   data.points = { x, 0, 0, x + 1, 0, 0, x, 1, 0 };
   data.addCell(CellType::Triangle, { 0, 1, 2 });
   auto grid = toGrid(data);
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("ids");
+  TAUTLINE_NEW(vtkIdTypeArray, ids, SetName("ids"));
   for (vtkIdType id : { 0, 1, 2 })
   {
     ids->InsertNextValue(id);
@@ -453,8 +425,7 @@ void testNotJoined()
   grid->GetPointData()->SetGlobalIds(ids);
   vtkNew<vtkPeridynamicStiffness> filter;
   Messages messages(filter);
-  filter->SetInputData(grid);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(grid), Update());
   TAUTLINE_CHECK(messages.has("ERROR: "));
   TAUTLINE_CHECK(messages.has("global"));
 }
@@ -484,12 +455,10 @@ void testRetrieval()
   }
   RetrievalOptions options = RetrievalOptions::highest();
   const Retrieval one = retrieveShapes(shapes, std::vector<Index>(count, 0), options);
-  vtkNew<vtkShapeRetrieval> filter;
-  filter->SetInputDataObject(0, blocks);
+  TAUTLINE_NEW(vtkShapeRetrieval, filter, SetInputDataObject(0, blocks));
   for (int run = 0; run < 2; ++run)
   {
-    filter->Modified();
-    filter->Update();
+    TAUTLINE_SET(filter, Modified(), Update());
     TAUTLINE_CHECK_EQUAL(filter->GetRecognitionRate(), 100.0); // all are of one class
     TAUTLINE_CHECK(std::string(filter->GetSummary()).find("5 shapes of 1 classes") == 0);
     auto* distances = vtkTable::SafeDownCast(filter->GetOutputDataObject(0));
@@ -522,13 +491,9 @@ void testMeshers()
   const auto sides = [](bool everywhere)
   {
     vtkNew<vtkCubeSource> source;
-    vtkNew<vtkCleanPolyData> clean;
-    clean->SetInputConnection(source->GetOutputPort());
-    clean->Update();
+    TAUTLINE_NEW(vtkCleanPolyData, clean, SetInputConnection(source->GetOutputPort()), Update());
     vtkPolyData* cube = clean->GetOutput();
-    vtkNew<vtkPolyData> own;
-    own->SetPoints(cube->GetPoints());
-    own->Allocate(6);
+    TAUTLINE_NEW(vtkPolyData, own, SetPoints(cube->GetPoints()), Allocate(6));
     for (vtkIdType i = 0; i < 6; ++i)
     {
       if (everywhere ? i % ranks() == rank() : rank() == 0)
@@ -545,10 +510,8 @@ void testMeshers()
     [&](vtkTetGenMesher* filter, bool everywhere) { filter->SetInputData(sides(everywhere)); });
   const auto triangle = [](bool everywhere)
   {
-    vtkNew<vtkRegularPolygonSource> source;
-    source->SetNumberOfSides(3);
-    source->GeneratePolygonOff();
-    source->Update();
+    TAUTLINE_NEW(
+      vtkRegularPolygonSource, source, SetNumberOfSides(3), GeneratePolygonOff(), Update());
     return rank() == (everywhere ? 1 : 0) ? vtkSmartPointer<vtkPolyData>(source->GetOutput())
                                           : vtkSmartPointer<vtkPolyData>::New();
   };
@@ -562,8 +525,7 @@ void testMeshers()
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestGatheredRanks)
 {
-  vtkNew<vtkMPIController> mpi;
-  mpi->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, mpi, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(mpi);
   if (ranks() > 1)
   {

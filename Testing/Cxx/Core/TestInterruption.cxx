@@ -176,12 +176,9 @@ TAUTLINE_PART(testSolver)
   for (const bool watched : { false, true })
   {
     const InterruptScope scope;
-    SolverOptions options;
-    options.preconditioner = Preconditioner::None;
-    options.relativeTolerance = 1e-300;
-    options.absoluteTolerance = 0.0;
-    options.maximumIterations = 100000000;
-    options.maximumSeconds = watched ? 1000.0 : 0.0;
+    TAUTLINE_LET(SolverOptions, options, preconditioner = Preconditioner::None,
+      relativeTolerance = 1e-300, absoluteTolerance = 0.0, maximumIterations = 100000000,
+      maximumSeconds = watched ? 1000.0 : 0.0);
     options.observer = [](int iteration, double)
     {
       if (iteration == 20)
@@ -190,9 +187,8 @@ TAUTLINE_PART(testSolver)
       }
       return true;
     };
-    LinearSystem system;
-    system.matrix = &matrix;
-    system.symmetric = system.positiveDefinite = true;
+    TAUTLINE_LET(
+      LinearSystem, system, matrix = &matrix, symmetric = system.positiveDefinite = true);
     TAUTLINE_CHECK(interrupts(
       [&]
       {
@@ -206,10 +202,8 @@ TAUTLINE_PART(testSolver)
 TAUTLINE_PART(testAbort)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 30, 30, 30);
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(toGrid(data));
-  filter->AddMetricByName("imr");
-  filter->SetTimeLimit(1e-9);
+  TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(toGrid(data)), AddMetricByName("imr"),
+    SetTimeLimit(1e-9));
   {
     const Messages messages(filter);
     filter->Update();
@@ -226,10 +220,7 @@ TAUTLINE_PART(testAbort)
   TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
   TAUTLINE_CHECK_EQUAL(
     vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
-  filter->RemoveObserver(tag);
-  filter->SetAbortExecute(0);
-  filter->Modified();
-  filter->Update();
+  TAUTLINE_SET(filter, RemoveObserver(tag), SetAbortExecute(0), Modified(), Update());
   TAUTLINE_CHECK(vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells() > 0);
 
   // Cancelled from a callback, as Python does; the next execution is not.
@@ -237,8 +228,7 @@ TAUTLINE_PART(testAbort)
   cancel->SetCallback([](vtkObject*, unsigned long, void*, void*) { vtkInterruption::Cancel(); });
   const auto cancelling = filter->AddObserver(vtkInterruption::PollEvent, cancel);
   vtkInterruption::Begin(true);
-  filter->Modified();
-  filter->Update();
+  TAUTLINE_SET(filter, Modified(), Update());
   TAUTLINE_CHECK(vtkInterruption::IsInterrupted() && filter->GetAbortExecute());
   TAUTLINE_CHECK(!vtkInterruption::End());
   TAUTLINE_CHECK(!vtkInterruption::IsInterrupted());
@@ -268,10 +258,7 @@ TAUTLINE_PART(testHorizonNeighbors)
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
   TAUTLINE_CHECK_EQUAL(outputs(), 0);
-  filter->RemoveObserver(tag);
-  filter->SetAbortExecute(0);
-  filter->Modified();
-  filter->Update();
+  TAUTLINE_SET(filter, RemoveObserver(tag), SetAbortExecute(0), Modified(), Update());
   TAUTLINE_CHECK(outputs() > side * side);
 }
 
@@ -351,14 +338,9 @@ TAUTLINE_PART(testBlocksShareTheTime)
     moved.transform([i](const Vec3& p) { return Vec3{ p[0] + 100.0 * i, p[1], p[2] }; });
     input->SetBlock(i, toGrid(moved));
   }
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(input);
-  filter->SetPreset(0);
-  filter->AddObjectiveByName("imr", -1, 1.0, 0);
-  filter->SetRelativeChange(0.0);
-  filter->SetGradientNorm(0.0);
-  filter->SetTimeLimit(0.2);
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(input), SetPreset(0),
+    AddObjectiveByName("imr", -1, 1.0, 0), SetRelativeChange(0.0), SetGradientNorm(0.0),
+    SetTimeLimit(0.2), Update());
   vtkTable* history = filter->GetHistory();
   const vtkIdType rows = history->GetNumberOfRows();
   vtkIdType ofLast = 0; // the input, and an iteration

@@ -150,8 +150,7 @@ void testOneProcess(vtkMPIController* controller)
   const Context context("one process");
   const MeshData whole = jittered(CellType::Tetrahedron, 4, 0.25);
   const auto pieceOf = cutBy(whole, Cut::Slabs, 2);
-  vtkNew<vtkAppendFilter> append;
-  append->MergePointsOff();
+  TAUTLINE_NEW(vtkAppendFilter, append, MergePointsOff());
   RankPart both;
   for (int piece = 0; piece < 2; ++piece)
   {
@@ -161,10 +160,9 @@ void testOneProcess(vtkMPIController* controller)
   }
   append->Update();
   // vtkAppendFilter keeps the array of the ids, but not what it is.
-  vtkNew<vtkUnstructuredGrid> grid;
-  grid->ShallowCopy(append->GetOutput());
-  grid->GetPointData()->SetGlobalIds(grid->GetPointData()->GetArray("point ids"));
-  grid->GetCellData()->SetGlobalIds(nullptr);
+  TAUTLINE_NEW(vtkUnstructuredGrid, grid, ShallowCopy(append->GetOutput()),
+    GetPointData()->SetGlobalIds(grid->GetPointData()->GetArray("point ids")),
+    GetCellData()->SetGlobalIds(nullptr));
   TAUTLINE_CHECK(grid->GetNumberOfPoints() > whole.numberOfPoints());
   const auto set = [](auto* filter) { filter->SetMergeCoincidentPoints(true); };
   vtkNew<vtkMeshOptimizer> serial, optimizer, apart;
@@ -182,29 +180,22 @@ void testOneProcess(vtkMPIController* controller)
     const double* last = &points[3 * both.pointOf[p]];
     TAUTLINE_CHECK(norm(place - Vec3{ last[0], last[1], last[2] }) <= 4 * rounding);
   }
-  vtkNew<vtkMeshImprover> improver;
-  improver->SetInputData(grid);
-  improver->Update();
+  TAUTLINE_NEW(vtkMeshImprover, improver, SetInputData(grid), Update());
   TAUTLINE_CHECK(remarked(improver->GetSummary()));
   const auto pointsOf = [](vtkMeshImprover* filter)
   { return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPoints(); };
   const vtkIdType joined = pointsOf(improver);
   TAUTLINE_CHECK(joined < grid->GetNumberOfPoints());
   // Also beside triangles, which the output does not have.
-  vtkNew<vtkUnstructuredGrid> mixed;
-  mixed->DeepCopy(grid);
+  TAUTLINE_NEW(vtkUnstructuredGrid, mixed, DeepCopy(grid));
   vtkNew<vtkIdList> corners;
   mixed->GetCellPoints(0, corners);
   corners->SetNumberOfIds(3);
-  mixed->InsertNextCell(VTK_TRIANGLE, corners);
-  mixed->GetCellData()->Initialize();
-  improver->SetInputData(mixed);
-  improver->Update();
+  TAUTLINE_SET(mixed, InsertNextCell(VTK_TRIANGLE, corners), GetCellData()->Initialize());
+  TAUTLINE_SET(improver, SetInputData(mixed), Update());
   TAUTLINE_CHECK(remarked(improver->GetSummary()));
   TAUTLINE_CHECK(pointsOf(improver) < grid->GetNumberOfPoints());
-  vtkNew<vtkMeshPerturbation> perturbation;
-  perturbation->SetInputData(grid);
-  perturbation->Update();
+  TAUTLINE_NEW(vtkMeshPerturbation, perturbation, SetInputData(grid), Update());
   TAUTLINE_CHECK(remarked(perturbation->GetSummary()));
   // Without ids they are apart, as before.
   grid->GetPointData()->SetGlobalIds(nullptr);
@@ -273,8 +264,7 @@ void testImprover(vtkMPIController* controller)
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestMotionCopies)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(controller);
   const MeshData tets = jittered(CellType::Tetrahedron, 4, 0.25);
   TAUTLINE_RUN(testFilter<vtkMeshOptimizer>("optimize", controller, tets, false,

@@ -40,8 +40,7 @@ void testFilter(const char* name, vtkMPIController* controller, const MeshData& 
   const Context context(name);
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
   const auto all = [](Index) { return 0; };
-  vtkNew<Filter> serial;
-  serial->ReproducibleOrderOn();
+  TAUTLINE_NEW(Filter, serial, ReproducibleOrderOn());
   // Every process computes what one would, without the others.
   vtkMultiProcessController::SetGlobalController(nullptr);
   const std::vector<double> expected = pointsOf(whole, partOf(whole, 0, all), set, serial.Get());
@@ -66,8 +65,7 @@ void testFilter(const char* name, vtkMPIController* controller, const MeshData& 
   {
     const Context inner("divided anew " + std::to_string(how));
     const RankPart part = partOf(whole, rank, all);
-    vtkNew<Filter> filter;
-    filter->SetRedistribute(how);
+    TAUTLINE_NEW(Filter, filter, SetRedistribute(how));
     checkSame(pointsOf(whole, part, set, filter.Get()), expected);
     check(serial.Get(), filter.Get(), rank);
     const std::string summary = filter->GetSummary();
@@ -123,9 +121,8 @@ void testOptimizer(vtkMPIController* controller)
     "rescaled untangling", controller, jittered(CellType::Tetrahedron, 5, 0.5),
     [](vtkMeshOptimizer* filter)
     {
-      filter->AddObjectiveByName("untangle_beta");
-      filter->AddObjectiveByName("imr");
-      filter->SetBeta(0.01);
+      TAUTLINE_SET(
+        filter, AddObjectiveByName("untangle_beta"), AddObjectiveByName("imr"), SetBeta(0.01));
     },
     [](vtkMeshOptimizer* serial, vtkMeshOptimizer* ranks, int rank)
     {
@@ -414,9 +411,10 @@ void testMostlyInverted(vtkMPIController* controller)
     serial->SetInputData(gridOf(partOf(*whole, 0, [](Index) { return 0; })));
     serial->Update();
     vtkMultiProcessController::SetGlobalController(controller);
-    ranks->SetInputData(gridOf(partOf(*whole, controller->GetLocalProcessId(),
-      cutBy(*whole, Cut::Random, controller->GetNumberOfProcesses()))));
-    ranks->Update();
+    TAUTLINE_SET(ranks,
+      SetInputData(gridOf(partOf(*whole, controller->GetLocalProcessId(),
+        cutBy(*whole, Cut::Random, controller->GetNumberOfProcesses())))),
+      Update());
     const Index before = ranks->GetInvertedBefore();
     TAUTLINE_CHECK_EQUAL(before, serial->GetInvertedBefore());
     TAUTLINE_CHECK(whole == &reversed ? before == 0 : 2 * before > whole->numberOfCells());
@@ -438,8 +436,7 @@ struct ProgressTexts
     : stopAt(std::move(stopAt))
     , stops(stops)
   {
-    vtkNew<vtkCallbackCommand> command;
-    command->SetClientData(this);
+    TAUTLINE_NEW(vtkCallbackCommand, command, SetClientData(this));
     command->SetCallback(
       [](vtkObject* caller, unsigned long, void* data, void*)
       {
@@ -465,16 +462,14 @@ void testAsOneProcess(vtkMPIController* controller)
   { return gridOf(partOf(whole, rank, cutBy(whole, Cut::Slabs, size))); };
   {
     const Context context("iterations");
-    vtkNew<vtkMeshUntangler> filter;
-    filter->SetInputData(pieceOf(tangled));
+    TAUTLINE_NEW(vtkMeshUntangler, filter, SetInputData(pieceOf(tangled)));
     const ProgressTexts texts(filter, "Untangle Mesh: iteration 1, objective ", false);
     filter->Update();
     TAUTLINE_CHECK(texts.found);
   }
   {
     const Context context("stopped while it untangles first");
-    vtkNew<vtkMeshOptimizer> filter;
-    filter->SetInputData(pieceOf(tangled));
+    TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(pieceOf(tangled)));
     const ProgressTexts texts(filter, "Optimize Mesh: iteration 0", rank == 0);
     Messages messages(filter);
     filter->Update();
@@ -491,10 +486,8 @@ void testAsOneProcess(vtkMPIController* controller)
     vtkNew<vtkMeshOptimizer> filter;
     vtkMultiProcessController::SetGlobalController(alone ? nullptr : controller);
     const auto grid = alone ? gridOf(partOf(small, 0, [](Index) { return 0; })) : pieceOf(small);
-    vtkNew<vtkDoubleArray> all;
-    all->SetName("all");
-    all->SetNumberOfTuples(grid->GetNumberOfPoints());
-    all->Fill(1.0);
+    TAUTLINE_NEW(
+      vtkDoubleArray, all, SetName("all"), SetNumberOfTuples(grid->GetNumberOfPoints()), Fill(1.0));
     grid->GetPointData()->AddArray(all);
     filter->SetInputData(grid);
     set(filter);
@@ -537,15 +530,13 @@ void testBlocks(vtkMPIController* controller)
   const auto blocksOf = [](const RankPart& first, const RankPart* second)
   {
     auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
-    blocks->SetNumberOfBlocks(2);
-    blocks->SetBlock(0, numberedGridOf(first));
-    blocks->SetBlock(1, second ? numberedGridOf(*second).Get() : nullptr);
+    TAUTLINE_SET(blocks, SetNumberOfBlocks(2), SetBlock(0, numberedGridOf(first)),
+      SetBlock(1, second ? numberedGridOf(*second).Get() : nullptr));
     return blocks;
   };
   vtkNew<vtkMeshOptimizer> serial, optimizer;
   vtkMultiProcessController::SetGlobalController(nullptr);
-  serial->SetInputDataObject(0, blocksOf(all, &all));
-  serial->Update();
+  TAUTLINE_SET(serial, SetInputDataObject(0, blocksOf(all, &all)), Update());
   vtkMultiProcessController::SetGlobalController(controller);
   optimizer->SetInputDataObject(0, blocksOf(part, rank == size - 1 ? &all : nullptr));
   Messages messages(optimizer);
@@ -630,8 +621,7 @@ void testRefusals(vtkMPIController* controller)
     const Context context(text);
     RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
     change(part);
-    vtkNew<vtkMeshOptimizer> filter;
-    filter->SetInputData(gridOf(part));
+    TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(gridOf(part)));
     set(filter);
     Messages messages(filter);
     filter->Update();
@@ -642,11 +632,7 @@ void testRefusals(vtkMPIController* controller)
   const auto none = [](auto&&) {};
   refused(
     wording("switch-animation-off"),
-    [](vtkMeshOptimizer* filter)
-    {
-      filter->AnimationOn();
-      filter->ReproducibleOrderOn();
-    },
+    [](vtkMeshOptimizer* filter) { TAUTLINE_SET(filter, AnimationOn(), ReproducibleOrderOn()); },
     none);
   refused(
     "'none'",
@@ -675,9 +661,8 @@ void testUntanglerFailures(vtkMPIController* controller)
     {
       grid->GetPointData()->RemoveArray("fixed");
     }
-    vtkNew<vtkMeshUntangler> filter;
-    filter->SetInputData(grid);
-    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "fixed");
+    TAUTLINE_NEW(vtkMeshUntangler, filter, SetInputData(grid),
+      SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "fixed"));
     Messages messages(filter);
     filter->Update();
     TAUTLINE_CHECK(messages.has("In process " + std::to_string(wrong) + ": "));
@@ -686,8 +671,7 @@ void testUntanglerFailures(vtkMPIController* controller)
       filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL), 0);
     // A point of it is not finite: the mesh is gathered, and all say why.
     part.data.points[7] = rank == wrong ? std::nan("") : part.data.points[7];
-    vtkNew<vtkMeshUntangler> gathered;
-    gathered->SetInputData(gridOf(part));
+    TAUTLINE_NEW(vtkMeshUntangler, gathered, SetInputData(gridOf(part)));
     Messages others(gathered);
     gathered->Update();
     TAUTLINE_CHECK(!others.has("ERROR: "));
@@ -705,8 +689,7 @@ void testUntanglerFailures(vtkMPIController* controller)
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestMotionRanks)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(controller);
   TAUTLINE_RUN(testOptimizer(controller));
   TAUTLINE_RUN(testGuard(controller));

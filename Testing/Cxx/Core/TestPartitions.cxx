@@ -32,8 +32,7 @@ constexpr Index Parts = 3;
 
 void addIds(vtkDataSetAttributes* data, const std::vector<Index>& values)
 {
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("ids");
+  TAUTLINE_NEW(vtkIdTypeArray, ids, SetName("ids"));
   for (const Index value : values)
   {
     ids->InsertNextValue(value);
@@ -132,10 +131,8 @@ void testFilter(const char* name, const MeshData& mesh, const std::function<void
     choose(filter);
   }
   Messages messages(parts);
-  whole->SetInputDataObject(0, numbered(mesh));
-  whole->Update();
-  parts->SetInputDataObject(0, partitioned<vtkPartitionedDataSet>(mesh));
-  parts->Update();
+  TAUTLINE_SET(whole, SetInputDataObject(0, numbered(mesh)), Update());
+  TAUTLINE_SET(parts, SetInputDataObject(0, partitioned<vtkPartitionedDataSet>(mesh)), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(farthestOf(parts->GetOutputDataObject(0), pointsOf(whole)), 0.0);
   TAUTLINE_CHECK(!contains(parts->GetSummary(), "block"));
@@ -147,8 +144,7 @@ void testFilter(const char* name, const MeshData& mesh, const std::function<void
   far.transform([](Vec3 p) { return p + Vec3{ 100, 0, 0 }; });
   blocks->SetBlock(0, toGrid(far));
   blocks->SetBlock(1, partitioned<vtkMultiPieceDataSet>(mesh));
-  pieces->SetInputDataObject(0, blocks);
-  pieces->Update();
+  TAUTLINE_SET(pieces, SetInputDataObject(0, blocks), Update());
   auto* two = vtkMultiBlockDataSet::SafeDownCast(pieces->GetOutputDataObject(0));
   if (TAUTLINE_CHECK(two && two->GetNumberOfBlocks() == 2))
   {
@@ -169,10 +165,7 @@ TAUTLINE_PART(testMotions)
     "untangle", rough(CellType::Tetrahedron, 4, 0.9), [](vtkMeshUntangler*) {});
   testFilter<vtkMeshWarp>("warp", moved,
     [](vtkMeshWarp* filter)
-    {
-      filter->SetTransformKind(vtkMeshWarp::ROTATION);
-      filter->SetAngle(10);
-    });
+    { TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(10)); });
 }
 
 /// Without ids by coordinates; kept apart where the user wants it.
@@ -196,14 +189,11 @@ TAUTLINE_PART(testSeams)
   Messages messages(lacking);
   const auto set = partitioned<vtkPartitionedDataSet>(moved, false);
   auto* first = set->GetPartition(0);
-  vtkNew<vtkIdTypeArray> marks;
-  marks->SetName("marks");
-  marks->SetNumberOfValues(first->GetNumberOfPoints());
-  marks->Fill(0);
+  TAUTLINE_NEW(vtkIdTypeArray, marks, SetName("marks"),
+    SetNumberOfValues(first->GetNumberOfPoints()), Fill(0));
   first->GetPointData()->AddArray(marks);
-  lacking->SetInputDataObject(0, set);
-  lacking->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "marks");
-  lacking->Update();
+  TAUTLINE_SET(lacking, SetInputDataObject(0, set),
+    SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "marks"), Update());
   TAUTLINE_CHECK(messages.has(wording("marks-of-fixed-points-in-partition-2")));
 }
 
@@ -213,10 +203,8 @@ TAUTLINE_PART(testOthers)
   vtkNew<vtkMeshComparison> compared;
   Messages messages(compared);
   compared->SetInputDataObject(0, partitioned<vtkPartitionedDataSet>(moved));
-  vtkNew<vtkPartitionedDataSet> other;
-  other->SetPartition(0, numbered(moved));
-  compared->SetInputDataObject(1, other);
-  compared->Update();
+  TAUTLINE_NEW(vtkPartitionedDataSet, other, SetPartition(0, numbered(moved)));
+  TAUTLINE_SET(compared, SetInputDataObject(1, other), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK(
     contains(compared->GetSummary(), std::to_string(moved.numberOfCells()) + " equal"));
@@ -267,10 +255,8 @@ TAUTLINE_PART(testQuality)
     TAUTLINE_CHECK_EQUAL(of("Process"), 0);
     TAUTLINE_CHECK_EQUAL(of("Block"), 0);
   }
-  vtkNew<vtkElementQuality> global;
-  global->AddMetricByName("imr");
-  global->SetInputDataObject(0, numbered(mesh));
-  global->Update();
+  TAUTLINE_NEW(vtkElementQuality, global, AddMetricByName("imr"),
+    SetInputDataObject(0, numbered(mesh)), Update());
   TAUTLINE_CHECK(contains(global->GetSummary(), wording("worst-element-with-global-id")));
 }
 
@@ -283,8 +269,7 @@ void expectName(vtkDataObject* data, vtkUnstructuredGrid* wrong, const std::stri
   nodes->SetComponent(0, 0, 1e6);
   vtkNew<vtkMeshOptimizer> filter;
   Messages messages(filter);
-  filter->SetInputDataObject(0, data);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputDataObject(0, data), Update());
   TAUTLINE_CHECK(messages.has("In " + name + ": "));
   nodes->SetComponent(0, 0, right);
 }
@@ -311,8 +296,7 @@ TAUTLINE_PART(testNames)
     {
       pieces->SetPartition(i, make());
     }
-    inner->SetBlock(0, pieces);
-    inner->SetBlock(1, grid);
+    TAUTLINE_SET(inner, SetBlock(0, pieces), SetBlock(1, grid));
     blocks->SetBlock(0, inner);
     expectName(blocks, grid, "block 3");
   }

@@ -45,11 +45,8 @@ MeshData perturbed(CellType type, bool tangled = false)
 {
   const Index n = topology(type).dimension == 2 ? 10 : 4;
   MeshData data = blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
-  PerturbOptions options;
-  options.percentage = 100;
-  options.fraction = 0.7;
-  options.tangledFraction = tangled ? 0.05 : 0.0;
-  options.seed = 3;
+  TAUTLINE_LET(PerturbOptions, options, percentage = 100, fraction = 0.7,
+    tangledFraction = tangled ? 0.05 : 0.0, seed = 3);
   data.points = perturb(Mesh(data.view()), nullptr, options).points;
   return data;
 }
@@ -92,15 +89,13 @@ void testMoving(const char* name, bool tangled, const std::function<void(Filter*
     vtkNew<Filter> filter;
     setUp(filter);
     Messages messages(filter);
-    filter->SetInputData(toGrid(data));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(toGrid(data)), Update());
     const std::vector<double> expected = pointsOf(filter);
     TAUTLINE_CHECK(difference(expected, 0, data.points) > 0.05);
     for (int exponent : exponents)
     {
       const Context context(std::string(name) + ", 2^" + std::to_string(exponent));
-      filter->SetInputData(toGrid(scaled(data, exponent)));
-      filter->Update();
+      TAUTLINE_SET(filter, SetInputData(toGrid(scaled(data, exponent))), Update());
       TAUTLINE_CHECK_NEAR(difference(pointsOf(filter), exponent, expected), 0, 1e-9);
       auto* displacement = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))
                              ->GetPointData()
@@ -120,10 +115,8 @@ void testMoving(const char* name, bool tangled, const std::function<void(Filter*
 TAUTLINE_PART(testStatistics)
 {
   const MeshData data = perturbed(CellType::Tetrahedron);
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->AddObjectiveByName("imr");
-  filter->SetInputData(toGrid(data));
-  filter->Update();
+  TAUTLINE_NEW(
+    vtkMeshOptimizer, filter, AddObjectiveByName("imr"), SetInputData(toGrid(data)), Update());
   const double before = statistic(filter->GetStatistics(), "MeanBefore");
   const double after = statistic(filter->GetStatistics(), "MeanAfter");
   const std::string reason = filter->GetReason();
@@ -131,8 +124,7 @@ TAUTLINE_PART(testStatistics)
   for (int exponent : exponents)
   {
     const Context context("2^" + std::to_string(exponent));
-    filter->SetInputData(toGrid(scaled(data, exponent)));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(toGrid(scaled(data, exponent))), Update());
     TAUTLINE_CHECK_NEAR(statistic(filter->GetStatistics(), "MeanBefore"), before, 1e-12);
     TAUTLINE_CHECK_NEAR(statistic(filter->GetStatistics(), "MeanAfter"), after, 1e-9);
     TAUTLINE_CHECK_EQUAL(std::string(filter->GetReason()), reason);
@@ -145,17 +137,14 @@ TAUTLINE_PART(testTargets)
   const MeshData data = scaled(perturbed(CellType::Triangle), -498);
   vtkNew<vtkMeshOptimizer> filter;
   Messages messages(filter);
-  filter->AddObjectiveByName("mu_size");
-  filter->SetInputData(toGrid(data));
-  filter->Update();
+  TAUTLINE_SET(filter, AddObjectiveByName("mu_size"), SetInputData(toGrid(data)), Update());
   TAUTLINE_CHECK(messages.has(wording("size-barrier-cannot-be-optimized-on-elements")));
   TAUTLINE_CHECK(messages.has(wording("target-by-reference")));
   messages.clear();
-  filter->RemoveAllObjectives();
-  filter->AddObjectiveByName(
-    "mu_shape_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0, vtkMeshOptimizer::REFERENCE);
-  filter->SetInputData(1, toGrid(scaled(blockMesh(CellType::Triangle, 10, 10, 0), -498)));
-  filter->Update();
+  TAUTLINE_SET(filter, RemoveAllObjectives(),
+    AddObjectiveByName(
+      "mu_shape_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0, vtkMeshOptimizer::REFERENCE),
+    SetInputData(1, toGrid(scaled(blockMesh(CellType::Triangle, 10, 10, 0), -498))), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK(statistic(filter->GetStatistics(), "MeanAfter") <
     0.05 * statistic(filter->GetStatistics(), "MeanBefore"));
@@ -169,15 +158,12 @@ TAUTLINE_PART(testOffsets)
   const MeshData data = perturbed(CellType::Triangle);
   vtkNew<vtkMeshOptimizer> filter;
   Messages messages(filter);
-  filter->AddObjectiveByName("imr");
-  filter->SetInputData(toGrid(data));
-  filter->Update();
+  TAUTLINE_SET(filter, AddObjectiveByName("imr"), SetInputData(toGrid(data)), Update());
   const double after = statistic(filter->GetStatistics(), "MeanAfter");
   for (double distance : { 1e3, 1e6, 1e9, 1e12 })
   {
     const Context context("at " + std::to_string(distance));
-    filter->SetInputData(toGrid(moved(data, distance)));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(toGrid(moved(data, distance))), Update());
     TAUTLINE_CHECK(messages.empty());
     // Coordinates of 1e12 have steps of 1.2e-4.
     TAUTLINE_CHECK_NEAR(statistic(filter->GetStatistics(), "MeanAfter"), after, 1e-4);
@@ -192,19 +178,16 @@ TAUTLINE_PART(testOffsets)
     TAUTLINE_CHECK_NEAR(sum, statistic(filter->GetStatistics(), "MeanAfter"), 1e-12);
   }
   // Steps of 0.125 at 1e15.
-  filter->SetInputData(toGrid(moved(data, 1e15)));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(moved(data, 1e15))), Update());
   TAUTLINE_CHECK(messages.has(wording("the-coordinates-are-too-coarse-for-the")));
   TAUTLINE_CHECK(messages.has(wording("double-precision-have-steps-of-0-12")));
   TAUTLINE_CHECK(messages.has(wording("near-the-origin")));
   TAUTLINE_CHECK(filter->GetInvertedAfter() <= filter->GetInvertedBefore());
 
-  vtkNew<vtkElementQuality> quality;
-  quality->SetInputData(toGrid(moved(data, 1e5), VTK_FLOAT));
-  quality->Update();
+  TAUTLINE_NEW(
+    vtkElementQuality, quality, SetInputData(toGrid(moved(data, 1e5), VTK_FLOAT)), Update());
   TAUTLINE_CHECK(quality->GetNotice() == std::string());
-  quality->SetInputData(toGrid(moved(data, 1e6), VTK_FLOAT));
-  quality->Update();
+  TAUTLINE_SET(quality, SetInputData(toGrid(moved(data, 1e6), VTK_FLOAT)), Update());
   TAUTLINE_CHECK(
     std::string(quality->GetNotice()).find(wording("single-precision-have-steps-of-0-062")) !=
     std::string::npos);
@@ -217,30 +200,24 @@ TAUTLINE_PART(testMeasuring)
   vtkNew<vtkElementQuality> quality;
   vtkNew<vtkMeshComparison> comparison;
   Messages messages(quality), compared(comparison);
-  quality->AddMetricByName("scaled_jacobian");
-  quality->SetInputData(toGrid(data));
-  quality->Update();
+  TAUTLINE_SET(quality, AddMetricByName("scaled_jacobian"), SetInputData(toGrid(data)), Update());
   const double mean = statistic(quality->GetStatistics(), "Mean");
   for (int exponent : exponents)
   {
     const Context context("2^" + std::to_string(exponent));
     const MeshData far = scaled(data, exponent);
-    quality->SetInputData(toGrid(far));
-    quality->Update();
+    TAUTLINE_SET(quality, SetInputData(toGrid(far)), Update());
     TAUTLINE_CHECK_EQUAL(statistic(quality->GetStatistics(), "Mean"), mean);
-    comparison->SetInputData(0, toGrid(far));
-    comparison->SetInputData(1, toGrid(scaled(perturbed(CellType::Tetrahedron, true), exponent)));
-    comparison->Update();
+    TAUTLINE_SET(comparison, SetInputData(0, toGrid(far)),
+      SetInputData(1, toGrid(scaled(perturbed(CellType::Tetrahedron, true), exponent))), Update());
     auto* table = vtkTable::SafeDownCast(comparison->GetOutputDataObject(1));
     TAUTLINE_CHECK(statistic(table, "InvertedAfter") > 0 && statistic(table, "Worse") > 0);
   }
   TAUTLINE_CHECK(messages.empty() && compared.empty());
-  quality->AddMetricByName("size");
-  quality->SetInputData(toGrid(scaled(data, -100)));
-  quality->Update();
+  TAUTLINE_SET(
+    quality, AddMetricByName("size"), SetInputData(toGrid(scaled(data, -100))), Update());
   TAUTLINE_CHECK(messages.empty());
-  quality->SetInputData(toGrid(scaled(data, -498)));
-  quality->Update();
+  TAUTLINE_SET(quality, SetInputData(toGrid(scaled(data, -498))), Update());
   TAUTLINE_CHECK(messages.has(wording("size-area-or-volume-of-320-elements")));
 }
 
@@ -255,23 +232,18 @@ TAUTLINE_PART(testRefusals)
         std::string(filter->GetClassName()) + ", 2^" + std::to_string(exponent));
       Messages messages(filter);
       auto grid = toGrid(scaled(data, exponent));
-      vtkNew<vtkDoubleArray> d;
-      d->SetName("d");
-      d->SetNumberOfComponents(3);
-      d->SetNumberOfTuples(grid->GetNumberOfPoints());
-      d->Fill(0);
-      d->FillComponent(0, std::ldexp(0.1, exponent));
+      TAUTLINE_NEW(vtkDoubleArray, d, SetName("d"), SetNumberOfComponents(3),
+        SetNumberOfTuples(grid->GetNumberOfPoints()), Fill(0),
+        FillComponent(0, std::ldexp(0.1, exponent)));
       grid->GetPointData()->AddArray(d);
-      filter->SetInputDataObject(0, grid);
-      filter->Update();
+      TAUTLINE_SET(filter, SetInputDataObject(0, grid), Update());
       TAUTLINE_CHECK(messages.has(text));
       TAUTLINE_CHECK(messages.has(wording("cale-the-mesh-first-filter-transform")));
     }
   };
   const MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
-  vtkNew<vtkMeshWarp> warp;
-  warp->SetMotion(vtkMeshWarp::DISPLACEMENT);
-  warp->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d");
+  TAUTLINE_NEW(vtkMeshWarp, warp, SetMotion(vtkMeshWarp::DISPLACEMENT),
+    SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d"));
   refuses(warp, data, wording("warping-needs-cells-between-5-4e-20"));
   vtkNew<vtkConditionEstimator> condition;
   refuses(condition, data, wording("a-finite-element-matrix-needs-cells-between"));
@@ -281,9 +253,7 @@ TAUTLINE_PART(testRefusals)
   refuses(layer, data, wording("a-nonlocal-model-needs-cells-between"));
 
   Messages messages(neighbors);
-  neighbors->SetInputData(toGrid(data));
-  neighbors->SetHorizon(1e200);
-  neighbors->Update();
+  TAUTLINE_SET(neighbors, SetInputData(toGrid(data)), SetHorizon(1e200), Update());
   TAUTLINE_CHECK(messages.has(wording("the-horizon-has-to-be-between-5e")));
 }
 }

@@ -52,8 +52,7 @@ TAUTLINE_PART(testElliptic)
     TAUTLINE_CHECK(contains(pieces->GetSummary(), said(both)));
     TAUTLINE_CHECK(!contains(pieces->GetSummary(), wording("in-no-element")));
     // Kept apart, the solution is 0 on the seams.
-    pieces->MergeCoincidentPointsOff();
-    pieces->Update();
+    TAUTLINE_SET(pieces, MergeCoincidentPointsOff(), Update());
     TAUTLINE_CHECK(pieces->GetUnknowns() < whole->GetUnknowns());
     TAUTLINE_CHECK(
       pointsOf(pieces)->GetPointData()->GetArray("Solution")->GetRange()[1] < 0.9 * largest);
@@ -76,15 +75,13 @@ TAUTLINE_PART(testElliptic)
 
   // Values that differ between points that are one are no secret.
   const auto grid = toGrid(both.pieces.mesh);
-  vtkNew<vtkDoubleArray> ids;
-  ids->SetName("ids");
+  TAUTLINE_NEW(vtkDoubleArray, ids, SetName("ids"));
   for (Index p = 0; p < both.pieces.mesh.numberOfPoints(); ++p)
   {
     ids->InsertNextValue(static_cast<double>(p));
   }
   grid->GetPointData()->AddArray(ids);
-  pieces->SetInputDataObject(0, grid);
-  pieces->Update();
+  TAUTLINE_SET(pieces, SetInputDataObject(0, grid), Update());
   TAUTLINE_CHECK(contains(pieces->GetSummary(), wording("values-differ-in-the-point-array-ids")));
   TAUTLINE_CHECK_EQUAL(
     component(pointsOf(pieces)->GetPointData(), "ids", ids->GetNumberOfTuples() - 1),
@@ -103,8 +100,7 @@ TAUTLINE_PART(testElliptic)
   }
   vtkNew<vtkEllipticSolver> filter;
   Messages messages(filter);
-  filter->SetInputDataObject(0, toGrid(twice));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputDataObject(0, toGrid(twice)), Update());
   TAUTLINE_CHECK(messages.has(wording("stay-apart")) && messages.has(wording("clean-to-grid")));
   TAUTLINE_CHECK_EQUAL(pointsOf(filter)->GetNumberOfPoints(), 0);
 }
@@ -159,8 +155,7 @@ TAUTLINE_PART(testBlocks)
   whole->SetInputDataObject(0, toGrid(both.whole));
   for (vtkEllipticSolver* each : { solver.Get(), whole.Get() })
   {
-    each->SetRelativeTolerance(Tight);
-    each->Update();
+    TAUTLINE_SET(each, SetRelativeTolerance(Tight), Update());
   }
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(solver->GetUnknowns(), whole->GetUnknowns());
@@ -176,8 +171,7 @@ TAUTLINE_PART(testBlocks)
   TAUTLINE_CHECK_RELATIVE(largest, expected, 1e-10);
   TAUTLINE_CHECK(contains(solver->GetSummary(), wording("blocks-with-a-seam-between-them-are")));
   TAUTLINE_CHECK(contains(solver->GetSummary(), wording("in-block-1-block-2-block-3")));
-  solver->MergeCoincidentPointsOff();
-  solver->Update();
+  TAUTLINE_SET(solver, MergeCoincidentPointsOff(), Update());
   TAUTLINE_CHECK(solver->GetUnknowns() < whole->GetUnknowns());
 
   // Filters that move points treat blocks one by one: a warning, or an error if seams would open.
@@ -185,8 +179,7 @@ TAUTLINE_PART(testBlocks)
   {
     const Context context(filter->GetClassName());
     Messages said(filter);
-    filter->SetInputDataObject(0, blocks);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputDataObject(0, blocks), Update());
     TAUTLINE_CHECK(said.has(std::to_string(both.pieces.copies) +
       " points of a block coincide with those of another one"));
     TAUTLINE_CHECK(said.has(wording("merge-blocks")));
@@ -195,8 +188,7 @@ TAUTLINE_PART(testBlocks)
                      ->GetBlock(3)
                      ->GetNumberOfElements(vtkDataObject::POINT) == grids[3]->GetNumberOfPoints());
     said.clear();
-    filter->SetMergeCoincidentPoints(false);
-    filter->Update();
+    TAUTLINE_SET(filter, SetMergeCoincidentPoints(false), Update());
     TAUTLINE_CHECK(said.empty());
   };
   vtkNew<vtkMeshOptimizer> optimizer;
@@ -208,20 +200,17 @@ TAUTLINE_PART(testBlocks)
   TAUTLINE_CHECK(perturbation->GetNumberOfMovablePoints() == 4 * 9);
   vtkNew<vtkMeshOptimizer> sliding;
   Messages refused(sliding);
-  sliding->SetInputDataObject(0, blocks);
-  sliding->SetBoundary(vtkMeshOptimizer::SLIDING);
-  sliding->Update();
+  TAUTLINE_SET(
+    sliding, SetInputDataObject(0, blocks), SetBoundary(vtkMeshOptimizer::SLIDING), Update());
   TAUTLINE_CHECK(refused.has(wording("blocks-would-come-apart")));
   TAUTLINE_CHECK(refused.has(wording("merge-blocks")));
 
   // Blocks at the same place are no neighbours, and those that are far from each other neither.
-  blocks->SetBlock(1, grids[0]);
-  blocks->SetBlock(2, toGrid(both.whole));
-  blocks->SetBlock(3, nullptr);
+  TAUTLINE_SET(
+    blocks, SetBlock(1, grids[0]), SetBlock(2, toGrid(both.whole)), SetBlock(3, nullptr));
   vtkNew<vtkMeshOptimizer> quiet;
   Messages none(quiet);
-  quiet->SetInputDataObject(0, blocks);
-  quiet->Update();
+  TAUTLINE_SET(quiet, SetInputDataObject(0, blocks), Update());
   TAUTLINE_CHECK(none.empty());
 }
 
@@ -241,8 +230,7 @@ TAUTLINE_PART(testPeridynamics)
   expected->SetInputDataObject(0, whole->GetOutput());
   for (vtkPeridynamicStiffness* each : { stiffness.Get(), expected.Get() })
   {
-    each->SetSolve(true);
-    each->Update();
+    TAUTLINE_SET(each, SetSolve(true), Update());
   }
   TAUTLINE_CHECK(expected->GetCondition() > 2);
   TAUTLINE_CHECK_RELATIVE(stiffness->GetCondition(), expected->GetCondition(), 1e-9);
@@ -275,22 +263,17 @@ TAUTLINE_PART(testPeridynamics)
   TAUTLINE_CHECK_NEAR(farthest(cut, pointsOf(stiffness), pointsOf(expected), "Unknown"), 0, 0);
   TAUTLINE_CHECK(contains(stiffness->GetSummary(), wording("treated-as-one")));
   const double condition = expected->GetCondition();
-  stiffness->MergeCoincidentPointsOff();
-  stiffness->Update();
+  TAUTLINE_SET(stiffness, MergeCoincidentPointsOff(), Update());
   TAUTLINE_CHECK(std::abs(stiffness->GetCondition() / condition - 1) > 1e-3);
   // Blocks are one mesh.
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(1, copy);
-  stiffness->MergeCoincidentPointsOn();
-  stiffness->SetInputDataObject(0, blocks);
-  stiffness->Update();
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(1, copy));
+  TAUTLINE_SET(stiffness, MergeCoincidentPointsOn(), SetInputDataObject(0, blocks), Update());
   TAUTLINE_CHECK_RELATIVE(stiffness->GetCondition(), condition, 1e-12);
   Messages messages(stiffness);
   MeshData twice = cut.whole;
   twice.addCell(CellType::Triangle,
     std::vector<Index>(cut.whole.connectivity.begin(), cut.whole.connectivity.begin() + 3));
-  stiffness->SetInputDataObject(0, toGrid(twice));
-  stiffness->Update();
+  TAUTLINE_SET(stiffness, SetInputDataObject(0, toGrid(twice)), Update());
   TAUTLINE_CHECK(messages.has(wording("1-duplicate-cell-has-the-same-points")));
 }
 }

@@ -43,10 +43,8 @@ TAUTLINE_PART(testOptimize)
         pointsOf(pieces)->GetNumberOfPoints(), both.pieces.mesh.numberOfPoints());
     }
     // Kept apart, the seams are boundary.
-    vtkNew<vtkMeshOptimizer> apart;
-    apart->MergeCoincidentPointsOff();
-    apart->SetInputDataObject(0, toGrid(both.pieces.mesh));
-    apart->Update();
+    TAUTLINE_NEW(vtkMeshOptimizer, apart, MergeCoincidentPointsOff(),
+      SetInputDataObject(0, toGrid(both.pieces.mesh)), Update());
     const Mesh mesh(both.pieces.mesh.view());
     const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
     TAUTLINE_CHECK_EQUAL(apart->GetFreePoints(), std::count(boundary.begin(), boundary.end(), 0));
@@ -72,10 +70,8 @@ TAUTLINE_PART(testOptimize)
     marks->InsertNextValue(p == copy);
     limits->InsertNextValue(p == copy ? 1e-3 : -1);
   }
-  grid->GetPointData()->AddArray(marks);
-  grid->GetPointData()->AddArray(limits);
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputDataObject(0, grid);
+  TAUTLINE_SET(grid, GetPointData()->AddArray(marks), GetPointData()->AddArray(limits));
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputDataObject(0, grid));
   const auto moved = [&]()
   {
     filter->Update();
@@ -99,8 +95,7 @@ TAUTLINE_PART(testUntangle)
   TAUTLINE_CHECK_EQUAL(pieces->GetInvertedAfter(), 0);
   TAUTLINE_CHECK_NEAR(farthest(both, pointsOf(pieces), pointsOf(whole)), 0, 1e-12);
   TAUTLINE_CHECK(contains(pieces->GetSummary(), wording("treated-as-one")));
-  pieces->MergeCoincidentPointsOff();
-  pieces->Update();
+  TAUTLINE_SET(pieces, MergeCoincidentPointsOff(), Update());
   TAUTLINE_CHECK(pieces->GetInvertedAfter() > 0); // tangled points of the seam stay
 }
 
@@ -142,9 +137,7 @@ TAUTLINE_PART(testPerturb)
 
 void addDisplacement(vtkDataSet* grid, double difference, Index at)
 {
-  vtkNew<vtkDoubleArray> displacement;
-  displacement->SetName("Displacement");
-  displacement->SetNumberOfComponents(3);
+  TAUTLINE_NEW(vtkDoubleArray, displacement, SetName("Displacement"), SetNumberOfComponents(3));
   for (vtkIdType p = 0; p < grid->GetNumberOfPoints(); ++p)
   {
     const double* x = grid->GetPoint(p);
@@ -168,17 +161,14 @@ TAUTLINE_PART(testWarp)
       addDisplacement(single, 0, -1);
       for (vtkMeshWarp* each : { pieces.Get(), whole.Get() })
       {
-        each->SetMotion(vtkMeshWarp::DISPLACEMENT);
-        each->SetMethod(method);
-        each->SetInputDataObject(0, each == whole.Get() ? single : grid);
-        each->Update();
+        TAUTLINE_SET(each, SetMotion(vtkMeshWarp::DISPLACEMENT), SetMethod(method),
+          SetInputDataObject(0, each == whole.Get() ? single : grid), Update());
       }
       TAUTLINE_CHECK(messages.empty());
       TAUTLINE_CHECK_NEAR(farthest(both, pointsOf(pieces), pointsOf(whole)), 0, 1e-12);
       TAUTLINE_CHECK(contains(pieces->GetSummary(), said(both)));
       // The same mesh again: nothing is computed anew.
-      pieces->SetAmount(0.5);
-      pieces->Update();
+      TAUTLINE_SET(pieces, SetAmount(0.5), Update());
       TAUTLINE_CHECK_EQUAL(pieces->GetReused(), 1);
     }
   }
@@ -195,14 +185,11 @@ TAUTLINE_PART(testWarp)
   addDisplacement(grid, 0.01, copy);
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
-  filter->SetInputDataObject(0, grid);
-  filter->Update();
+  TAUTLINE_SET(filter, SetMotion(vtkMeshWarp::DISPLACEMENT), SetInputDataObject(0, grid), Update());
   TAUTLINE_CHECK(messages.has(wording("different-displacements")));
   TAUTLINE_CHECK(messages.has(wording("switch-merge-coincident-points-off")));
   messages.clear();
-  filter->MergeCoincidentPointsOff();
-  filter->Update();
+  TAUTLINE_SET(filter, MergeCoincidentPointsOff(), Update());
   TAUTLINE_CHECK(messages.empty());
 }
 
@@ -213,8 +200,7 @@ TAUTLINE_PART(testQuality)
   Messages messages(filter);
   const auto notice = [&](const MeshData& data)
   {
-    filter->SetInputDataObject(0, toGrid(data));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputDataObject(0, toGrid(data)), Update());
     return std::string(filter->GetNotice());
   };
   TAUTLINE_CHECK_EQUAL(notice(both.whole), "");
@@ -266,8 +252,7 @@ TAUTLINE_PART(testDuplicateCells)
   {
     for (const MeshData* mesh : std::initializer_list<const MeshData*>{ &data, &some, &twice })
     {
-      filter->SetInputDataObject(0, toGrid(*mesh));
-      filter->Update();
+      TAUTLINE_SET(filter, SetInputDataObject(0, toGrid(*mesh)), Update());
       TAUTLINE_CHECK_EQUAL(
         contains(filter->GetSummary(), wording("the-same-points-as-another-one")), mesh != &data);
       const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
@@ -284,15 +269,13 @@ TAUTLINE_PART(testDuplicateCells)
   };
   vtkNew<vtkMeshOptimizer> optimizer;
   check(optimizer.Get());
-  vtkNew<vtkMeshPerturbation> perturbation;
-  perturbation->SetPercentage(100);
+  TAUTLINE_NEW(vtkMeshPerturbation, perturbation, SetPercentage(100));
   check(perturbation.Get());
   for (const MeshData* mesh : { &some, &twice })
   {
     vtkNew<vtkEllipticSolver> solver;
     Messages messages(solver);
-    solver->SetInputDataObject(0, toGrid(*mesh));
-    solver->Update();
+    TAUTLINE_SET(solver, SetInputDataObject(0, toGrid(*mesh)), Update());
     TAUTLINE_CHECK(messages.has(wording("clean-cells-to-grid")));
   }
 }
@@ -303,8 +286,7 @@ TAUTLINE_PART(testNothingFree)
   vtkNew<vtkMeshOptimizer> filter;
   const auto summary = [&](const MeshData& data)
   {
-    filter->SetInputDataObject(0, toGrid(data));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputDataObject(0, toGrid(data)), Update());
     return std::string(filter->GetSummary());
   };
   TAUTLINE_CHECK(!contains(summary(all.pieces.mesh), wording("no-vertex-is-free")));
@@ -324,21 +306,17 @@ TAUTLINE_PART(testNothingFree)
   TAUTLINE_CHECK(contains(text, wording("choose-another-boundary-or-refine-the-mesh")));
   TAUTLINE_CHECK(!contains(text, wording("clean-to-grid")));
   const auto grid = toGrid(blockMesh(CellType::Triangle, 4, 4, 0));
-  vtkNew<vtkDoubleArray> marks;
-  marks->SetName("marks");
-  marks->SetNumberOfTuples(grid->GetNumberOfPoints());
-  marks->Fill(1);
+  TAUTLINE_NEW(
+    vtkDoubleArray, marks, SetName("marks"), SetNumberOfTuples(grid->GetNumberOfPoints()), Fill(1));
   grid->GetPointData()->AddArray(marks);
-  filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "marks");
-  filter->SetBoundary(vtkMeshOptimizer::FREE);
-  filter->SetInputDataObject(0, grid);
-  filter->Update();
+  TAUTLINE_SET(filter,
+    SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "marks"),
+    SetBoundary(vtkMeshOptimizer::FREE), SetInputDataObject(0, grid), Update());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("fixed-by-an-array-or-a-selection")));
   vtkNew<vtkMeshUntangler> untangler;
   MeshData tangled = blockMesh(CellType::Triangle, 3, 1, 0);
   std::swap(tangled.points[3 * 1], tangled.points[3 * 2]);
-  untangler->SetInputDataObject(0, toGrid(tangled));
-  untangler->Update();
+  TAUTLINE_SET(untangler, SetInputDataObject(0, toGrid(tangled)), Update());
   TAUTLINE_CHECK(contains(untangler->GetSummary(), wording("switch-fix-boundary-off")));
 }
 }

@@ -94,8 +94,7 @@ void testEvaluation(const Mesh& mesh)
       continue;
     }
     const Context context(info.name);
-    EvaluationOptions options;
-    options.threads = 1;
+    TAUTLINE_LET(EvaluationOptions, options, threads = 1);
     const std::vector<double> values = valuesOf(mesh, info.metric, options);
     const Gradients gradients = gradientsOf(mesh, info.metric, options);
     for (int threads : { 0, 2, 3, mostThreads })
@@ -174,8 +173,7 @@ void testSums(const MeshData& data, const std::vector<Metric>& metrics)
       double firstValue = 0, firstSum = 0;
       for (int threads = 1; threads <= mostThreads; ++threads)
       {
-        EvaluationOptions options;
-        options.threads = threads;
+        TAUTLINE_LET(EvaluationOptions, options, threads = threads);
         const MetricSum sum(mesh, metric, options, power);
         std::vector<double> gradient(data.points.size(), -1.0); // to be overwritten
         const double value = sum.value(), again = sum.valueAndGradient(gradient.data());

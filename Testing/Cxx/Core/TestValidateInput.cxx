@@ -62,8 +62,7 @@ TAUTLINE_PART(testSearches)
     offsets[i] = 4 * i;
   }
   const std::vector<unsigned char> types(Many, 10);
-  CellSizes sizes;
-  sizes.points[10] = 4;
+  TAUTLINE_LET(CellSizes, sizes, points[10] = 4);
   for (const int threads : { 1, 2, 7 })
   {
     TAUTLINE_CHECK_EQUAL(findIdOutside(wide.data(), Many, 6, threads), -1);
@@ -102,8 +101,7 @@ TAUTLINE_PART(testArrays)
   const auto add = [](auto array, const char* name, vtkIdType tuples, bool ofCells)
   {
     const auto mesh = solid();
-    array->SetName(name);
-    array->SetNumberOfTuples(tuples);
+    TAUTLINE_SET(array, SetName(name), SetNumberOfTuples(tuples));
     (ofCells ? static_cast<vtkFieldData*>(mesh->GetCellData()) : mesh->GetPointData())
       ->AddArray(array);
     return mesh;
@@ -161,9 +159,7 @@ TAUTLINE_PART(testCells)
   lines->InsertNextCell(2, line);
   poly->SetLines(lines);
   expect(poly, "");
-  vtkNew<vtkCellArray> polys;
-  polys->DeepCopy(poly->GetPolys());
-  polys->InsertNextCell(2, line);
+  TAUTLINE_NEW(vtkCellArray, polys, DeepCopy(poly->GetPolys()), InsertNextCell(2, line));
   poly->SetPolys(polys);
   expect(poly, wording("cell-9-is-not-a-proper-polygon"));
 }
@@ -175,25 +171,20 @@ TAUTLINE_PART(testOthers)
   expect(mesh, "");
   expect(mesh, wording("point-5-has-a-coordinate-that-is"), { true, 1 });
 
-  vtkNew<vtkStructuredGrid> grid;
-  grid->SetDimensions(3, 3, 2);
-  vtkNew<vtkPoints> points;
-  points->SetNumberOfPoints(17);
+  TAUTLINE_NEW(vtkStructuredGrid, grid, SetDimensions(3, 3, 2));
+  TAUTLINE_NEW(vtkPoints, points, SetNumberOfPoints(17));
   grid->SetPoints(points);
   expect(grid, wording("the-grid-has-17-points-but-its"));
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(2, 2, 2);
+  TAUTLINE_NEW(vtkImageData, image, SetDimensions(2, 2, 2));
   expect(image, "");
   image->SetSpacing(1, NaN, 1);
   expect(image, wording("the-spacing-or-the-origin-of-the"));
 
   vtkNew<vtkTable> table;
   expect(table, wording("the-input-is-a-vtktable-not-a"));
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, table);
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(0, table));
   expect(blocks, wording("none-of-the-blocks-is-a-mesh"));
-  blocks->SetBlock(1, nullptr);
-  blocks->SetBlock(2, solid());
+  TAUTLINE_SET(blocks, SetBlock(1, nullptr), SetBlock(2, solid()));
   expect(blocks, "");
   TAUTLINE_CHECK_EQUAL(
     skippedLeaves(blocks), "Blocks that are not meshes are left out: 1 (vtkTable).");
@@ -206,25 +197,20 @@ TAUTLINE_PART(testSelections)
 {
   const auto problem = [](vtkAbstractArray* ids, int field, vtkDataObject* mesh)
   {
-    vtkNew<vtkSelectionNode> node;
-    node->SetContentType(vtkSelectionNode::INDICES);
-    node->SetFieldType(field);
-    node->SetSelectionList(ids);
-    vtkNew<vtkSelection> selection;
-    selection->AddNode(node);
+    TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+      SetFieldType(field), SetSelectionList(ids));
+    TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
     return selectionProblem(selection, mesh);
   };
   const auto mesh = solid();
-  vtkNew<vtkIdTypeArray> ids;
-  ids->InsertNextValue(26);
+  TAUTLINE_NEW(vtkIdTypeArray, ids, InsertNextValue(26));
   TAUTLINE_CHECK_EQUAL(problem(ids, vtkSelectionNode::POINT, mesh), "");
   ids->InsertNextValue(27);
   TAUTLINE_CHECK_EQUAL(problem(ids, vtkSelectionNode::CELL, mesh), "");
   TAUTLINE_CHECK_EQUAL(problem(ids, vtkSelectionNode::POINT, mesh),
     "The selection names point 27, but the mesh has 27 points: it was made of another mesh, select "
     "again.");
-  vtkNew<vtkStringArray> text;
-  text->InsertNextValue("7");
+  TAUTLINE_NEW(vtkStringArray, text, InsertNextValue("7"));
   TAUTLINE_CHECK_EQUAL(problem(text, vtkSelectionNode::POINT, mesh),
     "The selection lists text instead of ids: select again.");
   TAUTLINE_CHECK_EQUAL(selectionProblem(nullptr, mesh), "");

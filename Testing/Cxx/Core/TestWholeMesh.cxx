@@ -84,8 +84,7 @@ Grid piece(const MeshData& whole, const Owner& ownerOf, int owner, const Cut& cu
   place->SetName("place");
   names->SetName("name");
   ghosts->SetName("vtkGhostType");
-  grid->GetPointData()->AddArray(place);
-  grid->GetCellData()->AddArray(names);
+  TAUTLINE_SET(grid, GetPointData()->AddArray(place), GetCellData()->AddArray(names));
   if (cut.ghosts)
   {
     grid->GetCellData()->AddArray(ghosts);
@@ -243,9 +242,7 @@ TAUTLINE_PART(testCrack)
 TAUTLINE_PART(testOtherTypes)
 {
   // An image in two parts.
-  vtkNew<vtkImageData> image;
-  image->SetExtent(2, 5, 0, 3, 0, 0);
-  image->AllocateScalars(VTK_DOUBLE, 1);
+  TAUTLINE_NEW(vtkImageData, image, SetExtent(2, 5, 0, 3, 0, 0), AllocateScalars(VTK_DOUBLE, 1));
   for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
   {
     image->GetPointData()->GetScalars()->SetComponent(i, 0, static_cast<double>(i));
@@ -275,15 +272,11 @@ TAUTLINE_PART(testOtherTypes)
   const auto surface = [](double shift)
   {
     auto data = vtkSmartPointer<vtkPolyData>::New();
-    vtkNew<vtkPoints> points;
-    points->InsertNextPoint(shift, 0, 0);
-    points->InsertNextPoint(shift + 1, 0, 0);
-    points->InsertNextPoint(shift, 1, 0);
-    data->SetPoints(points);
-    data->Allocate(2);
+    TAUTLINE_NEW(vtkPoints, points, InsertNextPoint(shift, 0, 0), InsertNextPoint(shift + 1, 0, 0),
+      InsertNextPoint(shift, 1, 0));
+    TAUTLINE_SET(data, SetPoints(points), Allocate(2));
     const vtkIdType ids[3] = { 0, 1, 2 };
-    data->InsertNextCell(VTK_TRIANGLE, 3, ids);
-    data->InsertNextCell(VTK_LINE, 2, ids);
+    TAUTLINE_SET(data, InsertNextCell(VTK_TRIANGLE, 3, ids), InsertNextCell(VTK_LINE, 2, ids));
     return data;
   };
   const WholeMesh poly = assemble({ surface(0), surface(1) });

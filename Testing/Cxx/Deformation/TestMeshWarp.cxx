@@ -56,14 +56,11 @@ TAUTLINE_PART(testAffine)
       arrayOf("region", data.numberOfCells(), 1, [](Index i, int) { return double(i % 3); }));
     vtkNew<vtkMeshWarp> filter;
     Messages messages(filter);
-    filter->SetInputData(grid);
-    filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
-    filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d");
-    filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
-    filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "region");
-    filter->SetTensor(2, 1, 4, 0.5, 0, 0.1);
-    filter->AddRegion(0, 1, 5, 2);
-    filter->AddRegion(2, 3, 1, 1);
+    TAUTLINE_SET(filter, SetInputData(grid), SetMotion(vtkMeshWarp::DISPLACEMENT),
+      SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d"),
+      SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c"),
+      SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "region"),
+      SetTensor(2, 1, 4, 0.5, 0, 0.1), AddRegion(0, 1, 5, 2), AddRegion(2, 3, 1, 1));
     const auto check = [&](const std::string& what, double tolerance)
     {
       const Context inner(what);
@@ -98,20 +95,15 @@ TAUTLINE_PART(testAmountZero)
   {
     const MeshData data = movedBlock(CellType::Tetrahedron, 3, 0.2);
     auto grid = toGrid(data, precision);
-    vtkNew<vtkMeshWarp> filter;
-    filter->SetInputData(grid);
-    filter->SetAmount(0);
-    filter->SetTransformKind(vtkMeshWarp::ROTATION);
-    filter->SetAngle(77);
-    filter->Update();
+    TAUTLINE_NEW(vtkMeshWarp, filter, SetInputData(grid), SetAmount(0),
+      SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(77), Update());
     TAUTLINE_CHECK(
       withPointsOf(data, meshOf(filter)).points == withPointsOf(data, grid.Get()).points);
     TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetPoints()->GetDataType(), precision);
     TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetPointData(), "Displacement", 5, 2), 0);
     TAUTLINE_CHECK(meshOf(filter)->GetCellData()->GetArray("TMP shape")->GetRange()[1] < 1e-12);
     TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 1);
-    filter->SetAmount(1);
-    filter->Update();
+    TAUTLINE_SET(filter, SetAmount(1), Update());
     TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetPoints()->GetDataType(), precision);
     TAUTLINE_CHECK(component(meshOf(filter)->GetPointData(), "Displacement", 5, 1) != 0);
   }
@@ -126,11 +118,8 @@ TAUTLINE_PART(testOutputs)
   auto grid = toGrid(data);
   grid->GetPointData()->AddArray(
     arrayOf("kept", data.numberOfPoints(), 1, [](Index i, int) { return double(i); }));
-  filter->SetInputData(grid);
-  filter->SetTransformKind(vtkMeshWarp::ROTATION);
-  filter->SetAxis(1, 1, 1);
-  filter->SetAngle(50);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(grid), SetTransformKind(vtkMeshWarp::ROTATION),
+    SetAxis(1, 1, 1), SetAngle(50), Update());
   TAUTLINE_CHECK(messages.empty());
   const MeshData after = withPointsOf(data, meshOf(filter));
   const Mesh rest(data.view());
@@ -140,15 +129,13 @@ TAUTLINE_PART(testOutputs)
   const std::vector<int> parts = partsOf(data, 5);
   std::vector<unsigned char> hole(parts.size());
   std::transform(parts.begin(), parts.end(), hole.begin(), [](int part) { return part == 2; });
-  PointMotion motion;
-  motion.kind = MotionKind::Rotation;
+  TAUTLINE_LET(PointMotion, motion, kind = MotionKind::Rotation);
   motion.axis = { 1, 1, 1 };
   motion.angle = 50;
   const auto d = displacements(motion, 1, data.numberOfPoints(), data.points.data(), hole.data());
   TAUTLINE_CHECK_EQUAL(
     filter->GetMaximumIterations(), hybridOptimization().stopping.maximumIterations);
-  WarpOptions options;
-  options.prescribed = prescribed.data();
+  TAUTLINE_LET(WarpOptions, options, prescribed = prescribed.data());
   const WarpResult expected = Warper(rest, options).warp(d.data());
   TAUTLINE_CHECK(after.points == expected.points);
 
@@ -195,8 +182,7 @@ TAUTLINE_PART(testOutputs)
   std::vector<double> first;
   for (int threads : { 1, 2, 3 })
   {
-    filter->SetThreads(threads);
-    filter->Update();
+    TAUTLINE_SET(filter, SetThreads(threads), Update());
     TAUTLINE_CHECK(withPointsOf(data, meshOf(filter)).points == after.points);
   }
 }
@@ -213,10 +199,8 @@ TAUTLINE_PART(testReuse)
     "stay", data.numberOfPoints(), 1, [inner](Index i, int) { return double(i == inner); }));
   vtkNew<vtkMeshWarp> filter;
   const Messages warnings(filter); // FEMWARP inverts some, which is not checked here
-  filter->SetInputData(grid);
-  filter->SetMethod(vtkMeshWarp::FEMWARP);
-  filter->SetTransformKind(vtkMeshWarp::ROTATION);
-  filter->SetAngle(60);
+  TAUTLINE_SET(filter, SetInputData(grid), SetMethod(vtkMeshWarp::FEMWARP),
+    SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(60));
   const auto run = [&]
   {
     filter->Update();
@@ -232,44 +216,33 @@ TAUTLINE_PART(testReuse)
     TAUTLINE_CHECK_EQUAL(value(filter->GetStatistics(), "Set-up (s)"), 0);
     TAUTLINE_CHECK_EQUAL(value(filter->GetStatistics(), "Assemble (s)"), 0);
   }
-  vtkNew<vtkMeshWarp> fresh;
-  fresh->SetInputData(grid);
-  fresh->SetMethod(vtkMeshWarp::FEMWARP);
-  fresh->SetTransformKind(vtkMeshWarp::ROTATION);
-  fresh->SetAngle(60);
-  fresh->SetAmount(0.8);
-  fresh->Update();
+  TAUTLINE_NEW(vtkMeshWarp, fresh, SetInputData(grid), SetMethod(vtkMeshWarp::FEMWARP),
+    SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(60), SetAmount(0.8), Update());
   TAUTLINE_CHECK(
     distance(withPointsOf(data, meshOf(fresh)), withPointsOf(data, meshOf(filter))) < 1e-13);
 
-  filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
-  filter->SetTranslation(0.5, 0, 0);
+  TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::TRANSLATION), SetTranslation(0.5, 0, 0));
   TAUTLINE_CHECK_EQUAL(run(), 1); // another motion of the same points
   filter->SetInputData(toGrid(data));
   TAUTLINE_CHECK_EQUAL(run(), 1); // another object with the same mesh
   auto mine = toGrid(data);
   auto d = arrayOf("d", data.numberOfPoints(), 3, [](Index, int) { return 0.1; });
   mine->GetPointData()->AddArray(d);
-  filter->SetInputData(mine);
-  filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d");
+  TAUTLINE_SET(filter, SetInputData(mine), SetMotion(vtkMeshWarp::DISPLACEMENT),
+    SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d"));
   TAUTLINE_CHECK_EQUAL(run(), 1);
   d->FillComponent(1, 0.2); // in place, as a solver that moves its boundary does
   d->Modified();
   mine->Modified();
   TAUTLINE_CHECK_EQUAL(run(), 1);
   TAUTLINE_CHECK_NEAR(pointOf(meshOf(filter), inner)[1] - data.point(inner)[1], 0.16, 1e-12);
-  filter->SetMotion(vtkMeshWarp::TRANSFORM);
-  filter->SetMethod(vtkMeshWarp::BIHARMONIC);
+  TAUTLINE_SET(filter, SetMotion(vtkMeshWarp::TRANSFORM), SetMethod(vtkMeshWarp::BIHARMONIC));
   TAUTLINE_CHECK_EQUAL(run(), 0);
-  filter->SetMethod(vtkMeshWarp::FEMWARP);
-  filter->SetInputData(grid);
+  TAUTLINE_SET(filter, SetMethod(vtkMeshWarp::FEMWARP), SetInputData(grid));
   TAUTLINE_CHECK_EQUAL(run(), 0);
   filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "stay");
   TAUTLINE_CHECK_EQUAL(run(), 0); // another point is given
-  grid->GetPoints()->SetPoint(0, -1e-3, 0, 0);
-  grid->GetPoints()->Modified();
-  grid->Modified();
+  TAUTLINE_SET(grid, GetPoints()->SetPoint(0, -1e-3, 0, 0), GetPoints()->Modified(), Modified());
   TAUTLINE_CHECK_EQUAL(run(), 0); // the same object with other points
   filter->SetAmount(0.5);
   TAUTLINE_CHECK_EQUAL(run(), 1);
@@ -283,15 +256,11 @@ TAUTLINE_PART(testSimilarity)
     const Context context(topology(type).name);
     const bool flat = topology(type).dimension == 2;
     const MeshData data = shuffled(movedBlock(type, flat ? 8 : 4, 0.2), 3);
-    vtkNew<vtkTransform> transform;
-    transform->Translate(3, -2, flat ? 0 : 1);
-    transform->RotateWXYZ(170, 0, 0, 1);
-    transform->Scale(2, 2, 2);
+    TAUTLINE_NEW(vtkTransform, transform, Translate(3, -2, flat ? 0 : 1), RotateWXYZ(170, 0, 0, 1),
+      Scale(2, 2, 2));
     vtkNew<vtkMeshWarp> filter;
     Messages messages(filter);
-    filter->SetInputData(toGrid(data));
-    filter->SetTransform(transform);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetTransform(transform), Update());
     TAUTLINE_CHECK(messages.empty());
     MeshData expected = data;
     expected.transform(
@@ -319,13 +288,8 @@ TAUTLINE_PART(testScales)
       {
         x *= scale;
       }
-      vtkNew<vtkMeshWarp> filter;
-      filter->SetInputData(toGrid(data));
-      filter->SetMethod(method);
-      filter->SetTransformKind(vtkMeshWarp::ROTATION);
-      filter->SetAxis(1, 2, 3);
-      filter->SetAngle(35);
-      filter->Update();
+      TAUTLINE_NEW(vtkMeshWarp, filter, SetInputData(toGrid(data)), SetMethod(method),
+        SetTransformKind(vtkMeshWarp::ROTATION), SetAxis(1, 2, 3), SetAngle(35), Update());
       std::vector<double> points = withPointsOf(data, meshOf(filter)).points;
       double largest = 0;
       const std::size_t offset = method == vtkMeshWarp::HYBRID ? 0 : points.size();
@@ -352,22 +316,19 @@ TAUTLINE_PART(testBlocks)
   {
     std::swap(reversed.connectivity[4 * cell], reversed.connectivity[4 * cell + 1]);
   }
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, toGrid(data));
-  blocks->SetBlock(2, toGrid(reversed, VTK_FLOAT));
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(0, toGrid(data)),
+    SetBlock(2, toGrid(reversed, VTK_FLOAT)));
   vtkNew<vtkUnstructuredGrid> empty;
   blocks->SetBlock(3, empty);
   vtkNew<vtkMeshWarp> filter, single;
   Messages messages(filter);
   for (vtkMeshWarp* each : { filter.Get(), single.Get() })
   {
-    each->SetTransformKind(vtkMeshWarp::ROTATION);
-    each->SetAngle(40);
-    each->SetMethod(vtkMeshWarp::FEMWARP);
+    TAUTLINE_SET(
+      each, SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(40), SetMethod(vtkMeshWarp::FEMWARP));
   }
   filter->SetInputData(blocks);
-  single->SetInputData(toGrid(data));
-  single->Update();
+  TAUTLINE_SET(single, SetInputData(toGrid(data)), Update());
   filter->Update();
   TAUTLINE_CHECK(messages.empty());
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
@@ -381,8 +342,7 @@ TAUTLINE_PART(testBlocks)
   TAUTLINE_CHECK_EQUAL(filter->GetStatistics()->GetValueByName(1, "Block").ToString(), "block 3");
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("in-block-1-femwarp-all")));
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("it-is-treated-as-if-its-cells")));
-  filter->SetAmount(0.5);
-  filter->Update();
+  TAUTLINE_SET(filter, SetAmount(0.5), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetReused(), 2);
 }
 }

@@ -23,22 +23,19 @@ TAUTLINE_PART(testRefusals)
 {
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
-  filter->SetTranslation(0.1, 0, 0);
+  TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::TRANSLATION), SetTranslation(0.1, 0, 0));
   const auto refused = [&](vtkDataObject* input, const char* text)
   {
     const Context context(text);
     messages.clear();
-    filter->SetInputData(input);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(input), Update());
     TAUTLINE_CHECK(messages.has(text));
     auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
     TAUTLINE_CHECK(!output || output->GetNumberOfPoints() == 0);
     TAUTLINE_CHECK(std::string(filter->GetSummary()).empty());
   };
   const MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(3, 3, 3);
+  TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
   refused(image, wording("image-data-to-point-set"));
   MeshData wrong = data;
   wrong.setPoint(6, { 2.5, 2.6, 0 });
@@ -58,26 +55,21 @@ TAUTLINE_PART(testRefusals)
   wrong.addCell(VTK_VERTEX, { 0 });
   refused(toGrid(wrong), wording("there-is-no-element"));
   refused(toGrid(blockMesh(CellType::Wedge, 2, 2, 2)), "wedges");
-  vtkNew<vtkSphereSource> sphere;
-  sphere->Update();
+  TAUTLINE_NEW(vtkSphereSource, sphere, Update());
   refused(sphere->GetOutput(), wording("no-boundary"));
   wrong = data;
   wrong.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[0] }; });
   refused(toGrid(wrong), wording("a-surface-in-space"));
   filter->SetTranslation(0.1, 0, 0.1);
   refused(toGrid(data), wording("lead-out-of-its-plane"));
-  filter->SetTransformKind(vtkMeshWarp::ROTATION);
-  filter->SetAxis(0, 0, 0);
+  TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::ROTATION), SetAxis(0, 0, 0));
   refused(toGrid(data), wording("the-axis-of-the-motion-has-no"));
-  filter->SetTransformKind(vtkMeshWarp::SCALING);
-  filter->SetScaleFactors(1, 0, 1);
+  TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::SCALING), SetScaleFactors(1, 0, 1));
   refused(toGrid(data), wording("a-scale-factor-is-not-positive"));
-  filter->SetTransformKind(vtkMeshWarp::BENDING);
-  filter->SetAxis(1, 0, 0);
+  TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::BENDING), SetAxis(1, 0, 0));
   refused(toGrid(data), wording("lies-along-the-axis"));
   filter->SetTransformKind(vtkMeshWarp::MATRIX);
-  vtkNew<vtkTransform> mirror;
-  mirror->Scale(-1, 1, 1);
+  TAUTLINE_NEW(vtkTransform, mirror, Scale(-1, 1, 1));
   filter->SetTransform(mirror);
   refused(toGrid(data), wording("mirrors-or-flattens"));
 
@@ -98,10 +90,8 @@ TAUTLINE_PART(testRefusals)
   }
   grid->GetPointData()->AddArray(d);
   refused(grid, wording("the-array-d-is-nan-or-infinite"));
-  d->SetComponent(2, 0, 0.01);
-  d->SetComponent(2, 1, 0.01);
-  d->SetComponent(24, 0, 0.01);
-  d->SetComponent(24, 1, 0.01);
+  TAUTLINE_SET(d, SetComponent(2, 0, 0.01), SetComponent(2, 1, 0.01), SetComponent(24, 0, 0.01),
+    SetComponent(24, 1, 0.01));
   messages.clear();
   d->Modified();
   filter->Update(); // what is inside is not read
@@ -138,8 +128,7 @@ TAUTLINE_PART(testRefusals)
 
   vtkNew<vtkUnstructuredGrid> empty;
   messages.clear();
-  filter->SetInputData(empty);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(empty), Update());
   TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
 }
 
@@ -150,8 +139,7 @@ TAUTLINE_PART(testImpossible)
   const std::vector<int> parts = partsOf(data, 7);
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(data));
-  filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
+  TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetTransformKind(vtkMeshWarp::TRANSLATION));
   filter->SetTranslation(3.5, 0, 0); // the hole crosses the outer boundary
   filter->Update();
   TAUTLINE_CHECK(filter->GetInverted() > 0);
@@ -179,8 +167,7 @@ TAUTLINE_PART(testOtherCells)
   data.addCell(VTK_VERTEX, { 24 });
   const Index lonely = data.addPoint({ 9, 9, 0 });
   auto grid = toGrid(data);
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
   for (Index cell = 0; cell < data.numberOfCells(); ++cell)
   {
     ghosts->InsertNextValue(cell >= 60 && cell < 72 ? vtkDataSetAttributes::DUPLICATECELL : 0);
@@ -189,10 +176,8 @@ TAUTLINE_PART(testOtherCells)
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
 
-  filter->SetInputData(grid);
-  filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
-  filter->SetTranslation(0, -0.5, 0);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(grid), SetTransformKind(vtkMeshWarp::TRANSLATION),
+    SetTranslation(0, -0.5, 0), Update());
   TAUTLINE_CHECK(messages.empty());
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {
@@ -205,13 +190,10 @@ TAUTLINE_PART(testOtherCells)
 
   // A volume with the triangles of its surface, as mesh generators write them: as without.
   const MeshData solid = holedBlock(CellType::Tetrahedron, 5);
-  vtkNew<vtkDataSetSurfaceFilter> surface;
-  surface->SetInputData(toGrid(solid));
-  surface->PassThroughPointIdsOn();
-  surface->Update();
+  TAUTLINE_NEW(vtkDataSetSurfaceFilter, surface, SetInputData(toGrid(solid)),
+    PassThroughPointIdsOn(), Update());
   vtkDataArray* ids = surface->GetOutput()->GetPointData()->GetArray("vtkOriginalPointIds");
-  MeshData both;
-  both.points = solid.points;
+  TAUTLINE_LET(MeshData, both, points = solid.points);
   for (vtkIdType cell = 0; cell < surface->GetOutput()->GetNumberOfCells(); ++cell)
   {
     std::vector<Index> nodes;
@@ -236,12 +218,9 @@ TAUTLINE_PART(testOtherCells)
     auto input = toGrid(withTriangles ? both : solid);
     input->GetCellData()->AddArray(arrayOf("c", input->GetNumberOfCells(), 1,
       [&](Index i, int) { return 1.0 + double((withTriangles ? i - triangles : i) % 3); }));
-    each->SetInputData(input);
-    each->SetTransformKind(vtkMeshWarp::ROTATION);
-    each->SetAngle(30);
-    each->SetCoefficients(vtkMeshWarp::PER_CELL);
-    each->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c");
-    each->Update();
+    TAUTLINE_SET(each, SetInputData(input), SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(30),
+      SetCoefficients(vtkMeshWarp::PER_CELL),
+      SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "c"), Update());
   }
   TAUTLINE_CHECK(more.empty());
   TAUTLINE_CHECK(

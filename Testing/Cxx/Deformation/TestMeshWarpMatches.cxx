@@ -29,16 +29,12 @@ TAUTLINE_PART(testTargets)
     auto grid = toGrid(data);
     grid->GetPointData()->AddArray(arrayOf(
       "id", data.numberOfPoints(), 1, [](Index i, int) { return 1000.0 - 3.0 * double(i); }));
-    vtkNew<vtkTransform> transform;
-    transform->Translate(0.25, 0.125, flat ? 0 : 0.5);
-    transform->Scale(1.25, 0.75, 1);
+    TAUTLINE_NEW(
+      vtkTransform, transform, Translate(0.25, 0.125, flat ? 0 : 0.5), Scale(1.25, 0.75, 1));
     const auto moved = [&transform](vtkDataSet* what)
     {
-      vtkNew<vtkTransformFilter> filter;
-      filter->SetInputData(what);
-      filter->SetTransform(transform);
-      filter->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-      filter->Update();
+      TAUTLINE_NEW(vtkTransformFilter, filter, SetInputData(what), SetTransform(transform),
+        SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION), Update());
       return vtkSmartPointer<vtkPointSet>(filter->GetOutput());
     };
     MeshData expected = data;
@@ -50,38 +46,32 @@ TAUTLINE_PART(testTargets)
       });
     vtkNew<vtkMeshWarp> filter;
     Messages messages(filter);
-    filter->SetInputData(grid);
-    filter->SetMotion(vtkMeshWarp::TARGET);
-    filter->SetMethod(vtkMeshWarp::FEMWARP);
+    TAUTLINE_SET(
+      filter, SetInputData(grid), SetMotion(vtkMeshWarp::TARGET), SetMethod(vtkMeshWarp::FEMWARP));
     const auto check = [&](vtkDataSet* target, const char* how)
     {
       const Context inner(how);
-      filter->SetInputData(1, target);
-      filter->Update();
+      TAUTLINE_SET(filter, SetInputData(1, target), Update());
       TAUTLINE_CHECK(messages.empty());
       messages.clear();
       TAUTLINE_CHECK(contains(filter->GetSummary(), how));
       TAUTLINE_CHECK(distance(withPointsOf(data, meshOf(filter)), expected) < 1e-10);
     };
     check(moved(grid), "as the same mesh");
-    vtkNew<vtkDataSetSurfaceFilter> surface;
-    surface->SetInputData(grid);
-    surface->PassThroughPointIdsOn();
-    surface->Update();
+    TAUTLINE_NEW(
+      vtkDataSetSurfaceFilter, surface, SetInputData(grid), PassThroughPointIdsOn(), Update());
     check(moved(surface->GetOutput()), "as the boundary extracted from the mesh");
     vtkNew<vtkFeatureEdges> edges;
     if (flat)
     {
-      edges->SetInputConnection(surface->GetOutputPort());
-      edges->Update();
+      TAUTLINE_SET(edges, SetInputConnection(surface->GetOutputPort()), Update());
       check(moved(edges->GetOutput()), "as the boundary extracted from the mesh");
     }
 
     // The points alone, of those that move; and the boundary's cells among all points.
     const auto boundary = Mesh(data.view()).boundary().isBoundaryPoint;
     vtkNew<vtkPolyData> cloud, inMesh;
-    vtkNew<vtkPoints> places;
-    places->SetDataTypeToDouble();
+    TAUTLINE_NEW(vtkPoints, places, SetDataTypeToDouble());
     for (Index i = 0; i < data.numberOfPoints(); ++i)
     {
       if (boundary[i])
@@ -107,19 +97,14 @@ TAUTLINE_PART(testTargets)
     filter->SetTargetIds("id");
     check(moved(skin), "by point ids");
     skin->GetPointData()->GetArray("id")->SetComponent(3, 0, -7);
-    filter->SetInputData(1, moved(skin));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(1, moved(skin)), Update());
     TAUTLINE_CHECK(messages.has(wording("has-1-values-that-are-no-values")));
-    filter->SetTargetIds("missing");
-    filter->Update();
+    TAUTLINE_SET(filter, SetTargetIds("missing"), Update());
     TAUTLINE_CHECK(messages.has(wording("the-target-has-no-point-array-missing")));
     messages.clear();
-    filter->SetTargetIds("None");
-    filter->SetCorrespondence(vtkMeshWarp::POINT_IDS);
-    filter->Update();
+    TAUTLINE_SET(filter, SetTargetIds("None"), SetCorrespondence(vtkMeshWarp::POINT_IDS), Update());
     TAUTLINE_CHECK(messages.has(wording("no-array-of-point-ids-is-chosen")));
-    filter->SetCorrespondence(vtkMeshWarp::SAME_MESH);
-    filter->Update();
+    TAUTLINE_SET(filter, SetCorrespondence(vtkMeshWarp::SAME_MESH), Update());
     TAUTLINE_CHECK(flat || messages.has(wording("it-is-not-the-same-mesh")));
   }
 }
@@ -130,18 +115,12 @@ TAUTLINE_PART(testProjection)
   const Index n = 5;
   const MeshData data = holedBlock(CellType::Tetrahedron, n);
   const std::vector<int> parts = partsOf(data, n);
-  vtkNew<vtkSphereSource> sphere;
-  sphere->SetCenter(2.5, 2.5, 2.5);
-  sphere->SetRadius(1);
-  sphere->SetThetaResolution(60);
-  sphere->SetPhiResolution(60);
-  sphere->Update();
+  TAUTLINE_NEW(vtkSphereSource, sphere, SetCenter(2.5, 2.5, 2.5), SetRadius(1),
+    SetThetaResolution(60), SetPhiResolution(60), Update());
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(data));
-  filter->SetMotion(vtkMeshWarp::TARGET);
-  filter->SetInputConnection(1, sphere->GetOutputPort());
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetMotion(vtkMeshWarp::TARGET),
+    SetInputConnection(1, sphere->GetOutputPort()), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(filter->GetInverted(), 0);
   for (Index i = 0; i < data.numberOfPoints(); ++i)
@@ -159,12 +138,9 @@ TAUTLINE_PART(testProjection)
   // A block of one data set is that data set; a volume stands for its surface.
   vtkNew<vtkMultiBlockDataSet> blocks;
   blocks->SetBlock(1, toGrid(movedBlock(CellType::Hexahedron, 5, 0)));
-  filter->SetInputConnection(1, nullptr);
-  filter->SetInputData(1, blocks);
-  filter->SetCorrespondence(vtkMeshWarp::CLOSEST_POINT);
-  filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
-  filter->SetAmount(0.25);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputConnection(1, nullptr), SetInputData(1, blocks),
+    SetCorrespondence(vtkMeshWarp::CLOSEST_POINT), SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY),
+    SetAmount(0.25), Update());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("the-farthest-of-them-2-0")));
   TAUTLINE_CHECK_NEAR(value(filter->GetStatistics(), "Largest displacement"), 0.5, 1e-12);
   blocks->SetBlock(2, toGrid(data));
@@ -174,22 +150,16 @@ TAUTLINE_PART(testProjection)
 
   // In the plane it is a curve.
   const MeshData square = blockMesh(CellType::Triangle, 4, 4, 0);
-  vtkNew<vtkLineSource> line;
-  line->SetPoint1(4.5, -1, 0);
-  line->SetPoint2(4.5, 5, 0);
-  line->Update();
+  TAUTLINE_NEW(vtkLineSource, line, SetPoint1(4.5, -1, 0), SetPoint2(4.5, 5, 0), Update());
   vtkNew<vtkMeshWarp> planar;
   Messages others(planar);
   auto grid = toGrid(square);
   grid->GetPointData()->AddArray(arrayOf("right", square.numberOfPoints(), 1,
     [&](Index i, int) { return double(square.point(i)[0] == 4); }));
-  planar->SetInputData(grid);
-  planar->SetMotion(vtkMeshWarp::TARGET);
-  planar->SetMethod(vtkMeshWarp::FEMWARP);
-  planar->SetMovedPart(vtkMeshWarp::ARRAY_VALUES);
-  planar->SetInputArrayToProcess(1, 0, 0, OnPoints, "right");
-  planar->SetInputData(1, line->GetOutput());
-  planar->Update();
+  TAUTLINE_SET(planar, SetInputData(grid), SetMotion(vtkMeshWarp::TARGET),
+    SetMethod(vtkMeshWarp::FEMWARP), SetMovedPart(vtkMeshWarp::ARRAY_VALUES),
+    SetInputArrayToProcess(1, 0, 0, OnPoints, "right"), SetInputData(1, line->GetOutput()),
+    Update());
   TAUTLINE_CHECK(others.empty());
   for (Index i = 0; i < square.numberOfPoints(); ++i)
   {
@@ -198,20 +168,16 @@ TAUTLINE_PART(testProjection)
     TAUTLINE_CHECK(p[0] > 0 || q == p);
   }
   vtkNew<vtkPolyData> cloud;
-  vtkNew<vtkPoints> one;
-  one->InsertNextPoint(0, 0, 0);
+  TAUTLINE_NEW(vtkPoints, one, InsertNextPoint(0, 0, 0));
   cloud->SetPoints(one);
-  planar->SetInputData(1, cloud);
-  planar->Update();
+  TAUTLINE_SET(planar, SetInputData(1, cloud), Update());
   TAUTLINE_CHECK(others.has(wording("the-target-has-no-curve-the-boundary")));
   others.clear();
   vtkNew<vtkPolyData> nothing;
-  planar->SetInputData(1, nothing);
-  planar->Update();
+  TAUTLINE_SET(planar, SetInputData(1, nothing), Update());
   TAUTLINE_CHECK(others.has(wording("the-target-is-empty")));
   others.clear();
-  planar->SetInputData(1, nullptr);
-  planar->Update();
+  TAUTLINE_SET(planar, SetInputData(1, nullptr), Update());
   TAUTLINE_CHECK(others.has(wording("there-is-no-target")));
 }
 }

@@ -26,8 +26,7 @@ TAUTLINE_PART(testPaths)
   const Vec3 middle = { 2.5, 2.5, 0 };
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(data));
-  filter->SetMethod(vtkMeshWarp::FEMWARP);
+  TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetMethod(vtkMeshWarp::FEMWARP));
   const auto check = [&](const std::function<Vec3(const Vec3&)>& where)
   {
     filter->Update();
@@ -51,15 +50,11 @@ TAUTLINE_PART(testPaths)
   for (double amount : { 0.25, 0.5, 1.0, 1.5 })
   {
     const Context context("amount " + std::to_string(amount));
-    filter->SetAmount(amount);
-    filter->SetTransformKind(vtkMeshWarp::ROTATION);
-    filter->SetAngle(40);
+    TAUTLINE_SET(filter, SetAmount(amount), SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(40));
     check([&](const Vec3& p) { return turned(p, middle, 40 * amount); });
-    filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
-    filter->SetTranslation(0.5, -0.25, 0);
+    TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::TRANSLATION), SetTranslation(0.5, -0.25, 0));
     check([&](const Vec3& p) { return p + amount * Vec3{ 0.5, -0.25, 0 }; });
-    filter->SetTransformKind(vtkMeshWarp::SCALING);
-    filter->SetScaleFactors(1.5, 0.75, 1);
+    TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::SCALING), SetScaleFactors(1.5, 0.75, 1));
     check(
       [&](const Vec3& p)
       {
@@ -69,26 +64,19 @@ TAUTLINE_PART(testPaths)
     // The same turn about a point outside by a matrix: the way is an arc about that point, not a
     // chord.
     filter->SetTransformKind(vtkMeshWarp::MATRIX);
-    vtkNew<vtkTransform> transform;
-    transform->Translate(2, 3, 0);
-    transform->RotateZ(30);
-    transform->Translate(-2, -3, 0);
+    TAUTLINE_NEW(vtkTransform, transform, Translate(2, 3, 0), RotateZ(30), Translate(-2, -3, 0));
     filter->SetTransform(transform);
     check([&](const Vec3& p) { return turned(p, { 2, 3, 0 }, 30 * amount); });
     // Changing the transform runs the filter again.
-    transform->Identity();
-    transform->Translate(0.25, 0, 0);
+    TAUTLINE_SET(transform, Identity(), Translate(0.25, 0, 0));
     check([&](const Vec3& p) { return p + amount * Vec3{ 0.25, 0, 0 }; });
   }
 
   // Across a plane nothing counts: an interactive box around a flat mesh scales by 0 there.
   for (double across : { 0.0, -1.0, 1e-9 })
   {
-    vtkNew<vtkTransform> transform;
-    transform->RotateZ(40);
-    transform->Scale(1, 1, across);
-    filter->SetAmount(0.5);
-    filter->SetTransform(transform);
+    TAUTLINE_NEW(vtkTransform, transform, RotateZ(40), Scale(1, 1, across));
+    TAUTLINE_SET(filter, SetAmount(0.5), SetTransform(transform));
     check([&](const Vec3& p) { return turned(p, { 0, 0, 0 }, 20); });
   }
 
@@ -98,10 +86,9 @@ TAUTLINE_PART(testPaths)
   Random random(5);
   for (int round = 0; round < 50; ++round)
   {
-    vtkNew<vtkTransform> transform;
-    transform->Translate(random.vector(-3, 3).data());
-    transform->RotateWXYZ(random.uniform(-180, 180), random.vector(-1, 1).data());
-    transform->Scale(random.vector(0.1, 3).data());
+    TAUTLINE_NEW(vtkTransform, transform, Translate(random.vector(-3, 3).data()),
+      RotateWXYZ(random.uniform(-180, 180), random.vector(-1, 1).data()),
+      Scale(random.vector(0.1, 3).data()));
     PointMotion motion;
     std::copy_n(transform->GetMatrix()->GetData(), 16, motion.matrix.begin());
     const auto d =
@@ -126,13 +113,11 @@ TAUTLINE_PART(testBending)
   const double radius = 20 / (Pi / 2);
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(data));
-  filter->SetTransformKind(vtkMeshWarp::BENDING);
-  filter->SetAngle(180);
+  TAUTLINE_SET(
+    filter, SetInputData(toGrid(data)), SetTransformKind(vtkMeshWarp::BENDING), SetAngle(180));
   for (double amount : { 0.5, 1e-7 })
   {
-    filter->SetAmount(amount);
-    filter->Update();
+    TAUTLINE_SET(filter, SetAmount(amount), Update());
     TAUTLINE_CHECK(messages.empty());
     TAUTLINE_CHECK_EQUAL(filter->GetInverted(), 0);
     for (Index i = 0; i < data.numberOfPoints(); ++i)
@@ -150,10 +135,7 @@ TAUTLINE_PART(testBending)
   }
   // Held at a point on the way, what is before does not move; a full turn and more is an ordinary
   // motion.
-  PointMotion motion;
-  motion.kind = MotionKind::Bending;
-  motion.angle = 720;
-  motion.ownCenter = false;
+  TAUTLINE_LET(PointMotion, motion, kind = MotionKind::Bending, angle = 720, ownCenter = false);
   motion.center = { 8, 0, 0 };
   const std::vector<unsigned char> all(data.numberOfPoints(), 1);
   const auto d = displacements(motion, 1, data.numberOfPoints(), data.points.data(), all.data());
@@ -175,27 +157,19 @@ TAUTLINE_PART(testSteps)
   auto grid = toGrid(data);
   grid->GetPointData()->AddArray(arrayOf("d", data.numberOfPoints(), 3,
     [&](Index i, int k) { return parts[i] == 2 && k < 2 ? 15 - 2 * data.point(i)[k] : 0.0; }));
-  filter->SetInputData(grid);
-  filter->SetMethod(vtkMeshWarp::SMALL_STEP_FEMWARP);
-  filter->SetSteps(20);
-  filter->SetTransformKind(vtkMeshWarp::ROTATION);
-  filter->SetAngle(180);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(grid), SetMethod(vtkMeshWarp::SMALL_STEP_FEMWARP), SetSteps(20),
+    SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(180), Update());
   const MeshData turned = withPointsOf(data, meshOf(filter));
   const vtkIdType byArc = filter->GetInverted();
-  filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d");
-  filter->Update();
+  TAUTLINE_SET(filter, SetMotion(vtkMeshWarp::DISPLACEMENT),
+    SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "d"), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetInverted(), byArc);
   TAUTLINE_CHECK(distance(turned, withPointsOf(data, meshOf(filter))) < 1e-10);
 
   // Two turns in steps end where none does, for the boundary; what is between is wound up.
   const MeshData wound = [&]
   {
-    filter->SetMotion(vtkMeshWarp::TRANSFORM);
-    filter->SetSteps(100);
-    filter->SetAngle(720);
-    filter->Update();
+    TAUTLINE_SET(filter, SetMotion(vtkMeshWarp::TRANSFORM), SetSteps(100), SetAngle(720), Update());
     return withPointsOf(data, meshOf(filter));
   }();
   double inside = 0, boundary = 0;
@@ -230,10 +204,8 @@ vtkSmartPointer<vtkSelection> select(int field, const std::vector<Index>& ids)
   {
     list->InsertNextValue(id);
   }
-  vtkNew<vtkSelectionNode> node;
-  node->SetContentType(vtkSelectionNode::INDICES);
-  node->SetFieldType(field);
-  node->SetSelectionList(list);
+  TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+    SetFieldType(field), SetSelectionList(list));
   auto selection = vtkSmartPointer<vtkSelection>::New();
   selection->AddNode(node);
   return selection;
@@ -256,9 +228,8 @@ TAUTLINE_PART(testParts)
     arrayOf("cells", data.numberOfCells(), 1, [](Index i, int) { return double(i == 0 ? 5 : 0); }));
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  filter->SetInputData(grid);
-  filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
-  filter->SetTranslation(0.125, 0.0625, 0);
+  TAUTLINE_SET(filter, SetInputData(grid), SetTransformKind(vtkMeshWarp::TRANSLATION),
+    SetTranslation(0.125, 0.0625, 0));
   const auto moves = [&](const std::function<bool(Index)>& which)
   {
     filter->Update();
@@ -278,21 +249,17 @@ TAUTLINE_PART(testParts)
   moves([&](Index i) { return parts[i] == 2; });
   filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
   moves([&](Index i) { return parts[i] != 0; });
-  filter->SetMovedPart(vtkMeshWarp::NUMBERED_PARTS);
-  filter->AddPart(1);
+  TAUTLINE_SET(filter, SetMovedPart(vtkMeshWarp::NUMBERED_PARTS), AddPart(1));
   moves([&](Index i) { return parts[i] == 1; });
   filter->AddPart(2);
   moves([&](Index i) { return parts[i] != 0; });
-  filter->AddPart(3);
-  filter->Update();
+  TAUTLINE_SET(filter, AddPart(3), Update());
   TAUTLINE_CHECK(messages.has(wording("there-is-no-boundary-part-3-there")));
-  filter->RemoveAllParts();
-  filter->Update();
+  TAUTLINE_SET(filter, RemoveAllParts(), Update());
   TAUTLINE_CHECK(messages.has(wording("no-boundary-part-is-given")));
   messages.clear();
 
-  filter->SetMovedPart(vtkMeshWarp::ARRAY_VALUES);
-  filter->Update();
+  TAUTLINE_SET(filter, SetMovedPart(vtkMeshWarp::ARRAY_VALUES), Update());
   TAUTLINE_CHECK(messages.has(wording("no-array-is-chosen-for-the-part")));
   messages.clear();
   const auto points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
@@ -300,24 +267,20 @@ TAUTLINE_PART(testParts)
   moves([&](Index i) { return parts[i] != 0; });
   filter->AddValue(2);
   moves([&](Index i) { return parts[i] == 2; });
-  filter->RemoveAllValues();
-  filter->SetInputArrayToProcess(1, 0, 0, points, "right");
+  TAUTLINE_SET(filter, RemoveAllValues(), SetInputArrayToProcess(1, 0, 0, points, "right"));
   moves([&](Index i) { return data.point(i)[0] == double(n); });
   filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells");
   moves(
     [&](Index i) {
       return std::find(&data.connectivity[0], &data.connectivity[3], i) != &data.connectivity[3];
     });
-  filter->SetInputArrayToProcess(1, 0, 0, points, "inner");
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputArrayToProcess(1, 0, 0, points, "inner"), Update());
   TAUTLINE_CHECK(messages.has(wording("points-chosen-to-move-none-is-on")));
-  filter->SetInputArrayToProcess(1, 0, 0, points, "nothing");
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputArrayToProcess(1, 0, 0, points, "nothing"), Update());
   TAUTLINE_CHECK(messages.has(wording("there-is-no-point-array-nothing")));
   messages.clear();
 
-  filter->SetMovedPart(vtkMeshWarp::SELECTION);
-  filter->Update();
+  TAUTLINE_SET(filter, SetMovedPart(vtkMeshWarp::SELECTION), Update());
   TAUTLINE_CHECK(messages.has(wording("nothing-is-selected-that-could-move")));
   messages.clear();
   filter->SetInputData(2, select(vtkSelectionNode::POINT, { 3, 4, 30 }));
@@ -395,16 +358,10 @@ TAUTLINE_PART(testAnimation)
   const std::vector<int> parts = partsOf(data, n);
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(data));
-  filter->SetMethod(vtkMeshWarp::FEMWARP);
-  filter->SetTransformKind(vtkMeshWarp::ROTATION);
-  filter->SetAngle(40);
-  filter->SetAmount(0.5);
-  filter->UpdateInformation();
+  TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetMethod(vtkMeshWarp::FEMWARP),
+    SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(40), SetAmount(0.5), UpdateInformation());
   TAUTLINE_CHECK(!filter->GetOutputInformation(0)->Has(Pipeline::TIME_STEPS()));
-  filter->SetAnimation(true);
-  filter->SetAnimationSteps(4);
-  filter->UpdateInformation();
+  TAUTLINE_SET(filter, SetAnimation(true), SetAnimationSteps(4), UpdateInformation());
   vtkInformation* info = filter->GetOutputInformation(0);
   TAUTLINE_CHECK_EQUAL(info->Length(Pipeline::TIME_STEPS()), 5);
   for (int i = 0; i <= 4; ++i)

@@ -77,8 +77,7 @@ void testSame(const char* name, vtkMPIController* controller, const MeshData& wh
         other));
   }
   const Context inner("divided anew");
-  vtkNew<vtkMeshWarp> filter;
-  filter->SetRedistribute(vtkMeshWarp::KD_TREE);
+  TAUTLINE_NEW(vtkMeshWarp, filter, SetRedistribute(vtkMeshWarp::KD_TREE));
   far = std::max(far, check(partOf(whole, rank, [](Index) { return 0; }), filter));
   if (rank == 0)
   {
@@ -147,8 +146,7 @@ void testValid(const char* name, vtkMPIController* controller, const MeshData& w
       std::max(far, check(partOf(whole, rank, cutBy(whole, cut, size), cut == Cut::Slabs), filter));
   }
   const Context inner("divided anew");
-  vtkNew<vtkMeshWarp> filter;
-  filter->SetRedistribute(vtkMeshWarp::KD_TREE);
+  TAUTLINE_NEW(vtkMeshWarp, filter, SetRedistribute(vtkMeshWarp::KD_TREE));
   check(partOf(whole, rank, [](Index) { return 0; }), filter);
   if (rank == 0)
   {
@@ -169,13 +167,9 @@ void testSpanned(vtkMPIController* controller, const MeshData& whole)
   const std::vector<unsigned char> boundary = rankBoundary(spread);
   const auto solved = [&](WarpMethod method)
   {
-    WarpOptions options;
-    options.method = method;
-    options.threads = 1;
-    options.prescribed = boundary.data();
-    options.automaticSolver = false;
-    options.solver.method = KrylovMethod::ConjugateGradient;
-    options.solver.preconditioner = Preconditioner::Jacobi;
+    TAUTLINE_LET(WarpOptions, options, method = method, threads = 1, prescribed = boundary.data(),
+      automaticSolver = false, solver.method = KrylovMethod::ConjugateGradient,
+      solver.preconditioner = Preconditioner::Jacobi);
     Warper warper(spread, false, spread.numbers(), group->communicator(), options);
     std::vector<int> iterations;
     // No affine motions, which are split off: the third is the sum of the others.
@@ -207,11 +201,8 @@ void testConverged(vtkMPIController* controller, const MeshData& whole, double d
   const Context context("converged");
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
   const bool flat = topology(static_cast<CellType>(whole.types[0])).dimension == 2;
-  WarpOptions options;
-  options.method = WarpMethod::Hybrid;
-  options.threads = 1;
-  options.optimization.stopping.maximumIterations = 3000;
-  options.optimization.stopping.relativeChange = 1e-14;
+  TAUTLINE_LET(WarpOptions, options, method = WarpMethod::Hybrid, threads = 1,
+    optimization.stopping.maximumIterations = 3000, optimization.stopping.relativeChange = 1e-14);
   const double middle = flat ? 3.5 : 2.5;
   const double angle = degrees * Pi / 180;
   // The hole, and the outer boundary stays.
@@ -272,9 +263,8 @@ void testPutTogether(vtkMPIController* controller)
   whole.transform([](const Vec3& p) { return Vec3{ p[0], 0.8 * p[1], 0.6 * p[1] }; });
   const auto set = [](vtkMeshWarp* filter)
   {
-    filter->SetTransformKind(vtkMeshWarp::TRANSLATION);
-    filter->SetTranslation(0.3, 0, 0);
-    filter->SetMethod(vtkMeshWarp::FEMWARP);
+    TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::TRANSLATION), SetTranslation(0.3, 0, 0),
+      SetMethod(vtkMeshWarp::FEMWARP));
   };
   vtkNew<vtkMeshWarp> serial, filter, onFirst;
   vtkMultiProcessController::SetGlobalController(nullptr);
@@ -314,8 +304,7 @@ void testWrong(vtkMPIController* controller, const MeshData& whole)
     {
       tensors->SetComponent(0, 0, wrong);
     }
-    vtkNew<vtkMeshWarp> filter;
-    filter->SetInputData(grid);
+    TAUTLINE_NEW(vtkMeshWarp, filter, SetInputData(grid));
     turn(filter, 20);
     filter->SetMethod(vtkMeshWarp::ANISOTROPIC_FEMWARP);
     filter->SetCoefficients(vtkMeshWarp::PER_CELL);
@@ -358,11 +347,9 @@ void testPieces(vtkMPIController* controller)
         [beta](vtkMeshWarp* filter)
         {
           turn(filter, 20);
-          filter->SetMethod(vtkMeshWarp::ANISOTROPIC_FEMWARP);
-          filter->SetCoefficients(vtkMeshWarp::PER_REGION);
-          filter->AddRegion(7, 1, beta, 5);
-          filter->SetInputArrayToProcess(
-            4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "regions");
+          TAUTLINE_SET(filter, SetMethod(vtkMeshWarp::ANISOTROPIC_FEMWARP),
+            SetCoefficients(vtkMeshWarp::PER_REGION), AddRegion(7, 1, beta, 5),
+            SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "regions"));
         });
     }
     testSame("local gradients", controller, *mesh, same,
@@ -377,8 +364,7 @@ void testPieces(vtkMPIController* controller)
       [](vtkMeshWarp* filter)
       {
         turn(filter, 20);
-        filter->SetMethod(vtkMeshWarp::BIHARMONIC);
-        filter->SetSteps(2);
+        TAUTLINE_SET(filter, SetMethod(vtkMeshWarp::BIHARMONIC), SetSteps(2));
       });
     // One process solves by BiCGSTAB and ends at the tolerance, processes by a factorization.
     testSame(
@@ -387,8 +373,7 @@ void testPieces(vtkMPIController* controller)
       [](vtkMeshWarp* filter)
       {
         turn(filter, 20);
-        filter->SetMethod(vtkMeshWarp::WEIGHTED_LAPLACIAN);
-        filter->SetTolerance(1e-13);
+        TAUTLINE_SET(filter, SetMethod(vtkMeshWarp::WEIGHTED_LAPLACIAN), SetTolerance(1e-13));
       });
   }
   testWrong(controller, volume);
@@ -417,9 +402,8 @@ void testPieces(vtkMPIController* controller)
       const auto literal = [beta](vtkMeshWarp* filter)
       {
         turn(filter, 90);
-        filter->SetMethod(vtkMeshWarp::HYBRID);
-        filter->UntangleFirstOff();
-        filter->SetUntanglingBeta(beta);
+        TAUTLINE_SET(
+          filter, SetMethod(vtkMeshWarp::HYBRID), UntangleFirstOff(), SetUntanglingBeta(beta));
       };
       testValid("literal hybrid", controller, *mesh, true, false, literal);
     }
@@ -432,8 +416,7 @@ void testPieces(vtkMPIController* controller)
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestMeshWarpPieces)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(controller);
   TAUTLINE_RUN(testPieces(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);

@@ -13,16 +13,14 @@ namespace
 {
 void setUp(vtkMeshWarp* filter)
 {
-  filter->SetMethod(vtkMeshWarp::FEMWARP);
-  filter->SetTransformKind(vtkMeshWarp::ROTATION);
-  filter->SetAngle(20);
+  TAUTLINE_SET(
+    filter, SetMethod(vtkMeshWarp::FEMWARP), SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(20));
 }
 
 /// Every so-many-th cell, with all points: those without a cell stay.
 vtkSmartPointer<vtkUnstructuredGrid> piece(const MeshData& whole, Index number, Index count)
 {
-  MeshData data;
-  data.points = whole.points;
+  TAUTLINE_LET(MeshData, data, points = whole.points);
   for (Index cell = number; cell < whole.numberOfCells(); cell += count)
   {
     data.addCell(static_cast<int>(whole.types[cell]),
@@ -40,15 +38,13 @@ void testRanks(int rank, int ranks)
   {
     const OneProcess alone;
     setUp(single);
-    single->SetInputData(toGrid(data));
-    single->Update();
+    TAUTLINE_SET(single, SetInputData(toGrid(data)), Update());
   }
   const MeshData expected = withPointsOf(data, meshOf(single));
   Messages messages(filter);
   setUp(filter);
   // Pieces of all processes.
-  filter->SetInputData(piece(data, rank, ranks));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(piece(data, rank, ranks)), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK(distance(expected, data) > 0.1);
   MeshData here = withPointsOf(data, meshOf(filter)), there = expected;
@@ -79,8 +75,7 @@ void testRanks(int rank, int ranks)
   // The same, divided among all.
   for (const int how : { vtkMeshWarp::KD_TREE, vtkMeshWarp::PT_SCOTCH })
   {
-    filter->SetRedistribute(how);
-    filter->Update();
+    TAUTLINE_SET(filter, SetRedistribute(how), Update());
     TAUTLINE_CHECK(messages.empty());
     TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), rank == 0 ? data.numberOfCells() : 0);
     if (rank == 0)
@@ -92,10 +87,8 @@ void testRanks(int rank, int ranks)
   filter->RedistributeOff();
 
   // A block on each; the others are null, and how many blocks are listed differs.
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(rank, toGrid(data));
-  filter->SetInputData(blocks);
-  filter->Update();
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(rank, toGrid(data)));
+  TAUTLINE_SET(filter, SetInputData(blocks), Update());
   TAUTLINE_CHECK(messages.empty());
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   auto* own = vtkPointSet::SafeDownCast(output->GetBlock(rank));
@@ -108,13 +101,11 @@ void testRanks(int rank, int ranks)
   {
     std::swap(tangled.points[0], tangled.points[3]);
   }
-  blocks->SetBlock(rank, toGrid(tangled));
-  blocks->Modified();
+  TAUTLINE_SET(blocks, SetBlock(rank, toGrid(tangled)), Modified());
   messages.clear();
   filter->Update();
   TAUTLINE_CHECK(messages.has(wording("untangle-mesh")));
-  blocks->SetBlock(rank, toGrid(data));
-  blocks->Modified();
+  TAUTLINE_SET(blocks, SetBlock(rank, toGrid(data)), Modified());
   messages.clear();
   filter->Update();
   TAUTLINE_CHECK(messages.empty());
@@ -124,8 +115,7 @@ void testRanks(int rank, int ranks)
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestMeshWarpRanks)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(controller);
   TAUTLINE_RUN(testRanks(controller->GetLocalProcessId(), controller->GetNumberOfProcesses()));
   vtkMultiProcessController::SetGlobalController(nullptr);

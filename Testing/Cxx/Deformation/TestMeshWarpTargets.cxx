@@ -13,8 +13,7 @@ vtkSmartPointer<vtkUnstructuredGrid> targetOf(
   const RankPart& part, double middle, double angle, bool numbered = false)
 {
   auto grid = numbered ? numberedGridOf(part) : gridOf(part);
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
+  TAUTLINE_NEW(vtkPoints, points, SetDataTypeToDouble());
   for (vtkIdType i = 0; i < grid->GetNumberOfPoints(); ++i)
   {
     Vec3 p = tautline::pointOf(grid, i);
@@ -90,13 +89,9 @@ void testTargets(vtkMPIController* controller, const MeshData& whole, double mid
         target->GetPointData()->AddArray(idsOf(other));
         target->GetPointData()->AddArray(arrayOf("index", other.data.numberOfPoints(), 1,
           [&other](Index i, int) { return static_cast<double>(other.pointOf[i]); }));
-        filter->SetMotion(vtkMeshWarp::TARGET);
-        filter->SetInputData(1, target);
-        filter->SetMethod(vtkMeshWarp::FEMWARP);
-        filter->SetAmount(0.8);
-        filter->SetCorrespondence(one.correspondence);
-        filter->SetMovedPart(one.part);
-        filter->SetTargetIds(one.ids);
+        TAUTLINE_SET(filter, SetMotion(vtkMeshWarp::TARGET), SetInputData(1, target),
+          SetMethod(vtkMeshWarp::FEMWARP), SetAmount(0.8), SetCorrespondence(one.correspondence),
+          SetMovedPart(one.part), SetTargetIds(one.ids));
       };
     };
     vtkNew<vtkMeshWarp> serial, filter;
@@ -161,12 +156,9 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
                       : target->GetPoints()->GetData()->SetComponent(far, 0, NAN);
     }
     target->GetPointData()->AddArray(ids);
-    vtkNew<vtkMeshWarp> filter;
-    filter->SetInputData(grid);
-    filter->SetInputData(1, target);
-    filter->SetMotion(vtkMeshWarp::TARGET);
-    filter->SetMethod(vtkMeshWarp::FEMWARP);
-    filter->SetTargetIds(way == Ids ? "number" : nullptr);
+    TAUTLINE_NEW(vtkMeshWarp, filter, SetInputData(grid), SetInputData(1, target),
+      SetMotion(vtkMeshWarp::TARGET), SetMethod(vtkMeshWarp::FEMWARP),
+      SetTargetIds(way == Ids ? "number" : nullptr));
     Messages messages(filter);
     filter->Update();
     TAUTLINE_CHECK(messages.has(way == Ids ? "has 1 values that are no values of the mesh's array"
@@ -180,8 +172,7 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestMeshWarpTargets)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(controller);
   const MeshData planar = blockWithHole(CellType::Triangle);
   const MeshData volume = blockWithHole(CellType::Tetrahedron);

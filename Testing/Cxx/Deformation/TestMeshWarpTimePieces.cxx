@@ -265,9 +265,8 @@ void testWrong(vtkMPIController* controller, const MeshData& whole, double middl
     TAUTLINE_CHECK(messages.empty());
     TAUTLINE_CHECK_EQUAL(meshOf(run.filter)->GetNumberOfPoints(), part.data.numberOfPoints());
   }
-  vtkNew<vtkMeshWarp> without;
-  without->SetInputData(gridOf(part));
-  without->SetMotion(vtkMeshWarp::TIME_STEPS);
+  TAUTLINE_NEW(
+    vtkMeshWarp, without, SetInputData(gridOf(part)), SetMotion(vtkMeshWarp::TIME_STEPS));
   Messages messages(without);
   without->Update();
   TAUTLINE_CHECK(messages.has(wording("the-input-has-no-time-steps")));
@@ -297,8 +296,7 @@ void testTimes(vtkMPIController* controller, const MeshData& whole, double middl
           return taker < idle ? taker : taker + 1;
         });
       Run run(part, middle, motion, start);
-      vtkNew<vtkPassThrough> after;
-      after->SetInputConnection(run.filter->GetOutputPort());
+      TAUTLINE_NEW(vtkPassThrough, after, SetInputConnection(run.filter->GetOutputPort()));
       if (rank == idle)
       {
         run.source->Times.clear();
@@ -347,8 +345,7 @@ void testStop(vtkMPIController* controller, const MeshData& whole, double middle
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
   const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Random, size));
   Run run(part, middle, vtkMeshWarp::TIME_STEPS, vtkMeshWarp::PREVIOUS_STEP);
-  vtkNew<vtkCallbackCommand> stop;
-  stop->SetClientData(run.source.Get());
+  TAUTLINE_NEW(vtkCallbackCommand, stop, SetClientData(run.source.Get()));
   stop->SetCallback(
     [](vtkObject* caller, unsigned long, void* source, void*)
     {
@@ -452,8 +449,7 @@ void testAll(vtkMPIController* controller)
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestMeshWarpTimePieces)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(controller);
   TAUTLINE_RUN(testAll(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);

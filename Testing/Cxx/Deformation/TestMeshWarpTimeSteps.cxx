@@ -106,10 +106,8 @@ TAUTLINE_PART(testTimeSteps)
       source->Moves = motion != vtkMeshWarp::DISPLACEMENT;
       vtkNew<vtkMeshWarp> filter;
       Messages messages(filter);
-      filter->SetMotion(motion);
-      filter->SetStartFrom(start);
-      filter->SetMethod(vtkMeshWarp::FEMWARP);
-      filter->SetInputArrayToProcess(0, 0, 0, OnPoints, "d");
+      TAUTLINE_SET(filter, SetMotion(motion), SetStartFrom(start), SetMethod(vtkMeshWarp::FEMWARP),
+        SetInputArrayToProcess(0, 0, 0, OnPoints, "d"));
       if (motion == vtkMeshWarp::TARGET)
       {
         filter->SetInputData(0, toGrid(source->Data));
@@ -143,14 +141,10 @@ TAUTLINE_PART(testTimeSteps)
       {
         TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetPointData(), "Displacement", 0), 0);
         // Another amount begins again; and all of that is what fresh filters find.
-        filter->SetAmount(0.5);
-        filter->UpdateTimeStep(2.0);
-        vtkNew<vtkMeshWarp> fresh;
-        fresh->SetMotion(motion);
-        fresh->SetStartFrom(start);
-        fresh->SetMethod(vtkMeshWarp::FEMWARP);
-        fresh->SetAmount(0.5);
-        fresh->SetInputArrayToProcess(0, 0, 0, OnPoints, "d");
+        TAUTLINE_SET(filter, SetAmount(0.5), UpdateTimeStep(2.0));
+        TAUTLINE_NEW(vtkMeshWarp, fresh, SetMotion(motion), SetStartFrom(start),
+          SetMethod(vtkMeshWarp::FEMWARP), SetAmount(0.5),
+          SetInputArrayToProcess(0, 0, 0, OnPoints, "d"));
         for (int port : { 0, 1 })
         {
           if (filter->GetNumberOfInputConnections(port) > 0)
@@ -164,10 +158,8 @@ TAUTLINE_PART(testTimeSteps)
         // Another motion upstream does, too.
         source->Degrees = 5;
         source->Modified();
-        filter->SetAmount(1);
-        filter->UpdateTimeStep(2.0);
-        fresh->SetAmount(1);
-        fresh->UpdateTimeStep(2.0);
+        TAUTLINE_SET(filter, SetAmount(1), UpdateTimeStep(2.0));
+        TAUTLINE_SET(fresh, SetAmount(1), UpdateTimeStep(2.0));
         TAUTLINE_CHECK(withPointsOf(source->Data, meshOf(filter)).points ==
           withPointsOf(source->Data, meshOf(fresh)).points);
       }
@@ -195,16 +187,13 @@ TAUTLINE_PART(testTimeCosts)
   auto source = movingMesh();
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);
-  filter->SetInputConnection(source->GetOutputPort());
-  filter->SetMotion(vtkMeshWarp::TIME_STEPS);
-  filter->SetMethod(vtkMeshWarp::FEMWARP);
-  filter->UpdateTimeStep(1);
+  TAUTLINE_SET(filter, SetInputConnection(source->GetOutputPort()),
+    SetMotion(vtkMeshWarp::TIME_STEPS), SetMethod(vtkMeshWarp::FEMWARP), UpdateTimeStep(1));
   TAUTLINE_CHECK_EQUAL(source->Executions, 2); // the first, and this
   filter->UpdateTimeStep(2);
   TAUTLINE_CHECK_EQUAL(source->Executions, 3);
   TAUTLINE_CHECK_EQUAL(filter->GetReused(), 1);
-  filter->SetStartFrom(vtkMeshWarp::PREVIOUS_STEP);
-  filter->UpdateTimeStep(4);
+  TAUTLINE_SET(filter, SetStartFrom(vtkMeshWarp::PREVIOUS_STEP), UpdateTimeStep(4));
   const int after = source->Executions;
   filter->UpdateTimeStep(2);
   TAUTLINE_CHECK_EQUAL(source->Executions, after + 1);
@@ -223,11 +212,9 @@ TAUTLINE_PART(testTimeCosts)
 
   // A time step in between that fails ends the execution; VTK would go on forever.
   {
-    vtkNew<vtkMeshWarp> stepwise;
-    stepwise->SetInputConnection(source->GetOutputPort());
-    stepwise->SetMotion(vtkMeshWarp::TIME_STEPS);
-    stepwise->SetStartFrom(vtkMeshWarp::PREVIOUS_STEP);
-    stepwise->SetMethod(vtkMeshWarp::FEMWARP);
+    TAUTLINE_NEW(vtkMeshWarp, stepwise, SetInputConnection(source->GetOutputPort()),
+      SetMotion(vtkMeshWarp::TIME_STEPS), SetStartFrom(vtkMeshWarp::PREVIOUS_STEP),
+      SetMethod(vtkMeshWarp::FEMWARP));
     Messages all(stepwise), upstream(source);
     source->FailsAt = 2;
     source->Modified();
@@ -250,14 +237,12 @@ TAUTLINE_PART(testTimeCosts)
   vtkNew<vtkMeshWarp> switched, direct;
   for (vtkMeshWarp* each : { switched.Get(), direct.Get() })
   {
-    each->SetMotion(vtkMeshWarp::TIME_STEPS);
-    each->SetMethod(vtkMeshWarp::FEMWARP);
+    TAUTLINE_SET(each, SetMotion(vtkMeshWarp::TIME_STEPS), SetMethod(vtkMeshWarp::FEMWARP));
   }
   newer->Data.points[0] -= 0.25;
   newer->Modified();
-  switched->SetInputConnection(newer->GetOutputPort());
-  switched->UpdateTimeStep(3);
-  switched->SetInputConnection(older->GetOutputPort());
+  TAUTLINE_SET(switched, SetInputConnection(newer->GetOutputPort()), UpdateTimeStep(3),
+    SetInputConnection(older->GetOutputPort()));
   direct->SetInputConnection(older->GetOutputPort());
   switched->UpdateTimeStep(2);
   direct->UpdateTimeStep(2);
@@ -266,9 +251,8 @@ TAUTLINE_PART(testTimeCosts)
 
   vtkNew<vtkMeshWarp> without;
   Messages others(without);
-  without->SetInputData(toGrid(source->Data));
-  without->SetMotion(vtkMeshWarp::TIME_STEPS);
-  without->Update();
+  TAUTLINE_SET(
+    without, SetInputData(toGrid(source->Data)), SetMotion(vtkMeshWarp::TIME_STEPS), Update());
   TAUTLINE_CHECK(others.has(wording("the-input-has-no-time-steps")));
 }
 }

@@ -39,8 +39,7 @@ TAUTLINE_PART(testHoles)
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Hexahedron })
   {
     const bool flat = topology(type).dimension == 2;
-    vtkNew<vtkMovingBoundary> filter;
-    filter->SetInputData(toGrid(holedBlock(type, N)));
+    TAUTLINE_NEW(vtkMovingBoundary, filter, SetInputData(toGrid(holedBlock(type, N))));
     vtkPolyData* hole = boundaryOf(filter);
     TAUTLINE_CHECK(hole->GetNumberOfPoints() == (flat ? 4 : 8));
     TAUTLINE_CHECK(hole->GetNumberOfLines() == (flat ? 4 : 0));
@@ -51,8 +50,7 @@ TAUTLINE_PART(testHoles)
 
     filter->SetMovedPart(vtkMeshWarp::WHOLE_BOUNDARY);
     checkBounds(boundaryOf(filter), 0, N, 0, flat ? 0 : N);
-    filter->SetMovedPart(vtkMeshWarp::NUMBERED_PARTS);
-    filter->AddPart(2);
+    TAUTLINE_SET(filter, SetMovedPart(vtkMeshWarp::NUMBERED_PARTS), AddPart(2));
     checkBounds(boundaryOf(filter), 3, 4, flat ? 0 : 3, flat ? 0 : 4);
   }
 }
@@ -66,10 +64,9 @@ TAUTLINE_PART(testSinglePoint)
     [&](Index i, int) {
       return norm(data.point(i)) == 0 || norm(data.point(i) - Vec3{ 1, 1, 0 }) == 0;
     }));
-  vtkNew<vtkMovingBoundary> filter;
-  filter->SetInputData(grid);
-  filter->SetMovedPart(vtkMeshWarp::ARRAY_VALUES);
-  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "moves");
+  TAUTLINE_NEW(vtkMovingBoundary, filter, SetInputData(grid),
+    SetMovedPart(vtkMeshWarp::ARRAY_VALUES),
+    SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "moves"));
   vtkPolyData* corner = boundaryOf(filter);
   TAUTLINE_CHECK(corner->GetNumberOfVerts() == 1 && corner->GetNumberOfPoints() == 1);
   TAUTLINE_CHECK(corner->GetNumberOfLines() == 0);
@@ -82,9 +79,7 @@ TAUTLINE_PART(testDisplacementsAndTarget)
   const auto grid = toGrid(data);
   grid->GetPointData()->AddArray(arrayOf("Displacement", data.numberOfPoints(), 3,
     [&](Index i, int k) { return k == 0 && data.point(i)[0] == N ? 1.0 : 0.0; }));
-  vtkNew<vtkMovingBoundary> filter;
-  filter->SetInputData(grid);
-  filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
+  TAUTLINE_NEW(vtkMovingBoundary, filter, SetInputData(grid), SetMotion(vtkMeshWarp::DISPLACEMENT));
   filter->SetAmount(0); // what moves does not depend on it
   vtkPolyData* side = boundaryOf(filter);
   TAUTLINE_CHECK(side->GetNumberOfLines() == N && side->GetNumberOfPoints() == N + 1);
@@ -96,9 +91,8 @@ TAUTLINE_PART(testDisplacementsAndTarget)
   {
     moved.setPoint(i, data.point(i) + Vec3{ parts[i] == 2 ? 0.25 : 0.0, 0, 0 });
   }
-  filter->SetInputData(1, toGrid(moved));
-  filter->SetMotion(vtkMeshWarp::TARGET);
-  filter->SetAmount(1);
+  TAUTLINE_SET(
+    filter, SetInputData(1, toGrid(moved)), SetMotion(vtkMeshWarp::TARGET), SetAmount(1));
   checkBounds(boundaryOf(filter), 3, 4, 0, 0);
 }
 
@@ -109,11 +103,9 @@ TAUTLINE_PART(testBlocks)
   {
     far.setPoint(i, far.point(i) + Vec3{ 20, 20, 0 });
   }
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, toGrid(holedBlock(CellType::Triangle, N)));
-  blocks->SetBlock(1, toGrid(far));
-  vtkNew<vtkMovingBoundary> filter;
-  filter->SetInputDataObject(blocks);
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(0, toGrid(holedBlock(CellType::Triangle, N))),
+    SetBlock(1, toGrid(far)));
+  TAUTLINE_NEW(vtkMovingBoundary, filter, SetInputDataObject(blocks));
   vtkPolyData* holes = boundaryOf(filter);
   TAUTLINE_CHECK(holes->GetNumberOfPoints() == 8 && holes->GetNumberOfLines() == 8);
   checkBounds(holes, 3, 24, 0, 0);

@@ -178,10 +178,8 @@ TAUTLINE_PART(testAffine)
         const Context context(std::string(topology(type).name) + " coefficients " +
           std::to_string(int(choice)) + " scale " + std::to_string(scale));
         WarpOptions options = manual(0, 1, 0);
-        options.coefficients = choice;
-        options.tensors = tensors.data();
-        options.tolerance = 0.5;
-        options.automaticSolver = scale != 1;
+        TAUTLINE_SET(options, coefficients = choice, tensors = tensors.data(), tolerance = 0.5,
+          automaticSolver = scale != 1);
         check(options);
       }
       for (const WarpMethod method : allMethods)
@@ -214,13 +212,11 @@ TAUTLINE_PART(testEquation)
     for (const bool direct : { true, false })
     {
       WarpOptions options = manual(2, 0.5, 1);
-      options.tensor[3] = 0.4;
-      options.automaticSolver = false;
-      options.solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient;
-      options.tolerance = 1e-12;
+      TAUTLINE_SET(options, tensor[3] = 0.4, automaticSolver = false,
+        solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient,
+        tolerance = 1e-12);
       const WarpResult result = warped(data, motion, options);
-      DiffusionOperator pde;
-      pde.tensor = options.tensor;
+      TAUTLINE_LET(DiffusionOperator, pde, tensor = options.tensor);
       const SparseMatrix matrix = stiffnessMatrix(mesh, pde);
       for (int c = 0; c < 3; ++c)
       {
@@ -334,8 +330,7 @@ TAUTLINE_PART(testPerCell)
     tensors.insert(tensors.end(), one.tensor.begin(), one.tensor.end());
   }
   WarpOptions each = one;
-  each.coefficients = WarpCoefficients::PerCell;
-  each.tensors = tensors.data();
+  TAUTLINE_SET(each, coefficients = WarpCoefficients::PerCell, tensors = tensors.data());
   TAUTLINE_CHECK_NEAR(
     distance(warped(data, motion, one).points, warped(data, motion, each).points), 0, 1e-12);
 
@@ -452,9 +447,9 @@ TAUTLINE_PART(testReuse)
     const MeshData data = boxInBox(CellType::Tetrahedron, 8, 3);
     const Mesh mesh(data.view());
     WarpOptions options = withMethod(WarpMethod::Femwarp);
-    options.automaticSolver = false;
-    options.solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient;
-    options.tolerance = 1e-11;
+    TAUTLINE_SET(options, automaticSolver = false,
+      solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient,
+      tolerance = 1e-11);
     Warper warper(mesh, options);
     const auto shifted = [](double degrees)
     {

@@ -87,8 +87,7 @@ TAUTLINE_PART(testRefused)
     wording("out-of-its-plane"));
 
   std::vector<unsigned char> none(data.numberOfPoints(), 0);
-  WarpOptions unprescribed;
-  unprescribed.prescribed = none.data();
+  TAUTLINE_LET(WarpOptions, unprescribed, prescribed = none.data());
   TAUTLINE_CHECK_THROWS(warped(data, nowhere, unprescribed), wording("no-point-of-the-mesh-has-a"));
 
   MeshData tangled = data;
@@ -146,22 +145,14 @@ TAUTLINE_PART(testRefused)
     { SymmetricTensor{ -1, 1, 1, 0, 0, 0 }, SymmetricTensor{ 1, 1, 1, 2, 0, 0 },
       SymmetricTensor{ 0, 0, 0, 0, 0, 0 }, SymmetricTensor{ nan, 1, 1, 0, 0, 0 } })
   {
-    refused(
-      [&](WarpOptions& o)
-      {
-        o.coefficients = WarpCoefficients::Manual;
-        o.tensor = t;
-      },
+    refused([&](WarpOptions& o)
+      { TAUTLINE_SET(o, coefficients = WarpCoefficients::Manual, tensor = t); },
       "positive semidefinite");
   }
   std::vector<double> tensors(6 * data.numberOfCells(), 1.0);
   tensors[6 * 7 + 3] = 3;
-  refused(
-    [&](WarpOptions& o)
-    {
-      o.coefficients = WarpCoefficients::PerCell;
-      o.tensors = tensors.data();
-    },
+  refused([&](WarpOptions& o)
+    { TAUTLINE_SET(o, coefficients = WarpCoefficients::PerCell, tensors = tensors.data()); },
     "The coefficients of cell 7");
 }
 
@@ -256,8 +247,7 @@ TAUTLINE_PART(testImpossible)
       TAUTLINE_CHECK(result.invertedAfter <= result.history[0].inverted);
     }
     // In steps it goes as far as there is a mesh.
-    WarpOptions options;
-    options.steps = 0;
+    TAUTLINE_LET(WarpOptions, options, steps = 0);
     const WarpResult part = warped(data, through, options);
     TAUTLINE_CHECK_EQUAL(part.invertedAfter, 0);
     TAUTLINE_CHECK_EQUAL(invalid(data, part.points), 0);

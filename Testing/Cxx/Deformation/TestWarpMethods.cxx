@@ -90,8 +90,7 @@ TAUTLINE_PART(testSimilarity)
       });
     const Mesh mesh(data.view()), now(moved.view());
     const Targets targets = referenceTargets(now, mesh);
-    EvaluationOptions options;
-    options.targets = &targets;
+    TAUTLINE_LET(EvaluationOptions, options, targets = &targets);
     const std::vector<double> expected = valuesOf(now, Metric::ShapeSimilarity, options);
     const std::vector<double> values = shapeSimilarity(mesh, moved.points.data());
     const std::vector<signed char> validity = validityOf(now);
@@ -132,8 +131,7 @@ TAUTLINE_PART(testSecondStep)
   for (const double beta : { -1.0, 0.0, 0.1, 0.6 })
   {
     WarpOptions options = withMethod(WarpMethod::Hybrid);
-    options.untangleFirst = beta < 0;
-    options.untanglingBeta = std::max(0.0, beta);
+    TAUTLINE_SET(options, untangleFirst = beta < 0, untanglingBeta = std::max(0.0, beta));
     const WarpResult result = warped(data, motion, options);
     checkValid(data, motion, result);
     TAUTLINE_CHECK(result.history.back().worstShape < untangled);
@@ -207,14 +205,11 @@ TAUTLINE_PART(testNoBarrier)
     warped(data, turnedBox(90, false), withMethod(WarpMethod::FemwarpUntangling)).points;
   const Mesh mesh(data.view()), now(moved.view());
   const Targets targets = referenceTargets(now, mesh);
-  OptimizeOptions options;
-  options.threads = 1;
+  TAUTLINE_LET(OptimizeOptions, options, threads = 1);
   options.objectives.resize(2);
-  options.objectives[0].metric = Metric::ShapeSimilarity;
-  options.objectives[0].evaluation.targets = &targets;
-  options.objectives[1].metric = Metric::UntangleBeta;
-  options.stopping.maximumIterations = 40;
-  options.stopping.relativeChange = 0;
+  TAUTLINE_SET(options, objectives[0].metric = Metric::ShapeSimilarity,
+    objectives[0].evaluation.targets = &targets, objectives[1].metric = Metric::UntangleBeta,
+    stopping.maximumIterations = 40, stopping.relativeChange = 0);
   const OptimizeResult result = optimize(now, options);
   TAUTLINE_CHECK_EQUAL(result.invertedBefore, 0);
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
@@ -281,8 +276,7 @@ TAUTLINE_PART(testElasticity)
   {
     options.poissonRatio = nu;
     const WarpResult result = warped(data, turn, options);
-    ElasticOperator pde;
-    pde.poissonRatio = nu;
+    TAUTLINE_LET(ElasticOperator, pde, poissonRatio = nu);
     const Mesh mesh(data.view());
     const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
     const SparseMatrix K = stiffnessMatrix(mesh, pde);
@@ -361,9 +355,7 @@ TAUTLINE_PART(testSteps)
   TAUTLINE_CHECK_EQUAL(stopped.invertedAfter, 0);
 
   // The way is that of the turn, not the chord: the box keeps its size on it.
-  few.steps = 0;
-  few.method = WarpMethod::Femwarp;
-  few.maximumSteps = 100;
+  TAUTLINE_SET(few, steps = 0, method = WarpMethod::Femwarp, maximumSteps = 100);
   const WarpResult part = warped(data, turnedBox(150, true), few);
   TAUTLINE_CHECK(part.amount > 0.1 && part.amount < 1);
   const Mesh mesh(data.view());
@@ -412,8 +404,7 @@ TAUTLINE_PART(testSteps)
     }
   }
   // The hybrid algorithm goes all the way.
-  few.method = WarpMethod::Hybrid;
-  few.steps = 0;
+  TAUTLINE_SET(few, method = WarpMethod::Hybrid, steps = 0);
   checkValid(data, turnedBox(150, true), warped(data, turnedBox(150, true), few));
 }
 
@@ -425,8 +416,7 @@ TAUTLINE_PART(testThreads)
   {
     const Context context("method " + std::to_string(method));
     WarpOptions options = withMethod(WarpMethod(method));
-    options.maximumStiffenings = 3;
-    options.threads = 1;
+    TAUTLINE_SET(options, maximumStiffenings = 3, threads = 1);
     const Field motion = turnedBox(50, false);
     const WarpResult one = warped(data, motion, options);
     options.threads = 3;

@@ -63,8 +63,7 @@ struct Problem
 
 Problem boundaryProblem(const MeshData& data)
 {
-  Problem problem;
-  problem.data = data;
+  TAUTLINE_LET(Problem, problem, data = data);
   const std::vector<char> flags = Mesh(data.view()).boundary().isBoundaryPoint;
   problem.prescribed.assign(flags.begin(), flags.end());
   return problem;
@@ -80,8 +79,7 @@ Problem holeProblem(CellType type, Index n, Index m, double angle)
 {
   const bool flat = topology(type).dimension == 2;
   const MeshData block = blockMesh(type, n, n, flat ? 0 : n);
-  MeshData data;
-  data.points = block.points;
+  TAUTLINE_LET(MeshData, data, points = block.points);
   const double low = 0.5 * double(n - m), high = 0.5 * double(n + m), middle = 0.5 * double(n);
   for (Index c = 0; c < block.numberOfCells(); ++c)
   {
@@ -269,8 +267,7 @@ TAUTLINE_PART(testInverseDistance)
       }
       rest.push_back((1 / sum) * mean);
     }
-    WarpOptions options;
-    options.distancePower = power;
+    TAUTLINE_LET(WarpOptions, options, distancePower = power);
     const std::vector<double> exact = motion.displacements(rest),
                               moves = problem.run(warpByInverseDistance, options);
     double worst = 0;
@@ -366,8 +363,7 @@ TAUTLINE_PART(testManyCenters)
   Problem some = problem;
   const Mesh mesh(problem.data.view());
   Index dropped = 0;
-  WarpOptions options;
-  options.fitTolerance = 1e-4;
+  TAUTLINE_LET(WarpOptions, options, fitTolerance = 1e-4);
   for (Index i = 0; i < problem.data.numberOfPoints(); i += 7)
   {
     dropped += some.prescribed[i];
@@ -553,8 +549,7 @@ TAUTLINE_PART(testControl)
     wrong.supportRadius = radius;
     TAUTLINE_CHECK_THROWS(problem.run(warpByRadialBasis, wrong), wording("support-radius"));
   }
-  wrong.supportRadius = 0;
-  wrong.fitTolerance = 1;
+  TAUTLINE_SET(wrong, supportRadius = 0, fitTolerance = 1);
   TAUTLINE_CHECK_THROWS(problem.run(warpByRadialBasis, wrong), "below 1");
   for (const auto& method : methods)
   {
@@ -576,8 +571,7 @@ TAUTLINE_PART(testControl)
       options.progress = [&](double) { return count++ < last; };
       TAUTLINE_CHECK(problem.run(method.warp, options).empty());
     }
-    options.progress = nullptr;
-    options.maximumSeconds = 1e-9;
+    TAUTLINE_SET(options, progress = nullptr, maximumSeconds = 1e-9);
     TAUTLINE_CHECK(problem.run(method.warp, options).empty());
   }
 }

@@ -35,9 +35,7 @@ inline WarpResult warped(const MeshData& data, const Field& motion, const WarpOp
 
 inline WarpOptions withMethod(WarpMethod method)
 {
-  WarpOptions options;
-  options.method = method;
-  options.threads = 1;
+  TAUTLINE_LET(WarpOptions, options, method = method, threads = 1);
   return options;
 }
 

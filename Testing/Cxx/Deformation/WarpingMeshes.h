@@ -69,9 +69,7 @@ template <class F>
 vtkSmartPointer<vtkDoubleArray> arrayOf(const char* name, Index size, int components, const F& f)
 {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(size);
+  TAUTLINE_SET(array, SetName(name), SetNumberOfComponents(components), SetNumberOfTuples(size));
   for (Index i = 0; i < size; ++i)
   {
     for (int k = 0; k < components; ++k)

@@ -32,8 +32,7 @@ inline MeshData blockWithHole(CellType type)
 
 inline void turn(vtkMeshWarp* filter, double angle)
 {
-  filter->SetTransformKind(vtkMeshWarp::ROTATION);
-  filter->SetAngle(angle);
+  TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::ROTATION), SetAngle(angle));
 }
 
 /// What one process finds, without the others.

@@ -60,9 +60,7 @@ const std::map<std::string, double> ExactSize = { { "barrier2d", 7.72 }, { "barr
 void checkDomain(int index)
 {
   const tautline::DomainInfo& info = tautline::domains()[static_cast<std::size_t>(index)];
-  vtkNew<vtkDomainSource> source;
-  source->SetDomain(index);
-  source->Update();
+  TAUTLINE_NEW(vtkDomainSource, source, SetDomain(index), Update());
   vtkUnstructuredGrid* mesh = source->GetOutput();
   const auto cells = static_cast<double>(mesh->GetNumberOfCells());
   const bool exact = !std::strcmp(info.name, "square") || !std::strcmp(info.name, "rectangle");
@@ -191,8 +189,7 @@ void checkNames()
 {
   vtkNew<vtkDomainSource> source;
   vtkNew<vtkTest::ErrorObserver> errors;
-  source->AddObserver(vtkCommand::ErrorEvent, errors);
-  source->SetDomainByName("gate");
+  TAUTLINE_SET(source, AddObserver(vtkCommand::ErrorEvent, errors), SetDomainByName("gate"));
   TAUTLINE_CHECK(!std::strcmp(vtkDomainSource::GetDomainName(source->GetDomain()), "gate"));
   source->SetDomainByName("nonsense");
   TAUTLINE_CHECK(errors->GetErrorMessage().find(wording("there-is-no-domain-nonsense-there-are")) !=
@@ -230,10 +227,8 @@ void checkTable()
     { "hinge", 18359, 9989 }, { "hinge", 96483, 49986 }, { "hinge", 195131, 99949 } };
   for (const auto& row : rows)
   {
-    vtkNew<vtkDomainSource> source;
-    source->SetDomainByName(row.name);
-    source->SetNumberOfCells(row.cells);
-    source->Update();
+    TAUTLINE_NEW(
+      vtkDomainSource, source, SetDomainByName(row.name), SetNumberOfCells(row.cells), Update());
     const auto vertices = static_cast<double>(source->GetOutput()->GetNumberOfPoints());
     std::cout << row.name << " " << source->GetOutput()->GetNumberOfCells() << " of " << row.cells
               << " cells, " << vertices << " of " << row.vertices << " vertices\n";
@@ -247,10 +242,7 @@ void checkDeterminism(const char* name)
   std::vector<double> points[2];
   for (std::vector<double>& copy : points)
   {
-    vtkNew<vtkDomainSource> source;
-    source->SetDomainByName(name);
-    source->SetNumberOfCells(5000);
-    source->Update();
+    TAUTLINE_NEW(vtkDomainSource, source, SetDomainByName(name), SetNumberOfCells(5000), Update());
     for (vtkIdType i = 0; i < source->GetOutput()->GetNumberOfPoints(); ++i)
     {
       const double* x = source->GetOutput()->GetPoint(i);
@@ -265,10 +257,9 @@ void checkMissingMeshers()
 {
   vtkNew<vtkDomainSource> source;
   vtkNew<vtkTest::ErrorObserver> errors;
-  source->AddObserver(vtkCommand::ErrorEvent, errors);
-  source->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, errors);
-  source->SetDomainByName("disk2d");
-  source->Update();
+  TAUTLINE_SET(source, AddObserver(vtkCommand::ErrorEvent, errors),
+    GetExecutive()->AddObserver(vtkCommand::ErrorEvent, errors), SetDomainByName("disk2d"),
+    Update());
   TAUTLINE_CHECK(source->GetOutput()->GetNumberOfCells() == 0);
   TAUTLINE_CHECK(
     errors->GetErrorMessage().find(wording("without-the-module-meshing")) != std::string::npos);
@@ -303,8 +294,7 @@ void checkSizes()
 /// Numbers of extreme size are refused by name, by the source and by the kernel; nothing changes.
 void checkExtremes()
 {
-  vtkNew<vtkDomainSource> source;
-  source->SetDomainByName("square");
+  TAUTLINE_NEW(vtkDomainSource, source, SetDomainByName("square"));
   vtkNew<vtkTest::ErrorObserver> errors;
   source->AddObserver(vtkCommand::ErrorEvent, errors);
   const auto refuses = [&](const char* name, const std::function<void()>& set)
@@ -343,8 +333,7 @@ void checkExtremes()
   TAUTLINE_CHECK_EQUAL(source->GetOutput()->GetNumberOfCells(), vtkIdType(2 * 14 * 14));
   for (const double width : { 0.0, 1e-150 })
   {
-    source->SetLayerWidth(width);
-    source->Update();
+    TAUTLINE_SET(source, SetLayerWidth(width), Update());
     TAUTLINE_CHECK_EQUAL(source->GetOutput()->GetNumberOfCells(), vtkIdType(200));
     TAUTLINE_CHECK(std::abs(totalSize(source->GetOutput()) - 1.0) < 1e-12);
   }

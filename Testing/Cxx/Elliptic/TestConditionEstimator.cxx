@@ -66,9 +66,8 @@ TAUTLINE_PART(testKnown)
     }
     TAUTLINE_CHECK(messages.empty());
 
-    filter->SetMethod(vtkConditionEstimator::RITZ_VALUES);
-    filter->SetPreconditioner(6);
-    filter->Update();
+    TAUTLINE_SET(
+      filter, SetMethod(vtkConditionEstimator::RITZ_VALUES), SetPreconditioner(6), Update());
     TAUTLINE_CHECK_EQUAL(filter->GetSpectrum()->GetNumberOfRows(), 1);
     TAUTLINE_CHECK_EQUAL(filter->GetSpectrum()->GetValueByName(0, "LargestError").ToDouble(), -1);
     TAUTLINE_CHECK(filter->GetCondition() <= condition * (1 + 1e-9));
@@ -85,10 +84,8 @@ TAUTLINE_PART(testCulprit)
   const Index point = 4 + 9 * 4; // the centre moves next to an edge opposite to it
   data.setPoint(point, { 4.999, 4.4, 0 });
   const Mesh mesh(data.view());
-  vtkNew<vtkConditionEstimator> filter;
-  filter->SetInputData(toGrid(data));
-  filter->SetPreconditioner(6);
-  filter->Update();
+  TAUTLINE_NEW(
+    vtkConditionEstimator, filter, SetInputData(toGrid(data)), SetPreconditioner(6), Update());
   vtkIdType worst = 0;
   for (vtkIdType i = 0; i < data.numberOfCells(); ++i)
   {
@@ -114,8 +111,7 @@ TAUTLINE_PART(testCulprit)
   TAUTLINE_CHECK_NEAR(sumOf(meshOf(filter), "Excess"), 0, 1e-9);
   TAUTLINE_CHECK(component(meshOf(filter)->GetCellData(), "Excess", worst) > 1);
 
-  filter->SetComputeShares(false);
-  filter->Update();
+  TAUTLINE_SET(filter, SetComputeShares(false), Update());
   TAUTLINE_CHECK(!meshOf(filter)->GetCellData()->GetArray("Share"));
   TAUTLINE_CHECK(
     std::string(filter->GetSummary()).find(wording("largest-eigenvalue")) != std::string::npos);
@@ -124,27 +120,22 @@ TAUTLINE_PART(testCulprit)
 TAUTLINE_PART(testOthers)
 {
   // Elasticity, blocks, and what is refused.
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, toGrid(blockMesh(CellType::Tetrahedron, 3, 3, 3)));
-  blocks->SetBlock(1, toGrid(blockMesh(CellType::Hexahedron, 3, 3, 3)));
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks,
+    SetBlock(0, toGrid(blockMesh(CellType::Tetrahedron, 3, 3, 3))),
+    SetBlock(1, toGrid(blockMesh(CellType::Hexahedron, 3, 3, 3))));
   vtkNew<vtkConditionEstimator> filter;
   Messages messages(filter);
-  filter->SetInputDataObject(blocks);
-  filter->SetEquation(vtkEllipticAlgorithm::ELASTICITY);
-  filter->SetPreconditioner(2);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputDataObject(blocks), SetEquation(vtkEllipticAlgorithm::ELASTICITY),
+    SetPreconditioner(2), Update());
   TAUTLINE_CHECK(filter->GetPreconditionedCondition() >= 1);
   TAUTLINE_CHECK(filter->GetCondition() >= filter->GetPreconditionedCondition());
   TAUTLINE_CHECK_EQUAL(filter->GetSpectrum()->GetNumberOfRows(), 4);
   TAUTLINE_CHECK_EQUAL(filter->GetSpectrum()->GetValueByName(2, "Block").ToString(), "block 2");
   TAUTLINE_CHECK(messages.empty());
-  filter->SetTolerance(2);
-  filter->Update();
+  TAUTLINE_SET(filter, SetTolerance(2), Update());
   TAUTLINE_CHECK(!messages.empty());
   messages.clear();
-  filter->SetTolerance(1e-6);
-  filter->SetPETScOptions("-nonsense");
-  filter->Update();
+  TAUTLINE_SET(filter, SetTolerance(1e-6), SetPETScOptions("-nonsense"), Update());
   TAUTLINE_CHECK(messages.has("-nonsense"));
 }
 }

@@ -46,9 +46,7 @@ vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
   const auto add = [&](vtkDataSetAttributes* data, const char* name, int components,
                      const std::vector<Index>& of, const std::function<double(Index, int)>& value)
   {
-    vtkNew<vtkDoubleArray> array;
-    array->SetName(name);
-    array->SetNumberOfComponents(components);
+    TAUTLINE_NEW(vtkDoubleArray, array, SetName(name), SetNumberOfComponents(components));
     for (const Index item : of)
     {
       for (int k = 0; k < components; ++k)
@@ -68,8 +66,7 @@ vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
     [](Index cell, int k)
     { return k < 3 ? 1.0 + static_cast<double>((cell + k) % 3) : 0.1 * (k - 3); });
   add(grid->GetCellData(), "held", 1, part.cellOf, [](Index cell, int) { return cell == 5; });
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
   for (const unsigned char ghost : part.ghosts)
   {
     ghosts->InsertNextValue(ghost ? vtkDataSetAttributes::DUPLICATECELL : 0);
@@ -157,8 +154,7 @@ void testFilter(const char* name, const MeshData& whole, const Set<Filter>& set,
         "cut " + std::to_string(static_cast<int>(cut)) + ", divided " + std::to_string(how));
       vtkNew<Filter> filter;
       Messages messages(filter);
-      filter->SetInputData(gridOf(part));
-      filter->SetRedistribute(how);
+      TAUTLINE_SET(filter, SetInputData(gridOf(part)), SetRedistribute(how));
       set(filter, part);
       filter->Update();
       TAUTLINE_CHECK(messages.empty());
@@ -182,8 +178,7 @@ void testFilter(const char* name, const MeshData& whole, const Set<Filter>& set,
 
 void setTolerance(vtkEllipticSolver* filter)
 {
-  filter->SetRelativeTolerance(Tight);
-  filter->SetPreconditioner(vtkEllipticSolver::JACOBI);
+  TAUTLINE_SET(filter, SetRelativeTolerance(Tight), SetPreconditioner(vtkEllipticSolver::JACOBI));
 }
 
 //------------------------------------------------------------------------------
@@ -200,10 +195,9 @@ void testSolutions()
       [](vtkEllipticSolver* filter, const RankPart&)
       {
         setTolerance(filter);
-        filter->SetSourceType(vtkEllipticSolver::EXPRESSION);
-        filter->SetSourceExpression("x*y + z");
-        filter->SetGivenType(vtkEllipticSolver::ARRAY);
-        filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "g");
+        TAUTLINE_SET(filter, SetSourceType(vtkEllipticSolver::EXPRESSION),
+          SetSourceExpression("x*y + z"), SetGivenType(vtkEllipticSolver::ARRAY),
+          SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "g"));
       },
       scalar, converged);
   }
@@ -212,12 +206,11 @@ void testSolutions()
     [](vtkEllipticSolver* filter, const RankPart&)
     {
       setTolerance(filter);
-      filter->SetEquation(vtkEllipticSolver::ELASTICITY);
-      filter->SetSourceType(vtkEllipticSolver::ARRAY);
-      filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "f");
-      filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "stiffness");
-      filter->SetFixedPart(vtkEllipticSolver::PART_OF_BOUNDARY);
-      filter->SetFixedWhere("x < 0.01");
+      TAUTLINE_SET(filter, SetEquation(vtkEllipticSolver::ELASTICITY),
+        SetSourceType(vtkEllipticSolver::ARRAY),
+        SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "f"),
+        SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "stiffness"),
+        SetFixedPart(vtkEllipticSolver::PART_OF_BOUNDARY), SetFixedWhere("x < 0.01"));
     },
     { { "Displacement", false, Close }, { "Stress", true, Close }, { "VonMises", true, Close } },
     converged);
@@ -243,12 +236,9 @@ void testSolutions()
           }
         }
       }
-      vtkNew<vtkSelectionNode> node;
-      node->SetContentType(vtkSelectionNode::INDICES);
-      node->SetFieldType(vtkSelectionNode::POINT);
-      node->SetSelectionList(ids);
-      vtkNew<vtkSelection> selection;
-      selection->AddNode(node);
+      TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+        SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
+      TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
       filter->SetInputData(1, selection);
     },
     scalar, converged);
@@ -266,15 +256,11 @@ void testTime()
       [&](vtkEllipticSolver* filter, const RankPart& part)
       {
         setTolerance(filter);
-        filter->SetTimeScheme(vtkEllipticSolver::NEWMARK);
-        filter->SetTimeStep(0.1);
-        filter->SetNumberOfTimeSteps(3);
-        filter->SetInitialType(vtkEllipticSolver::EXPRESSION);
-        filter->SetInitialExpression("x*(4 - x)*g");
-        filter->SetVelocityType(vtkEllipticSolver::ARRAY);
-        filter->SetInputArrayToProcess(6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "g");
-        filter->UpdateTimeStep(time);
-        filter->UpdateTimeStep(0.2);
+        TAUTLINE_SET(filter, SetTimeScheme(vtkEllipticSolver::NEWMARK), SetTimeStep(0.1),
+          SetNumberOfTimeSteps(3), SetInitialType(vtkEllipticSolver::EXPRESSION),
+          SetInitialExpression("x*(4 - x)*g"), SetVelocityType(vtkEllipticSolver::ARRAY),
+          SetInputArrayToProcess(6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "g"),
+          UpdateTimeStep(time), UpdateTimeStep(0.2));
         if (vtkMultiProcessController::GetGlobalController())
         {
           // Shown again, it is the same.
@@ -325,10 +311,7 @@ void testConditions()
   testFilter<vtkSolverStudy>(
     "study", whole,
     [](vtkSolverStudy* filter, const RankPart&)
-    {
-      filter->AddCombination(1);
-      filter->AddCombination(17);
-    },
+    { TAUTLINE_SET(filter, AddCombination(1), AddCombination(17)); },
     {},
     [](vtkSolverStudy* serial, vtkSolverStudy* filter)
     {
@@ -351,8 +334,7 @@ void testSpaces()
   const auto set = [](vtkEllipticSolver* filter, const RankPart&)
   {
     setTolerance(filter);
-    filter->SetSourceType(vtkEllipticSolver::EXPRESSION);
-    filter->SetSourceExpression("y");
+    TAUTLINE_SET(filter, SetSourceType(vtkEllipticSolver::EXPRESSION), SetSourceExpression("y"));
   };
   const auto none = [](vtkEllipticSolver*, vtkEllipticSolver*) {};
   const std::vector<Compared> arrays = { { "Solution", false, Close },
@@ -403,8 +385,7 @@ void testRefusals()
     {
       const Context inner(text);
       messages.clear();
-      filter->SetInputData(gridOf(piece));
-      filter->Update();
+      TAUTLINE_SET(filter, SetInputData(gridOf(piece)), Update());
       TAUTLINE_CHECK(messages.has(text));
       TAUTLINE_CHECK_EQUAL(
         vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
@@ -413,13 +394,11 @@ void testRefusals()
     filter->SetSourceType(vtkEllipticSolver::EXPRESSION);
     filter->SetSourceExpression("1/((x - 6) + (y - 6))"); // at the last point only
     refused(good, wording("is-not-finite-at-point"));
-    filter->SetSourceExpression("x");
-    filter->SetFixedPart(vtkEllipticSolver::ONLY_CHOSEN);
+    TAUTLINE_SET(filter, SetSourceExpression("x"), SetFixedPart(vtkEllipticSolver::ONLY_CHOSEN));
     refused(good, wording("without-a-fixed-point"));
     filter->SetFixedPart(vtkEllipticSolver::WHOLE_BOUNDARY);
     messages.clear();
-    filter->SetInputData(gridOf(good));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(gridOf(good)), Update());
     TAUTLINE_CHECK(messages.empty());
     TAUTLINE_CHECK_EQUAL(
       vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(),
@@ -431,8 +410,7 @@ void testRefusals()
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestDividedSolvers)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   processes = controller;
   vtkMultiProcessController::SetGlobalController(controller);
   TAUTLINE_RUN(testSolutions());

@@ -54,8 +54,7 @@ std::array<Product, 3> knownSolution(int dimension)
   {
     if (dimension == 2)
     {
-      product.k[2] = 0;
-      product.shift[2] = M_PI / 2;
+      TAUTLINE_SET(product, k[2] = 0, shift[2] = M_PI / 2);
     }
   }
   if (dimension == 2)
@@ -95,10 +94,8 @@ Given manufactured(const MeshData& data, int dimension, Pde pde, PlaneState plan
   EllipticProblem& problem = given.problem;
   problem.pde = pde;
   problem.diffusion.tensor = { 2, 1, 3, 0.5, 0, 0 };
-  problem.diffusion.reaction = 10;
-  problem.elastic.youngsModulus = 3;
-  problem.elastic.poissonRatio = 0.3;
-  problem.elastic.plane = plane;
+  TAUTLINE_SET(problem, diffusion.reaction = 10, elastic.youngsModulus = 3,
+    elastic.poissonRatio = 0.3, elastic.plane = plane);
   const double e = 3, nu = 0.3, mu = e / (2 * (1 + nu));
   const double lambda = dimension == 2 && plane == PlaneState::Stress
     ? e * nu / (1 - nu * nu)
@@ -126,8 +123,7 @@ Given manufactured(const MeshData& data, int dimension, Pde pde, PlaneState plan
       given.sources.push_back(k < dimension ? f : 0.0);
     }
   }
-  problem.sources = given.sources.data();
-  problem.fixedValues = given.values.data();
+  TAUTLINE_SET(problem, sources = given.sources.data(), fixedValues = given.values.data());
   return given;
 }
 
@@ -138,9 +134,8 @@ std::array<double, 2> errorOf(CellType type, Index n, Pde pde, PlaneState plane)
   const Mesh mesh(data.view());
   const Given given = manufactured(data, dimension, pde, plane);
   const EllipticSystem system(mesh, given.problem);
-  SolverOptions options;
-  options.relativeTolerance = 1e-9;
-  options.preconditioner = dimension == 2 ? Preconditioner::BoomerAMG : Preconditioner::ICC;
+  TAUTLINE_LET(SolverOptions, options, relativeTolerance = 1e-9,
+    preconditioner = dimension == 2 ? Preconditioner::BoomerAMG : Preconditioner::ICC);
   const EllipticSolution solution = system.solve(options);
   TAUTLINE_CHECK(converged(solution.linear.reason));
   const std::array<Product, 3> u = knownSolution(dimension);
@@ -184,8 +179,7 @@ TAUTLINE_PART(testConvergence)
 //------------------------------------------------------------------------------
 TAUTLINE_PART(testLinearFields)
 {
-  SolverOptions direct;
-  direct.method = KrylovMethod::Direct;
+  TAUTLINE_LET(SolverOptions, direct, method = KrylovMethod::Direct);
   Random random(3);
   const Columns turn = randomRotation(random);
   for (CellType type : allTypes)
@@ -238,11 +232,8 @@ TAUTLINE_PART(testLinearFields)
     }
     for (PlaneState plane : { PlaneState::Strain, PlaneState::Stress })
     {
-      problem.pde = Pde::Elasticity;
-      problem.elastic.plane = plane;
-      problem.elastic.youngsModulus = 2;
-      problem.elastic.poissonRatio = 0.25;
-      problem.fixedValues = displacement.data();
+      TAUTLINE_SET(problem, pde = Pde::Elasticity, elastic.plane = plane, elastic.youngsModulus = 2,
+        elastic.poissonRatio = 0.25, fixedValues = displacement.data());
       const EllipticSystem system(mesh, problem);
       TAUTLINE_CHECK_EQUAL(system.blockSize(), flat ? 2 : 3);
       const EllipticSolution solution = system.solve(direct);
@@ -315,17 +306,12 @@ TAUTLINE_PART(testRing)
   }
   for (PlaneState plane : { PlaneState::Strain, PlaneState::Stress })
   {
-    EllipticProblem problem;
-    problem.pde = Pde::Elasticity;
-    problem.elastic.plane = plane;
-    problem.elastic.youngsModulus = 5;
-    problem.elastic.poissonRatio = 0.35;
+    TAUTLINE_LET(EllipticProblem, problem, pde = Pde::Elasticity, elastic.plane = plane,
+      elastic.youngsModulus = 5, elastic.poissonRatio = 0.35);
     problem.source = { 0, 0, 0 };
-    problem.fixed = fixed.data();
-    problem.fixedValues = values.data();
+    TAUTLINE_SET(problem, fixed = fixed.data(), fixedValues = values.data());
     const EllipticSystem system(mesh, problem);
-    SolverOptions options;
-    options.method = KrylovMethod::Direct;
+    TAUTLINE_LET(SolverOptions, options, method = KrylovMethod::Direct);
     const EllipticSolution solution = system.solve(options);
     const double nu = 0.35, e = 5, mu = e / (2 * (1 + nu));
     const double lambda =
@@ -389,8 +375,7 @@ TAUTLINE_PART(testSystem)
     EllipticSystem(other, {}).solve({}).values[n + 2], solution.values[n + 2], 1e-12);
   std::vector<unsigned char> skip(data.numberOfCells(), 0);
   skip[0] = skip[1] = 1; // the square at the origin
-  MeshPart part;
-  part.skip = skip.data();
+  TAUTLINE_LET(MeshPart, part, skip = skip.data());
   const EllipticSystem less(mesh, {}, part);
   TAUTLINE_CHECK_EQUAL(less.unknowns(), (n - 1) * (n - 1) - 1); // its inner corner is boundary now
   const EllipticSolution hole = less.solve({});
@@ -400,8 +385,7 @@ TAUTLINE_PART(testSystem)
   // Threads: bitwise the same.
   const MeshData large = movedBlock(CellType::Triangle, 90, 0.1);
   const Mesh big(large.view());
-  EllipticProblem elastic;
-  elastic.pde = Pde::Elasticity;
+  TAUTLINE_LET(EllipticProblem, elastic, pde = Pde::Elasticity);
   const EllipticSystem one(big, elastic, {}, 1), three(big, elastic, {}, 3);
   TAUTLINE_CHECK(one.matrix().values == three.matrix().values);
   TAUTLINE_CHECK(one.matrix().columns == three.matrix().columns);
@@ -409,13 +393,10 @@ TAUTLINE_PART(testSystem)
 
   // All boundary natural, a > 0: the solution is f / a.
   std::vector<unsigned char> none(data.numberOfPoints(), 0);
-  EllipticProblem natural;
-  natural.pde = Pde::Elliptic;
-  natural.fixed = none.data();
+  TAUTLINE_LET(EllipticProblem, natural, pde = Pde::Elliptic, fixed = none.data());
   natural.source = { 6, 0, 0 };
   natural.diffusion.reaction = 3;
-  SolverOptions options;
-  options.relativeTolerance = 1e-12;
+  TAUTLINE_LET(SolverOptions, options, relativeTolerance = 1e-12);
   const EllipticSolution constant = EllipticSystem(mesh, natural).solve(options);
   TAUTLINE_CHECK_NEAR(constant.values[7], 2, 1e-10);
   natural.diffusion.reaction = -3;
@@ -428,15 +409,13 @@ TAUTLINE_PART(testSystem)
 /// With f = 1 solutions grow with the square of the size, gradients with the size.
 TAUTLINE_PART(testScales)
 {
-  SolverOptions options;
-  options.method = KrylovMethod::Direct;
+  TAUTLINE_LET(SolverOptions, options, method = KrylovMethod::Direct);
   for (CellType type : { CellType::Triangle, CellType::Hexahedron })
   {
     const MeshData data = movedBlock(type, 5, 0.1);
     for (Pde pde : { Pde::Poisson, Pde::Elasticity })
     {
-      EllipticProblem problem;
-      problem.pde = pde;
+      TAUTLINE_LET(EllipticProblem, problem, pde = pde);
       const Mesh mesh(data.view());
       const EllipticSolution solution = EllipticSystem(mesh, problem).solve(options);
       for (double scale : { 1e-8, 1e8 })
@@ -510,8 +489,7 @@ TAUTLINE_PART(testRefusals)
   TAUTLINE_CHECK_THROWS(make(data, {}), wording("not-finite"));
 
   // Data.
-  EllipticProblem problem;
-  problem.source[0] = NaN;
+  TAUTLINE_LET(EllipticProblem, problem, source[0] = NaN);
   TAUTLINE_CHECK_THROWS(make(good, problem), wording("source-f-is-not-a-finite-number-2"));
   std::vector<double> values(3 * good.numberOfPoints(), 0.0);
   problem = {};
@@ -570,8 +548,7 @@ TAUTLINE_PART(testRefusals)
   fixed[20] = 1;
   make(parts, problem);
   fixed.assign(blocks.numberOfPoints(), 0);
-  problem.fixed = fixed.data();
-  problem.pde = Pde::Elasticity;
+  TAUTLINE_SET(problem, fixed = fixed.data(), pde = Pde::Elasticity);
   for (Index i : { 0, 1, 2, 4, 64, 65, 66 }) // three in a line hold nothing
   {
     fixed[i] = 1;

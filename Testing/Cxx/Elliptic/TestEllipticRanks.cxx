@@ -100,25 +100,21 @@ void testSolutions(MPI_Comm comm, CellType type, Pde pde, bool scattered, bool l
       values.push_back(inPlane ? random.uniform(-1, 1) : 0.0);
     }
   }
-  EllipticProblem problem;
-  problem.pde = pde;
+  TAUTLINE_LET(EllipticProblem, problem, pde = pde);
   problem.diffusion.tensor = { 2, 1, 3, 0.2, 0, 0 };
-  problem.diffusion.reaction = 1;
-  problem.sources = sources.data();
-  problem.fixedValues = values.data();
+  TAUTLINE_SET(
+    problem, diffusion.reaction = 1, sources = sources.data(), fixedValues = values.data());
   const Mesh mesh(whole.view());
   const EllipticSystem alone(mesh, problem);
   const std::vector<double> mySources = share.pointField(sources, given),
                             myValues = share.pointField(values, given);
-  problem.sources = mySources.data();
-  problem.fixedValues = myValues.data();
+  TAUTLINE_SET(problem, sources = mySources.data(), fixedValues = myValues.data());
   const Mesh myMesh(share.data.view());
   const EllipticSystem together(myMesh, problem, share.part);
   TAUTLINE_CHECK_EQUAL(together.unknowns(), alone.unknowns());
 
-  SolverOptions options;
-  options.relativeTolerance = 1e-12;
-  options.preconditioner = Preconditioner::Jacobi;
+  TAUTLINE_LET(
+    SolverOptions, options, relativeTolerance = 1e-12, preconditioner = Preconditioner::Jacobi);
   const EllipticSolution expected = alone.solve(options), solution = together.solve(options);
   TAUTLINE_CHECK(converged(expected.linear.reason) && converged(solution.linear.reason));
   TAUTLINE_CHECK_EQUAL(solution.components, given);
@@ -134,11 +130,8 @@ void testSolutions(MPI_Comm comm, CellType type, Pde pde, bool scattered, bool l
   for (const TimeScheme scheme :
     { TimeScheme::Bdf2, TimeScheme::CrankNicolson, TimeScheme::Newmark })
   {
-    TimeOptions time;
-    time.scheme = scheme;
-    time.step = 0.1;
-    time.steps = 4;
-    time.mass = scheme == TimeScheme::Bdf2 ? MassMatrix::Lumped : MassMatrix::Consistent;
+    TAUTLINE_LET(TimeOptions, time, scheme = scheme, step = 0.1, steps = 4,
+      mass = scheme == TimeScheme::Bdf2 ? MassMatrix::Lumped : MassMatrix::Consistent);
     const std::vector<double> start = unknownsOf(alone, values);
     const std::vector<double> myStart = unknownsOf(together, myValues);
     const TimeSeries there = integrate(alone, time, start, start, options);
@@ -218,8 +211,7 @@ void testRefusals(MPI_Comm comm)
   data.addCell(3, { 0, 1 });
   refused(data, {}, wording("1-cells-are-not-triangles"));
   refused(MeshData(), {}, wording("no-cells"));
-  EllipticProblem problem;
-  problem.source[0] = std::numeric_limits<double>::quiet_NaN();
+  TAUTLINE_LET(EllipticProblem, problem, source[0] = std::numeric_limits<double>::quiet_NaN());
   refused(good, problem, "source f");
   problem = {};
   problem.pde = Pde::Elasticity;

@@ -44,8 +44,7 @@ MeshData scaled(MeshData data, double factor)
 
 vtkDataSet* solved(vtkEllipticSolver* filter)
 {
-  filter->SetRelativeTolerance(Tight);
-  filter->Update();
+  TAUTLINE_SET(filter, SetRelativeTolerance(Tight), Update());
   return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
 }
 
@@ -78,8 +77,7 @@ vtkSmartPointer<vtkDoubleArray> arrayOf(
   const char* name, vtkIdType tuples, const std::vector<double>& tuple)
 {
   auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(static_cast<int>(tuple.size()));
+  TAUTLINE_SET(array, SetName(name), SetNumberOfComponents(static_cast<int>(tuple.size())));
   for (vtkIdType i = 0; i < tuples; ++i)
   {
     array->InsertNextTuple(tuple.data());
@@ -99,10 +97,9 @@ TAUTLINE_PART(testLinear)
       const Context context(std::string(topology(type).name) + " " + std::to_string(scale));
       vtkNew<vtkEllipticSolver> filter;
       Messages messages(filter);
-      filter->SetInputData(toGrid(scaled(block(type, 5), scale)));
-      filter->SetSourceValue(0);
-      filter->SetGivenType(vtkEllipticAlgorithm::EXPRESSION);
-      filter->SetGivenExpression("(2*x - 3*y)/" + std::to_string(scale) + " + 1");
+      TAUTLINE_SET(filter, SetInputData(toGrid(scaled(block(type, 5), scale))), SetSourceValue(0),
+        SetGivenType(vtkEllipticAlgorithm::EXPRESSION),
+        SetGivenExpression("(2*x - 3*y)/" + std::to_string(scale) + " + 1"));
       if (scale < 1)
       {
         filter->SetGivenExpression("(2*x - 3*y)*1e8 + 1");
@@ -149,15 +146,14 @@ TAUTLINE_PART(testWays)
     left->InsertNextValue(x < 0.5);
     expected.push_back(n * x - 0.5 * x * x);
   }
-  grid->GetPointData()->AddArray(left);
-  grid->GetPointData()->AddArray(arrayOf("one", points, { 1 }));
-  grid->GetPointData()->AddArray(arrayOf("my source", points, { 1, 2, 3 }));
+  TAUTLINE_SET(grid, GetPointData()->AddArray(left),
+    GetPointData()->AddArray(arrayOf("one", points, { 1 })),
+    GetPointData()->AddArray(arrayOf("my source", points, { 1, 2, 3 })));
 
   vtkNew<vtkEllipticSolver> filter;
   Messages messages(filter);
-  filter->SetInputData(grid);
-  filter->SetFixedPart(vtkEllipticAlgorithm::PART_OF_BOUNDARY);
-  filter->SetFixedWhere("x < 0.5");
+  TAUTLINE_SET(filter, SetInputData(grid), SetFixedPart(vtkEllipticAlgorithm::PART_OF_BOUNDARY),
+    SetFixedWhere("x < 0.5"));
   TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-9);
   filter->SetSourceType(vtkEllipticAlgorithm::EXPRESSION);
   for (const char* f :
@@ -181,12 +177,9 @@ TAUTLINE_PART(testWays)
   {
     ids->InsertNextValue(i);
   }
-  vtkNew<vtkSelectionNode> node;
-  node->SetContentType(vtkSelectionNode::INDICES);
-  node->SetFieldType(vtkSelectionNode::POINT);
-  node->SetSelectionList(ids);
-  vtkNew<vtkSelection> selection;
-  selection->AddNode(node);
+  TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+    SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
+  TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
   filter->SetInputData(1, selection);
   TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-9);
   filter->RemoveAllInputConnections(1);
@@ -194,15 +187,12 @@ TAUTLINE_PART(testWays)
   // Given values count at fixed points only: elsewhere they need not be finite.
   vtkNew<vtkEllipticSolver> some;
   Messages silent(some);
-  some->SetInputData(grid);
-  some->SetFixedPart(vtkEllipticAlgorithm::PART_OF_BOUNDARY);
-  some->SetFixedWhere("x < 0.5");
-  some->SetGivenType(vtkEllipticAlgorithm::EXPRESSION);
-  some->SetGivenExpression("0/(x - 3)");
+  TAUTLINE_SET(some, SetInputData(grid), SetFixedPart(vtkEllipticAlgorithm::PART_OF_BOUNDARY),
+    SetFixedWhere("x < 0.5"), SetGivenType(vtkEllipticAlgorithm::EXPRESSION),
+    SetGivenExpression("0/(x - 3)"));
   TAUTLINE_CHECK_NEAR(distance(values(solved(some)), expected), 0, 1e-9);
   TAUTLINE_CHECK(silent.empty());
-  some->SetGivenExpression("1/x");
-  some->Update();
+  TAUTLINE_SET(some, SetGivenExpression("1/x"), Update());
   TAUTLINE_CHECK(silent.has(wording("not-finite")) || silent.has(wording("not-a-finite")));
 
   // Cells hold all their points: the first column of cells is left out of the strip.
@@ -211,9 +201,8 @@ TAUTLINE_PART(testWays)
     leftCells->InsertNextValue(i % n == 0);
   }
   grid->GetCellData()->AddArray(leftCells);
-  filter->SetInputArrayToProcess(0, 0, 0, Cells, "leftCells");
-  filter->SetGivenType(vtkEllipticAlgorithm::ARRAY);
-  filter->SetInputArrayToProcess(2, 0, 0, Points, "one");
+  TAUTLINE_SET(filter, SetInputArrayToProcess(0, 0, 0, Cells, "leftCells"),
+    SetGivenType(vtkEllipticAlgorithm::ARRAY), SetInputArrayToProcess(2, 0, 0, Points, "one"));
   const std::vector<double> held = values(solved(filter));
   for (Index i = 0; i < points; ++i)
   {
@@ -232,13 +221,9 @@ TAUTLINE_PART(testCoefficients)
     const Context context(topology(type).name);
     auto grid = toGrid(block(type, 4));
     const vtkIdType cells = grid->GetNumberOfCells();
-    vtkNew<vtkEllipticSolver> filter;
-    filter->SetInputData(grid);
-    filter->SetEquation(vtkEllipticAlgorithm::ELLIPTIC);
-    filter->SetAlpha(2);
-    filter->SetBeta(3);
-    filter->SetGamma(5);
-    filter->SetReaction(0.5);
+    TAUTLINE_NEW(vtkEllipticSolver, filter, SetInputData(grid),
+      SetEquation(vtkEllipticAlgorithm::ELLIPTIC), SetAlpha(2), SetBeta(3), SetGamma(5),
+      SetReaction(0.5));
     const std::vector<double> expected = values(solved(filter));
     grid->GetCellData()->AddArray(arrayOf("six", cells, { 2, 3, 5, 0, 0, 0 }));
     grid->GetCellData()->AddArray(arrayOf("nine", cells, { 2, 0, 0, 0, 3, 0, 0, 0, 5 }));
@@ -249,13 +234,9 @@ TAUTLINE_PART(testCoefficients)
       TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-12);
     }
     // With a alone, u = f / a within; with a of 0 and a tensor of 1 it is Poisson's equation.
-    vtkNew<vtkEllipticSolver> poisson;
-    poisson->SetInputData(grid);
-    filter->SetInputArrayToProcess(3, 0, 0, Cells, "None");
-    filter->SetAlpha(1);
-    filter->SetBeta(1);
-    filter->SetGamma(1);
-    filter->SetReaction(0);
+    TAUTLINE_NEW(vtkEllipticSolver, poisson, SetInputData(grid));
+    TAUTLINE_SET(filter, SetInputArrayToProcess(3, 0, 0, Cells, "None"), SetAlpha(1), SetBeta(1),
+      SetGamma(1), SetReaction(0));
     TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), values(solved(poisson))), 0, 1e-12);
   }
 }
@@ -276,15 +257,11 @@ TAUTLINE_PART(testElasticity)
       grid->GetCellData()->AddArray(arrayOf("four", grid->GetNumberOfCells(), { 4 }));
       vtkNew<vtkEllipticSolver> filter;
       Messages messages(filter);
-      filter->SetInputData(grid);
-      filter->SetEquation(vtkEllipticAlgorithm::ELASTICITY);
-      filter->SetYoungsModulus(E / 4);
-      filter->SetInputArrayToProcess(4, 0, 0, Cells, "four");
-      filter->SetPoissonRatio(nu);
-      filter->SetPlaneState(plane);
-      filter->SetBodyForce(0, 0, 0);
-      filter->SetGivenType(vtkEllipticAlgorithm::EXPRESSION);
-      filter->SetGivenExpression("0.01*x*iHat + 0.01*x*jHat");
+      TAUTLINE_SET(filter, SetInputData(grid), SetEquation(vtkEllipticAlgorithm::ELASTICITY),
+        SetYoungsModulus(E / 4), SetInputArrayToProcess(4, 0, 0, Cells, "four"),
+        SetPoissonRatio(nu), SetPlaneState(plane), SetBodyForce(0, 0, 0),
+        SetGivenType(vtkEllipticAlgorithm::EXPRESSION),
+        SetGivenExpression("0.01*x*iHat + 0.01*x*jHat"));
       vtkDataSet* mesh = solved(filter);
       const bool stress = flat && plane == vtkEllipticAlgorithm::PLANE_STRESS;
       // eps_xx = strain, eps_xy = strain / 2, and in plane stress eps_zz such that tau_zz = 0
@@ -323,8 +300,7 @@ TAUTLINE_PART(testSolvers)
   auto grid = toGrid(block(CellType::Triangle, 12));
   vtkNew<vtkEllipticSolver> filter;
   Messages messages(filter);
-  filter->SetInputData(grid);
-  filter->SetSolver(vtkEllipticSolver::DIRECT);
+  TAUTLINE_SET(filter, SetInputData(grid), SetSolver(vtkEllipticSolver::DIRECT));
   const std::vector<double> expected = values(solved(filter));
   TAUTLINE_CHECK(
     std::string(filter->GetSummary()).find(wording("a-direct-solve")) != std::string::npos);
@@ -333,15 +309,13 @@ TAUTLINE_PART(testSolvers)
     for (int p = vtkEllipticSolver::JACOBI; p <= vtkEllipticSolver::NONE; ++p)
     {
       const Context context(std::to_string(solver) + " " + std::to_string(p));
-      filter->SetSolver(solver);
-      filter->SetPreconditioner(p);
+      TAUTLINE_SET(filter, SetSolver(solver), SetPreconditioner(p));
       TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-7);
       TAUTLINE_CHECK(filter->GetConverged());
     }
   }
-  filter->SetSolver(vtkEllipticSolver::CG);
-  filter->SetPreconditioner(vtkEllipticSolver::AMG);
-  filter->SetThreads(1);
+  TAUTLINE_SET(filter, SetSolver(vtkEllipticSolver::CG), SetPreconditioner(vtkEllipticSolver::AMG),
+    SetThreads(1));
   const std::vector<double> one = values(solved(filter));
   filter->SetThreads(3);
   TAUTLINE_CHECK(values(solved(filter)) == one);
@@ -353,12 +327,9 @@ TAUTLINE_PART(testSolvers)
   filter->SetPETScOptions("");
 
   // Two in a pipeline: the second has the solution of the first as its source.
-  vtkNew<vtkEllipticSolver> second;
-  second->SetInputConnection(filter->GetOutputPort());
-  second->SetSourceType(vtkEllipticAlgorithm::ARRAY);
-  second->SetInputArrayToProcess(1, 0, 0, Points, "Solution");
-  second->SetSolutionName("again");
-  second->SetComputeGradient(false);
+  TAUTLINE_NEW(vtkEllipticSolver, second, SetInputConnection(filter->GetOutputPort()),
+    SetSourceType(vtkEllipticAlgorithm::ARRAY), SetInputArrayToProcess(1, 0, 0, Points, "Solution"),
+    SetSolutionName("again"), SetComputeGradient(false));
   vtkDataSet* mesh = solved(second);
   TAUTLINE_CHECK(values(mesh) == one);
   TAUTLINE_CHECK(values(mesh, "again") != one);
@@ -370,8 +341,7 @@ TAUTLINE_PART(testSolvers)
 TAUTLINE_PART(testBlocks)
 {
   const MeshData data = block(CellType::Quadrilateral, 6);
-  vtkNew<vtkEllipticSolver> whole;
-  whole->SetInputData(toGrid(data));
+  TAUTLINE_NEW(vtkEllipticSolver, whole, SetInputData(toGrid(data)));
   vtkDataSet* mesh = solved(whole);
   const std::vector<double> expected = values(mesh), gradient = values(mesh, "Gradient", true);
 
@@ -396,17 +366,12 @@ TAUTLINE_PART(testBlocks)
     const Index s = h * shift;
     halves[h].addCell(CellType::Quadrilateral, { p[0] - s, p[1] - s, p[2] - s, p[3] - s });
   }
-  vtkNew<vtkPartitionedDataSet> parts;
-  parts->SetPartition(0, toGrid(halves[0]));
-  parts->SetPartition(1, toGrid(halves[1]));
-  vtkNew<vtkPartitionedDataSetCollection> collection;
-  collection->SetPartitionedDataSet(0, parts);
-  vtkNew<vtkMultiPieceDataSet> pieces;
-  pieces->SetPartition(0, parts->GetPartition(0));
-  pieces->SetPartition(1, parts->GetPartition(1));
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, toGrid(data));
-  blocks->SetBlock(2, pieces);
+  TAUTLINE_NEW(vtkPartitionedDataSet, parts, SetPartition(0, toGrid(halves[0])),
+    SetPartition(1, toGrid(halves[1])));
+  TAUTLINE_NEW(vtkPartitionedDataSetCollection, collection, SetPartitionedDataSet(0, parts));
+  TAUTLINE_NEW(vtkMultiPieceDataSet, pieces, SetPartition(0, parts->GetPartition(0)),
+    SetPartition(1, parts->GetPartition(1)));
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(0, toGrid(data)), SetBlock(2, pieces));
   vtkNew<vtkEllipticSolver> filter;
   Messages messages(filter);
   filter->SetRelativeTolerance(Tight);
@@ -414,8 +379,7 @@ TAUTLINE_PART(testBlocks)
          static_cast<vtkDataObject*>(collection), static_cast<vtkDataObject*>(blocks) })
   {
     const Context context(input->GetClassName());
-    filter->SetInputDataObject(input);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputDataObject(input), Update());
     vtkDataObject* output = filter->GetOutputDataObject(0);
     if (auto* solvedBlocks = vtkMultiBlockDataSet::SafeDownCast(output))
     {
@@ -450,17 +414,14 @@ TAUTLINE_PART(testBlocks)
   const std::array<Index, 2> corners = { more.addPoint({ 0, 2, 0 }), more.addPoint({ 1, 2, 0 }) };
   more.addCell(CellType::Quadrilateral, { corners[0], corners[1], 1, 0 });
   auto withGhost = toGrid(more);
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
+  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
   for (Index cell = 0; cell < more.numberOfCells(); ++cell)
   {
     ghosts->InsertNextValue(cell + 1 == more.numberOfCells() ? 1 : 0);
   }
   withGhost->GetCellData()->AddArray(ghosts);
-  parts->SetPartition(1, withGhost);
-  parts->Modified();
-  filter->SetInputDataObject(parts);
-  filter->Update();
+  TAUTLINE_SET(parts, SetPartition(1, withGhost), Modified());
+  TAUTLINE_SET(filter, SetInputDataObject(parts), Update());
   const auto upper =
     values(vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPartition(1));
   TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(), 25);
@@ -473,19 +434,16 @@ TAUTLINE_PART(testBlocks)
 
   halves[1].setPoint(1, halves[1].point(2)); // two points at one place
   parts->SetPartition(1, toGrid(halves[1]));
-  filter->SetInputDataObject(parts);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputDataObject(parts), Update());
   TAUTLINE_CHECK(messages.has(wording("1-points-are-at-the-place-of")));
 
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(7, 7, 1);
+  TAUTLINE_NEW(vtkImageData, image, SetDimensions(7, 7, 1));
   whole->SetInputData(image);
   TAUTLINE_CHECK_NEAR(distance(values(solved(whole)), expected), 0, 1e-10);
   whole->SetInputData(toPolyData(data, VTK_FLOAT));
   TAUTLINE_CHECK_NEAR(distance(values(solved(whole)), expected), 0, 1e-10);
   vtkNew<vtkUnstructuredGrid> nothing;
-  whole->SetInputData(nothing);
-  whole->Update();
+  TAUTLINE_SET(whole, SetInputData(nothing), Update());
   TAUTLINE_CHECK_EQUAL(whole->GetUnknowns(), 0);
   whole->SetInputData(toGrid(shuffled(data, 3)));
   TAUTLINE_CHECK_EQUAL(values(solved(whole)).size(), expected.size());
@@ -507,13 +465,12 @@ TAUTLINE_PART(testRefusals)
   const MeshData data = block(CellType::Triangle, 4);
   const vtkIdType points = data.numberOfPoints();
   auto grid = toGrid(data);
-  grid->GetPointData()->AddArray(
-    arrayOf("nan", points, { std::numeric_limits<double>::quiet_NaN() }));
-  grid->GetPointData()->AddArray(arrayOf("vector", points, { 1, 2, 3 }));
-  grid->GetCellData()->AddArray(arrayOf("onCells", data.numberOfCells(), { 1 }));
-  vtkNew<vtkEllipticSolver> filter;
-  filter->SetInputData(grid);
-  filter->SetSourceType(vtkEllipticAlgorithm::ARRAY);
+  TAUTLINE_SET(grid,
+    GetPointData()->AddArray(arrayOf("nan", points, { std::numeric_limits<double>::quiet_NaN() })),
+    GetPointData()->AddArray(arrayOf("vector", points, { 1, 2, 3 })),
+    GetCellData()->AddArray(arrayOf("onCells", data.numberOfCells(), { 1 })));
+  TAUTLINE_NEW(
+    vtkEllipticSolver, filter, SetInputData(grid), SetSourceType(vtkEllipticAlgorithm::ARRAY));
   refuses(filter, wording("no-array-is-chosen-to-take-the"));
   filter->SetInputArrayToProcess(1, 0, 0, Points, "absent");
   refuses(filter, wording("there-is-no-point-array-absent-to"));
@@ -539,34 +496,28 @@ TAUTLINE_PART(testRefusals)
     filter->SetSourceExpression(pair[0]);
     refuses(filter, pair[1]);
   }
-  filter->SetEquation(vtkEllipticAlgorithm::ELASTICITY);
-  filter->SetSourceExpression("x");
+  TAUTLINE_SET(filter, SetEquation(vtkEllipticAlgorithm::ELASTICITY), SetSourceExpression("x"));
   refuses(filter, wording("is-a-number-a-vector-is-expected"));
-  filter->SetPoissonRatio(0.5);
-  filter->SetSourceType(vtkEllipticAlgorithm::CONSTANT);
+  TAUTLINE_SET(filter, SetPoissonRatio(0.5), SetSourceType(vtkEllipticAlgorithm::CONSTANT));
   refuses(filter, "Poisson");
-  filter->SetEquation(vtkEllipticAlgorithm::POISSON);
-  filter->SetPETScOptions("-nonsense 3");
+  TAUTLINE_SET(filter, SetEquation(vtkEllipticAlgorithm::POISSON), SetPETScOptions("-nonsense 3"));
   refuses(filter, "-nonsense");
   filter->SetPETScOptions("-pc_type nonsense");
   refuses(filter, "nonsense");
-  filter->SetPETScOptions("");
-  filter->SetFixedPart(vtkEllipticAlgorithm::ONLY_CHOSEN);
+  TAUTLINE_SET(filter, SetPETScOptions(""), SetFixedPart(vtkEllipticAlgorithm::ONLY_CHOSEN));
   refuses(filter, wording("without-a-fixed-point"));
   filter->SetFixedPart(vtkEllipticAlgorithm::PART_OF_BOUNDARY);
   refuses(filter, wording("the-expression-of-the-fixed-part-of"));
   filter->SetFixedPart(vtkEllipticAlgorithm::WHOLE_BOUNDARY);
   filter->SetSourceValue(std::numeric_limits<double>::infinity());
   refuses(filter, wording("not-a-finite-number"));
-  filter->SetSourceValue(1);
-  filter->SetEquation(vtkEllipticAlgorithm::ELLIPTIC);
-  filter->SetInputArrayToProcess(3, 0, 0, Cells, "onCells");
+  TAUTLINE_SET(filter, SetSourceValue(1), SetEquation(vtkEllipticAlgorithm::ELLIPTIC),
+    SetInputArrayToProcess(3, 0, 0, Cells, "onCells"));
   refuses(filter, wording("has-1-components-6-or-9-are"));
   filter->SetInputArrayToProcess(3, 0, 0, Points, "vector");
   refuses(filter, wording("is-on-points-one-on-cells-is"));
-  filter->SetEquation(vtkEllipticAlgorithm::POISSON);
-  filter->SetOmega(2.5);
-  filter->SetPreconditioner(vtkEllipticSolver::SSOR);
+  TAUTLINE_SET(filter, SetEquation(vtkEllipticAlgorithm::POISSON), SetOmega(2.5),
+    SetPreconditioner(vtkEllipticSolver::SSOR));
   refuses(filter, wording("between-0-and-2"));
   filter->SetOmega(1);
 
@@ -580,8 +531,7 @@ TAUTLINE_PART(testRefusals)
   notFinite.setPoint(6, { std::numeric_limits<double>::quiet_NaN(), 0, 0 });
   filter->SetInputData(toGrid(notFinite));
   refuses(filter, "finite");
-  vtkNew<vtkUnstructuredGrid> lines;
-  lines->SetPoints(toPoints(data));
+  TAUTLINE_NEW(vtkUnstructuredGrid, lines, SetPoints(toPoints(data)));
   const vtkIdType ends[] = { 0, 1 };
   lines->InsertNextCell(VTK_LINE, 2, ends);
   filter->SetInputData(lines);
@@ -620,9 +570,8 @@ TAUTLINE_PART(testNotices)
   TAUTLINE_CHECK(messages.empty());
 
   // Stopping early keeps what there is, with a warning.
-  filter->SetInputData(toGrid(block(CellType::Triangle, 60)));
-  filter->SetPreconditioner(vtkEllipticSolver::NONE);
-  filter->SetTimeLimit(1e-9);
+  TAUTLINE_SET(filter, SetInputData(toGrid(block(CellType::Triangle, 60))),
+    SetPreconditioner(vtkEllipticSolver::NONE), SetTimeLimit(1e-9));
   solved(filter);
   TAUTLINE_CHECK(messages.has(wording("time-limit")));
   filter->SetTimeLimit(0);
@@ -642,7 +591,6 @@ TAUTLINE_PART(testNotices)
   TAUTLINE_CHECK(filter->GetIterations() > 0 && !filter->GetConverged());
   const std::vector<double> best = values(mesh);
   TAUTLINE_CHECK(*std::max_element(best.begin(), best.end()) > 0);
-  filter->RemoveObserver(tag);
-  filter->SetAbortExecute(0);
+  TAUTLINE_SET(filter, RemoveObserver(tag), SetAbortExecute(0));
 }
 }

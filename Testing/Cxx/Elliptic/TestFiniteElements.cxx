@@ -117,8 +117,7 @@ TAUTLINE_PART(testSmallMatrices)
 
   // Elasticity of the right triangle, plane strain: E = 1, nu = 1/4 give lambda = mu = 2/5; see any
   // textbook.
-  ElasticOperator elastic;
-  elastic.poissonRatio = 0.25;
+  TAUTLINE_LET(ElasticOperator, elastic, poissonRatio = 0.25);
   const double m = 0.4 / 2; // times the area
   checkMatrix(stiffnessMatrix(Mesh(triangle.view()), elastic),
     { 4 * m, 2 * m, -3 * m, -m, -m, -m, //
@@ -197,9 +196,7 @@ TAUTLINE_PART(testLinearFields)
     // The same of elasticity: rigid body modes, then uniform strain.
     for (PlaneState state : { PlaneState::Strain, PlaneState::Stress })
     {
-      ElasticOperator elastic;
-      elastic.plane = state;
-      elastic.youngsModulus = 2;
+      TAUTLINE_LET(ElasticOperator, elastic, plane = state, youngsModulus = 2);
       const SparseMatrix a = stiffnessMatrix(mesh, elastic);
       TAUTLINE_CHECK(exactlySymmetric(a));
       const int d = elasticComponents(mesh);
@@ -244,8 +241,7 @@ TAUTLINE_PART(testMassAndLoad)
   for (const MeshData& data : sampleMeshes())
   {
     const Mesh mesh(data.view());
-    DiffusionOperator pde;
-    pde.reaction = 3;
+    TAUTLINE_LET(DiffusionOperator, pde, reaction = 3);
     const std::vector<double> ones(data.numberOfPoints(), 1.0);
     const std::vector<double> mass = times(stiffnessMatrix(mesh, pde), ones);
     const std::vector<double> load = loadVector(mesh, ones.data(), 1);
@@ -382,8 +378,7 @@ TAUTLINE_PART(testSurface)
     {
       tensors.insert(tensors.end(), { 2, 2, 2, 0, 0, 0 });
     }
-    DiffusionOperator perCell;
-    perCell.tensors = tensors.data();
+    TAUTLINE_LET(DiffusionOperator, perCell, tensors = tensors.data());
     checkSameMatrix(
       stiffnessMatrix(plane, DiffusionOperator()), stiffnessMatrix(cylinder, perCell), 2, 1e-12);
     TAUTLINE_CHECK_THROWS(
@@ -453,8 +448,7 @@ TAUTLINE_PART(testThreadsAndReuse)
     const Mesh mesh(data.view());
     MeshData moved = data;
     moved.transform([](const Vec3& p) { return Vec3{ 2 * p[0], p[1] + 0.1 * p[0], p[2] }; });
-    AssemblyOptions options;
-    options.threads = 1;
+    TAUTLINE_LET(AssemblyOptions, options, threads = 1);
     DiffusionOperator pde;
     pde.tensor = { 2, 1, 3, 0.5, 0, 0 };
     pde.reaction = 0.1;
@@ -572,8 +566,7 @@ TAUTLINE_PART(testRefusals)
   TAUTLINE_CHECK(std::isfinite(largest(assemble(data).values)));
 
   const Mesh mesh(good.view());
-  DiffusionOperator pde;
-  pde.reaction = NaN;
+  TAUTLINE_LET(DiffusionOperator, pde, reaction = NaN);
   TAUTLINE_CHECK_THROWS(
     stiffnessMatrix(mesh, pde), wording("coefficients-of-the-differential-operator"));
   pde = {};
@@ -588,10 +581,7 @@ TAUTLINE_PART(testRefusals)
 
   const auto elastic = [&](double e, double nu, PlaneState plane, const MeshData& body)
   {
-    ElasticOperator op;
-    op.youngsModulus = e;
-    op.poissonRatio = nu;
-    op.plane = plane;
+    TAUTLINE_LET(ElasticOperator, op, youngsModulus = e, poissonRatio = nu, plane = plane);
     return stiffnessMatrix(Mesh(body.view()), op);
   };
   const MeshData sheet = blockMesh(CellType::Triangle, 2, 2, 0);
@@ -608,8 +598,7 @@ TAUTLINE_PART(testRefusals)
   TAUTLINE_CHECK(std::isfinite(largest(elastic(1, 0.5, PlaneState::Stress, sheet).values)));
   std::vector<double> stiffening(good.numberOfCells(), 1.0);
   stiffening[2] = 0;
-  ElasticOperator op;
-  op.stiffening = stiffening.data();
+  TAUTLINE_LET(ElasticOperator, op, stiffening = stiffening.data());
   TAUTLINE_CHECK_THROWS(stiffnessMatrix(mesh, op), wording("stiffening-factor-of-cell-2"));
 }
 }

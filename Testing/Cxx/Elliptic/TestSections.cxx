@@ -38,13 +38,9 @@ double exact(const std::array<double, 3>& p)
 
 void solve(vtkEllipticSolver* filter, vtkDataObject* mesh, bool sections)
 {
-  filter->SetInputDataObject(mesh);
-  filter->SetSourceValue(0);
-  filter->SetGivenType(vtkEllipticAlgorithm::EXPRESSION);
-  filter->SetGivenExpression("1+2*x-3*y+5*z");
-  filter->SetRelativeTolerance(Tight);
-  filter->SetComputeSections(sections);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputDataObject(mesh), SetSourceValue(0),
+    SetGivenType(vtkEllipticAlgorithm::EXPRESSION), SetGivenExpression("1+2*x-3*y+5*z"),
+    SetRelativeTolerance(Tight), SetComputeSections(sections), Update());
 }
 
 /// Checks the values, and that each polygon is in a plane near the place. @return the area
@@ -132,8 +128,7 @@ TAUTLINE_PART(testBlocks)
   {
     plate.points[i] /= height;
   }
-  vtkNew<vtkMultiBlockDataSet> parts;
-  parts->SetBlock(0, toGrid(plate));
+  TAUTLINE_NEW(vtkMultiBlockDataSet, parts, SetBlock(0, toGrid(plate)));
   MeshData rib = cube(CellType::Hexahedron, 4);
   for (std::size_t i = 0; i < rib.points.size(); i += 3)
   {

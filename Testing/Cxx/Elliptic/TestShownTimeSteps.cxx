@@ -38,11 +38,8 @@ TAUTLINE_PART(testTimeSteps)
     }
     return both;
   };
-  vtkNew<vtkEllipticSolver> filter;
-  filter->SetInputData(blocks);
-  filter->SetTimeScheme(vtkEllipticSolver::BDF2);
-  filter->SetTimeStep(0.01);
-  filter->SetNumberOfTimeSteps(4);
+  TAUTLINE_NEW(vtkEllipticSolver, filter, SetInputData(blocks),
+    SetTimeScheme(vtkEllipticSolver::BDF2), SetTimeStep(0.01), SetNumberOfTimeSteps(4));
   const std::vector<double> last = at(filter, 0.04), first = at(filter, 0.01);
   TAUTLINE_CHECK_EQUAL(filter->GetAssemblies(), 2);
   TAUTLINE_CHECK(last != first && at(filter, 0.04) == last);
@@ -54,8 +51,7 @@ TAUTLINE_PART(testTimeSteps)
   // ParaView copies the input at each time step; the arrays are the same ones.
   const auto copy = [](vtkDataObject* leaf)
   {
-    vtkNew<vtkUnstructuredGrid> result;
-    result->ShallowCopy(leaf);
+    TAUTLINE_NEW(vtkUnstructuredGrid, result, ShallowCopy(leaf));
     return vtkSmartPointer<vtkUnstructuredGrid>(result);
   };
   blocks->SetBlock(0, copy(blocks->GetBlock(0)));
@@ -63,8 +59,7 @@ TAUTLINE_PART(testTimeSteps)
   TAUTLINE_CHECK(at(filter, 0.01) == doubled);
   TAUTLINE_CHECK_EQUAL(filter->GetAssemblies(), 4);
   vtkPoints* points = vtkUnstructuredGrid::SafeDownCast(blocks->GetBlock(1))->GetPoints();
-  points->SetPoint(0, 5.0, -0.25, 0.0);
-  points->Modified();
+  TAUTLINE_SET(points, SetPoint(0, 5.0, -0.25, 0.0), Modified());
   blocks->Modified();
   TAUTLINE_CHECK(at(filter, 0.01) != doubled);
   TAUTLINE_CHECK_EQUAL(filter->GetAssemblies(), 6);

@@ -40,8 +40,7 @@ TAUTLINE_PART(testPoisson)
   const MeshData data = blockMesh(CellType::Triangle, n, n, 0);
   const Mesh mesh(data.view());
   const EllipticSystem system(mesh, {});
-  SolverStudyOptions options;
-  options.solver.relativeTolerance = 1e-10;
+  TAUTLINE_LET(SolverStudyOptions, options, solver.relativeTolerance = 1e-10);
   options.combinations.push_back({ KrylovMethod::Direct, Preconditioner::None, true });
   options.combinations.push_back({ KrylovMethod::MINRES, Preconditioner::None, true });
   double last = -1;
@@ -114,11 +113,9 @@ TAUTLINE_PART(testElasticity)
   // Multigrid needs fewer iterations when it is given the points and the rigid body modes.
   const MeshData data = movedBlock(CellType::Triangle, 40, 0.1);
   const Mesh mesh(data.view());
-  EllipticProblem problem;
-  problem.pde = Pde::Elasticity;
+  TAUTLINE_LET(EllipticProblem, problem, pde = Pde::Elasticity);
   const EllipticSystem system(mesh, problem);
-  SolverStudyOptions options;
-  options.combinations = {};
+  TAUTLINE_LET(SolverStudyOptions, options, combinations = {});
   for (Preconditioner preconditioner : { Preconditioner::BoomerAMG, Preconditioner::GAMG })
   {
     for (bool told : { false, true })
@@ -126,8 +123,7 @@ TAUTLINE_PART(testElasticity)
       options.combinations.push_back({ KrylovMethod::ConjugateGradient, preconditioner, told });
     }
   }
-  options.conditions = false;
-  options.repetitions = 2;
+  TAUTLINE_SET(options, conditions = false, repetitions = 2);
   const SolverStudy study = studySolvers(system, options);
   for (int i : { 0, 2 })
   {
@@ -150,8 +146,7 @@ TAUTLINE_PART(testFailuresAndWarnings)
   data.setPoint(60, data.point(60) + Vec3{ 0.97, 0.0, 0 });
   const Mesh mesh(data.view());
   const EllipticSystem system(mesh, {});
-  SolverStudyOptions options;
-  options.solver.maximumIterations = 2;
+  TAUTLINE_LET(SolverStudyOptions, options, solver.maximumIterations = 2);
   options.combinations = { { KrylovMethod::ConjugateGradient, Preconditioner::Jacobi, false },
     { KrylovMethod::GMRES, Preconditioner::SSOR, false } };
   SolverStudy study = studySolvers(system, options);
@@ -166,8 +161,7 @@ TAUTLINE_PART(testFailuresAndWarnings)
   }
 
   // Of the dissertation's list, some limited.
-  options.solver.maximumIterations = 12;
-  options.combinations = dissertationCombinations();
+  TAUTLINE_SET(options, solver.maximumIterations = 12, combinations = dissertationCombinations());
   study = studySolvers(system, options);
   TAUTLINE_CHECK(!contains(study.why, wording("nearly-singular")));
   TAUTLINE_CHECK(study.recommended >= 4 && contains(study.why, wording("did-not-converge")));
@@ -179,8 +173,7 @@ TAUTLINE_PART(testLimits)
   const MeshData data = blockMesh(CellType::Triangle, 60, 60, 0);
   const Mesh mesh(data.view());
   const EllipticSystem system(mesh, {});
-  SolverStudyOptions options;
-  options.conditions = false;
+  TAUTLINE_LET(SolverStudyOptions, options, conditions = false);
   options.solver.observerSeconds = 1e-9; // reports of every iteration
   options.solver.observer = [](int, double) { return true; };
   options.maximumSeconds = 1e-6;

@@ -27,8 +27,7 @@ TAUTLINE_PART(testTable)
 {
   vtkNew<vtkSolverStudy> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(blockMesh(CellType::Triangle, 16, 16, 0)));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(blockMesh(CellType::Triangle, 16, 16, 0))), Update());
   vtkTable* table = filter->GetStudy();
   TAUTLINE_CHECK_EQUAL(table->GetNumberOfRows(), 16);
   double best = 1e300;
@@ -84,10 +83,8 @@ TAUTLINE_PART(testFailures)
   // Without iterations there is no solution: marked as in the dissertation's tables.
   vtkNew<vtkSolverStudy> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(blockMesh(CellType::Triangle, 16, 16, 0)));
-  filter->SetMaximumIterations(1);
-  filter->AddCombination(17);
-  filter->AddCombination(1);
+  TAUTLINE_SET(filter, SetInputData(toGrid(blockMesh(CellType::Triangle, 16, 16, 0))),
+    SetMaximumIterations(1), AddCombination(17), AddCombination(1));
   filter->AddCombination(17); // counts once
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetStudy()->GetNumberOfRows(), 2);
@@ -100,18 +97,14 @@ TAUTLINE_PART(testFailures)
   TAUTLINE_CHECK(std::string(filter->GetSummary()).find("1 failed (*)") != std::string::npos);
   TAUTLINE_CHECK(messages.empty());
 
-  filter->ClearCombinations();
-  filter->AddCombination(1);
-  filter->AddCombination(13);
-  filter->Update();
+  TAUTLINE_SET(filter, ClearCombinations(), AddCombination(1), AddCombination(13), Update());
   TAUTLINE_CHECK_EQUAL(std::string(filter->GetRecommended()), "");
   TAUTLINE_CHECK(messages.has(wording("limit-of-iterations")) || messages.has("converged"));
   messages.clear();
 
   filter->SetMaximumIterations(10000);
   // Nothing is computed by then: an error, and no table of an earlier execution.
-  filter->SetTimeLimit(1e-9);
-  filter->Update();
+  TAUTLINE_SET(filter, SetTimeLimit(1e-9), Update());
   TAUTLINE_CHECK(messages.has(wording("the-time-limit-of-1e-09-s")));
   TAUTLINE_CHECK_EQUAL(
     vtkTable::SafeDownCast(filter->GetOutputDataObject(1))->GetNumberOfRows(), 0);
@@ -122,8 +115,7 @@ TAUTLINE_PART(testFailures)
   TAUTLINE_CHECK(messages.has(wording("there-is-no-combination-0")));
   TAUTLINE_CHECK(messages.has(wording("there-is-no-combination-26")));
   messages.clear();
-  filter->SetPETScOptions("-nonsense");
-  filter->Update();
+  TAUTLINE_SET(filter, SetPETScOptions("-nonsense"), Update());
   TAUTLINE_CHECK(messages.has("-nonsense"));
 }
 
@@ -137,9 +129,9 @@ TAUTLINE_PART(testNames)
   TAUTLINE_CHECK_EQUAL(names.size(), std::size_t(vtkSolverStudy::GetNumberOfCombinations()));
   TAUTLINE_CHECK_EQUAL(std::string(vtkSolverStudy::GetCombinationName(0)), "");
   // Elasticity: the rigid body modes save iterations.
-  vtkNew<vtkSolverStudy> filter;
-  filter->SetInputData(toGrid(blockMesh(CellType::Triangle, 24, 24, 0)));
-  filter->SetEquation(vtkEllipticAlgorithm::ELASTICITY);
+  TAUTLINE_NEW(vtkSolverStudy, filter,
+    SetInputData(toGrid(blockMesh(CellType::Triangle, 24, 24, 0))),
+    SetEquation(vtkEllipticAlgorithm::ELASTICITY));
   for (int number : { 13, 24, 19, 25 })
   {
     filter->AddCombination(number);

@@ -61,9 +61,8 @@ EllipticProblem withoutSource()
 
 SolverOptions exactly()
 {
-  SolverOptions options;
-  options.relativeTolerance = Tolerance;
-  options.preconditioner = Preconditioner::ICC;
+  TAUTLINE_LET(
+    SolverOptions, options, relativeTolerance = Tolerance, preconditioner = Preconditioner::ICC);
   return options;
 }
 
@@ -124,11 +123,8 @@ TAUTLINE_PART(testEigenmodes)
     for (const TimeScheme scheme : Schemes)
     {
       Context context("scheme " + std::to_string(static_cast<int>(scheme)));
-      TimeOptions time;
-      time.scheme = scheme;
-      time.step = 0.02;
-      time.steps = 7;
-      time.mass = lumped ? MassMatrix::Lumped : MassMatrix::Consistent;
+      TAUTLINE_LET(TimeOptions, time, scheme = scheme, step = 0.02, steps = 7,
+        mass = lumped ? MassMatrix::Lumped : MassMatrix::Consistent);
       const TimeSeries series = integrate(system, time, start, rest, exactly());
       TAUTLINE_CHECK(
         converged(series.reason) && series.values.size() == 8 && series.times.size() == 8);
@@ -139,8 +135,7 @@ TAUTLINE_PART(testEigenmodes)
         TAUTLINE_CHECK(difference(series.values[i], start, expected) < Exact);
       }
       // Twice the density is half the time of the heat equation.
-      time.density = 2;
-      time.step = 0.04;
+      TAUTLINE_SET(time, density = 2, step = 0.04);
       const TimeSeries slower = integrate(system, time, start, rest, exactly());
       const bool wave = scheme == TimeScheme::Newmark;
       const double expected = wave ? factor(scheme, eigenvalue(lumped, n) / 2, time.step, 7)
@@ -166,11 +161,8 @@ TAUTLINE_PART(testOrders)
     std::array<double, 2> errors{};
     for (int k = 0; k < 2; ++k)
     {
-      TimeOptions time;
-      time.scheme = scheme;
-      time.steps = 40 << k;
-      time.step = end / time.steps;
-      time.mass = MassMatrix::Lumped;
+      TAUTLINE_LET(TimeOptions, time, scheme = scheme, steps = 40 << k, step = end / time.steps,
+        mass = MassMatrix::Lumped);
       const TimeSeries series = integrate(system, time, start, rest, exactly());
       errors[k] = difference(series.values.back(), start, exact);
     }
@@ -193,11 +185,8 @@ TAUTLINE_PART(testSpace)
       const Mesh mesh(data.view());
       const EllipticSystem system(mesh, withoutSource());
       const std::vector<double> start = mode(system);
-      TimeOptions time;
-      time.scheme = TimeScheme::CrankNicolson;
-      time.steps = 200;
-      time.step = end / time.steps;
-      time.mass = mass;
+      TAUTLINE_LET(TimeOptions, time, scheme = TimeScheme::CrankNicolson, steps = 200,
+        step = end / time.steps, mass = mass);
       const TimeSeries series = integrate(system, time, start, start, exactly());
       errors[k] = difference(series.values.back(), start, std::exp(-2 * square(M_PI) * end));
     }
@@ -213,8 +202,7 @@ TAUTLINE_PART(testStationary)
   const Mesh mesh(data.view());
   std::vector<unsigned char> none(mesh.view().numberOfPoints, 0);
   none[0] = 1;
-  EllipticProblem free;
-  free.fixed = none.data();
+  TAUTLINE_LET(EllipticProblem, free, fixed = none.data());
   const EllipticSystem whole(mesh, free);
   const double missing = 1.0 / 36 / 3; // of a corner with two triangles
   for (const MassMatrix kind : { MassMatrix::Consistent, MassMatrix::Lumped })
@@ -246,15 +234,12 @@ TAUTLINE_PART(testStationary)
   solver.solve(system.rightHandSide().data(), still.data());
   for (const TimeScheme scheme : Schemes)
   {
-    TimeOptions time;
-    time.scheme = scheme;
-    time.steps = 5;
+    TAUTLINE_LET(TimeOptions, time, scheme = scheme, steps = 5);
     const TimeSeries kept = integrate(system, time, still, rest, exactly());
     TAUTLINE_CHECK(difference(kept.values.back(), still, 1.0) < Exact);
     if (scheme != TimeScheme::Newmark && scheme != TimeScheme::CrankNicolson)
     {
-      time.step = 1.0;
-      time.steps = 20;
+      TAUTLINE_SET(time, step = 1.0, steps = 20);
       const TimeSeries reached = integrate(system, time, rest, rest, exactly());
       TAUTLINE_CHECK(difference(reached.values.back(), still, 1.0) < 1e-6);
     }
@@ -277,17 +262,13 @@ TAUTLINE_PART(testElasticWaves)
       fixed.push_back(p[0] == 0);
       pull.insert(pull.end(), { 0.1 * p[0], 0.02 * p[0] * p[1], 0.0 });
     }
-    EllipticProblem problem;
-    problem.pde = Pde::Elasticity;
+    TAUTLINE_LET(EllipticProblem, problem, pde = Pde::Elasticity);
     problem.source = { 0, 0, 0 };
     problem.fixed = fixed.data();
     const EllipticSystem system(mesh, problem);
     TAUTLINE_CHECK(system.blockSize() == (flat ? 2 : 3));
     const std::vector<double> start = unknownsOf(system, pull), rest(start.size(), 0.0);
-    TimeOptions time;
-    time.scheme = TimeScheme::Newmark;
-    time.step = 0.5;
-    time.steps = 60;
+    TAUTLINE_LET(TimeOptions, time, scheme = TimeScheme::Newmark, step = 0.5, steps = 60);
     const TimeSeries series = integrate(system, time, start, rest, exactly());
     TAUTLINE_CHECK(series.values.size() == 61);
     // Velocities follow from v_new = 2 (u_new - u) / dt - v, exact for this scheme.
@@ -327,17 +308,12 @@ TAUTLINE_PART(testDecay)
   const Mesh mesh(data.view());
   const EllipticSystem system(mesh, withoutSource());
   const std::vector<double> start = mode(system);
-  TimeOptions time;
-  time.scheme = TimeScheme::Bdf2;
-  time.step = 2.0;
-  time.steps = 400;
+  TAUTLINE_LET(TimeOptions, time, scheme = TimeScheme::Bdf2, step = 2.0, steps = 400);
   for (const KrylovMethod method : { KrylovMethod::ConjugateGradient, KrylovMethod::MINRES,
          KrylovMethod::GMRES, KrylovMethod::BiCGStab, KrylovMethod::Direct })
   {
     Context context(nameOf(method));
-    SolverOptions options;
-    options.method = method;
-    options.preconditioner = Preconditioner::Jacobi;
+    TAUTLINE_LET(SolverOptions, options, method = method, preconditioner = Preconditioner::Jacobi);
     const TimeSeries series = integrate(system, time, start, start, options);
     TAUTLINE_CHECK(converged(series.reason) && series.values.size() == 401);
     TAUTLINE_CHECK(difference(series.values.back(), start, 0.0) < 1e-12);
@@ -350,19 +326,15 @@ TAUTLINE_PART(testRefused)
   const Mesh mesh(data.view());
   const EllipticSystem system(mesh, withoutSource());
   const std::vector<double> start = mode(system), rest(start.size(), 0.0);
-  TimeOptions time;
-  time.step = 0.0;
+  TAUTLINE_LET(TimeOptions, time, step = 0.0);
   TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), "above 0");
   time.step = std::nan("");
   TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), "above 0");
-  time.step = 0.1;
-  time.steps = 0;
+  TAUTLINE_SET(time, step = 0.1, steps = 0);
   TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), wording("at-least-1"));
-  time.steps = 3;
-  time.density = -1;
+  TAUTLINE_SET(time, steps = 3, density = -1);
   TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), "density");
-  time.density = 1;
-  time.scheme = TimeScheme::Stationary;
+  TAUTLINE_SET(time, density = 1, scheme = TimeScheme::Stationary);
   TAUTLINE_CHECK_THROWS(integrate(system, time, start, rest, {}), "stationary");
   time.scheme = TimeScheme::Newmark;
   TAUTLINE_CHECK_THROWS(
@@ -376,15 +348,13 @@ TAUTLINE_PART(testRefused)
   const Mesh fineMesh(fine.view());
   const EllipticSystem large(fineMesh, withoutSource());
   const std::vector<double> zero(large.matrix().size, 0.0);
-  time.scheme = TimeScheme::BackwardEuler;
-  time.steps = 100000000;
+  TAUTLINE_SET(time, scheme = TimeScheme::BackwardEuler, steps = 100000000);
   TAUTLINE_CHECK_THROWS(integrate(large, time, zero, zero, {}), wording("fewer-time-steps"));
   time.steps = 3;
 
   // A solver that fails ends the integration; the observer ends it, too.
   SolverOptions few = exactly();
-  few.maximumIterations = 1;
-  few.preconditioner = Preconditioner::None;
+  TAUTLINE_SET(few, maximumIterations = 1, preconditioner = Preconditioner::None);
   time.scheme = TimeScheme::BackwardEuler;
   std::vector<double> rough = start;
   rough[0] += 1;

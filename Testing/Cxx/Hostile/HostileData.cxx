@@ -50,9 +50,7 @@ vtkSmartPointer<vtkPointSet> movable(vtkDataObject* suitable)
   auto copy = copyOf<vtkPointSet>(suitable);
   if (copy)
   {
-    vtkNew<vtkPoints> points;
-    points->SetDataType(VTK_DOUBLE);
-    points->DeepCopy(copy->GetPoints());
+    TAUTLINE_NEW(vtkPoints, points, SetDataType(VTK_DOUBLE), DeepCopy(copy->GetPoints()));
     copy->SetPoints(points);
   }
   return copy;
@@ -153,8 +151,7 @@ Data blocks(vtkDataObject* suitable, const std::vector<Data>& others)
     return nullptr;
   }
   auto result = vtkSmartPointer<vtkMultiBlockDataSet>::New();
-  result->SetBlock(0, suitable);
-  result->SetBlock(1, nullptr);
+  TAUTLINE_SET(result, SetBlock(0, suitable), SetBlock(1, nullptr));
   for (const Data& other : others)
   {
     result->SetBlock(result->GetNumberOfBlocks(), other);
@@ -176,9 +173,8 @@ Data collection(vtkDataObject* suitable, bool withTable)
   {
     second->SetPartition(0, makeTable().Get());
   }
-  result->SetPartitionedDataSet(0, first);
-  result->SetPartitionedDataSet(1, second);
-  result->SetPartitionedDataSet(2, third);
+  TAUTLINE_SET(result, SetPartitionedDataSet(0, first), SetPartitionedDataSet(1, second),
+    SetPartitionedDataSet(2, third));
   return result;
 }
 
@@ -216,9 +212,7 @@ Data inFloats(vtkDataObject* suitable)
   auto copy = copyOf<vtkPointSet>(suitable);
   if (copy)
   {
-    vtkNew<vtkPoints> points;
-    points->SetDataType(VTK_FLOAT);
-    points->DeepCopy(copy->GetPoints());
+    TAUTLINE_NEW(vtkPoints, points, SetDataType(VTK_FLOAT), DeepCopy(copy->GetPoints()));
     copy->SetPoints(points);
   }
   return copy;
@@ -481,8 +475,7 @@ void addCorrupt(std::vector<HostileData>& list)
       auto copy = movable(data);
       if (copy)
       {
-        copy->GetPoints()->SetNumberOfPoints(2);
-        copy->GetPointData()->Initialize();
+        TAUTLINE_SET(copy, GetPoints()->SetNumberOfPoints(2), GetPointData()->Initialize());
       }
       return Data(copy);
     });
@@ -529,17 +522,14 @@ Data doubledMesh(vtkDataObject* suitable, double shift, bool newPoints)
     return nullptr;
   }
   auto result = vtkSmartPointer<vtkUnstructuredGrid>::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataType(VTK_DOUBLE);
-  points->DeepCopy(copy->GetPoints());
+  TAUTLINE_NEW(vtkPoints, points, SetDataType(VTK_DOUBLE), DeepCopy(copy->GetPoints()));
   const vtkIdType n = points->GetNumberOfPoints();
   for (vtkIdType i = 0; newPoints && i < n; ++i)
   {
     const double* p = copy->GetPoint(i);
     points->InsertNextPoint(p[0] + shift, p[1], p[2]);
   }
-  result->SetPoints(points);
-  result->Allocate(2 * copy->GetNumberOfCells());
+  TAUTLINE_SET(result, SetPoints(points), Allocate(2 * copy->GetNumberOfCells()));
   for (int times = 0; times < 2; ++times)
   {
     for (vtkIdType cell = 0; cell < copy->GetNumberOfCells(); ++cell)

@@ -51,11 +51,8 @@ using Data = vtkSmartPointer<vtkDataObject>;
 /** Arrays of several types: V with three components, text, numbers of points and cells. */
 void addArrays(vtkDataSet* mesh)
 {
-  vtkNew<vtkDoubleArray> scalars;
-  scalars->SetName("T");
-  vtkNew<vtkFloatArray> vectors;
-  vectors->SetName("V");
-  vectors->SetNumberOfComponents(3);
+  TAUTLINE_NEW(vtkDoubleArray, scalars, SetName("T"));
+  TAUTLINE_NEW(vtkFloatArray, vectors, SetName("V"), SetNumberOfComponents(3));
   vtkNew<vtkStringArray> texts, cellTexts;
   texts->SetName("Names");
   cellTexts->SetName("Names");
@@ -65,18 +62,15 @@ void addArrays(vtkDataSet* mesh)
     vectors->InsertNextTuple3(0.005 * static_cast<double>(i), 0, 0);
     texts->InsertNextValue("p" + std::to_string(i));
   }
-  vtkNew<vtkIntArray> material;
-  material->SetName("Material");
+  TAUTLINE_NEW(vtkIntArray, material, SetName("Material"));
   for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
   {
     material->InsertNextValue(static_cast<int>(i % 3));
     cellTexts->InsertNextValue("c" + std::to_string(i));
   }
-  mesh->GetPointData()->AddArray(scalars);
-  mesh->GetPointData()->AddArray(vectors);
-  mesh->GetPointData()->AddArray(texts);
-  mesh->GetCellData()->AddArray(material);
-  mesh->GetCellData()->AddArray(cellTexts);
+  TAUTLINE_SET(mesh, GetPointData()->AddArray(scalars), GetPointData()->AddArray(vectors),
+    GetPointData()->AddArray(texts), GetCellData()->AddArray(material),
+    GetCellData()->AddArray(cellTexts));
 }
 
 /** A planar mesh of triangles with its inner points moved. */
@@ -96,8 +90,7 @@ Data triangles()
   const auto grid = toGrid(data);
   addArrays(grid);
   // An interaction layer of width 1, of the cells whose square is on the boundary.
-  vtkNew<vtkIntArray> reference;
-  reference->SetName("Reference");
+  TAUTLINE_NEW(vtkIntArray, reference, SetName("Reference"));
   for (int cell = 0; cell < 32; ++cell)
   {
     const int x = cell / 2 % 4, y = cell / 8;
@@ -120,8 +113,7 @@ Data tetrahedra()
 Data closedSurface()
 {
   MeshData cube = blockMesh(CellType::Hexahedron, 1, 1, 1);
-  MeshData surface;
-  surface.points = cube.points;
+  TAUTLINE_LET(MeshData, surface, points = cube.points);
   for (const std::vector<Index>& face : std::vector<std::vector<Index>>{ { 0, 2, 3, 1 },
          { 4, 5, 7, 6 }, { 0, 1, 5, 4 }, { 2, 6, 7, 3 }, { 0, 4, 6, 2 }, { 1, 3, 7, 5 } })
   {
@@ -136,23 +128,20 @@ Data closedSurface()
 Data outlines()
 {
   auto poly = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataType(VTK_DOUBLE);
+  TAUTLINE_NEW(vtkPoints, points, SetDataType(VTK_DOUBLE));
   vtkNew<vtkCellArray> lines;
   for (const double half : { 2.0, 1.0 })
   {
     const vtkIdType first = points->InsertNextPoint(-half, -half, 0);
-    points->InsertNextPoint(half, -half, 0);
-    points->InsertNextPoint(half, half, 0);
-    points->InsertNextPoint(-half, half, 0);
+    TAUTLINE_SET(points, InsertNextPoint(half, -half, 0), InsertNextPoint(half, half, 0),
+      InsertNextPoint(-half, half, 0));
     for (vtkIdType k = 0; k < 4; ++k)
     {
       const vtkIdType ids[] = { first + k, first + (k + 1) % 4 };
       lines->InsertNextCell(2, ids);
     }
   }
-  poly->SetPoints(points);
-  poly->SetLines(lines);
+  TAUTLINE_SET(poly, SetPoints(points), SetLines(lines));
   addArrays(poly);
   return poly;
 }
@@ -164,8 +153,7 @@ vtkSmartPointer<vtkImageData> silhouette(int shift = 0)
   constexpr int Size = 24;
   auto image = vtkSmartPointer<vtkImageData>::New();
   image->SetDimensions(Size, Size, 1);
-  vtkNew<vtkUnsignedCharArray> grey;
-  grey->SetName("Grey");
+  TAUTLINE_NEW(vtkUnsignedCharArray, grey, SetName("Grey"));
   for (int y = 0; y < Size; ++y)
   {
     for (int x = 0; x < Size; ++x)
@@ -197,10 +185,8 @@ Data images()
 /** A triangulated polygon. */
 Data polygon()
 {
-  vtkNew<vtkSilhouetteMesher> mesher;
-  mesher->SetInputDataObject(silhouette());
-  mesher->SetSpacing(5);
-  mesher->Update();
+  TAUTLINE_NEW(
+    vtkSilhouetteMesher, mesher, SetInputDataObject(silhouette()), SetSpacing(5), Update());
   auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
   grid->DeepCopy(mesher->GetOutput());
   addArrays(grid);
@@ -225,9 +211,8 @@ vtkSmartPointer<vtkAlgorithm> optimizer()
 vtkSmartPointer<vtkAlgorithm> slidingOptimizer()
 {
   auto filter = made<vtkMeshOptimizer>();
-  filter->SetTimeLimit(Seconds);
-  filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
-  filter->ShowFeaturesOn();
+  TAUTLINE_SET(
+    filter, SetTimeLimit(Seconds), SetBoundary(vtkMeshOptimizer::ON_SURFACE), ShowFeaturesOn());
   return filter;
 }
 
@@ -257,8 +242,7 @@ vtkSmartPointer<vtkMeshWarp> warp()
 {
   auto filter = made<vtkMeshWarp>();
   filter->SetTimeLimit(Seconds);
-  vtkNew<vtkTransform> transform;
-  transform->RotateZ(5);
+  TAUTLINE_NEW(vtkTransform, transform, RotateZ(5));
   filter->SetTransform(transform);
   return filter;
 }
@@ -274,9 +258,7 @@ vtkSmartPointer<T> elliptic()
 vtkSmartPointer<vtkPeridynamicStiffness> peridynamics()
 {
   auto filter = made<vtkPeridynamicStiffness>();
-  filter->SetTimeLimit(Seconds);
-  filter->SetHorizon(1.0);
-  filter->SetConstrained(false);
+  TAUTLINE_SET(filter, SetTimeLimit(Seconds), SetHorizon(1.0), SetConstrained(false));
   return filter;
 }
 
@@ -284,9 +266,7 @@ template <class T>
 vtkSmartPointer<T> shapes()
 {
   auto filter = made<T>();
-  filter->SetTimeLimit(Seconds);
-  filter->SetSpacing(5);
-  filter->SetGridSize(8, 8);
+  TAUTLINE_SET(filter, SetTimeLimit(Seconds), SetSpacing(5), SetGridSize(8, 8));
   return filter;
 }
 
@@ -393,8 +373,7 @@ void addFilters(std::vector<HostileFilter>& list)
     []
     {
       auto filter = warp();
-      filter->SetMotion(vtkMeshWarp::TARGET);
-      filter->SetInputDataObject(0, triangles());
+      TAUTLINE_SET(filter, SetMotion(vtkMeshWarp::TARGET), SetInputDataObject(0, triangles()));
       return filter;
     },
     triangles, 1, false);
@@ -425,10 +404,8 @@ void addFilters(std::vector<HostileFilter>& list)
     []
     {
       auto filter = peridynamics();
-      filter->SetConstrained(true);
-      filter->SetAllowThinLayer(true);
-      filter->SetSolve(true);
-      filter->SetBasis(vtkPeridynamicStiffness::PIECEWISE_LINEAR);
+      TAUTLINE_SET(filter, SetConstrained(true), SetAllowThinLayer(true), SetSolve(true),
+        SetBasis(vtkPeridynamicStiffness::PIECEWISE_LINEAR));
       return filter;
     },
     triangles);
@@ -437,22 +414,17 @@ void addFilters(std::vector<HostileFilter>& list)
     []
     {
       auto filter = peridynamics();
-      filter->SetConstrained(true);
-      filter->SetAllowThinLayer(true);
-      filter->SetDiscretization(vtkPeridynamicStiffness::EXACT);
-      filter->SetElastic(true);
-      filter->SetStateBased(true);
-      filter->SetSolve(true);
+      TAUTLINE_SET(filter, SetConstrained(true), SetAllowThinLayer(true),
+        SetDiscretization(vtkPeridynamicStiffness::EXACT), SetElastic(true), SetStateBased(true),
+        SetSolve(true));
       return filter;
     },
     triangles);
   const auto preconditioned = [](int preconditioner)
   {
     auto filter = peridynamics();
-    filter->SetConstrained(true);
-    filter->SetAllowThinLayer(true);
-    filter->SetSolve(true);
-    filter->SetPreconditioner(preconditioner);
+    TAUTLINE_SET(filter, SetConstrained(true), SetAllowThinLayer(true), SetSolve(true),
+      SetPreconditioner(preconditioner));
     return filter;
   };
   add(
@@ -466,8 +438,7 @@ void addFilters(std::vector<HostileFilter>& list)
     []
     {
       auto filter = made<vtkInteractionLayer>();
-      filter->SetWidth(1.0);
-      filter->SetElementSize(1.0);
+      TAUTLINE_SET(filter, SetWidth(1.0), SetElementSize(1.0));
       return filter;
     },
     triangles, 0, false);
@@ -476,8 +447,7 @@ void addFilters(std::vector<HostileFilter>& list)
     []
     {
       auto filter = made<vtkHorizonNeighbors>();
-      filter->SetCenter(2, 2, 0);
-      filter->SetHorizon(1.0);
+      TAUTLINE_SET(filter, SetCenter(2, 2, 0), SetHorizon(1.0));
       return filter;
     },
     triangles, 0, false);
@@ -541,18 +511,14 @@ template <class Writer>
 void addWriter(std::vector<HostileFilter>& list, const char* name, const std::string& file,
   const std::function<Data()>& suitable)
 {
-  HostileFilter entry;
-  entry.module = "Readers";
-  entry.name = name;
+  TAUTLINE_LET(HostileFilter, entry, module = "Readers", name = name);
   entry.make = [file]
   {
     auto writer = made<Writer>();
     writer->SetFileName(file.c_str());
     return writer;
   };
-  entry.suitable = suitable;
-  entry.keepsMesh = false;
-  entry.fileName = file;
+  TAUTLINE_SET(entry, suitable = suitable, keepsMesh = false, fileName = file);
   list.push_back(entry);
 }
 }

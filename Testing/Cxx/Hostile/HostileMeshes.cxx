@@ -85,9 +85,8 @@ Data rectilinear()
     }
     return array;
   };
-  result->SetXCoordinates(axis(4));
-  result->SetYCoordinates(axis(3));
-  result->SetZCoordinates(axis(2));
+  TAUTLINE_SET(
+    result, SetXCoordinates(axis(4)), SetYCoordinates(axis(3)), SetZCoordinates(axis(2)));
   return result;
 }
 
@@ -95,8 +94,7 @@ vtkSmartPointer<vtkStructuredGrid> structured(int points)
 {
   auto result = vtkSmartPointer<vtkStructuredGrid>::New();
   result->SetDimensions(4, 3, 1);
-  vtkNew<vtkPoints> place;
-  place->SetDataType(VTK_DOUBLE);
+  TAUTLINE_NEW(vtkPoints, place, SetDataType(VTK_DOUBLE));
   for (int i = 0; i < points; ++i)
   {
     place->InsertNextPoint(i % 4 + 0.1 * (i / 4), i / 4, 0);
@@ -117,10 +115,8 @@ Data amr()
   auto result = vtkSmartPointer<vtkOverlappingAMR>::New();
   const double origin[] = { 0, 0, 0 }, spacing[] = { 1, 1, 1 };
   initializeLevels(result, { 1 });
-  result->SetOrigin(origin);
-  result->SetSpacing(0, spacing);
-  vtkNew<vtkUniformGrid> leaf;
-  leaf->SetDimensions(4, 4, 4);
+  TAUTLINE_SET(result, SetOrigin(origin), SetSpacing(0, spacing));
+  TAUTLINE_NEW(vtkUniformGrid, leaf, SetDimensions(4, 4, 4));
   result->SetAMRBox(0, 0, vtkAMRBox(origin, leaf->GetDimensions(), spacing, origin));
   result->SetDataSet(0, 0, leaf);
   return result;
@@ -130,8 +126,7 @@ Data explicitStructured(Index wrong)
 {
   const MeshData mesh = blockMesh(CellType::Hexahedron, 2, 1, 1);
   auto result = vtkSmartPointer<vtkExplicitStructuredGrid>::New();
-  result->SetPoints(toPoints(mesh));
-  result->SetDimensions(3, 2, 2);
+  TAUTLINE_SET(result, SetPoints(toPoints(mesh)), SetDimensions(3, 2, 2));
   vtkNew<vtkCellArray> list;
   for (Index cell = 0; cell < 2; ++cell)
   {
@@ -155,8 +150,7 @@ Data graph()
 Data molecule()
 {
   auto result = vtkSmartPointer<vtkMolecule>::New();
-  result->AppendAtom(1, 0, 0, 0);
-  result->AppendAtom(8, 0, 0, 1);
+  TAUTLINE_SET(result, AppendAtom(1, 0, 0, 0), AppendAtom(8, 0, 0, 1));
   return result;
 }
 

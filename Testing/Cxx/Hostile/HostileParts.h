@@ -19,9 +19,7 @@ template <class ArrayT>
 vtkSmartPointer<ArrayT> makeArray(const char* name, vtkIdType tuples, int components = 1)
 {
   auto array = vtkSmartPointer<ArrayT>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetNumberOfTuples(tuples);
+  TAUTLINE_SET(array, SetName(name), SetNumberOfComponents(components), SetNumberOfTuples(tuples));
   for (vtkIdType i = 0; i < array->GetNumberOfValues(); ++i)
   {
     array->SetVariantValue(i, vtkVariant(static_cast<int>(i % 2)));

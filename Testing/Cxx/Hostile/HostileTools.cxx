@@ -30,11 +30,7 @@ public:
   vtkSmartPointer<vtkDataObject> First, Second;
 
 protected:
-  TimeSource()
-  {
-    this->SetNumberOfInputPorts(0);
-    this->SetNumberOfOutputPorts(1);
-  }
+  TimeSource() { TAUTLINE_SET(this, SetNumberOfInputPorts(0), SetNumberOfOutputPorts(1)); }
   int FillOutputPortInformation(int, vtkInformation* info) override
   {
     info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkUnstructuredGrid");
@@ -48,9 +44,8 @@ protected:
     if (request->Has(vtkDemandDrivenPipeline::REQUEST_INFORMATION()))
     {
       const double times[] = { 0, 1 };
-      info->Set(Pipeline::TIME_STEPS(), times, 2);
-      info->Set(Pipeline::TIME_RANGE(), times, 2);
-      info->Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1);
+      TAUTLINE_SET(info, Set(Pipeline::TIME_STEPS(), times, 2),
+        Set(Pipeline::TIME_RANGE(), times, 2), Set(vtkAlgorithm::CAN_HANDLE_PIECE_REQUEST(), 1));
       return 1;
     }
     if (request->Has(vtkDemandDrivenPipeline::REQUEST_DATA()))

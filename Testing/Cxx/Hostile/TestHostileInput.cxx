@@ -391,12 +391,9 @@ std::vector<HostileData> dataFor(const HostileFilter& entry)
     } });
   const auto select = [&](const char* name, vtkAbstractArray* ids)
   {
-    vtkNew<vtkSelectionNode> node;
-    node->SetContentType(vtkSelectionNode::INDICES);
-    node->SetFieldType(vtkSelectionNode::POINT);
-    node->SetSelectionList(ids);
-    vtkNew<vtkSelection> selection;
-    selection->AddNode(node);
+    TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+      SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
+    TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
     const vtkSmartPointer<vtkSelection> kept = selection.Get();
     const int port = entry.selectionPort;
     list.push_back({ name, suitable, Expected::Error, false, false,
@@ -407,8 +404,7 @@ std::vector<HostileData> dataFor(const HostileFilter& entry)
     vtkNew<vtkIdTypeArray> far, negative;
     far->InsertNextValue(1000000);
     negative->InsertNextValue(-1);
-    vtkNew<vtkStringArray> text;
-    text->InsertNextValue("7");
+    TAUTLINE_NEW(vtkStringArray, text, InsertNextValue("7"));
     select("selection of points that are not there", far);
     select("selection of a negative id", negative);
     select("selection by text", text);

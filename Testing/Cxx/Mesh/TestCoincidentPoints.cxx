@@ -273,8 +273,7 @@ TAUTLINE_PART(testSurfaces)
 /// The boundary points, from the facets of cells with different points.
 std::vector<char> expectedBoundary(const MeshData& data)
 {
-  MeshData distinct;
-  distinct.points = data.points;
+  TAUTLINE_LET(MeshData, distinct, points = data.points);
   std::set<std::set<Index>> seen;
   for (Index cell = 0; cell < data.numberOfCells(); ++cell)
   {

@@ -58,10 +58,8 @@ DecompositionCounts measured(
         highest = std::max<Index>(highest, set);
       }
       highest = group.maximum(highest);
-      PartCounts own;
-      own.cells = part.data.numberOfCells();
-      own.haloPoints = mesh.haloPoints();
-      own.neighbours = mesh.neighbours();
+      TAUTLINE_LET(PartCounts, own, cells = part.data.numberOfCells(),
+        haloPoints = mesh.haloPoints(), neighbours = mesh.neighbours());
       std::vector<double> values(mesh.localPoints(), 0.0);
       for (Index set = 0; set <= highest; ++set)
       {
@@ -91,8 +89,7 @@ DecompositionCounts measured(
         own.points += mesh.owned(p);
       }
       const std::lock_guard<std::mutex> lock(mutex);
-      found.parts[group.rank()] = own;
-      found.sets = highest + 1;
+      TAUTLINE_SET(found, parts[group.rank()] = own, sets = highest + 1);
     });
   for (const Index points : slowest)
   {

@@ -95,8 +95,7 @@ TAUTLINE_PART(testBoundaries)
     checkCounts(featuresOf(block), 8, 12, 6);
     // An interface has a patch, a closed curve of four sides, and four corners more.
     const std::vector<double> regions = twoRegions(block);
-    FeatureOptions options;
-    options.regions = regions.data();
+    TAUTLINE_LET(FeatureOptions, options, regions = regions.data());
     const Features found = featuresOf(block, options);
     checkCounts(found, 12, 20, 11);
     Index interface = 0;
@@ -113,8 +112,7 @@ TAUTLINE_PART(testBoundaries)
   const MeshData square = blockMesh(CellType::Triangle, 4, 4, 0);
   checkCounts(featuresOf(square), 4, 4, 0);
   const std::vector<double> regions = twoRegions(square);
-  FeatureOptions options;
-  options.regions = regions.data();
+  TAUTLINE_LET(FeatureOptions, options, regions = regions.data());
   checkCounts(featuresOf(square, options), 6, 7, 0);
   options = FeatureOptions();
   options.asSurface = true;
@@ -131,8 +129,7 @@ TAUTLINE_PART(testNumbering)
   {
     const MeshData data = shuffled(cube, seed);
     const std::vector<double> regions = twoRegions(data);
-    FeatureOptions options;
-    options.regions = regions.data();
+    TAUTLINE_LET(FeatureOptions, options, regions = regions.data());
     checkCounts(featuresOf(data, options), 12, 20, 10);
   }
 }
@@ -143,8 +140,7 @@ TAUTLINE_PART(testKinds)
   const MeshData cube = cubeSurface(CellType::Triangle, 4);
   const Features found = featuresOf(cube);
   std::vector<signed char> kinds(cube.numberOfPoints(), DetectKind);
-  FeatureOptions options;
-  options.kinds = kinds.data();
+  TAUTLINE_LET(FeatureOptions, options, kinds = kinds.data());
   checkCounts(featuresOf(cube, options), 8, 12, 6);
   // All points in patches: one smooth surface.
   std::fill(kinds.begin(), kinds.end(), PatchPoint);

@@ -340,10 +340,10 @@ TAUTLINE_PART(testRefusals)
   for (int missing = 0; missing < 4; ++missing)
   {
     MeshView view = good.view();
-    view.points = missing == 0 ? nullptr : view.points;
-    view.cellTypes = missing == 1 ? nullptr : view.cellTypes;
-    view.offsets = missing == 2 ? nullptr : view.offsets;
-    view.connectivity = missing == 3 ? nullptr : view.connectivity;
+    TAUTLINE_SET(view, points = missing == 0 ? nullptr : view.points,
+      cellTypes = missing == 1 ? nullptr : view.cellTypes,
+      offsets = missing == 2 ? nullptr : view.offsets,
+      connectivity = missing == 3 ? nullptr : view.connectivity);
     TAUTLINE_CHECK_THROWS(Mesh mesh(view), "incomplete");
   }
   MeshView view = good.view();

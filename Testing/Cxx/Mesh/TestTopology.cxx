@@ -150,8 +150,7 @@ void testIdealValues(const CellTopology& t, const IdealFacts& facts)
     for (Combination combination :
       { Combination::Mean, Combination::Worst, Combination::PowerMean })
     {
-      EvaluationOptions options;
-      options.combination = combination;
+      TAUTLINE_LET(EvaluationOptions, options, combination = combination);
       TAUTLINE_CHECK_NEAR(valueOf(t.type, ideal, info.metric, options),
         expectedIdeal(info, t, facts), 200 * rounding); // angles are up to 110
     }

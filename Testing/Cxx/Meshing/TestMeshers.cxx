@@ -75,9 +75,7 @@ Facts measure(vtkUnstructuredGrid* mesh)
 
 vtkSmartPointer<vtkUnstructuredGrid> read(const char* name)
 {
-  vtkNew<vtkTetGenReader> reader;
-  reader->SetFileName((data + "/" + name).c_str());
-  reader->Update();
+  TAUTLINE_NEW(vtkTetGenReader, reader, SetFileName((data + "/" + name).c_str()), Update());
   return vtkUnstructuredGrid::SafeDownCast(reader->GetOutputDataObject(0));
 }
 
@@ -95,18 +93,15 @@ vtkSmartPointer<vtkPolyData> outline(const std::vector<std::array<double, 2>>& c
   {
     cells->InsertNextCell({ i, (i + 1) % points->GetNumberOfPoints() });
   }
-  lines->SetPoints(points);
-  lines->SetLines(cells);
+  TAUTLINE_SET(lines, SetPoints(points), SetLines(cells));
   return lines;
 }
 
 std::string failure(vtkAlgorithm* mesher, vtkDataObject* input)
 {
   vtkNew<vtkTest::ErrorObserver> errors, quiet;
-  mesher->SetInputDataObject(input);
-  mesher->AddObserver(vtkCommand::ErrorEvent, errors);
-  mesher->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, quiet);
-  mesher->Update();
+  TAUTLINE_SET(mesher, SetInputDataObject(input), AddObserver(vtkCommand::ErrorEvent, errors),
+    GetExecutive()->AddObserver(vtkCommand::ErrorEvent, quiet), Update());
   TAUTLINE_CHECK(vtkDataSet::SafeDownCast(mesher->GetOutputDataObject(0))->GetNumberOfCells() == 0);
   return errors->GetErrorMessage();
 }
@@ -124,11 +119,8 @@ bool contains(const std::string& text, const char* part)
 void testTriangles()
 {
   // a plate of 9 with a hole of 1
-  vtkNew<vtkTriangleMesher> mesher;
-  mesher->SetInputData(read("plate.poly"));
-  mesher->SetSize(0.2);
-  mesher->SetMinimumAngle(25.0);
-  mesher->Update();
+  TAUTLINE_NEW(vtkTriangleMesher, mesher, SetInputData(read("plate.poly")), SetSize(0.2),
+    SetMinimumAngle(25.0), Update());
   Facts facts = measure(mesher->GetOutput());
   TAUTLINE_CHECK(std::abs(facts.size - 8.0) < 1e-12);
   TAUTLINE_CHECK(facts.longestEdge <= 0.2 && facts.smallestAngle >= 25.0);
@@ -148,24 +140,19 @@ void testTriangles()
   // not matter
   vtkSmartPointer<vtkUnstructuredGrid> plate = read("plate.poly");
   plate->GetFieldData()->Initialize();
-  mesher->SetInputData(plate);
-  mesher->Update();
+  TAUTLINE_SET(mesher, SetInputData(plate), Update());
   TAUTLINE_CHECK(std::abs(measure(mesher->GetOutput()).size - 8.0) < 1e-12);
 
   // sizes from an array: small at one corner; z is kept
   vtkSmartPointer<vtkPolyData> square = outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } });
-  vtkNew<vtkDoubleArray> sizes;
-  sizes->SetName("size");
+  TAUTLINE_NEW(vtkDoubleArray, sizes, SetName("size"));
   for (const double size : { 0.01, 0.5, 0.5, 0.5 })
   {
     sizes->InsertNextValue(size);
   }
   square->GetPointData()->AddArray(sizes);
-  mesher->SetInputData(square);
-  mesher->SetSize(0.0);
-  mesher->UseSizeArrayOn();
-  mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "size");
-  mesher->Update();
+  TAUTLINE_SET(mesher, SetInputData(square), SetSize(0.0), UseSizeArrayOn(),
+    SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "size"), Update());
   vtkUnstructuredGrid* graded = mesher->GetOutput();
   vtkIdType near = 0;
   for (vtkIdType i = 0; i < graded->GetNumberOfPoints(); ++i)
@@ -185,27 +172,22 @@ void testTriangleScales()
   {
     const auto square =
       outline({ { 0, 0 }, { 3 * scale, 0 }, { 3 * scale, 2 * scale }, { 0, 2 * scale } });
-    vtkNew<vtkPoints> points;
-    points->SetDataType(VTK_DOUBLE);
+    TAUTLINE_NEW(vtkPoints, points, SetDataType(VTK_DOUBLE));
     for (const auto& [x, y] : { std::array<double, 2>{ 0, 0 }, { 3 * scale, 0 },
            { 3 * scale, 2 * scale }, { 0, 2 * scale } })
     {
       points->InsertNextPoint(x, y, 0);
     }
     square->SetPoints(points);
-    vtkNew<vtkDoubleArray> array;
-    array->SetName("size");
+    TAUTLINE_NEW(vtkDoubleArray, array, SetName("size"));
     for (const double size : { 0.1, 1.0, 1.0, 1.0 })
     {
       array->InsertNextValue(size * scale);
     }
     square->GetPointData()->AddArray(array);
-    vtkNew<vtkTriangleMesher> mesher;
-    mesher->SetInputData(square);
-    mesher->SetSize(sizes ? 0.0 : 0.3 * scale);
-    mesher->SetUseSizeArray(sizes);
-    mesher->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "size");
-    mesher->Update();
+    TAUTLINE_NEW(vtkTriangleMesher, mesher, SetInputData(square),
+      SetSize(sizes ? 0.0 : 0.3 * scale), SetUseSizeArray(sizes),
+      SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "size"), Update());
     vtkSmartPointer<vtkUnstructuredGrid> mesh = mesher->GetOutput();
     return mesh;
   };
@@ -237,8 +219,7 @@ void testTriangleScales()
 void testTriangleFailures()
 {
   const double half = 1e20;
-  vtkNew<vtkTriangleMesher> fine;
-  fine->SetSize(1.0);
+  TAUTLINE_NEW(vtkTriangleMesher, fine, SetSize(1.0));
   TAUTLINE_CHECK(contains(
     failure(fine, outline({ { -half, -half }, { half, -half }, { half, half }, { -half, half } })),
     wording("a-size-is-1-less-than-coordinates")));
@@ -250,13 +231,10 @@ void testTriangleFailures()
   TAUTLINE_CHECK(contains(said, wording("segment-2-points-2-and-3-crosses")));
   vtkNew<vtkTriangleMesher> open;
   vtkSmartPointer<vtkPolyData> line = outline({ { 0, 0 }, { 1, 0 }, { 1, 1 } });
-  vtkNew<vtkCellArray> two;
-  two->InsertNextCell({ 0, 1 });
-  two->InsertNextCell({ 1, 2 });
+  TAUTLINE_NEW(vtkCellArray, two, InsertNextCell({ 0, 1 }), InsertNextCell({ 1, 2 }));
   line->SetLines(two);
   TAUTLINE_CHECK(contains(failure(open, line), wording("is-an-outline-closed")));
-  vtkNew<vtkSphereSource> sphere;
-  sphere->Update();
+  TAUTLINE_NEW(vtkSphereSource, sphere, Update());
   vtkNew<vtkTriangleMesher> solid;
   TAUTLINE_CHECK(
     contains(failure(solid, sphere->GetOutput()), wording("not-in-a-plane-z-constant")));
@@ -265,8 +243,7 @@ void testTriangleFailures()
     wording("not-a-finite-number")));
 
   // abort, as a user interface would ask for it
-  vtkNew<vtkTriangleMesher> aborted;
-  aborted->SetSize(0.002);
+  TAUTLINE_NEW(vtkTriangleMesher, aborted, SetSize(0.002));
   vtkNew<vtkCallbackCommand> stop;
   stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
     { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
@@ -278,10 +255,8 @@ void testTriangleFailures()
 
 void testTetrahedra()
 {
-  vtkNew<vtkTetGenMesher> mesher;
-  mesher->SetInputData(read("cube.smesh"));
-  mesher->SetVolume(0.005);
-  mesher->Update();
+  TAUTLINE_NEW(
+    vtkTetGenMesher, mesher, SetInputData(read("cube.smesh")), SetVolume(0.005), Update());
   Facts facts = measure(mesher->GetOutput());
   TAUTLINE_CHECK(std::abs(facts.size - 1.0) < 1e-12 && facts.largestCell <= 0.005 * (1 + 1e-9));
   TAUTLINE_CHECK(mesher->GetOutput()->GetNumberOfCells() > 200);
@@ -309,8 +284,7 @@ void testTetrahedra()
   }
   TAUTLINE_CHECK(areas[0] == 0.0);
 
-  mesher->PreserveSurfaceOn();
-  mesher->Update();
+  TAUTLINE_SET(mesher, PreserveSurfaceOn(), Update());
   TAUTLINE_CHECK(
     vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1))->GetNumberOfCells() == 12);
   TAUTLINE_CHECK(std::abs(measure(mesher->GetOutput()).size - 1.0) < 1e-12);
@@ -320,16 +294,11 @@ void testTetrahedra()
 void testTetrahedraScales()
 {
   constexpr double scale = 1e-8;
-  vtkNew<vtkTransform> shrink;
-  shrink->Scale(scale, scale, scale);
-  vtkNew<vtkTransformFilter> small;
-  small->SetTransform(shrink);
-  small->SetInputData(read("cube.smesh"));
-  vtkNew<vtkTetGenMesher> mesher;
-  mesher->SetInputConnection(small->GetOutputPort());
+  TAUTLINE_NEW(vtkTransform, shrink, Scale(scale, scale, scale));
+  TAUTLINE_NEW(vtkTransformFilter, small, SetTransform(shrink), SetInputData(read("cube.smesh")));
+  TAUTLINE_NEW(vtkTetGenMesher, mesher, SetInputConnection(small->GetOutputPort()));
   const double volume = 0.005 * scale * scale * scale;
-  mesher->SetVolume(volume);
-  mesher->Update();
+  TAUTLINE_SET(mesher, SetVolume(volume), Update());
   const Facts facts = measure(mesher->GetOutput());
   TAUTLINE_CHECK_RELATIVE(facts.size, scale * scale * scale, 1e-9);
   TAUTLINE_CHECK(facts.largestCell <= volume * (1 + 1e-9));
@@ -341,15 +310,11 @@ void testTetrahedraScales()
 void testTetrahedraOfKeptSurface()
 {
   constexpr int steps = 24; // around and between the poles
-  vtkNew<vtkSphereSource> sphere;
-  sphere->SetThetaResolution(steps);
-  sphere->SetPhiResolution(steps);
-  vtkNew<vtkTetGenMesher> mesher;
-  mesher->SetInputConnection(sphere->GetOutputPort());
-  mesher->PreserveSurfaceOn();
+  TAUTLINE_NEW(vtkSphereSource, sphere, SetThetaResolution(steps), SetPhiResolution(steps));
+  TAUTLINE_NEW(
+    vtkTetGenMesher, mesher, SetInputConnection(sphere->GetOutputPort()), PreserveSurfaceOn());
   const double volume = 2e-5;
-  mesher->SetVolume(volume);
-  mesher->Update();
+  TAUTLINE_SET(mesher, SetVolume(volume), Update());
   const Facts facts = measure(mesher->GetOutput());
   TAUTLINE_CHECK(facts.largestCell > volume);
   const auto cells = static_cast<double>(mesher->GetOutput()->GetNumberOfCells());
@@ -381,18 +346,12 @@ void testRegionsAndHoles()
       polygons->InsertNextCell({ first + ids[0], first + ids[1], first + ids[2], first + ids[3] });
     }
   }
-  nested->SetPoints(points);
-  nested->SetPolys(polygons);
-  vtkNew<vtkDoubleArray> regions;
-  regions->SetName("Regions");
-  regions->SetNumberOfComponents(5);
+  TAUTLINE_SET(nested, SetPoints(points), SetPolys(polygons));
+  TAUTLINE_NEW(vtkDoubleArray, regions, SetName("Regions"), SetNumberOfComponents(5));
   const double outside[] = { 0.1, 0.1, 0.1, 3, -1 }, inside[] = { 0.5, 0.5, 0.5, 8, 0.001 };
-  regions->InsertNextTuple(outside);
-  regions->InsertNextTuple(inside);
+  TAUTLINE_SET(regions, InsertNextTuple(outside), InsertNextTuple(inside));
   nested->GetFieldData()->AddArray(regions);
-  vtkNew<vtkTetGenMesher> mesher;
-  mesher->SetInputData(nested);
-  mesher->Update();
+  TAUTLINE_NEW(vtkTetGenMesher, mesher, SetInputData(nested), Update());
   vtkUnstructuredGrid* mesh = mesher->GetOutput();
   TAUTLINE_CHECK(std::abs(measure(mesh).size - 1.0) < 1e-12);
   vtkDataArray* references = mesh->GetCellData()->GetArray("Reference");
@@ -405,10 +364,8 @@ void testRegionsAndHoles()
   TAUTLINE_CHECK(inner >= 125 && outer > 0 && inner + outer == mesh->GetNumberOfCells());
 
   nested->GetFieldData()->Initialize();
-  vtkNew<vtkDoubleArray> holes;
-  holes->SetName("Holes");
-  holes->SetNumberOfComponents(3);
-  holes->InsertNextTuple3(0.5, 0.5, 0.5);
+  TAUTLINE_NEW(vtkDoubleArray, holes, SetName("Holes"), SetNumberOfComponents(3),
+    InsertNextTuple3(0.5, 0.5, 0.5));
   nested->GetFieldData()->AddArray(holes);
   mesher->Update();
   TAUTLINE_CHECK(std::abs(measure(mesher->GetOutput()).size - 0.875) < 1e-12);
@@ -418,9 +375,8 @@ void testRegionsAndHoles()
   box->SetInputData(read("box.poly"));
   box->GetInputDataObject(0, 0)->GetFieldData()->RemoveArray("Holes");
   vtkNew<vtkTest::ErrorObserver> errors, quiet;
-  box->AddObserver(vtkCommand::ErrorEvent, errors);
-  box->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, quiet);
-  box->Update();
+  TAUTLINE_SET(box, AddObserver(vtkCommand::ErrorEvent, errors),
+    GetExecutive()->AddObserver(vtkCommand::ErrorEvent, quiet), Update());
   TAUTLINE_CHECK(errors->GetError() || box->GetOutput()->GetNumberOfCells() > 0);
 }
 
@@ -432,9 +388,7 @@ void testTetrahedraFailures()
   vtkNew<vtkCellArray> polygons;
   for (const double x : { 0.0, 0.31 })
   {
-    vtkNew<vtkSphereSource> sphere;
-    sphere->SetCenter(x, 0.013, 0.007);
-    sphere->Update();
+    TAUTLINE_NEW(vtkSphereSource, sphere, SetCenter(x, 0.013, 0.007), Update());
     const vtkIdType first = points->GetNumberOfPoints();
     for (vtkIdType i = 0; i < sphere->GetOutput()->GetNumberOfPoints(); ++i)
     {
@@ -448,8 +402,7 @@ void testTetrahedraFailures()
       polygons->InsertNextCell({ first + ids[0], first + ids[1], first + ids[2] });
     }
   }
-  both->SetPoints(points);
-  both->SetPolys(polygons);
+  TAUTLINE_SET(both, SetPoints(points), SetPolys(polygons));
   vtkNew<vtkTetGenMesher> crossing;
   TAUTLINE_CHECK(
     contains(failure(crossing, both), wording("the-surface-intersects-itself-facets")));
@@ -457,24 +410,19 @@ void testTetrahedraFailures()
   TAUTLINE_CHECK(!std::filesystem::exists("tetgen-tmpfile_skipped.face"));
 
   vtkNew<vtkTetGenMesher> open;
-  vtkNew<vtkSphereSource> half;
-  half->SetEndTheta(180.0);
-  half->Update();
+  TAUTLINE_NEW(vtkSphereSource, half, SetEndTheta(180.0), Update());
   TAUTLINE_CHECK(contains(failure(open, half->GetOutput()), wording("is-it-closed")));
 
   vtkNew<vtkTetGenMesher> flat;
   TAUTLINE_CHECK(contains(
     failure(flat, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 } })), wording("3-cells-are-no-triangles")));
   vtkNew<vtkTetGenMesher> nan;
-  vtkNew<vtkSphereSource> broken;
-  broken->Update();
-  broken->GetOutput()->GetPoints()->SetPoint(3, 0, NAN, 0);
+  TAUTLINE_NEW(vtkSphereSource, broken, Update(), GetOutput()->GetPoints()->SetPoint(3, 0, NAN, 0));
   TAUTLINE_CHECK(
     contains(failure(nan, broken->GetOutput()), wording("point-3-has-a-coordinate-that-is")));
 
   // abort ends TetGen in the midst of a million tetrahedra
-  vtkNew<vtkTetGenMesher> aborted;
-  aborted->SetVolume(1e-6);
+  TAUTLINE_NEW(vtkTetGenMesher, aborted, SetVolume(1e-6));
   vtkNew<vtkCallbackCommand> stop;
   stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
     { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
@@ -482,19 +430,14 @@ void testTetrahedraFailures()
   TAUTLINE_CHECK_EQUAL(failure(aborted, read("cube.smesh")), std::string());
   TAUTLINE_CHECK(aborted->GetAbortExecute() != 0);
 
-  vtkNew<vtkTetGenMesher> slow;
-  slow->SetVolume(1e-7);
-  slow->SetTimeLimit(0.5);
+  TAUTLINE_NEW(vtkTetGenMesher, slow, SetVolume(1e-7), SetTimeLimit(0.5));
   TAUTLINE_CHECK(contains(failure(slow, read("cube.smesh")), wording("the-time-limit-of-0-5-s")));
 
   // and after all these failures it works
-  vtkNew<vtkTetGenMesher> works;
-  works->SetInputData(read("cube.smesh"));
-  works->Update();
+  TAUTLINE_NEW(vtkTetGenMesher, works, SetInputData(read("cube.smesh")), Update());
   TAUTLINE_CHECK(works->GetOutput()->GetNumberOfCells() > 0);
   vtkNew<vtkPolyData> nothing;
-  works->SetInputData(nothing);
-  works->Update();
+  TAUTLINE_SET(works, SetInputData(nothing), Update());
   TAUTLINE_CHECK(works->GetOutput()->GetNumberOfCells() == 0);
 }
 }

@@ -19,10 +19,8 @@ using Vector = std::vector<double>;
 
 Objective make(Metric metric, ObjectiveTemplate objectiveTemplate = ObjectiveTemplate::Default)
 {
-  Objective objective;
-  objective.metric = metric;
-  objective.objectiveTemplate = objectiveTemplate;
-  objective.evaluation.threads = 1;
+  TAUTLINE_LET(Objective, objective, metric = metric, objectiveTemplate = objectiveTemplate,
+    evaluation.threads = 1);
   return objective;
 }
 
@@ -441,11 +439,8 @@ TAUTLINE_PART(testNewton)
     Smoothing f(data);
     Vector x(f.size());
     f.collect(f.data.points, x.data());
-    MinimizeOptions options;
-    options.method = method;
-    options.gradientNorm = 1e-6;
-    options.maximumIterations = 300;
-    options.threads = 1;
+    TAUTLINE_LET(MinimizeOptions, options, method = method, gradientNorm = 1e-6,
+      maximumIterations = 300, threads = 1);
     const MinimizeResult m = minimize(f, x.data(), options);
     std::cout << "smoothing, method " << static_cast<int>(method) << ": " << m.iterations
               << " iterations, " << m.evaluations << " evaluations, " << std::setprecision(10)

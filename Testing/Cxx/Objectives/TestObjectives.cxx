@@ -87,11 +87,8 @@ bool applies(const MetricInfo& info, ObjectiveTemplate objectiveTemplate, const 
 
 Objective make(Metric metric, ObjectiveTemplate objectiveTemplate)
 {
-  Objective objective;
-  objective.metric = metric;
-  objective.objectiveTemplate = objectiveTemplate;
-  objective.evaluation.parameters.beta = 0.3;
-  objective.evaluation.threads = 1;
+  TAUTLINE_LET(Objective, objective, metric = metric, objectiveTemplate = objectiveTemplate,
+    evaluation.parameters.beta = 0.3, evaluation.threads = 1);
   return objective;
 }
 
@@ -511,8 +508,7 @@ void testErrors()
   }
   std::fill(weights.begin(), weights.end(), 0.0);
   TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), wording("all-elements-are-0"));
-  objective.elementWeights = nullptr;
-  objective.weight = 0;
+  TAUTLINE_SET(objective, elementWeights = nullptr, weight = 0);
   TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), wording("weight-of-an-objective"));
 }
 }

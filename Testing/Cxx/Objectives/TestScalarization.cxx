@@ -21,8 +21,7 @@ using Values = std::vector<double>;
 
 ScalarizationOptions optionsFor(Scalarization method)
 {
-  ScalarizationOptions options;
-  options.method = method;
+  TAUTLINE_LET(ScalarizationOptions, options, method = method);
   return options;
 }
 
@@ -110,8 +109,7 @@ TAUTLINE_PART(testClosedForms)
       {
         const Context name("method " + std::to_string(static_cast<int>(method)));
         ScalarizationOptions options = optionsFor(method);
-        options.c = c;
-        options.exponent = 1.5;
+        TAUTLINE_SET(options, c = c, exponent = 1.5);
         options.utopia = utopia ? Values{ 0.5, -10, 1 } : Values{};
         const Scalarizer scalarizer(options, weights, initial);
         for (const Values& f : { initial, Values{ 2, 31, 6.5 }, Values{ 1, 41, 0.25 } })

@@ -34,8 +34,7 @@ inline double objectiveOf(Preset preset, const Mesh& mesh, const Targets* target
   const Index cells = mesh.view().numberOfCells;
   const auto sum = [&](Metric metric, const Targets* of, bool reciprocal)
   {
-    EvaluationOptions evaluation;
-    evaluation.targets = of;
+    TAUTLINE_LET(EvaluationOptions, evaluation, targets = of);
     std::vector<double> q(cells);
     evaluateMetric(mesh, metric, evaluation, q.data());
     return std::accumulate(q.begin(), q.end(), 0.0,

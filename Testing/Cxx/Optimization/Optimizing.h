@@ -135,11 +135,8 @@ inline double nextGain(const MeshData& like, const std::vector<double>& points)
 {
   MeshData moved = like;
   moved.points = points;
-  OptimizeOptions options;
-  options.optimizer = Optimizer::LocalNewton;
-  options.stopping.maximumIterations = 1;
-  options.relaxation = 1;
-  options.holdWorst = false;
+  TAUTLINE_LET(OptimizeOptions, options, optimizer = Optimizer::LocalNewton,
+    stopping.maximumIterations = 1, relaxation = 1, holdWorst = false);
   const OptimizeResult result = optimize(Mesh(moved.view()), options);
   return 1 - result.history.back().objective / result.history.front().objective;
 }

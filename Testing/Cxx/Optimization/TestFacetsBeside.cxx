@@ -72,8 +72,7 @@ MeshData withFacets(const MeshData& data, Order order, int uses = 1)
     facets.add(VTK_LINE, { data.connectivity[0], data.connectivity[1] });
     facets.add(VTK_VERTEX, { data.connectivity[0] });
   }
-  MeshData mixed;
-  mixed.points = data.points;
+  TAUTLINE_LET(MeshData, mixed, points = data.points);
   std::size_t next = 0;
   const auto addFacets = [&](std::size_t end)
   {
@@ -98,8 +97,7 @@ MeshData withFacets(const MeshData& data, Order order, int uses = 1)
 MeshData hexahedraAndWedges(Index n)
 {
   const MeshData hexahedra = perturbedBlock(CellType::Hexahedron, n, 0.2);
-  MeshData mixed;
-  mixed.points = hexahedra.points;
+  TAUTLINE_LET(MeshData, mixed, points = hexahedra.points);
   for (Index c = 0; c < hexahedra.numberOfCells(); ++c)
   {
     const Index* p = hexahedra.connectivity.data() + hexahedra.offsets[c];
@@ -125,15 +123,11 @@ std::vector<double> optimized(const MeshData& data, int preset, int optimizer, i
 {
   vtkNew<vtkMeshOptimizer> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(data));
-  filter->SetPreset(preset);
-  filter->SetBoundary(boundary);
-  filter->SetMaximumIterations(4);
-  filter->SetThreads(1);
+  TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetPreset(preset), SetBoundary(boundary),
+    SetMaximumIterations(4), SetThreads(1));
   if (preset == vtkMeshOptimizer::CUSTOM)
   {
-    filter->AddObjectiveByName("imr");
-    filter->SetOptimizer(optimizer);
+    TAUTLINE_SET(filter, AddObjectiveByName("imr"), SetOptimizer(optimizer));
   }
   filter->Update();
   TAUTLINE_CHECK(!messages.has("ERROR"));
@@ -144,9 +138,7 @@ std::vector<double> untangled(const MeshData& data)
 {
   vtkNew<vtkMeshUntangler> filter;
   const Messages messages(filter); // elements of which all points are fixed may stay
-  filter->SetInputData(toGrid(data));
-  filter->SetThreads(1);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetThreads(1), Update());
   TAUTLINE_CHECK(filter->GetInvertedAfter() < filter->GetInvertedBefore());
   return pointsOf(filter->GetOutputDataObject(0));
 }
@@ -245,11 +237,8 @@ void testInside(const MeshData& data)
   {
     vtkNew<vtkMeshOptimizer> filter;
     const Messages messages(filter); // nothing can move
-    filter->SetInputData(toGrid(sheet));
-    filter->SetPreset(vtkMeshOptimizer::CUSTOM);
-    filter->AddObjectiveByName("imr");
-    filter->SetOptimizer(optimizer);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(toGrid(sheet)), SetPreset(vtkMeshOptimizer::CUSTOM),
+      AddObjectiveByName("imr"), SetOptimizer(optimizer), Update());
     TAUTLINE_CHECK(pointsOf(filter->GetOutputDataObject(0)) == data.points);
   }
 }

@@ -89,8 +89,7 @@ std::vector<Index> opposite(CellType type, const Index* n)
 /// A third of the cells in the opposite order.
 MeshData listedInBothOrders(const MeshData& data)
 {
-  MeshData mixed;
-  mixed.points = data.points;
+  TAUTLINE_LET(MeshData, mixed, points = data.points);
   Random random(5);
   for (Index c = 0; c < data.numberOfCells(); ++c)
   {
@@ -133,8 +132,7 @@ vtkSmartPointer<vtkUnstructuredGrid> gridOf(const Case& test, const MeshData& da
   {
     number->InsertNextValue(static_cast<int>(p * p % 97));
   }
-  grid->GetCellData()->AddArray(region);
-  grid->GetPointData()->AddArray(number);
+  TAUTLINE_SET(grid, GetCellData()->AddArray(region), GetPointData()->AddArray(number));
   return grid;
 }
 
@@ -171,8 +169,7 @@ double objectiveAt(
   const double mean =
     std::accumulate(sizes.begin(), sizes.end(), 0.0) / static_cast<double>(sizes.size());
   const Targets ofMean = sizeTargets(mesh, std::vector<double>(sizes.size(), mean).data());
-  EvaluationOptions evaluation;
-  evaluation.targets = &ofMean;
+  TAUTLINE_LET(EvaluationOptions, evaluation, targets = &ofMean);
   std::vector<double> q(sizes.size());
   evaluateMetric(mesh, Metric::SizeBarrier, evaluation, q.data());
   return objectiveOf(Preset::BestShape, mesh, nullptr) + std::accumulate(q.begin(), q.end(), 0.0);
@@ -183,8 +180,7 @@ void checkReported(vtkMeshOptimizer* filter, vtkUnstructuredGrid* output, const 
   const Targets* targets)
 {
   const Mesh now(after.view());
-  EvaluationOptions evaluation;
-  evaluation.targets = targets;
+  TAUTLINE_LET(EvaluationOptions, evaluation, targets = targets);
   std::vector<double> q(after.numberOfCells());
   evaluateMetric(now, Metric::InverseMeanRatio, evaluation, q.data());
   const std::vector<signed char> validity = validityOf(after);
@@ -214,11 +210,9 @@ vtkSmartPointer<vtkUnstructuredGrid> runOne(
   const Case& test, vtkUnstructuredGrid* grid, const MeshData& data, Totals& totals)
 {
   const Mesh mesh(data.view());
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(grid);
-  filter->SetPreset(static_cast<int>(test.preset));
-  filter->SetBoundary(test.boundary);
-  filter->SetShowFeatures(test.number % 2 == 1);
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(grid),
+    SetPreset(static_cast<int>(test.preset)), SetBoundary(test.boundary),
+    SetShowFeatures(test.number % 2 == 1));
   if (test.regions)
   {
     filter->SetInputArrayToProcess(6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "region");
@@ -301,8 +295,7 @@ void testOne(int number, Totals& once, Totals& again)
   if (output && invalid(data, withPointsOf(data, output).points) == 0)
   {
     const Context repeated("repeated");
-    vtkNew<vtkUnstructuredGrid> grid;
-    grid->ShallowCopy(output);
+    TAUTLINE_NEW(vtkUnstructuredGrid, grid, ShallowCopy(output));
     runOne(test, grid, withPointsOf(data, grid), again);
   }
 }

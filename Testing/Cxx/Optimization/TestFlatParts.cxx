@@ -89,11 +89,8 @@ TAUTLINE_PART(testSlantedPlanes)
     {
       const Context context(std::string(topology(type).name) + ", optimizer " +
         std::to_string(static_cast<int>(optimizer)));
-      OptimizeOptions options;
-      options.optimizer = optimizer;
-      options.fixed = shape.fixed.data();
-      options.slidePlanes = shape.planes.data();
-      options.slideLines = shape.lines.data();
+      TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer, fixed = shape.fixed.data(),
+        slidePlanes = shape.planes.data(), slideLines = shape.lines.data());
       const OptimizeResult result = optimize(mesh, options);
       Index moved = 0;
       TAUTLINE_CHECK(offFaces(data, result.points, false, moved) < 1e-13);
@@ -210,8 +207,7 @@ TAUTLINE_PART_SLOW(testSurface)
     TAUTLINE_CHECK(result.surfaceError <= options.surfaceTolerance);
     TAUTLINE_CHECK(bump || result.surfaceError < 1e-12);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
-    options.optimizer = Optimizer::LocalNewton;
-    options.stopping.relativeChange = 1e-9;
+    TAUTLINE_SET(options, optimizer = Optimizer::LocalNewton, stopping.relativeChange = 1e-9);
     const OptimizeResult sweeps = optimize(mesh, options);
     std::cout << "surface " << bump << ": " << result.iterations << " and " << sweeps.iterations
               << " iterations, objective / that of sweeps "
@@ -222,10 +218,8 @@ TAUTLINE_PART_SLOW(testSurface)
       [wanted](const IterationRecord& record) { return record.objective > wanted; });
     std::cout << "  of which " << needed << " to 1.0001 of it\n";
     TAUTLINE_CHECK(result.iterations < needed && (bump || 2 * result.iterations < needed));
-    options.optimizer = Optimizer::Automatic;
-    options.stopping = StoppingCriteria();
-    options.threads = 2;
-    options.stopping.maximumIterations = 2000;
+    TAUTLINE_SET(options, optimizer = Optimizer::Automatic, stopping = StoppingCriteria(),
+      threads = 2, stopping.maximumIterations = 2000);
     TAUTLINE_CHECK(optimize(mesh, options).points == result.points);
   }
 }

@@ -32,12 +32,9 @@ std::vector<double> placed(const MeshData& data)
 {
   MeshData geometry = cubeSurface(CellType::Quadrilateral, Cells);
   geometry.transform([](const Vec3& p) { return Vec3{ Cells * p[0], Cells * p[1], Top * p[2] }; });
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(toGrid(data));
-  filter->SetInputDataObject(3, toGrid(geometry));
-  filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
-  filter->SetMaximumIterations(0);
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)),
+    SetInputDataObject(3, toGrid(geometry)), SetBoundary(vtkMeshOptimizer::ON_SURFACE),
+    SetMaximumIterations(0), Update());
   auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
   return toMesh(output).points;
 }

@@ -70,9 +70,7 @@ void check(const MeshData& data, Index firstApart, Index cells, double shift,
 
 OptimizeOptions allFree(const std::vector<unsigned char>& fixed)
 {
-  OptimizeOptions options;
-  options.fixed = fixed.data();
-  options.threads = 1;
+  TAUTLINE_LET(OptimizeOptions, options, fixed = fixed.data(), threads = 1);
   return options;
 }
 

@@ -50,10 +50,8 @@ double aboveOthers(const MeshData& data)
 {
   const auto reached = [&data](Optimizer optimizer)
   {
-    OptimizeOptions options;
-    options.optimizer = optimizer;
-    options.stopping.maximumIterations = 1000;
-    options.threads = 1;
+    TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer, stopping.maximumIterations = 1000,
+      threads = 1);
     const OptimizeResult result = optimize(Mesh(data.view()), options);
     TAUTLINE_CHECK(
       result.reason == StopReason::RelativeChange || result.reason == StopReason::GradientNorm);

@@ -73,8 +73,7 @@ private:
     moved.points = points;
     const std::vector<double> q = valuesOf(moved, this->TheMetric);
     const std::vector<char> boundary = Mesh(this->Data.view()).boundary().isBoundaryPoint;
-    Round round;
-    round.points = points;
+    TAUTLINE_LET(Round, round, points = points);
     const bool larger = metricInfo(this->TheMetric).direction == Direction::LargerIsBetter;
     round.worst = larger ? 1e300 : -1e300;
     for (Index c = 0; c < moved.numberOfCells(); ++c)
@@ -241,8 +240,7 @@ TAUTLINE_PART(testVerticesNear)
       OptimizeOptions options;
       std::vector<double> points = data.points;
       OptimizationProblem problem(mesh, options, points, Stopwatch());
-      Objective judged;
-      judged.metric = metric;
+      TAUTLINE_LET(Objective, judged, metric = metric);
       const std::vector<double> q = valuesOf(data, metric);
       const bool larger = metricInfo(metric).direction == Direction::LargerIsBetter;
       const double worst =

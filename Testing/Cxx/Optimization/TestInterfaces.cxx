@@ -37,8 +37,7 @@ template <class Size, class Map>
 TwoRegions mapped(
   CellType type, Index half, Index layers, double inner, const Size& sizeOf, const Map& map)
 {
-  TwoRegions made;
-  made.data = blockMesh(type, 2 * half, 2 * half, layers);
+  TAUTLINE_LET(TwoRegions, made, data = blockMesh(type, 2 * half, 2 * half, layers));
   const auto n = static_cast<double>(half), depth = static_cast<double>(layers);
   made.data.transform(
     [&](Vec3 p) {
@@ -112,26 +111,20 @@ struct Run
 Run optimized(
   const TwoRegions& mesh, int boundary, double tolerance, int threads = 1, bool holdWorst = true)
 {
-  vtkNew<vtkDoubleArray> regions;
-  regions->SetName("Regions");
+  TAUTLINE_NEW(vtkDoubleArray, regions, SetName("Regions"));
   for (double region : mesh.regions)
   {
     regions->InsertNextValue(region);
   }
   const auto grid = toGrid(mesh.data);
   grid->GetCellData()->AddArray(regions);
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(grid);
-  filter->SetBoundary(boundary);
-  filter->SetSurfaceTolerance(tolerance);
-  filter->SetInputArrayToProcess(6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Regions");
-  filter->SetThreads(threads);
-  filter->SetHoldWorst(holdWorst);
-  filter->Update();
-  Run run;
-  run.points = toMesh(vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0))).points;
-  run.summary = filter->GetSummary();
-  run.error = filter->GetSurfaceError();
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(grid), SetBoundary(boundary),
+    SetSurfaceTolerance(tolerance),
+    SetInputArrayToProcess(6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Regions"),
+    SetThreads(threads), SetHoldWorst(holdWorst), Update());
+  TAUTLINE_LET(Run, run,
+    points = toMesh(vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0))).points,
+    summary = filter->GetSummary(), error = filter->GetSurfaceError());
   TAUTLINE_CHECK_EQUAL(invalid(mesh.data, run.points), Index(0));
   return run;
 }
@@ -160,8 +153,7 @@ TAUTLINE_PART(testSense)
   for (CellType type : { CellType::Hexahedron, CellType::Tetrahedron })
   {
     const TwoRegions mesh = ballInBall(type, 3, 2);
-    FeatureOptions options;
-    options.regions = mesh.regions.data();
+    TAUTLINE_LET(FeatureOptions, options, regions = mesh.regions.data());
     const Features found = findFeatures(Mesh(mesh.data.view()), options);
     TAUTLINE_CHECK_EQUAL(found.patches, 2);
     Index inwards = 0, all = 0;

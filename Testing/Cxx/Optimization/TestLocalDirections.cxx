@@ -30,12 +30,9 @@ TAUTLINE_PART(testConjugateSteps)
     }
     const auto objective = [&](Optimizer optimizer, int steps, int sweeps)
     {
-      OptimizeOptions options;
-      options.optimizer = optimizer;
-      options.patchIterations = steps;
-      options.stopping.maximumIterations = sweeps;
-      options.stopping.relativeChange = 0;
-      options.stopping.gradientNorm = 0;
+      TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer, patchIterations = steps,
+        stopping.maximumIterations = sweeps, stopping.relativeChange = 0,
+        stopping.gradientNorm = 0);
       return run(data, options).history.back().objective;
     };
     const double least = objective(Optimizer::LocalNewton, 20, 20);

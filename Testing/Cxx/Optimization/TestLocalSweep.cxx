@@ -18,8 +18,7 @@ constexpr int Squared = 2; // the power of the inverse mean ratio
 
 std::vector<LocalTerm> squaredRatio()
 {
-  LocalTerm term;
-  term.shapePower = Squared;
+  TAUTLINE_LET(LocalTerm, term, shapePower = Squared);
   return { term };
 }
 
@@ -130,8 +129,7 @@ TAUTLINE_PART(testRelaxation)
       SimplexMesh simplices(mesh, nullptr, nullptr, 1);
       const double* x = simplices.coordinates();
       const Vec3 before = { x[0], x[1], x[2] };
-      LocalOptions options;
-      options.relaxation = relaxation;
+      TAUTLINE_LET(LocalOptions, options, relaxation = relaxation);
       std::vector<double> points = data.points;
       LocalSweeper sweeper(simplices, mesh, points.data(), squaredRatio(), options);
       std::vector<double> values = { objectiveOf(data, simplices) };
@@ -166,8 +164,7 @@ TAUTLINE_PART(testCulling)
     const Context context("culling " + std::to_string(culling));
     SimplexMesh simplices(mesh, nullptr, nullptr, 1);
     const auto all = static_cast<Index>(simplices.freeVertices());
-    LocalOptions options;
-    options.culling = culling;
+    TAUTLINE_LET(LocalOptions, options, culling = culling);
     std::vector<double> points = data.points;
     LocalSweeper sweeper(simplices, mesh, points.data(), squaredRatio(), options);
     std::vector<double> values = { objectiveOf(data, simplices) };
@@ -198,11 +195,8 @@ TAUTLINE_PART(testConvergenceOfAll)
 {
   constexpr double tolerance = 1e-3;
   const MeshData data = waveAndQuickVertex();
-  OptimizeOptions options;
-  options.optimizer = Optimizer::LocalNewton;
-  options.culling = QuickCulling;
-  options.relaxation = 1;
-  options.stopping.relativeChange = tolerance;
+  TAUTLINE_LET(OptimizeOptions, options, optimizer = Optimizer::LocalNewton, culling = QuickCulling,
+    relaxation = 1, stopping.relativeChange = tolerance);
   const OptimizeResult result = run(data, options);
   TAUTLINE_CHECK(result.reason == StopReason::RelativeChange);
   const std::vector<IterationRecord>& history = result.history;
@@ -225,9 +219,8 @@ TAUTLINE_PART(testAllowance)
   data.transform([](const Vec3& p) { return Vec3{ p[0] * (1 + 0.15 * p[1]), p[1], p[2] }; });
   const auto with = [&data](double allowance)
   {
-    OptimizeOptions options;
-    options.stopping.relativeChange = options.stopping.gradientNorm = 1e-9;
-    options.improveWorst = allowance;
+    TAUTLINE_LET(OptimizeOptions, options,
+      stopping.relativeChange = options.stopping.gradientNorm = 1e-9, improveWorst = allowance);
     const OptimizeResult result = run(data, options);
     MeshData moved = data;
     moved.points = result.points;

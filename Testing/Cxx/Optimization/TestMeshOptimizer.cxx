@@ -27,10 +27,7 @@ namespace
 MeshData perturbed(CellType type, Index n)
 {
   MeshData data = blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
-  PerturbOptions options;
-  options.percentage = 100;
-  options.fraction = 0.8;
-  options.seed = 3;
+  TAUTLINE_LET(PerturbOptions, options, percentage = 100, fraction = 0.8, seed = 3);
   data.points = perturb(Mesh(data.view()), nullptr, options).points;
   return data;
 }
@@ -108,10 +105,7 @@ TAUTLINE_PART(testAgainstKernel)
     applyPreset(Preset(preset), options);
     options.fixed = boundary.data();
     const OptimizeResult expected = optimize(mesh, options);
-    vtkNew<vtkMeshOptimizer> filter;
-    filter->SetInputData(toGrid(data));
-    filter->SetPreset(preset);
-    filter->Update();
+    TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)), SetPreset(preset), Update());
     TAUTLINE_CHECK(pointsOf(filter) == expected.points);
     TAUTLINE_CHECK_EQUAL(filter->GetIterations(), expected.iterations);
     TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(expected.reason));
@@ -131,9 +125,8 @@ TAUTLINE_PART(testWorstMetric)
     for (const bool chosen : { false, true })
     {
       const Context context(std::string(topology(type).plural) + (chosen ? ", chosen" : ""));
-      vtkNew<vtkMeshOptimizer> filter;
-      filter->SetInputData(toGrid(perturbed(type, 4)));
-      filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT);
+      TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(perturbed(type, 4))),
+        SetPreset(vtkMeshOptimizer::WORST_ELEMENT));
       if (chosen)
       {
         filter->SetWorstMetric(static_cast<int>(Metric::ScaledJacobian));
@@ -164,36 +157,28 @@ TAUTLINE_PART(testCustom)
   }();
   OptimizeOptions options;
   options.objectives.resize(2);
-  options.objectives[0].objectiveTemplate = ObjectiveTemplate::PowerMean;
-  options.objectives[1].metric = Metric::RadiusRatio;
-  options.objectives[1].weight = 3;
+  TAUTLINE_SET(options, objectives[0].objectiveTemplate = ObjectiveTemplate::PowerMean,
+    objectives[1].metric = Metric::RadiusRatio, objectives[1].weight = 3);
   for (Objective& objective : options.objectives)
   {
-    objective.power = 4;
-    objective.elementWeights = weights.data();
+    TAUTLINE_SET(objective, power = 4, elementWeights = weights.data());
   }
-  options.scalarization.method = Scalarization::WeightedSum;
-  options.optimizer = Optimizer::LimitedMemoryBFGS;
-  options.stopping.maximumIterations = 7;
-  options.stopping.relativeChange = 0;
-  options.fixed = boundary.data();
+  TAUTLINE_SET(options, scalarization.method = Scalarization::WeightedSum,
+    optimizer = Optimizer::LimitedMemoryBFGS, stopping.maximumIterations = 7,
+    stopping.relativeChange = 0, fixed = boundary.data());
   const OptimizeResult expected = optimize(Mesh(data.view()), options);
 
   vtkNew<vtkMeshOptimizer> filter;
   auto grid = toGrid(data);
   grid->GetCellData()->AddArray(arrayOf("w", weights));
-  filter->SetInputData(grid);
-  filter->AddObjectiveByName("imr", vtkMeshOptimizer::P_MEAN);
-  filter->AddObjectiveByName("rr", vtkMeshOptimizer::DEFAULT_TEMPLATE, 3);
+  TAUTLINE_SET(filter, SetInputData(grid), AddObjectiveByName("imr", vtkMeshOptimizer::P_MEAN),
+    AddObjectiveByName("rr", vtkMeshOptimizer::DEFAULT_TEMPLATE, 3));
   TAUTLINE_CHECK_EQUAL(filter->GetPreset(), int(vtkMeshOptimizer::CUSTOM));
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfObjectives(), 2);
-  filter->SetPower(4);
-  filter->SetScalarization(vtkMeshOptimizer::WEIGHTED_SUM);
-  filter->SetOptimizer(vtkMeshOptimizer::LIMITED_MEMORY_BFGS);
-  filter->SetMaximumIterations(7);
-  filter->SetRelativeChange(0);
-  filter->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "w");
-  filter->Update();
+  TAUTLINE_SET(filter, SetPower(4), SetScalarization(vtkMeshOptimizer::WEIGHTED_SUM),
+    SetOptimizer(vtkMeshOptimizer::LIMITED_MEMORY_BFGS), SetMaximumIterations(7),
+    SetRelativeChange(0),
+    SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "w"), Update());
   TAUTLINE_CHECK(pointsOf(filter) == expected.points);
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 8);
   for (const char* column : { "Objective", "imr objective", "imr mean", "imr worst", "rr objective",
@@ -213,20 +198,12 @@ TAUTLINE_PART(testCustom)
   TAUTLINE_CHECK(std::string(filter->GetSummary()).find(objectives.str()) != std::string::npos);
 
   // The slots of the panel are the same rows.
-  vtkNew<vtkMeshOptimizer> slots;
-  slots->SetInputData(grid);
-  slots->SetPreset(vtkMeshOptimizer::CUSTOM);
-  slots->SetMetric2(int(Metric::RadiusRatio));
-  slots->SetWeight2(3);
-  slots->SetTemplate1(vtkMeshOptimizer::P_MEAN);
-  slots->SetNumberOfObjectives(2);
-  slots->SetPower(4);
-  slots->SetScalarization(vtkMeshOptimizer::WEIGHTED_SUM);
-  slots->SetOptimizer(vtkMeshOptimizer::LIMITED_MEMORY_BFGS);
-  slots->SetMaximumIterations(7);
-  slots->SetRelativeChange(0);
-  slots->SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "w");
-  slots->Update();
+  TAUTLINE_NEW(vtkMeshOptimizer, slots, SetInputData(grid), SetPreset(vtkMeshOptimizer::CUSTOM),
+    SetMetric2(int(Metric::RadiusRatio)), SetWeight2(3), SetTemplate1(vtkMeshOptimizer::P_MEAN),
+    SetNumberOfObjectives(2), SetPower(4), SetScalarization(vtkMeshOptimizer::WEIGHTED_SUM),
+    SetOptimizer(vtkMeshOptimizer::LIMITED_MEMORY_BFGS), SetMaximumIterations(7),
+    SetRelativeChange(0),
+    SetInputArrayToProcess(4, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "w"), Update());
   TAUTLINE_CHECK(pointsOf(slots) == expected.points);
   slots->RemoveAllObjectives();
   slots->Update(); // the default objective
@@ -266,9 +243,7 @@ TAUTLINE_PART(testOptions)
     {
       f->SetScalarization(vtkMeshOptimizer::EXPONENTIAL_WEIGHTED);
       o.scalarization.method = Scalarization::ExponentialWeighted;
-      f->SetExponent(o.scalarization.exponent = 3);
-      f->AddUtopia(1);
-      f->AddUtopia(2);
+      TAUTLINE_SET(f, SetExponent(o.scalarization.exponent = 3), AddUtopia(1), AddUtopia(2));
       o.scalarization.utopia = { 1, 2 };
     });
   more("gradient", [](auto* f, auto& o) { f->SetGradientNorm(o.stopping.gradientNorm = 0.1); });
@@ -279,16 +254,12 @@ TAUTLINE_PART(testOptions)
   more("best known 0",
     [](auto* f, auto& o)
     {
-      f->SetReduction(o.stopping.reduction = 0.5);
-      f->SetBestKnown(o.stopping.bestKnown = 0);
-      f->UseBestKnownOn();
+      TAUTLINE_SET(f, SetReduction(o.stopping.reduction = 0.5),
+        SetBestKnown(o.stopping.bestKnown = 0), UseBestKnownOn());
     });
   more("best unknown",
     [](auto* f, auto& o)
-    {
-      f->SetReduction(o.stopping.reduction = 0.5);
-      f->SetBestKnown(1e9);
-    });
+    { TAUTLINE_SET(f, SetReduction(o.stopping.reduction = 0.5), SetBestKnown(1e9)); });
   more("valid", [](auto* f, auto& o) { f->SetStopWhenValid(o.stopping.allValid = true); });
   more("iterations",
     [](auto* f, auto& o) { f->SetMaximumIterations(o.stopping.maximumIterations = 2); });
@@ -309,14 +280,10 @@ TAUTLINE_PART(testOptions)
     const Context context(name);
     OptimizeOptions options;
     options.objectives.resize(2);
-    options.objectives[1].metric = Metric::Size;
-    options.stopping.maximumIterations = 12;
-    options.fixed = boundary.data();
-    vtkNew<vtkMeshOptimizer> filter;
-    filter->SetInputData(toGrid(data));
-    filter->AddObjectiveByName("imr");
-    filter->AddObjectiveByName("size");
-    filter->SetMaximumIterations(12);
+    TAUTLINE_SET(options, objectives[1].metric = Metric::Size, stopping.maximumIterations = 12,
+      fixed = boundary.data());
+    TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)), AddObjectiveByName("imr"),
+      AddObjectiveByName("size"), SetMaximumIterations(12));
     change(filter, options);
     filter->Update();
     const OptimizeResult expected = optimize(Mesh(data.view()), options);
@@ -334,8 +301,7 @@ TAUTLINE_PART(testArrays)
     vtkNew<vtkMeshOptimizer> filter;
     auto grid = toGrid(data);
     grid->GetPointData()->AddArray(arrayOf("mine", std::vector<double>(data.numberOfPoints(), 5)));
-    filter->SetInputData(grid);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(grid), Update());
     vtkDataSet* output = meshOf(filter);
     const MeshData after = withPointsOf(data, output);
     const std::vector<double> before = valuesOf(data, Metric::InverseMeanRatio),
@@ -396,20 +362,15 @@ TAUTLINE_PART(testFixed)
     auto grid = toGrid(data);
     vtkNew<vtkMeshOptimizer> filter;
     change(filter, grid);
-    filter->SetInputData(grid);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(grid), Update());
     return pointsOf(filter);
   };
   const auto select = [](int type, vtkIdType id, vtkMeshOptimizer* filter)
   {
-    vtkNew<vtkIdTypeArray> ids;
-    ids->InsertNextValue(id);
-    vtkNew<vtkSelectionNode> node;
-    node->SetContentType(vtkSelectionNode::INDICES);
-    node->SetFieldType(type);
-    node->SetSelectionList(ids);
-    vtkNew<vtkSelection> selection;
-    selection->AddNode(node);
+    TAUTLINE_NEW(vtkIdTypeArray, ids, InsertNextValue(id));
+    TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+      SetFieldType(type), SetSelectionList(ids));
+    TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
     filter->SetInputData(2, selection);
   };
   const auto plain = run([](auto*, auto*) {});
@@ -470,12 +431,9 @@ TAUTLINE_PART(testBoundary)
       }
       return shifted;
     });
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(toGrid(data));
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)), Update());
   const double fixed = sumOfSquares(withPointsOf(data, meshOf(filter)));
-  filter->SetBoundary(vtkMeshOptimizer::SLIDING);
-  filter->Update();
+  TAUTLINE_SET(filter, SetBoundary(vtkMeshOptimizer::SLIDING), Update());
   const MeshData slid = withPointsOf(data, meshOf(filter));
   TAUTLINE_CHECK(sumOfSquares(slid) < 0.98 * fixed);
   Index inFace = 0, onEdge = 0;
@@ -498,18 +456,15 @@ TAUTLINE_PART(testBoundary)
   }
   TAUTLINE_CHECK(inFace > 40);
   TAUTLINE_CHECK(onEdge > 24);
-  filter->SetBoundary(vtkMeshOptimizer::FREE);
-  filter->Update();
+  TAUTLINE_SET(filter, SetBoundary(vtkMeshOptimizer::FREE), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 125);
   TAUTLINE_CHECK(norm(withPointsOf(data, meshOf(filter)).point(0) - data.point(0)) > 1e-3);
 
   // A flat mesh: along its sides only.
   MeshData flat = perturbed(CellType::Triangle, 4);
   flat.setPoint(2, { 2.4, 0, 0 });
-  vtkNew<vtkMeshOptimizer> sides;
-  sides->SetInputData(toGrid(flat));
-  sides->SetBoundary(vtkMeshOptimizer::SLIDING);
-  sides->Update();
+  TAUTLINE_NEW(vtkMeshOptimizer, sides, SetInputData(toGrid(flat)),
+    SetBoundary(vtkMeshOptimizer::SLIDING), Update());
   const MeshData after = withPointsOf(flat, meshOf(sides));
   TAUTLINE_CHECK_NEAR(after.point(2)[1], 0, 1e-14);
   TAUTLINE_CHECK(std::abs(after.point(2)[0] - 2.4) > 1e-2);
@@ -522,10 +477,8 @@ TAUTLINE_PART(testSlidingTangled)
   MeshData data = blockMesh(CellType::Tetrahedron, 4, 4, 4);
   const auto pushed = [](const Vec3& p) { return p[2] == 1 && !isOnBlock(p, 4); };
   data.transform([&](const Vec3& p) { return pushed(p) ? Vec3{ p[0], p[1], -0.5 } : p; });
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(toGrid(data));
-  filter->SetBoundary(vtkMeshOptimizer::SLIDING);
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)),
+    SetBoundary(vtkMeshOptimizer::SLIDING), Update());
   TAUTLINE_CHECK(filter->GetInvertedBefore() > 0);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
   const MeshData before = blockMesh(CellType::Tetrahedron, 4, 4, 4);
@@ -553,12 +506,9 @@ TAUTLINE_PART(testOnSurface)
         y * std::sqrt(1 - xx / 2 - zz / 2 + xx * zz / 3),
         z * std::sqrt(1 - xx / 2 - yy / 2 + xx * yy / 3) };
     });
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(toGrid(ball));
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(ball)), Update());
   const double fixed = sumOfSquares(withPointsOf(ball, meshOf(filter)));
-  filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
-  filter->SetFeatureAngle(90);
+  TAUTLINE_SET(filter, SetBoundary(vtkMeshOptimizer::ON_SURFACE), SetFeatureAngle(90));
   filter->SetSurfaceTolerance(0); // the ball is so coarse that its points could hardly slide
   filter->Update();
   const MeshData slid = withPointsOf(ball, meshOf(filter));
@@ -586,9 +536,7 @@ TAUTLINE_PART(testLimits)
   limits[40] = 0;
   limits[41] = -1;
   grid->GetPointData()->AddArray(arrayOf("limit", limits));
-  filter->SetInputData(grid);
-  filter->SetMaximumDisplacement(0.01);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(grid), SetMaximumDisplacement(0.01), Update());
   const auto byNumber = pointsOf(filter);
   filter->SetInputArrayToProcess(3, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "limit");
   filter->Update();
@@ -610,34 +558,27 @@ TAUTLINE_PART(testTargets)
   MeshData wanted = blockMesh(CellType::Triangle, 6, 6, 0);
   wanted.transform([](const Vec3& p) { return Vec3{ p[0] * p[0] / 6, p[1], 0 }; });
   MeshData start = wanted;
-  PerturbOptions perturbation;
-  perturbation.fraction = 0.6;
+  TAUTLINE_LET(PerturbOptions, perturbation, fraction = 0.6);
   start.points = perturb(Mesh(wanted.view()), nullptr, perturbation).points;
 
   vtkNew<vtkMeshOptimizer> filter;
   auto grid = toGrid(start);
   grid->GetCellData()->AddArray(arrayOf("size", valuesOf(wanted, Metric::Size)));
-  filter->SetInputData(0, grid);
-  filter->SetInputData(1, toGrid(wanted));
-  filter->AddObjectiveByName(
-    "mu_shape_size_orientation_nb", vtkMeshOptimizer::SUM, 1.0, vtkMeshOptimizer::REFERENCE);
-  filter->SetMaximumIterations(300);
-  filter->SetRelativeChange(1e-12);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(0, grid), SetInputData(1, toGrid(wanted)),
+    AddObjectiveByName(
+      "mu_shape_size_orientation_nb", vtkMeshOptimizer::SUM, 1.0, vtkMeshOptimizer::REFERENCE),
+    SetMaximumIterations(300), SetRelativeChange(1e-12), Update());
   const auto points = pointsOf(filter);
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     TAUTLINE_CHECK_NEAR(points[i], wanted.points[i], 1e-4);
   }
-  filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE);
-  filter->Update();
+  TAUTLINE_SET(filter, SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE), Update());
   TAUTLINE_CHECK(cell(filter->GetStatistics(), 0, "MeanAfter") < 1.001);
 
-  filter->RemoveAllObjectives();
-  filter->AddObjectiveByName(
-    "mu_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0, vtkMeshOptimizer::SIZE);
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "size");
-  filter->Update();
+  TAUTLINE_SET(filter, RemoveAllObjectives(),
+    AddObjectiveByName("mu_size", vtkMeshOptimizer::DEFAULT_TEMPLATE, 1.0, vtkMeshOptimizer::SIZE),
+    SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "size"), Update());
   TAUTLINE_CHECK(cell(filter->GetStatistics(), 0, "MeanAfter") <
     0.1 * cell(filter->GetStatistics(), 0, "MeanBefore"));
 }
@@ -648,10 +589,7 @@ TAUTLINE_PART(testThreads)
   std::vector<double> first;
   for (int threads : { 1, 2, 4 })
   {
-    vtkNew<vtkMeshOptimizer> filter;
-    filter->SetInputData(grid);
-    filter->SetThreads(threads);
-    filter->Update();
+    TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(grid), SetThreads(threads), Update());
     first = first.empty() ? pointsOf(filter) : first;
     TAUTLINE_CHECK(pointsOf(filter) == first);
   }

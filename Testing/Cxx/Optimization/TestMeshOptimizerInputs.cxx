@@ -33,10 +33,7 @@ namespace
 MeshData perturbed(CellType type, Index n, double fraction = 0.8)
 {
   MeshData data = blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
-  PerturbOptions options;
-  options.percentage = 100;
-  options.fraction = fraction;
-  options.seed = 5;
+  TAUTLINE_LET(PerturbOptions, options, percentage = 100, fraction = fraction, seed = 5);
   data.points = perturb(Mesh(data.view()), nullptr, options).points;
   return data;
 }
@@ -81,8 +78,7 @@ TAUTLINE_PART(testRefused)
     TAUTLINE_CHECK(!output || output->GetNumberOfCells() == 0);
     TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), -1);
   };
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(3, 3, 3);
+  TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
   refuse(wording("image-data-to-point-set"), image);
 
   MeshData quadratic = data;
@@ -95,8 +91,7 @@ TAUTLINE_PART(testRefused)
     { 0, 1, 4, 16, first, first + 1, first + 2, first + 3, first + 4, first + 5 });
   refuse(wording("run-tessellate"), toGrid(quadratic));
 
-  MeshData lines;
-  lines.points = data.points;
+  TAUTLINE_LET(MeshData, lines, points = data.points);
   lines.addCell(VTK_LINE, { 0, 1 });
   refuse(wording("no-element-whose-points-could-move"), toGrid(lines));
 
@@ -154,8 +149,7 @@ TAUTLINE_PART(testAssociations)
   {
     region->InsertNextValue(grid->GetCell(c)->GetBounds()[1] > 1.5 ? 1 : 0);
   }
-  grid->GetPointData()->AddArray(mark);
-  grid->GetCellData()->AddArray(region);
+  TAUTLINE_SET(grid, GetPointData()->AddArray(mark), GetCellData()->AddArray(region));
   constexpr int points = vtkDataObject::FIELD_ASSOCIATION_POINTS;
   constexpr int cells = vtkDataObject::FIELD_ASSOCIATION_CELLS;
   const auto run = [&](int index, int association, const char* name)
@@ -164,8 +158,7 @@ TAUTLINE_PART(testAssociations)
     Messages messages(filter);
     filter->SetInputData(grid);
     filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE); // reads the kinds of features
-    filter->SetInputArrayToProcess(index, 0, 0, association, name);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputArrayToProcess(index, 0, 0, association, name), Update());
     const bool taken = meshOf(filter) && meshOf(filter)->GetNumberOfPoints() > 0;
     TAUTLINE_CHECK(taken != messages.has(wording("is-needed-run")));
     return taken ? withPointsOf(data, meshOf(filter)).points : std::vector<double>();
@@ -191,39 +184,34 @@ TAUTLINE_PART(testTaken)
   vtkNew<vtkMeshOptimizer> filter;
   Messages messages(filter);
   vtkNew<vtkUnstructuredGrid> empty;
-  filter->SetInputData(empty);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(empty), Update());
   TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), 0);
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 0);
 
   const MeshData none = blockMesh(CellType::Triangle, 1, 1, 0);
-  filter->SetInputData(toGrid(none));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(none)), Update());
   TAUTLINE_CHECK(withPointsOf(none, meshOf(filter)).points == none.points);
   TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(StopReason::NoFreeVertices));
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("0-of-4-points-were-free")));
 
   MeshData one = blockMesh(CellType::Quadrilateral, 2, 2, 0);
   one.setPoint(4, { 1.6, 0.7, 0 });
-  filter->SetInputData(toGrid(one));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(one)), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 1);
   TAUTLINE_CHECK_NEAR(norm(withPointsOf(one, meshOf(filter)).point(4) - Vec3{ 1, 1, 0 }), 0, 1e-2);
 
   // Listed the other way round, the points go where they went, and it is reported.
   const MeshData data = perturbed(CellType::Triangle, 6);
-  filter->SetInputData(toGrid(data));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(data)), Update());
   const MeshData straight = withPointsOf(data, meshOf(filter));
   MeshData reversed = data;
   for (Index i = 0; i < data.numberOfCells(); ++i)
   {
     std::swap(reversed.connectivity[3 * i + 1], reversed.connectivity[3 * i + 2]);
   }
-  filter->SetInputData(toGrid(reversed));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(reversed)), Update());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("the-mesh-is-reversed")));
   const MeshData mirrored = withPointsOf(data, meshOf(filter));
   for (std::size_t i = 0; i < data.points.size(); ++i)
@@ -238,8 +226,7 @@ TAUTLINE_PART(testTaken)
   {
     std::swap(mixed.connectivity[3 * i + 1], mixed.connectivity[3 * i + 2]);
   }
-  filter->SetInputData(toGrid(mixed));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(mixed)), Update());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("24-of-the-72-cells-are-treated")));
   const MeshData alike = withPointsOf(data, meshOf(filter));
   for (std::size_t i = 0; i < data.points.size(); ++i)
@@ -257,9 +244,8 @@ TAUTLINE_PART(testTaken)
     vtkNew<vtkMeshOptimizer> shaped;
     MeshData reference = *of;
     reference.points = blockMesh(CellType::Triangle, 6, 6, 0).points;
-    shaped->SetInputData(0, toGrid(*of));
-    shaped->SetInputData(1, toGrid(reference));
-    shaped->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE);
+    TAUTLINE_SET(shaped, SetInputData(0, toGrid(*of)), SetInputData(1, toGrid(reference)),
+      SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE));
     Messages told(shaped);
     shaped->Update();
     const MeshData restored = withPointsOf(reference, meshOf(shaped));
@@ -271,8 +257,7 @@ TAUTLINE_PART(testTaken)
 
   MeshData far = data;
   far.transform([](const Vec3& p) { return p + Vec3{ 1e6, -1e6, 0 }; });
-  filter->SetInputData(toGrid(far));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(far)), Update());
   MeshData back = withPointsOf(far, meshOf(filter));
   back.transform([](const Vec3& p) { return p - Vec3{ 1e6, -1e6, 0 }; });
   TAUTLINE_CHECK_RELATIVE(sumOfSquares(back), sumOfSquares(straight), 1e-4);
@@ -288,8 +273,7 @@ TAUTLINE_PART(testTaken)
     const Index shift = data.numberOfPoints();
     twice.addCell(CellType::Triangle, { node[0] + shift, node[1] + shift, node[2] + shift });
   }
-  filter->SetInputData(toGrid(twice));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(twice)), Update());
   TAUTLINE_CHECK_RELATIVE(
     sumOfSquares(withPointsOf(twice, meshOf(filter))), 2 * sumOfSquares(straight), 1e-4);
   TAUTLINE_CHECK(messages.empty());
@@ -297,8 +281,7 @@ TAUTLINE_PART(testTaken)
   // A NaN: either refused by name, or the rest is finite and no worse.
   MeshData broken = data;
   broken.points[3 * 24] = std::numeric_limits<double>::quiet_NaN();
-  filter->SetInputData(toGrid(broken));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(broken)), Update());
   for (vtkIdType i = 0; i < meshOf(filter)->GetNumberOfPoints(); ++i)
   {
     TAUTLINE_CHECK(i == 24 || std::isfinite(meshOf(filter)->GetPoint(i)[0]));
@@ -312,9 +295,7 @@ TAUTLINE_PART(testPrecision)
   const MeshData data = perturbed(CellType::Tetrahedron, 4, 0.5);
   for (int type : { VTK_FLOAT, VTK_DOUBLE })
   {
-    vtkNew<vtkMeshOptimizer> filter;
-    filter->SetInputData(toGrid(data, type));
-    filter->Update();
+    TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data, type)), Update());
     TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetPoints()->GetDataType(), type);
     const MeshData after = withPointsOf(data, meshOf(filter));
     TAUTLINE_CHECK(sumOfSquares(after) < sumOfSquares(data));
@@ -334,9 +315,7 @@ TAUTLINE_PART(testPrecision)
   {
     narrow.addCell(CellType::Triangle, { k, (k + 1) % 4, 4 });
   }
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(toGrid(narrow, VTK_FLOAT));
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(narrow, VTK_FLOAT)), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedBefore(), 1);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetPoints()->GetDataType(), VTK_DOUBLE);
@@ -348,12 +327,10 @@ TAUTLINE_PART(testBlocks)
   const MeshData flat = perturbed(CellType::Triangle, 5),
                  solid = perturbed(CellType::Hexahedron, 3);
   vtkNew<vtkMultiBlockDataSet> blocks, references;
-  blocks->SetBlock(0, toGrid(flat));
-  blocks->SetBlock(2, toPolyData(flat));
-  blocks->SetBlock(3, toGrid(solid));
+  TAUTLINE_SET(
+    blocks, SetBlock(0, toGrid(flat)), SetBlock(2, toPolyData(flat)), SetBlock(3, toGrid(solid)));
   vtkNew<vtkMeshOptimizer> filter, single;
-  filter->SetInputData(blocks);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(blocks), Update());
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   TAUTLINE_CHECK_EQUAL(output->GetNumberOfBlocks(), 4u);
   double rows = 0, free = 0;
@@ -361,8 +338,7 @@ TAUTLINE_PART(testBlocks)
     std::make_pair(3u, &solid) };
   for (const auto& [number, data] : inputs)
   {
-    single->SetInputData(toGrid(*data));
-    single->Update();
+    TAUTLINE_SET(single, SetInputData(toGrid(*data)), Update());
     auto* block = vtkPointSet::SafeDownCast(output->GetBlock(number));
     TAUTLINE_CHECK(block->IsA(number == 2 ? "vtkPolyData" : "vtkUnstructuredGrid"));
     TAUTLINE_CHECK(withPointsOf(*data, block).points == withPointsOf(*data, meshOf(single)).points);
@@ -376,16 +352,13 @@ TAUTLINE_PART(testBlocks)
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("in-block-4")));
 
   Messages messages(filter);
-  filter->SetInputData(1, toGrid(flat));
-  filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE);
-  filter->Update();
+  TAUTLINE_SET(
+    filter, SetInputData(1, toGrid(flat)), SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE), Update());
   TAUTLINE_CHECK(messages.has(wording("the-reference-has-none")));
   messages.clear();
-  references->SetBlock(0, toGrid(flat));
-  references->SetBlock(2, toGrid(flat));
-  references->SetBlock(3, toGrid(flat));
-  filter->SetInputData(1, references);
-  filter->Update();
+  TAUTLINE_SET(
+    references, SetBlock(0, toGrid(flat)), SetBlock(2, toGrid(flat)), SetBlock(3, toGrid(flat)));
+  TAUTLINE_SET(filter, SetInputData(1, references), Update());
   TAUTLINE_CHECK(messages.has(wording("in-block-4")));
 }
 
@@ -396,8 +369,7 @@ TAUTLINE_PART(testAnimation)
   const auto on = Mesh(data.view()).boundary().isBoundaryPoint;
   const std::vector<unsigned char> boundary(on.begin(), on.end());
   std::vector<std::vector<double>> seen;
-  OptimizeOptions options;
-  options.fixed = boundary.data();
+  TAUTLINE_LET(OptimizeOptions, options, fixed = boundary.data());
   options.observer = [&](const IterationState& state)
   {
     seen.emplace_back(data.points.size());
@@ -409,13 +381,10 @@ TAUTLINE_PART(testAnimation)
 
   vtkNew<vtkMeshOptimizer> filter;
   int runs = 0;
-  vtkNew<vtkCallbackCommand> count;
-  count->SetClientData(&runs);
+  TAUTLINE_NEW(vtkCallbackCommand, count, SetClientData(&runs));
   count->SetCallback([](vtkObject*, unsigned long, void* n, void*) { ++*static_cast<int*>(n); });
   const auto input = toGrid(data);
-  filter->SetInputData(input);
-  filter->SetAnimation(true);
-  filter->UpdateInformation();
+  TAUTLINE_SET(filter, SetInputData(input), SetAnimation(true), UpdateInformation());
   vtkInformation* info = filter->GetOutputInformation(0);
   TAUTLINE_CHECK_EQUAL(info->Length(Pipeline::TIME_STEPS()), 301); // as many as there can be
   filter->Update();
@@ -439,11 +408,8 @@ TAUTLINE_PART(testAnimation)
   TAUTLINE_CHECK(runs < int(seen.size()) * 6); // no iteration was computed again
 
   // A client that shows time 0 first: the summary is that of the result.
-  vtkNew<vtkMeshOptimizer> first;
-  first->SetInputData(toGrid(data));
-  first->SetAnimation(true);
-  first->UpdateInformation();
-  first->UpdateTimeStep(0);
+  TAUTLINE_NEW(vtkMeshOptimizer, first, SetInputData(toGrid(data)), SetAnimation(true),
+    UpdateInformation(), UpdateTimeStep(0));
   TAUTLINE_CHECK(withPointsOf(data, meshOf(first)).points == seen[0]);
   const auto qualities = [](vtkMeshOptimizer* optimizer)
   {
@@ -453,21 +419,15 @@ TAUTLINE_PART(testAnimation)
   TAUTLINE_CHECK_EQUAL(qualities(first), qualities(filter));
 
   // Another option starts anew.
-  filter->SetPreset(vtkMeshOptimizer::CUSTOM);
-  filter->SetMaximumIterations(2);
-  filter->Update();
+  TAUTLINE_SET(filter, SetPreset(vtkMeshOptimizer::CUSTOM), SetMaximumIterations(2), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetOutputInformation(0)->Length(Pipeline::TIME_STEPS()), 3);
 
   // A megabyte holds about 31 meshes of 1331 points: then every second iteration.
-  vtkNew<vtkMeshOptimizer> bounded;
-  bounded->SetInputData(toGrid(perturbed(CellType::Tetrahedron, 10)));
-  bounded->SetAnimation(true);
-  bounded->SetAnimationMemory(1);
-  bounded->AddObjectiveByName("imr");
-  bounded->SetOptimizer(vtkMeshOptimizer::CONJUGATE_GRADIENT_FLETCHER_REEVES);
-  bounded->SetRelativeChange(0);
-  bounded->SetGradientNorm(0);
-  bounded->Update();
+  TAUTLINE_NEW(vtkMeshOptimizer, bounded,
+    SetInputData(toGrid(perturbed(CellType::Tetrahedron, 10))), SetAnimation(true),
+    SetAnimationMemory(1), AddObjectiveByName("imr"),
+    SetOptimizer(vtkMeshOptimizer::CONJUGATE_GRADIENT_FLETCHER_REEVES), SetRelativeChange(0),
+    SetGradientNorm(0), Update());
   TAUTLINE_CHECK(bounded->GetIterations() > 34);
   const auto at = [&](double time)
   {
@@ -482,8 +442,7 @@ TAUTLINE_PART(testAnimation)
 TAUTLINE_PART(testStops)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 6);
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(toGrid(data));
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)));
   vtkNew<vtkCallbackCommand> abort;
   abort->SetCallback(
     [](vtkObject* caller, unsigned long, void*, void*)
@@ -497,17 +456,13 @@ TAUTLINE_PART(testStops)
   TAUTLINE_CHECK(filter->GetIterations() > 0 && filter->GetIterations() < 5);
   const double aborted = sumOfSquares(withPointsOf(data, meshOf(filter)));
   TAUTLINE_CHECK(aborted < sumOfSquares(data));
-  filter->RemoveObserver(tag);
-  filter->SetAbortExecute(0);
-  filter->SetTimeLimit(1e-9);
-  filter->Update();
+  TAUTLINE_SET(filter, RemoveObserver(tag), SetAbortExecute(0), SetTimeLimit(1e-9), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(StopReason::TimeLimit));
   TAUTLINE_CHECK(filter->GetIterations() <= 2);
   constexpr double rounding = 1e-12; // of points that come back from the units of the sweeps
   TAUTLINE_CHECK(
     sumOfSquares(withPointsOf(data, meshOf(filter))) <= (1 + rounding) * sumOfSquares(data));
-  filter->SetTimeLimit(0);
-  filter->Update();
+  TAUTLINE_SET(filter, SetTimeLimit(0), Update());
   TAUTLINE_CHECK(sumOfSquares(withPointsOf(data, meshOf(filter))) < aborted);
   TAUTLINE_CHECK_RELATIVE(objective(filter, 0), sumOfSquares(data), 1e-12);
 }
@@ -515,14 +470,9 @@ TAUTLINE_PART(testStops)
 /// The points of a sphere stay on it, and the error is reported.
 TAUTLINE_PART(testSurface)
 {
-  vtkNew<vtkSphereSource> sphere;
-  sphere->SetThetaResolution(24);
-  sphere->SetPhiResolution(24);
-  sphere->SetRadius(1);
-  sphere->SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION);
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputConnection(sphere->GetOutputPort());
-  filter->Update();
+  TAUTLINE_NEW(vtkSphereSource, sphere, SetThetaResolution(24), SetPhiResolution(24), SetRadius(1),
+    SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION));
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputConnection(sphere->GetOutputPort()), Update());
   TAUTLINE_CHECK(meshOf(filter)->IsA("vtkPolyData"));
   const double longest = 2 * vtkMath::Pi() / 24;
   double off = 0;

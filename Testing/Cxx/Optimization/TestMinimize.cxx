@@ -198,11 +198,8 @@ struct Rough : SmoothFunction
 
 MinimizeOptions optionsFor(Optimizer method, int iterations, double gradientNorm)
 {
-  MinimizeOptions options;
-  options.method = method;
-  options.maximumIterations = iterations;
-  options.gradientNorm = gradientNorm;
-  options.threads = 1;
+  TAUTLINE_LET(MinimizeOptions, options, method = method, maximumIterations = iterations,
+    gradientNorm = gradientNorm, threads = 1);
   return options;
 }
 
@@ -480,8 +477,7 @@ TAUTLINE_PART(testStopping)
     TAUTLINE_CHECK(m.reason == StopReason::Aborted && m.iterations == 3);
     TAUTLINE_CHECK(x == seen);
 
-    options.observer = nullptr;
-    options.maximumIterations = 5;
+    TAUTLINE_SET(options, observer = nullptr, maximumIterations = 5);
     m = minimize(f, x.data(), options);
     TAUTLINE_CHECK(m.reason == StopReason::IterationLimit && m.iterations == 5);
     options.maximumIterations = 0;

@@ -65,9 +65,8 @@ void testOne(int number, Totals& totals)
   {
     shape = boundaryShape(mesh, 1.0, motion == Motion::OnSurface ? 30.0 : 0.0);
     fixed = shape.fixed;
-    options.slidePlanes = shape.planes.data();
-    options.slideLines = shape.lines.data();
-    options.slideSurface = shape.onSurface > 0 && !surface ? shape.surface.data() : nullptr;
+    TAUTLINE_SET(options, slidePlanes = shape.planes.data(), slideLines = shape.lines.data(),
+      slideSurface = shape.onSurface > 0 && !surface ? shape.surface.data() : nullptr);
   }
   options.fixed = motion == Motion::Fixed ? nullptr : fixed.data();
 

@@ -34,11 +34,9 @@ TAUTLINE_PART(testMinima)
     for (Optimizer optimizer : optimizers)
     {
       const Context which("optimizer " + std::to_string(static_cast<int>(optimizer)));
-      OptimizeOptions options;
-      options.optimizer = optimizer;
-      options.stopping.maximumIterations = 400;
-      options.stopping.relativeChange = 1e-13;
-      options.stopping.gradientNorm = 1e-9;
+      TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer,
+        stopping.maximumIterations = 400, stopping.relativeChange = 1e-13,
+        stopping.gradientNorm = 1e-9);
       const OptimizeResult result = run(data, options);
       checkHistory(data, result);
       TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
@@ -78,10 +76,8 @@ TAUTLINE_PART(testSingleVertex)
   {
     data.addCell(CellType::Triangle, std::vector<Index>{ 0, 1 + k, 1 + (k + 1) % 6 });
   }
-  OptimizeOptions options;
-  options.stopping.relativeChange = 0;
-  options.stopping.gradientNorm = 1e-12;
-  options.relaxation = 1.0;
+  TAUTLINE_LET(OptimizeOptions, options, stopping.relativeChange = 0, stopping.gradientNorm = 1e-12,
+    relaxation = 1.0);
   const OptimizeResult result = run(data, options);
   TAUTLINE_CHECK_NEAR(result.points[0], 0.0, 1e-9);
   TAUTLINE_CHECK_NEAR(result.points[1], 0.0, 1e-9);
@@ -97,9 +93,8 @@ TAUTLINE_PART(testInvariance)
   {
     const Context context(topology(type).name);
     const MeshData data = perturbedBlock(type, 4, 0.1);
-    OptimizeOptions options;
-    options.stopping.maximumIterations = 60;
-    options.stopping.relativeChange = 1e-12;
+    TAUTLINE_LET(
+      OptimizeOptions, options, stopping.maximumIterations = 60, stopping.relativeChange = 1e-12);
     const double F = run(data, options).history.back().objective;
     Random random(11);
     const Columns turn = randomRotation(random);
@@ -146,10 +141,8 @@ TAUTLINE_PART(testThreads)
   for (int which = 0; which < 4; ++which)
   {
     const Context context("case " + std::to_string(which));
-    OptimizeOptions options;
-    options.stopping.maximumIterations = 3;
-    Objective second;
-    second.metric = which == 1 ? Metric::Size : Metric::RadiusRatio;
+    TAUTLINE_LET(OptimizeOptions, options, stopping.maximumIterations = 3);
+    TAUTLINE_LET(Objective, second, metric = which == 1 ? Metric::Size : Metric::RadiusRatio);
     if (which == 1 || which == 2)
     {
       options.objectives.push_back(second);
@@ -179,10 +172,8 @@ TAUTLINE_PART(testScalarizations)
     {
       const Context context("scalarization " + std::to_string(method) + " optimizer " +
         std::to_string(static_cast<int>(optimizer)));
-      OptimizeOptions options;
-      options.optimizer = optimizer;
-      Objective second;
-      second.metric = Metric::Size;
+      TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer);
+      TAUTLINE_LET(Objective, second, metric = Metric::Size);
       options.objectives.push_back(second);
       options.scalarization.method = static_cast<Scalarization>(method);
       const OptimizeResult result = run(data, options);
@@ -206,8 +197,7 @@ TAUTLINE_PART(testLexicographic)
 {
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 6, 0.25);
   OptimizeOptions options;
-  Objective second;
-  second.metric = Metric::EdgeRatio;
+  TAUTLINE_LET(Objective, second, metric = Metric::EdgeRatio);
   options.objectives.push_back(second);
   options.scalarization.method = Scalarization::Lexicographic;
   for (const Optimizer optimizer : { Optimizer::LocalNewton, Optimizer::LimitedMemoryBFGS })
@@ -227,8 +217,7 @@ TAUTLINE_PART(testLexicographic)
 /// method keeps: the history has the second one instead of an infinite number.
 TAUTLINE_PART(testLexicographicBeyondBound)
 {
-  ScalarizationOptions options;
-  options.method = Scalarization::Lexicographic;
+  TAUTLINE_LET(ScalarizationOptions, options, method = Scalarization::Lexicographic);
   Scalarizer scalarizer(options, { 1.0, 1.0 }, { 8.0, 5.0 });
   IterationRecord record;
   record.objectives = { 6.0, 4.0 };
@@ -248,13 +237,10 @@ TAUTLINE_PART(testSweepTakenBack)
   const MeshData data = perturbedBlock(CellType::Quadrilateral, 40, 0.25);
   const auto objective = [](Metric metric)
   {
-    Objective o;
-    o.metric = metric;
-    o.objectiveTemplate = ObjectiveTemplate::Maximum;
+    TAUTLINE_LET(Objective, o, metric = metric, objectiveTemplate = ObjectiveTemplate::Maximum);
     return o;
   };
-  OptimizeOptions options;
-  options.optimizer = Optimizer::LocalNewton;
+  TAUTLINE_LET(OptimizeOptions, options, optimizer = Optimizer::LocalNewton);
   options.objectives = { objective(Metric::InverseMeanRatio), objective(Metric::ScaledJacobian) };
   options.scalarization.method = Scalarization::ObjectiveProduct;
   const OptimizeResult result = run(data, options);
@@ -294,10 +280,8 @@ TAUTLINE_PART(testMetrics)
       const Context context(std::string(info.name) + " " + topology(type).name);
       for (Optimizer optimizer : { Optimizer::LocalNewton, Optimizer::LimitedMemoryBFGS })
       {
-        OptimizeOptions options;
-        options.optimizer = optimizer;
-        options.objectives[0].metric = info.metric;
-        options.stopping.maximumIterations = 5;
+        TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer,
+          objectives[0].metric = info.metric, stopping.maximumIterations = 5);
         const OptimizeResult result = run(data, options);
         TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective);
         TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
@@ -307,8 +291,7 @@ TAUTLINE_PART(testMetrics)
       { ObjectiveTemplate::Sum, ObjectiveTemplate::PowerMean, ObjectiveTemplate::Maximum })
     {
       const Context context("template " + std::to_string(static_cast<int>(objectiveTemplate)));
-      OptimizeOptions options;
-      options.objectives[0].objectiveTemplate = objectiveTemplate;
+      TAUTLINE_LET(OptimizeOptions, options, objectives[0].objectiveTemplate = objectiveTemplate);
       const OptimizeResult result = run(data, options);
       TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective);
       if (objectiveTemplate == ObjectiveTemplate::Maximum)
@@ -331,9 +314,8 @@ TAUTLINE_PART(testTargetsAndWeights)
     const Targets targets = referenceTargets(mesh, wanted);
     OptimizeOptions options;
     applyPreset(Preset::PreserveShape, options);
-    options.objectives[0].evaluation.targets = &targets;
-    options.stopping.maximumIterations = 200;
-    options.stopping.relativeChange = 1e-14;
+    TAUTLINE_SET(options, objectives[0].evaluation.targets = &targets,
+      stopping.maximumIterations = 200, stopping.relativeChange = 1e-14);
     const OptimizeResult result = optimize(mesh, options);
     double most = 0;
     for (std::size_t i = 0; i < moved.points.size(); ++i)
@@ -361,24 +343,20 @@ TAUTLINE_PART(testTargetsAndWeights)
 TAUTLINE_PART(testStopping)
 {
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 8, 0.12);
-  OptimizeOptions options;
-  options.stopping.relativeChange = 0;
-  options.stopping.gradientNorm = 0;
-  options.stopping.maximumIterations = 7;
+  TAUTLINE_LET(OptimizeOptions, options, stopping.relativeChange = 0, stopping.gradientNorm = 0,
+    stopping.maximumIterations = 7);
   OptimizeResult result = run(data, options);
   TAUTLINE_CHECK(result.reason == StopReason::IterationLimit);
   TAUTLINE_CHECK_EQUAL(result.iterations, 7);
   const double least = [&]()
   {
-    OptimizeOptions all;
-    all.stopping.relativeChange = 1e-12;
+    TAUTLINE_LET(OptimizeOptions, all, stopping.relativeChange = 1e-12);
     return run(data, all).history.back().objective;
   }();
   for (double known : { least, std::numeric_limits<double>::quiet_NaN() })
   {
     options = OptimizeOptions();
-    options.stopping.reduction = 0.95;
-    options.stopping.bestKnown = known;
+    TAUTLINE_SET(options, stopping.reduction = 0.95, stopping.bestKnown = known);
     result = run(data, options);
     TAUTLINE_CHECK(result.reason == StopReason::Reduction);
     const double first = result.history.front().objective;
@@ -400,8 +378,7 @@ TAUTLINE_PART(testStopping)
   for (Optimizer optimizer : { Optimizer::Automatic, Optimizer::LimitedMemoryBFGS })
   {
     options = OptimizeOptions();
-    options.optimizer = optimizer;
-    options.stopping.maximumSeconds = 1e-9;
+    TAUTLINE_SET(options, optimizer = optimizer, stopping.maximumSeconds = 1e-9);
     result = run(data, options);
     TAUTLINE_CHECK(result.reason == StopReason::TimeLimit);
     TAUTLINE_CHECK(result.iterations <= 2);
@@ -439,9 +416,7 @@ TAUTLINE_PART(testTimeLimitOfWholeRun)
   for (Optimizer optimizer : { Optimizer::Automatic, Optimizer::LimitedMemoryBFGS })
   {
     constexpr double limit = 0.1;
-    OptimizeOptions options;
-    options.optimizer = optimizer;
-    options.stopping.maximumSeconds = limit;
+    TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer, stopping.maximumSeconds = limit);
     int calls = 0;
     options.observer = [&](const IterationState&)
     {
@@ -474,8 +449,7 @@ TAUTLINE_PART(testReachOfOptimizers)
   TAUTLINE_CHECK_THROWS(
     isLocal(static_cast<Optimizer>(std::size(optimizers))), wording("no-optimizer-7"));
   const MeshData data = perturbedBlock(CellType::Triangle, 4, 0.1);
-  OptimizeOptions options;
-  options.optimizer = static_cast<Optimizer>(std::size(optimizers));
+  TAUTLINE_LET(OptimizeOptions, options, optimizer = static_cast<Optimizer>(std::size(optimizers)));
   TAUTLINE_CHECK_THROWS(run(data, options), wording("no-optimizer-7"));
 }
 
@@ -485,11 +459,8 @@ TAUTLINE_PART(testBestKnownOfZero)
   const MeshData data = perturbedBlock(CellType::Triangle, 12, 0.8);
   TAUTLINE_CHECK(invalid(data, data.points) > 0);
   constexpr double reduction = 0.5;
-  OptimizeOptions options;
-  options.objectives[0].metric = Metric::UntangleBeta;
-  options.stopping.relativeChange = 0;
-  options.stopping.reduction = reduction;
-  options.stopping.bestKnown = 0;
+  TAUTLINE_LET(OptimizeOptions, options, objectives[0].metric = Metric::UntangleBeta,
+    stopping.relativeChange = 0, stopping.reduction = reduction, stopping.bestKnown = 0);
   const OptimizeResult result = run(data, options);
   TAUTLINE_CHECK(result.reason == StopReason::Reduction);
   const std::size_t n = result.history.size();
@@ -514,8 +485,7 @@ TAUTLINE_PART(testWorst)
       [](const Vec3& p) {
         return Vec3{ p[0] * (1 + 0.1 * std::sin(1.3 * p[1])), p[1], p[2] * (1 + p[0] / 8) };
       });
-    OptimizeOptions options;
-    options.worstMetric = Metric::InverseMeanRatio;
+    TAUTLINE_LET(OptimizeOptions, options, worstMetric = Metric::InverseMeanRatio);
     applyPreset(Preset::BestShape, options);
     const OptimizeResult best = run(data, options);
     applyPreset(Preset::WorstElement, options);
@@ -533,24 +503,21 @@ TAUTLINE_PART(testUntanglingObjectives)
   const Index middle = 3 * 7 + 3;
   data.setPoint(middle, data.point(middle) + Vec3{ 1.6, 0.3, 0 });
   TAUTLINE_CHECK(invalid(data, data.points) > 0);
-  OptimizeOptions options;
-  options.objectives[0].metric = Metric::UntangleBeta;
-  options.objectives[0].evaluation.parameters.beta = 0.1;
+  TAUTLINE_LET(OptimizeOptions, options, objectives[0].metric = Metric::UntangleBeta,
+    objectives[0].evaluation.parameters.beta = 0.1);
   OptimizeResult result = run(data, options);
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
   TAUTLINE_CHECK(!result.untangled);
 
   // Beside it a shape metric: what was inverted ends as well-shaped as the rest.
   options.objectives.resize(2);
-  options.objectives[1].metric = Metric::ConditioningScaleInvariant;
-  options.objectives[1].objectiveTemplate = ObjectiveTemplate::SumOfSquaredReciprocals;
-  options.scalarization.method = Scalarization::EqualSum;
-  options.stopping.relativeChange = 1e-10;
+  TAUTLINE_SET(options, objectives[1].metric = Metric::ConditioningScaleInvariant,
+    objectives[1].objectiveTemplate = ObjectiveTemplate::SumOfSquaredReciprocals,
+    scalarization.method = Scalarization::EqualSum, stopping.relativeChange = 1e-10);
   result = run(data, options);
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
-  OptimizeOptions alone;
-  alone.objectives[0] = options.objectives[1];
-  alone.stopping.relativeChange = 1e-10;
+  TAUTLINE_LET(
+    OptimizeOptions, alone, objectives[0] = options.objectives[1], stopping.relativeChange = 1e-10);
   const OptimizeResult shape = run(blockMesh(CellType::Triangle, 6, 6, 0), alone);
   TAUTLINE_CHECK_RELATIVE(result.history.back().worst[1], shape.history.back().worst[0], 1e-2);
 
@@ -567,8 +534,7 @@ TAUTLINE_PART(testUntanglingObjectives)
 TAUTLINE_PART(testFaulty)
 {
   OptimizeOptions options;
-  MeshData empty;
-  empty.offsets = { 0 };
+  TAUTLINE_LET(MeshData, empty, offsets = { 0 });
   TAUTLINE_CHECK(run(empty, options).reason == StopReason::NoFreeVertices);
   const MeshData single = singleCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron));
   TAUTLINE_CHECK(run(single, options).reason == StopReason::NoFreeVertices);

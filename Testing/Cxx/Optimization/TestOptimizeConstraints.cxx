@@ -23,8 +23,7 @@ TAUTLINE_PART(testConstraints)
   {
     fixed[i] = boundary[i] || i % 3 == 0;
   }
-  OptimizeOptions options;
-  options.fixed = fixed.data();
+  TAUTLINE_LET(OptimizeOptions, options, fixed = fixed.data());
   OptimizeResult result = run(data, options);
   for (Index i = 0; i < n; ++i)
   {
@@ -81,8 +80,7 @@ TAUTLINE_PART(testConstraints)
     }
     TAUTLINE_CHECK_EQUAL(invalid(slid, slid.points), Index(0));
     options = OptimizeOptions();
-    options.optimizer = optimizer;
-    options.fixed = fixed.data();
+    TAUTLINE_SET(options, optimizer = optimizer, fixed = fixed.data());
     const double held = [&]()
     {
       std::vector<unsigned char> all = fixed;
@@ -94,8 +92,7 @@ TAUTLINE_PART(testConstraints)
       without.fixed = all.data();
       return run(slid, without).history.back().objective;
     }();
-    options.slidePlanes = planes.data();
-    options.slideLines = lines.data();
+    TAUTLINE_SET(options, slidePlanes = planes.data(), slideLines = lines.data());
     result = run(slid, options);
     TAUTLINE_CHECK(result.history.back().objective < held);
     for (Index i = 0; i < n; ++i)
@@ -156,8 +153,7 @@ TAUTLINE_PART(testSlidingSurface)
     }
     options.fixed = held.data();
     const double F = run(data, options).history.back().objective;
-    options.fixed = fixed.data();
-    options.slideSurface = slides.data();
+    TAUTLINE_SET(options, fixed = fixed.data(), slideSurface = slides.data());
     const OptimizeResult result = run(data, options);
     TAUTLINE_CHECK(result.history.back().objective < 0.99 * F);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));

@@ -28,9 +28,7 @@ OptimizeResult runOnFeatures(
   }
   OptimizeOptions options;
   options.holdWorst = false; // elements that are all alike cannot improve otherwise
-  options.fixed = fixed.data();
-  options.model = &model;
-  options.parts = parts.data();
+  TAUTLINE_SET(options, fixed = fixed.data(), model = &model, parts = parts.data());
   return optimize(mesh, options);
 }
 
@@ -100,8 +98,7 @@ TAUTLINE_PART(testCube)
   TAUTLINE_CHECK(offCube(cubeSurface(CellType::Triangle, 10), points, 1) < 1e-12);
   // As it was without features: the edges are cut.
   const MeshData cube = cubeSurface(CellType::Triangle, 10);
-  OptimizeOptions free;
-  free.holdWorst = false;
+  TAUTLINE_LET(OptimizeOptions, free, holdWorst = false);
   const OptimizeResult cut = run(cube, free);
   TAUTLINE_CHECK(volumeWithin(cube, cut.points) < 0.997);
 }
@@ -303,8 +300,7 @@ TAUTLINE_PART(testVolume)
         return p;
       });
     TAUTLINE_CHECK_EQUAL(invalid(data, data.points), Index(0));
-    FeatureOptions options;
-    options.regions = regions.data();
+    TAUTLINE_LET(FeatureOptions, options, regions = regions.data());
     const OptimizeResult result = runOnFeatures(data, true, options);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
     double off = 0, slid = 0;
@@ -347,10 +343,8 @@ TAUTLINE_PART(testGeometry)
   const GeometryMatch onSphere = match(sphere, finer);
   MeshData placed = sphere;
   placed.points = onSphere.points;
-  OptimizeOptions options;
-  options.model = &onSphere.model;
-  options.parts = onSphere.parts.data();
-  options.onGeometry = true;
+  TAUTLINE_LET(OptimizeOptions, options, model = &onSphere.model, parts = onSphere.parts.data(),
+    onGeometry = true);
   const OptimizeResult result = run(placed, options);
   double off = 0;
   for (Index p = 0; p < sphere.numberOfPoints(); ++p)

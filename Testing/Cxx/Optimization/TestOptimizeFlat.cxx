@@ -37,10 +37,9 @@ MeshData stretchedRows(CellType type, int cells, double power)
 
 double minimumOf(const MeshData& data, OptimizeOptions options)
 {
-  options.optimizer = Optimizer::NewtonConjugateGradient;
-  options.stopping = StoppingCriteria();
-  options.stopping.relativeChange = 1e-10;
-  options.stopping.maximumIterations = 3000;
+  TAUTLINE_SET(options, optimizer = Optimizer::NewtonConjugateGradient,
+    stopping = StoppingCriteria(), stopping.relativeChange = 1e-10,
+    stopping.maximumIterations = 3000);
   return run(data, options).history.back().objective;
 }
 
@@ -55,8 +54,7 @@ TAUTLINE_PART_SLOW(testNewton)
     const double least = minimumOf(data, OptimizeOptions());
     for (const Optimizer optimizer : { Optimizer::Automatic, Optimizer::NewtonConjugateGradient })
     {
-      OptimizeOptions options;
-      options.optimizer = optimizer;
+      TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer);
       const OptimizeResult result = run(data, options);
       TAUTLINE_CHECK(result.history.front().objective > 1e10 * least);
       TAUTLINE_CHECK(result.history.back().objective <= 1.0001 * least);
@@ -68,8 +66,7 @@ TAUTLINE_PART_SLOW(testNewton)
   }
   // On a straight strip, the minimum is the uniform grid.
   constexpr int cells = 128;
-  OptimizeOptions newton;
-  newton.optimizer = Optimizer::NewtonConjugateGradient;
+  TAUTLINE_LET(OptimizeOptions, newton, optimizer = Optimizer::NewtonConjugateGradient);
   const OptimizeResult result = run(stretchedRows(CellType::Quadrilateral, cells, 4), newton);
   TAUTLINE_CHECK_RELATIVE(result.history.back().objective, 1.0 * cells * cells, 1e-5);
 }
@@ -106,8 +103,7 @@ TAUTLINE_PART_SLOW(testObjectives)
   TAUTLINE_CHECK(result.reason == StopReason::RelativeChange);
   TAUTLINE_CHECK(result.history.back().objective < 1e-3 * stuck.history.back().objective);
   OptimizeOptions sweeps = uniform;
-  sweeps.optimizer = Optimizer::LocalNewton;
-  sweeps.stopping.maximumIterations = 3000;
+  TAUTLINE_SET(sweeps, optimizer = Optimizer::LocalNewton, stopping.maximumIterations = 3000);
   TAUTLINE_CHECK(
     result.history.back().objective <= 1.001 * run(bent, sweeps).history.back().objective);
 }
@@ -129,9 +125,8 @@ TAUTLINE_PART(testConvergence)
         Optimizer::ConjugateGradientFletcherReeves, Optimizer::LocalNewton })
     {
       const Context which("optimizer " + std::to_string(static_cast<int>(optimizer)));
-      OptimizeOptions options;
-      options.optimizer = optimizer;
-      options.stopping.maximumIterations = 600;
+      TAUTLINE_LET(
+        OptimizeOptions, options, optimizer = optimizer, stopping.maximumIterations = 600);
       const OptimizeResult result = run(data, options);
       const bool claimed =
         result.reason == StopReason::GradientNorm || result.reason == StopReason::RelativeChange;
@@ -155,8 +150,7 @@ TAUTLINE_PART(testReduction)
   for (const auto& [name, data] : cases)
   {
     const Context context(name);
-    OptimizeOptions options;
-    options.stopping.reduction = 0.95;
+    TAUTLINE_LET(OptimizeOptions, options, stopping.reduction = 0.95);
     const OptimizeResult result = run(data, options);
     const double start = result.history.front().objective;
     const double part =
@@ -177,8 +171,7 @@ TAUTLINE_PART(testFirstRow)
   for (const int iterations : { 0, 1, 300 })
   {
     const Context context(std::to_string(iterations) + " iterations");
-    OptimizeOptions options;
-    options.stopping.maximumIterations = iterations;
+    TAUTLINE_LET(OptimizeOptions, options, stopping.maximumIterations = iterations);
     const OptimizeResult result = run(data, options);
     TAUTLINE_CHECK_RELATIVE(result.history.front().objective, start, 1e-9);
     TAUTLINE_CHECK_EQUAL(result.iterations == 0, iterations == 0);
@@ -217,8 +210,7 @@ TAUTLINE_PART(testBarelyPlanar)
     const Mesh mesh(data.view());
     const std::vector<double> untangled = untangle(mesh, UntangleOptions()).points;
     less += mesh.at(untangled.data()).dimension() == Dimension::Surface;
-    OptimizeOptions options;
-    options.optimizer = Optimizer::ConjugateGradientPolakRibiere;
+    TAUTLINE_LET(OptimizeOptions, options, optimizer = Optimizer::ConjugateGradientPolakRibiere);
     const OptimizeResult result = optimize(mesh, options);
     TAUTLINE_CHECK(result.invertedBefore > 0);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));

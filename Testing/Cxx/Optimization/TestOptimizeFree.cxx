@@ -15,10 +15,7 @@ namespace
 double drift(const MeshData& data, Optimizer optimizer)
 {
   const std::vector<unsigned char> fixed(data.numberOfPoints(), 0);
-  OptimizeOptions options;
-  options.fixed = fixed.data();
-  options.optimizer = optimizer;
-  options.threads = 1;
+  TAUTLINE_LET(OptimizeOptions, options, fixed = fixed.data(), optimizer = optimizer, threads = 1);
   const OptimizeResult result = run(data, options);
   TAUTLINE_CHECK_EQUAL(result.freeVertices, data.numberOfPoints());
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));

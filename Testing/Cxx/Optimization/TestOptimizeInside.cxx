@@ -58,9 +58,8 @@ TAUTLINE_PART(testKeepsValid)
       for (Optimizer optimizer : { Optimizer::Automatic, Optimizer::LocalNewton,
              Optimizer::LimitedMemoryBFGS, Optimizer::NewtonConjugateGradient })
       {
-        OptimizeOptions options;
-        options.optimizer = optimizer;
-        options.stopping.maximumIterations = 30;
+        TAUTLINE_LET(
+          OptimizeOptions, options, optimizer = optimizer, stopping.maximumIterations = 30);
         const OptimizeResult result = run(data, options);
         TAUTLINE_CHECK_EQUAL(result.invertedAfter, invalid(data, result.points));
         TAUTLINE_CHECK(result.invertedAfter <= result.invertedBefore);
@@ -88,11 +87,8 @@ TAUTLINE_PART(testFoldedTargets)
       const std::vector<unsigned char> fixed(data.numberOfPoints(), 0);
       for (Optimizer optimizer : { Optimizer::LocalNewton, Optimizer::LimitedMemoryBFGS })
       {
-        OptimizeOptions options;
-        options.optimizer = optimizer;
-        options.fixed = fixed.data();
-        options.objectives[0].evaluation.targets = &targets;
-        options.stopping.maximumIterations = 60;
+        TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer, fixed = fixed.data(),
+          objectives[0].evaluation.targets = &targets, stopping.maximumIterations = 60);
         // After each iteration, before what became worse goes back at the end.
         Index onTheWay = 0;
         options.observer = [&](const IterationState& state)
@@ -123,8 +119,7 @@ TAUTLINE_PART(testUnfolds)
     {
       const MeshData data = singleCell(type, folded);
       const std::vector<unsigned char> fixed(data.numberOfPoints(), 0);
-      UntangleOptions options;
-      options.fixed = fixed.data();
+      TAUTLINE_LET(UntangleOptions, options, fixed = fixed.data());
       const UntangleResult result = untangle(Mesh(data.view()), options);
       TAUTLINE_CHECK_EQUAL(result.invertedBefore, Index(1));
       TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
@@ -161,9 +156,7 @@ TAUTLINE_PART(testEnds)
       data.addCell(type, beside);
       std::vector<unsigned char> fixed(data.numberOfPoints(), 0);
       std::fill(fixed.begin(), fixed.begin() + topology(type).nodes, 1);
-      OptimizeOptions options;
-      options.fixed = fixed.data();
-      options.stopping.maximumSeconds = 60;
+      TAUTLINE_LET(OptimizeOptions, options, fixed = fixed.data(), stopping.maximumSeconds = 60);
       const OptimizeResult result = run(data, options);
       TAUTLINE_CHECK_EQUAL(result.invertedBefore, Index(1));
       TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(1));

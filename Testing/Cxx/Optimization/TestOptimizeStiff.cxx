@@ -23,8 +23,7 @@ void testStiffThreads()
   for (Optimizer optimizer : { Optimizer::Automatic, Optimizer::NewtonConjugateGradient })
   {
     const Context which("optimizer " + std::to_string(static_cast<int>(optimizer)));
-    OptimizeOptions options;
-    options.optimizer = optimizer;
+    TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer);
     // Newton's method alone takes long: some of its iterations will do.
     options.stopping.maximumIterations = optimizer == Optimizer::Automatic ? 300 : 12;
     options.threads = 1;
@@ -53,10 +52,8 @@ void testStiffRing()
       const double angle = 1.5 * Pi * p[0], radius = 0.2 + p[1];
       return Vec3{ radius * std::sin(angle), radius * std::cos(angle), 0 };
     });
-  OptimizeOptions accurate;
-  accurate.optimizer = Optimizer::NewtonConjugateGradient;
-  accurate.stopping.relativeChange = 1e-10;
-  accurate.stopping.maximumIterations = 1000;
+  TAUTLINE_LET(OptimizeOptions, accurate, optimizer = Optimizer::NewtonConjugateGradient,
+    stopping.relativeChange = 1e-10, stopping.maximumIterations = 1000);
   const double least = run(data, accurate).history.back().objective;
   const OptimizeResult result = run(data, OptimizeOptions());
   TAUTLINE_CHECK(result.invertedAfter == 0);
@@ -80,10 +77,8 @@ void testStiff()
   {
     const Context context(name);
     const CellType type = static_cast<CellType>(data.view().cellTypes[0]);
-    OptimizeOptions accurate;
-    accurate.optimizer = Optimizer::NewtonConjugateGradient;
-    accurate.stopping.relativeChange = 1e-10;
-    accurate.stopping.maximumIterations = 1000;
+    TAUTLINE_LET(OptimizeOptions, accurate, optimizer = Optimizer::NewtonConjugateGradient,
+      stopping.relativeChange = 1e-10, stopping.maximumIterations = 1000);
     const OptimizeResult best = run(data, accurate);
     const double least = best.history.back().objective;
     if (type == CellType::Quadrilateral || type == CellType::Hexahedron)
@@ -94,8 +89,7 @@ void testStiff()
     for (Optimizer optimizer : { Optimizer::Automatic, Optimizer::NewtonConjugateGradient })
     {
       const Context which("optimizer " + std::to_string(static_cast<int>(optimizer)));
-      OptimizeOptions options;
-      options.optimizer = optimizer;
+      TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer);
       const OptimizeResult result = run(data, options);
       TAUTLINE_CHECK(result.history.back().objective <= 1.0001 * least);
       TAUTLINE_CHECK(result.reason == StopReason::RelativeChange);
@@ -103,12 +97,10 @@ void testStiff()
       TAUTLINE_CHECK_EQUAL(static_cast<std::size_t>(result.iterations), result.history.size() - 1);
     }
     // Out of time, the best so far is returned: that of the sweeps, or of Newton's method.
-    OptimizeOptions few;
-    few.stopping.maximumIterations = 5;
+    TAUTLINE_LET(OptimizeOptions, few, stopping.maximumIterations = 5);
     const OptimizeResult stopped = run(data, few);
     OptimizeOptions sweeps = few;
-    sweeps.optimizer = Optimizer::LocalNewton;
-    sweeps.stopping.maximumIterations = 4;
+    TAUTLINE_SET(sweeps, optimizer = Optimizer::LocalNewton, stopping.maximumIterations = 4);
     const OptimizeResult swept = run(data, sweeps);
     const double reached = sumOfSquares(data, stopped.points, Metric::InverseMeanRatio);
     TAUTLINE_CHECK(
@@ -126,8 +118,7 @@ void testFewQuadrilaterals()
 {
   constexpr Index n = 30, every = 20;
   const MeshData quads = perturbedBlock(CellType::Quadrilateral, n, 0.2);
-  MeshData data;
-  data.points = quads.points;
+  TAUTLINE_LET(MeshData, data, points = quads.points);
   for (Index c = 0; c < quads.numberOfCells(); ++c)
   {
     const Index* q = &quads.connectivity[quads.offsets[c]];
@@ -141,8 +132,7 @@ void testFewQuadrilaterals()
     data.addCell(
       CellType::Triangle, std::vector<Index>{ q[shift], q[shift + 2], q[(shift + 3) % 4] });
   }
-  OptimizeOptions options;
-  options.holdWorst = false;
+  TAUTLINE_LET(OptimizeOptions, options, holdWorst = false);
   const OptimizeResult result = run(data, options);
   options.optimizer = Optimizer::LocalNewton;
   const OptimizeResult swept = run(data, options);
@@ -161,9 +151,7 @@ void testMemory(CellType type, int beforeNewton, double mebibytes)
       return Vec3{ p[0], p[1] * p[1], p[2] };
     });
   constexpr int sweeps = 12;
-  OptimizeOptions options;
-  options.threads = 1;
-  options.stopping.maximumIterations = sweeps;
+  TAUTLINE_LET(OptimizeOptions, options, threads = 1, stopping.maximumIterations = sweeps);
   OptimizeOptions local = options;
   local.optimizer = Optimizer::LocalNewton;
   const OptimizeResult expected = run(data, local);

@@ -15,15 +15,13 @@ constexpr Index Free = 0; // the point that moves
 
 LocalTerm squaredSize()
 {
-  LocalTerm term;
-  term.sizeSquared = 1;
+  TAUTLINE_LET(LocalTerm, term, sizeSquared = 1);
   return term;
 }
 
 LocalTerm squaredRatio()
 {
-  LocalTerm term;
-  term.shapePower = 2;
+  TAUTLINE_LET(LocalTerm, term, shapePower = 2);
   return term;
 }
 
@@ -67,8 +65,7 @@ bool isAt(const Vec3& p, const Vec3& q)
 
 SurfacePart curveOf(const Vec3& a, const Vec3& b)
 {
-  SurfacePart part;
-  part.curve = true;
+  TAUTLINE_LET(SurfacePart, part, curve = true);
   part.pieces.push_back({ a, b, b });
   return part;
 }
@@ -190,8 +187,7 @@ SurfaceModel patchAt(const Vec3& p, const Vec3& along)
   const Vec3 u = (size / norm(along)) * along;
   Vec3 w = cross(u, std::abs(u[0]) < 0.5 * size ? Vec3{ 1, 0, 0 } : Vec3{ 0, 1, 0 });
   w = (size / norm(w)) * w;
-  SurfaceModel model;
-  model.patches = 1;
+  TAUTLINE_LET(SurfaceModel, model, patches = 1);
   model.parts.resize(1);
   model.parts[0].pieces.push_back({ p - u - w, p + u - w, p + w });
   return model;
@@ -213,13 +209,9 @@ struct Corner
     std::vector<unsigned char> fixed(this->data.numberOfPoints(), 1);
     parts[this->k] = 0;
     fixed[this->k] = 0;
-    OptimizeOptions options;
-    options.fixed = fixed.data();
-    options.model = &model;
-    options.parts = parts.data();
-    options.holdWorst = false;
-    options.objectives[0].evaluation.targets = &this->targets;
-    options.stopping.maximumIterations = 5;
+    TAUTLINE_LET(OptimizeOptions, options, fixed = fixed.data(), model = &model,
+      parts = parts.data(), holdWorst = false, objectives[0].evaluation.targets = &this->targets,
+      stopping.maximumIterations = 5);
     options.observer = [&](const IterationState& state)
     {
       std::vector<double> points(this->data.points.size());

@@ -62,18 +62,12 @@ Outcome runOn(const MeshData& data, double tolerance, int threads = 1)
   {
     fixed.push_back(kind == CornerPoint);
   }
-  OptimizeOptions options;
-  options.holdWorst = false;
-  options.fixed = fixed.data();
-  options.model = &model;
-  options.parts = parts.data();
-  options.surfaceTolerance = tolerance;
-  options.threads = threads;
+  TAUTLINE_LET(OptimizeOptions, options, holdWorst = false, fixed = fixed.data(), model = &model,
+    parts = parts.data(), surfaceTolerance = tolerance, threads = threads);
   Outcome outcome = { optimize(mesh, options), 0, 0 };
   const std::vector<Triangle> before = boundaryOf(data, data.points),
                               after = boundaryOf(data, outcome.result.points);
-  outcome.there = distance(after, before);
-  outcome.back = distance(before, after);
+  TAUTLINE_SET(outcome, there = distance(after, before), back = distance(before, after));
   return outcome;
 }
 
@@ -119,13 +113,10 @@ TAUTLINE_PART(testFilter)
     double errors[2];
     for (int limited = 0; limited < 2; ++limited)
     {
-      vtkNew<vtkMeshOptimizer> filter;
-      filter->SetInputData(grid);
-      filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
-      filter->SetHoldWorst(false);
+      TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(grid),
+        SetBoundary(vtkMeshOptimizer::ON_SURFACE), SetHoldWorst(false));
       TAUTLINE_CHECK(filter->GetSurfaceTolerance() == 0.001);
-      filter->SetSurfaceTolerance(limited ? 0.001 : 0.0);
-      filter->Update();
+      TAUTLINE_SET(filter, SetSurfaceTolerance(limited ? 0.001 : 0.0), Update());
       errors[limited] = filter->GetSurfaceError() / diagonal;
       const std::string summary = filter->GetSummary();
       const bool says = summary.find(wording("surface-tolerance-holds")) != std::string::npos;
@@ -166,15 +157,12 @@ struct Leaving
 
 Leaving leave(const MeshData& data, const std::function<void(vtkMeshOptimizer*)>& set)
 {
-  vtkNew<vtkMeshOptimizer> filter;
-  filter->SetInputData(toGrid(data));
-  filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT);
-  filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
-  filter->SetSurfaceTolerance(0.005);
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)),
+    SetPreset(vtkMeshOptimizer::WORST_ELEMENT), SetBoundary(vtkMeshOptimizer::ON_SURFACE),
+    SetSurfaceTolerance(0.005));
   set(filter);
   filter->Update();
-  Leaving result;
-  result.summary = filter->GetSummary();
+  TAUTLINE_LET(Leaving, result, summary = filter->GetSummary());
   vtkPoints* points = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPoints();
   for (vtkIdType p = 0; p < points->GetNumberOfPoints(); ++p)
   {
@@ -184,8 +172,7 @@ Leaving leave(const MeshData& data, const std::function<void(vtkMeshOptimizer*)>
   result.worst = worstJacobian(data, result.points);
   const std::vector<Triangle> before = boundaryOf(data, data.points),
                               after = boundaryOf(data, result.points);
-  result.off = std::max(distance(before, after), distance(after, before));
-  result.left = 0;
+  TAUTLINE_SET(result, off = std::max(distance(before, after), distance(after, before)), left = 0);
   for (std::size_t p = 0; p < result.points.size() / 3; ++p)
   {
     // What was on a plane of the block, in the coordinates of its cubes.
@@ -257,8 +244,7 @@ TAUTLINE_PART_SLOW(testLeaving)
   for (int index : { 2, 5 })
   {
     const auto grid = toGrid(data);
-    vtkNew<vtkDoubleArray> array;
-    array->SetName("Flags");
+    TAUTLINE_NEW(vtkDoubleArray, array, SetName("Flags"));
     for (double value : index == 2 ? fixed : kinds)
     {
       array->InsertNextValue(value);
@@ -292,8 +278,7 @@ TAUTLINE_PART(testOtherMeshes)
     const double diagonal = unit * side * norm({ 1 + 1 / tangent, 1, volume ? 1.0 : 0.0 });
     const auto grid = toGrid(data);
     // Two regions, below and above half of the height.
-    vtkNew<vtkDoubleArray> regions;
-    regions->SetName("Regions");
+    TAUTLINE_NEW(vtkDoubleArray, regions, SetName("Regions"));
     const int up = volume ? 2 : 1;
     for (Index cell = 0; cell < data.numberOfCells(); ++cell)
     {
@@ -305,24 +290,23 @@ TAUTLINE_PART(testOtherMeshes)
       regions->InsertNextValue(low > unit * (side / 2 - 0.5));
     }
     grid->GetCellData()->AddArray(regions);
-    vtkNew<vtkMeshOptimizer> filter;
-    filter->SetInputData(grid);
+    TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(grid));
     // Sliding uses up what the mean of tetrahedra may get worse by with the preset.
     const double allowance = type == CellType::Tetrahedron ? 0.2 : simplex ? 0.01 : 0.05;
     const bool custom = type == CellType::Tetrahedron;
-    filter->SetPreset(custom ? vtkMeshOptimizer::CUSTOM : vtkMeshOptimizer::WORST_ELEMENT);
-    filter->SetImproveWorst(allowance);
-    filter->SetBoundary(vtkMeshOptimizer::ON_SURFACE);
-    filter->SetSurfaceTolerance(tolerance);
+    TAUTLINE_SET(filter,
+      SetPreset(custom ? vtkMeshOptimizer::CUSTOM : vtkMeshOptimizer::WORST_ELEMENT),
+      SetImproveWorst(allowance), SetBoundary(vtkMeshOptimizer::ON_SURFACE),
+      SetSurfaceTolerance(tolerance));
     double worst[2], mean[2];
     for (const bool withRegions : { true, false })
     {
       for (int leave = 0; leave < 2; ++leave)
       {
-        filter->SetLeaveSurface(leave == 1);
-        filter->SetInputArrayToProcess(
-          6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, withRegions ? "Regions" : "");
-        filter->Update();
+        TAUTLINE_SET(filter, SetLeaveSurface(leave == 1),
+          SetInputArrayToProcess(
+            6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, withRegions ? "Regions" : ""),
+          Update());
         MeshData moved = data;
         moved.points =
           toMesh(vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0))).points;
@@ -358,8 +342,7 @@ TAUTLINE_PART(testOtherMeshes)
         [](Vec3 p) {
           return unit * side * Vec3{ p[0] + p[1] / tangent, p[1], p[2] };
         });
-      filter->SetInputDataObject(3, toGrid(geometry));
-      filter->Update();
+      TAUTLINE_SET(filter, SetInputDataObject(3, toGrid(geometry)), Update());
       TAUTLINE_CHECK(
         std::string(filter->GetSummary()).find(wording("left-the-surface")) == std::string::npos);
     }
@@ -383,11 +366,9 @@ TAUTLINE_PART(testStopping)
   }
   OptimizeOptions options;
   applyPreset(Preset::WorstElement, options);
-  options.fixed = fixed.data();
-  options.model = &model;
-  options.parts = parts.data();
-  options.leaving = leaving.data();
-  options.surfaceTolerance = 0.01 * unit * side * norm({ 1 + 1 / tangent, 1, 1 });
+  TAUTLINE_SET(options, fixed = fixed.data(), model = &model, parts = parts.data(),
+    leaving = leaving.data(),
+    surfaceTolerance = 0.01 * unit * side * norm({ 1 + 1 / tangent, 1, 1 }));
   const OptimizeResult whole = optimize(mesh, options);
   TAUTLINE_CHECK(whole.leftSurface > 0);
   TAUTLINE_CHECK(whole.reason != StopReason::Aborted);
@@ -402,8 +383,7 @@ TAUTLINE_PART(testStopping)
   // Points that may leave need the flags of those that may not move otherwise.
   options.fixed = nullptr;
   TAUTLINE_CHECK_THROWS(optimize(mesh, options), wording("flags-of-the-fixed-points"));
-  options.fixed = fixed.data();
-  options.onGeometry = true;
+  TAUTLINE_SET(options, fixed = fixed.data(), onGeometry = true);
   TAUTLINE_CHECK_THROWS(optimize(mesh, options), wording("no-other-surface"));
 }
 

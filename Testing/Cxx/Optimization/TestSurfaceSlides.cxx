@@ -70,9 +70,7 @@ OptimizeResult runOnModel(const MeshData& data, bool smooth, OptimizeOptions opt
     fixed.push_back(kind == CornerPoint);
   }
   options.holdWorst = false; // the sum alone is compared
-  options.fixed = fixed.data();
-  options.model = &model;
-  options.parts = parts.data();
+  TAUTLINE_SET(options, fixed = fixed.data(), model = &model, parts = parts.data());
   return optimize(mesh, options);
 }
 
@@ -107,11 +105,8 @@ void testStretched(const Surface& surface, CellType type, bool smooth)
   const Context context(std::string(surface.name) + (smooth ? ", smooth, " : ", facets, ") +
     "type " + std::to_string(static_cast<int>(type)));
   constexpr int cells = 32, few = 40;
-  OptimizeOptions accurate;
-  accurate.optimizer = Optimizer::LocalNewton;
-  accurate.stopping.relativeChange = 1e-10;
-  accurate.stopping.gradientNorm = 0;
-  accurate.stopping.maximumIterations = 3000;
+  TAUTLINE_LET(OptimizeOptions, accurate, optimizer = Optimizer::LocalNewton,
+    stopping.relativeChange = 1e-10, stopping.gradientNorm = 0, stopping.maximumIterations = 3000);
   // From rows of equal heights, sweeps reach the minimum.
   const double least =
     runOnModel(meshOf(surface, type, cells, 1), smooth, accurate).history.back().objective;
@@ -121,9 +116,8 @@ void testStretched(const Surface& surface, CellType type, bool smooth)
   TAUTLINE_CHECK(result.history.back().objective <= 1.002 * least);
   TAUTLINE_CHECK(result.reason == StopReason::RelativeChange);
   TAUTLINE_CHECK(result.iterations <= few);
-  OptimizeOptions sweeps;
-  sweeps.optimizer = Optimizer::LocalNewton;
-  sweeps.stopping.maximumIterations = few;
+  TAUTLINE_LET(
+    OptimizeOptions, sweeps, optimizer = Optimizer::LocalNewton, stopping.maximumIterations = few);
   TAUTLINE_CHECK(runOnModel(data, smooth, sweeps).history.back().objective > 1.02 * least);
   // Facets leave the surface by half of its second derivative times the square of their size, of
   // which the smooth surface through their corners saves most.
@@ -146,8 +140,7 @@ void testStretched(const Surface& surface, CellType type, bool smooth)
   }
   TAUTLINE_CHECK(off <= 1e-12);
   TAUTLINE_CHECK(along > 0);
-  OptimizeOptions threads;
-  threads.threads = 3;
+  TAUTLINE_LET(OptimizeOptions, threads, threads = 3);
   const OptimizeResult three = runOnModel(data, smooth, threads);
   TAUTLINE_CHECK(three.points == result.points);
 }

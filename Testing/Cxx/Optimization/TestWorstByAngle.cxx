@@ -128,18 +128,14 @@ TAUTLINE_PART(testFilter)
     applyPreset(Preset::WorstElement, options);
     options.worstMetric = Metric::MinimumAngle;
     const MeshData expected = at(data, run(data, options).points);
-    vtkNew<vtkMeshOptimizer> filter;
-    filter->SetInputData(toGrid(data));
-    filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT);
-    filter->SetWorstMetricByName("min_angle");
-    filter->Update();
+    TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)),
+      SetPreset(vtkMeshOptimizer::WORST_ELEMENT), SetWorstMetricByName("min_angle"), Update());
     const MeshData after =
       withPointsOf(data, vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0)));
     TAUTLINE_CHECK(after.points == expected.points);
     TAUTLINE_CHECK(smallestAngle(after, true) > 1.5 * smallestAngle(data, true));
     // Another choice is another result.
-    filter->SetWorstMetric(-1);
-    filter->Update();
+    TAUTLINE_SET(filter, SetWorstMetric(-1), Update());
     const MeshData byRatio =
       withPointsOf(data, vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0)));
     TAUTLINE_CHECK(smallestAngle(byRatio, true) < smallestAngle(after, true));

@@ -108,12 +108,10 @@ inline const std::vector<TableCell>& tableCells()
 
 inline PeridynamicOptions optionsOf(const TableCell& cell, Discretization discretization)
 {
-  PeridynamicOptions options;
-  options.horizon = cell.delta;
-  options.kernel.exponent = cell.table == 3 ? 2.5 : 1.0;
-  options.basis = cell.table == 1 ? PeridynamicBasis::Constant : PeridynamicBasis::Linear;
-  options.discretization = discretization;
-  options.allowThinLayer = true;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = cell.delta,
+    kernel.exponent = cell.table == 3 ? 2.5 : 1.0,
+    basis = cell.table == 1 ? PeridynamicBasis::Constant : PeridynamicBasis::Linear,
+    discretization = discretization, allowThinLayer = true);
   return options;
 }
 

@@ -22,11 +22,8 @@ namespace
 {
 vtkSmartPointer<vtkUnstructuredGrid> squareWithLayer(double h = 0.1, double layer = 0.2)
 {
-  vtkNew<vtkDomainSource> source;
-  source->SetDomainByName("square");
-  source->SetElementSize(h);
-  source->SetLayerWidth(layer);
-  source->Update();
+  TAUTLINE_NEW(vtkDomainSource, source, SetDomainByName("square"), SetElementSize(h),
+    SetLayerWidth(layer), Update());
   return vtkUnstructuredGrid::SafeDownCast(source->GetOutputDataObject(0));
 }
 
@@ -46,8 +43,7 @@ vtkSmartPointer<vtkUnstructuredGrid> bareSquare(int n, bool slanted, int precisi
 std::string errorOf(vtkAlgorithm* filter)
 {
   std::string text;
-  vtkNew<vtkCallbackCommand> keep;
-  keep->SetClientData(&text);
+  TAUTLINE_NEW(vtkCallbackCommand, keep, SetClientData(&text));
   keep->SetCallback([](vtkObject*, unsigned long, void* to, void* message)
     { *static_cast<std::string*>(to) += static_cast<const char*>(message); });
   vtkObject* const sources[] = { filter, filter->GetExecutive() };
@@ -55,8 +51,7 @@ std::string errorOf(vtkAlgorithm* filter)
   {
     source->AddObserver(vtkCommand::ErrorEvent, keep);
   }
-  filter->Modified();
-  filter->Update();
+  TAUTLINE_SET(filter, Modified(), Update());
   for (vtkObject* source : sources)
   {
     source->RemoveObserver(keep);
@@ -74,11 +69,8 @@ double column(vtkAlgorithm* filter, const char* name)
 TAUTLINE_PART(testStiffness)
 {
   const auto mesh = squareWithLayer();
-  vtkNew<vtkPeridynamicStiffness> filter;
-  filter->SetInputData(mesh);
-  filter->SetSparsityPixels(40);
-  filter->SetSolve(true);
-  filter->Update();
+  TAUTLINE_NEW(vtkPeridynamicStiffness, filter, SetInputData(mesh), SetSparsityPixels(40),
+    SetSolve(true), Update());
   TAUTLINE_CHECK_RELATIVE(filter->GetCondition(), 9.2827, 1e-3);
   TAUTLINE_CHECK_EQUAL(column(filter, "Condition"), filter->GetCondition());
   TAUTLINE_CHECK_EQUAL(column(filter, "Rows"), 81.0);
@@ -123,18 +115,14 @@ TAUTLINE_PART(testStiffness)
   TAUTLINE_CHECK_EQUAL(pixels, entries);
 
   // Constants and discontinuous functions are on cells; the elastic model has vectors in space.
-  filter->SetBasis(vtkPeridynamicStiffness::PIECEWISE_CONSTANT);
-  filter->Update();
+  TAUTLINE_SET(filter, SetBasis(vtkPeridynamicStiffness::PIECEWISE_CONSTANT), Update());
   TAUTLINE_CHECK_RELATIVE(filter->GetCondition(), 16.0772, 1e-3);
   TAUTLINE_CHECK(filter->GetOutput()->GetCellData()->GetArray("Solution") != nullptr);
   TAUTLINE_CHECK(filter->GetOutput()->GetPointData()->GetArray("Solution") == nullptr);
-  filter->SetBasis(vtkPeridynamicStiffness::DISCONTINUOUS_LINEAR);
-  filter->Update();
+  TAUTLINE_SET(filter, SetBasis(vtkPeridynamicStiffness::DISCONTINUOUS_LINEAR), Update());
   TAUTLINE_CHECK_EQUAL(
     filter->GetOutput()->GetCellData()->GetArray("Solution")->GetNumberOfComponents(), 3);
-  filter->SetBasis(vtkPeridynamicStiffness::PIECEWISE_LINEAR);
-  filter->ElasticOn();
-  filter->Update();
+  TAUTLINE_SET(filter, SetBasis(vtkPeridynamicStiffness::PIECEWISE_LINEAR), ElasticOn(), Update());
   TAUTLINE_CHECK_EQUAL(
     filter->GetOutput()->GetPointData()->GetArray("Solution")->GetNumberOfComponents(), 3);
   TAUTLINE_CHECK_EQUAL(column(filter, "Rows"), 162.0);
@@ -152,26 +140,20 @@ TAUTLINE_PART(testGiven)
     given->InsertNextValue(1.0 + mesh->GetPoint(i)[0]);
   }
   mesh->GetPointData()->AddArray(given);
-  onCells->SetName("cells");
-  onCells->SetNumberOfTuples(mesh->GetNumberOfCells());
-  onCells->Fill(0.0);
+  TAUTLINE_SET(onCells, SetName("cells"), SetNumberOfTuples(mesh->GetNumberOfCells()), Fill(0.0));
   mesh->GetCellData()->AddArray(onCells);
-  vtkNew<vtkPeridynamicStiffness> filter;
-  filter->SetInputData(mesh);
-  filter->SetSolve(true);
-  filter->SetUniformSource(0.0);
-  filter->SetComputeSpectrum(false);
-  filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "g");
-  filter->Update();
+  TAUTLINE_NEW(vtkPeridynamicStiffness, filter, SetInputData(mesh), SetSolve(true),
+    SetUniformSource(0.0), SetComputeSpectrum(false),
+    SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "g"), Update());
   vtkDataArray* solution = filter->GetOutput()->GetPointData()->GetArray("Solution");
   for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
   {
     TAUTLINE_CHECK_NEAR(solution->GetTuple1(i), given->GetValue(i), 2e-4);
   }
   TAUTLINE_CHECK(filter->GetOutput()->GetPointData()->GetArray("SmallestMode") == nullptr);
-  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells");
-  filter->SetUniformSource(7.0);
-  filter->Update();
+  TAUTLINE_SET(filter,
+    SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells"),
+    SetUniformSource(7.0), Update());
   TAUTLINE_CHECK_NEAR(filter->GetOutput()->GetPointData()->GetArray("Solution")->GetTuple1(112),
     given->GetValue(112), 2e-4);
   filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells");
@@ -188,13 +170,9 @@ TAUTLINE_PART(testInteractionLayer)
     for (const int precision : { VTK_DOUBLE, VTK_FLOAT })
     {
       const auto bare = bareSquare(8, slanted, precision);
-      vtkNew<vtkInteractionLayer> layer;
-      layer->SetInputData(bare);
-      layer->SetWidth(0.25);
-      vtkNew<vtkPeridynamicStiffness> filter;
-      filter->SetInputConnection(layer->GetOutputPort());
-      filter->SetHorizon(0.25);
-      filter->Update();
+      TAUTLINE_NEW(vtkInteractionLayer, layer, SetInputData(bare), SetWidth(0.25));
+      TAUTLINE_NEW(vtkPeridynamicStiffness, filter, SetInputConnection(layer->GetOutputPort()),
+        SetHorizon(0.25), Update());
       first = first > 0.0 ? first : filter->GetCondition();
       TAUTLINE_CHECK_RELATIVE(filter->GetCondition(), first, 2e-4);
       vtkUnstructuredGrid* made = layer->GetOutput();
@@ -214,27 +192,21 @@ TAUTLINE_PART(testInteractionLayer)
   }
   vtkNew<vtkPeridynamicStiffness> filter;
   MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
-  filter->SetInputData(toPolyData(data));
-  filter->SetHorizon(1.5);
-  filter->ConstrainedOff();
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toPolyData(data)), SetHorizon(1.5), ConstrainedOff(), Update());
   TAUTLINE_CHECK(vtkPolyData::SafeDownCast(filter->GetOutput()) != nullptr);
   TAUTLINE_CHECK_EQUAL(filter->GetCondition(), 0.0);
   TAUTLINE_CHECK(
     std::string(filter->GetSummary()).find(wording("null-space")) != std::string::npos);
   vtkNew<vtkUnstructuredGrid> empty;
-  filter->SetInputData(empty);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(empty), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetOutput()->GetNumberOfCells(), 0);
 }
 
 //------------------------------------------------------------------------------
 TAUTLINE_PART(testNeighbors)
 {
-  vtkNew<vtkHorizonNeighbors> filter;
-  filter->SetInputData(squareWithLayer());
-  filter->SetCenter(0.43, 0.51, 0.0);
-  filter->Update();
+  TAUTLINE_NEW(vtkHorizonNeighbors, filter, SetInputData(squareWithLayer()),
+    SetCenter(0.43, 0.51, 0.0), Update());
   vtkCellData* cells = filter->GetOutput()->GetCellData();
   double area = 0.0, chord = 0.0;
   int seen[4] = {};
@@ -268,18 +240,13 @@ TAUTLINE_PART(testErrors)
     TAUTLINE_CHECK_EQUAL(
       vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
   };
-  vtkNew<vtkPeridynamicStiffness> filter;
-  filter->SetInputData(bareSquare(4, false));
+  TAUTLINE_NEW(vtkPeridynamicStiffness, filter, SetInputData(bareSquare(4, false)));
   check(filter, "add it with Interaction Layer");
-  filter->SetInputData(squareWithLayer());
-  filter->SetHorizon(0.3);
+  TAUTLINE_SET(filter, SetInputData(squareWithLayer()), SetHorizon(0.3));
   check(filter, "an interaction layer of width 0.3 is needed");
-  filter->AllowThinLayerOn();
-  filter->Update();
+  TAUTLINE_SET(filter, AllowThinLayerOn(), Update());
   TAUTLINE_CHECK_RELATIVE(column(filter, "LayerDeficit"), 0.1, 1e-9);
-  filter->AllowThinLayerOff();
-  filter->SetHorizon(0.2);
-  filter->SetExponent(4.0);
+  TAUTLINE_SET(filter, AllowThinLayerOff(), SetHorizon(0.2), SetExponent(4.0));
   check(filter, "to below 4");
   filter->SetExponent(1.0);
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "absent");
@@ -287,8 +254,7 @@ TAUTLINE_PART(testErrors)
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Reference");
   filter->SetMemoryLimit(0.01);
   check(filter, "MiB are allowed");
-  filter->SetMemoryLimit(0.0);
-  filter->SetTimeLimit(1e-9);
+  TAUTLINE_SET(filter, SetMemoryLimit(0.0), SetTimeLimit(1e-9));
   check(filter, "time limit");
   filter->SetTimeLimit(0.0);
   filter->SetInputData(toGrid(blockMesh(CellType::Quadrilateral, 3, 3, 0)));
@@ -299,11 +265,9 @@ TAUTLINE_PART(testErrors)
   curved.transform([](const Vec3& p) { return Vec3{ p[0], p[1], p[0] * p[1] }; });
   filter->SetInputData(toGrid(curved));
   check(filter, "do not lie in a plane");
-  vtkNew<vtkInteractionLayer> layer;
-  layer->SetInputData(toGrid(curved));
+  TAUTLINE_NEW(vtkInteractionLayer, layer, SetInputData(toGrid(curved)));
   check(layer, "do not lie in a plane");
-  layer->SetInputData(bareSquare(4, false));
-  layer->SetWidth(0.0);
+  TAUTLINE_SET(layer, SetInputData(bareSquare(4, false)), SetWidth(0.0));
   check(layer, "above 0");
 }
 }

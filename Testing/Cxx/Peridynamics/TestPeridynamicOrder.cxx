@@ -188,14 +188,10 @@ TAUTLINE_TEST(TestPeridynamicOrder)
   for (const Case& each : cases)
   {
     const Context context(each.name);
-    PeridynamicOptions options;
-    options.basis = each.basis;
-    options.model = each.model;
-    options.discretization = each.discretization;
-    options.horizon = 0.25;
+    TAUTLINE_LET(PeridynamicOptions, options, basis = each.basis, model = each.model,
+      discretization = each.discretization, horizon = 0.25);
     options.allowThinLayer = true; // around the hole
-    options.tolerance = 1e-3;
-    options.poissonRatio = 0.3;
+    TAUTLINE_SET(options, tolerance = 1e-3, poissonRatio = 0.3);
     const auto layers = static_cast<int>(std::ceil(Elements * interactionReach(options)));
     const HorizonMesh shaken = shakenSquare(Elements, layers, 0.2);
     {

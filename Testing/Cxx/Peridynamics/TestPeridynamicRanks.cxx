@@ -33,14 +33,9 @@ constexpr Case cases[] = {
 
 PeridynamicOptions optionsOf(const Case& each)
 {
-  PeridynamicOptions options;
-  options.basis = each.basis;
-  options.model = each.model;
-  options.discretization = each.discretization;
-  options.horizon = 0.2;
-  options.tolerance = 1e-4;
-  options.threads = 1;
-  options.poissonRatio = 0.3;
+  TAUTLINE_LET(PeridynamicOptions, options, basis = each.basis, model = each.model,
+    discretization = each.discretization, horizon = 0.2, tolerance = 1e-4, threads = 1,
+    poissonRatio = 0.3);
   return options;
 }
 

@@ -57,10 +57,8 @@ TAUTLINE_PART(testModulus)
 {
   const auto modulus = [](KernelShape shape, double p, PeridynamicModel model)
   {
-    PeridynamicOptions options;
-    options.horizon = 0.3;
-    options.kernel.shape = shape;
-    options.kernel.exponent = p;
+    TAUTLINE_LET(
+      PeridynamicOptions, options, horizon = 0.3, kernel.shape = shape, kernel.exponent = p);
     options.kernel.table = { 1.0, 0.0 };
     options.model = model;
     return localModulus(options);
@@ -83,8 +81,7 @@ TAUTLINE_PART(testLocalMatrix)
 {
   constexpr int n = 8;
   const HorizonMesh mesh = horizonSquare(1.0 / n, 1, 0.25);
-  PeridynamicOptions options;
-  options.horizon = 0.25;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.25);
   const PeridynamicSystem system = assemblePeridynamics(mesh, options);
   const LocalLimit limit = localLimit(mesh, options, system);
   const double c = localModulus(options);
@@ -116,10 +113,8 @@ TAUTLINE_PART(testLocalMatrix)
 double energyRatio(int n, double delta, double p, bool elastic)
 {
   const HorizonMesh mesh = horizonSquare(1.0 / n, 1, delta);
-  PeridynamicOptions options;
-  options.horizon = delta;
-  options.kernel.exponent = p;
-  options.model = elastic ? PeridynamicModel::Elastic : PeridynamicModel::Scalar;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = delta, kernel.exponent = p,
+    model = elastic ? PeridynamicModel::Elastic : PeridynamicModel::Scalar);
   const PeridynamicSystem system = assemblePeridynamics(mesh, options);
   std::vector<double> u;
   for (const Index f : system.functionOf)
@@ -222,12 +217,9 @@ TAUTLINE_PART(testOperators)
       {
         const Context context("basis " + std::to_string(static_cast<int>(basis)) +
           (elastic ? " elastic" : "") + (singular ? " singular" : ""));
-        PeridynamicOptions options;
-        options.horizon = 0.25;
-        options.tolerance = 1e-4;
-        options.basis = basis;
-        options.model = elastic ? PeridynamicModel::Elastic : PeridynamicModel::Scalar;
-        options.kernel.exponent = (elastic ? 2.0 : 0.0) + (singular ? 2.5 : 1.0);
+        TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.25, tolerance = 1e-4, basis = basis,
+          model = elastic ? PeridynamicModel::Elastic : PeridynamicModel::Scalar,
+          kernel.exponent = (elastic ? 2.0 : 0.0) + (singular ? 2.5 : 1.0));
         const PeridynamicSystem system = assemblePeridynamics(mesh, options);
         for (const NonlocalPreconditioner kind : { NonlocalPreconditioner::Jacobi,
                NonlocalPreconditioner::LocalMultigrid, NonlocalPreconditioner::TwoLevel })
@@ -253,12 +245,9 @@ TAUTLINE_PART_SLOW(testSolutions)
       {
         const Context context("basis " + std::to_string(static_cast<int>(basis)) +
           ", p = " + std::to_string(p) + (elastic ? " elastic" : ""));
-        PeridynamicOptions options;
-        options.horizon = 0.25;
-        options.tolerance = 1e-4;
-        options.basis = basis;
-        options.kernel.exponent = p;
-        options.model = elastic ? PeridynamicModel::Elastic : PeridynamicModel::Scalar;
+        TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.25, tolerance = 1e-4, basis = basis,
+          kernel.exponent = p,
+          model = elastic ? PeridynamicModel::Elastic : PeridynamicModel::Scalar);
         const PeridynamicSystem system = assemblePeridynamics(mesh, options);
         const std::vector<double> load = unitLoad(mesh, system, basis);
         std::vector<double> expected, found;
@@ -354,9 +343,7 @@ TAUTLINE_PART(testSmallHorizons)
     for (const int n : { 10, 20, 40 })
     {
       const Context context("p = " + std::to_string(p) + ", n = " + std::to_string(n));
-      PeridynamicOptions options;
-      options.horizon = 2.0 / n;
-      options.kernel.exponent = p;
+      TAUTLINE_LET(PeridynamicOptions, options, horizon = 2.0 / n, kernel.exponent = p);
       const Found found = solveAll(horizonSquare(1.0 / n, 1, options.horizon), options);
       if (n == 10)
       {
@@ -380,11 +367,8 @@ TAUTLINE_PART(testSmallHorizons)
 Index iterationsAt(int n, int layers, double nu, NonlocalPreconditioner kind)
 {
   const HorizonMesh mesh = shakenSquare(n, 2 * layers, 0.1);
-  PeridynamicOptions options;
-  options.model = PeridynamicModel::StateBased;
-  options.poissonRatio = nu;
-  options.horizon = static_cast<double>(layers) / n;
-  options.tolerance = 1e-3;
+  TAUTLINE_LET(PeridynamicOptions, options, model = PeridynamicModel::StateBased, poissonRatio = nu,
+    horizon = static_cast<double>(layers) / n, tolerance = 1e-3);
   const PeridynamicSystem system = assemblePeridynamics(mesh, options);
   const std::vector<double> load = unitLoad(mesh, system, options.basis);
   std::vector<double> x;
@@ -420,13 +404,10 @@ TAUTLINE_PART_SLOW(testNearlyIncompressible)
 TAUTLINE_PART(testRefusals)
 {
   const HorizonMesh mesh = horizonSquare(0.1, 1, 0.2);
-  PeridynamicOptions options;
-  options.constrained = false;
+  TAUTLINE_LET(PeridynamicOptions, options, constrained = false);
   const PeridynamicSystem free = assemblePeridynamics(mesh, options);
-  options.constrained = true;
-  options.kernel.exponent = 2.5;
-  options.discretization = Discretization::Dissertation;
-  options.rules = RuleSet::Literal;
+  TAUTLINE_SET(options, constrained = true, kernel.exponent = 2.5,
+    discretization = Discretization::Dissertation, rules = RuleSet::Literal);
   const HorizonMesh fine = horizonSquare(0.05, 1, 0.2);
   const PeridynamicSystem indefinite = assemblePeridynamics(fine, options);
   const std::vector<double> load = unitLoad(fine, indefinite, options.basis);
@@ -441,8 +422,7 @@ TAUTLINE_PART(testRefusals)
   // A domain of two triangles has no free vertex: what is left is the diagonal.
   const HorizonMesh tiny = horizonSquare(1.0, 1, 1.0);
   options = {};
-  options.horizon = 1.0;
-  options.basis = PeridynamicBasis::Constant;
+  TAUTLINE_SET(options, horizon = 1.0, basis = PeridynamicBasis::Constant);
   const PeridynamicSystem two = assemblePeridynamics(tiny, options);
   TAUTLINE_CHECK_EQUAL(two.matrix.size, Index(2));
   PeridynamicPreconditioner none(tiny, options, two, NonlocalPreconditioner::LocalMultigrid);

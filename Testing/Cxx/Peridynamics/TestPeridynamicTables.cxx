@@ -66,11 +66,8 @@ TAUTLINE_PART(testLiteral)
     { 1, 20, 0.2, 2.5, 0.0 }, { 1, 20, 0.3, 2.5, 0.0 }, { 1, 20, 0.4, 2.5, 0.0 } };
   for (const Case& c : cases)
   {
-    PeridynamicOptions options;
-    options.horizon = c.delta;
-    options.kernel.exponent = c.p;
-    options.discretization = Discretization::Dissertation;
-    options.rules = RuleSet::Literal;
+    TAUTLINE_LET(PeridynamicOptions, options, horizon = c.delta, kernel.exponent = c.p,
+      discretization = Discretization::Dissertation, rules = RuleSet::Literal);
     const Spectrum spectrum = extremeEigenvalues(
       assemblePeridynamics(horizonSquare(1.0 / c.n, c.aspectRatio, c.delta), options).matrix);
     TAUTLINE_CHECK_EQUAL(spectrum.definite, c.condition > 0.0);
@@ -92,9 +89,7 @@ TAUTLINE_PART_SLOW(testTolerance)
   };
   for (const Case& each : { Case{ 1.5, { 3e-3, 5e-4, 1e-4 } }, Case{ 0.3, { 7e-3, 8e-4, 3e-4 } } })
   {
-    PeridynamicOptions options;
-    options.horizon = each.horizon / n;
-    options.tolerance = reference;
+    TAUTLINE_LET(PeridynamicOptions, options, horizon = each.horizon / n, tolerance = reference);
     const HorizonMesh mesh = shakenSquare(n, static_cast<int>(std::ceil(each.horizon)), 0.2);
     const SparseMatrix exact = assemblePeridynamics(mesh, options).matrix;
     const double largest = *std::max_element(exact.values.begin(), exact.values.end());
@@ -121,8 +116,7 @@ TAUTLINE_PART_SLOW(testTolerance)
 /// The tolerance converges; so do irregular meshes, to what the regular ones tend to.
 TAUTLINE_PART(testConvergence)
 {
-  PeridynamicOptions options;
-  options.kernel.exponent = 2.5;
+  TAUTLINE_LET(PeridynamicOptions, options, kernel.exponent = 2.5);
   const HorizonMesh shaken = shakenSquare(5, 1, 0.25);
   options.horizon = 0.2;
   double last = 0.0, change = 1.0;
@@ -139,8 +133,7 @@ TAUTLINE_PART(testConvergence)
   TAUTLINE_CHECK(change < 1e-4);
 
   options = {};
-  options.horizon = 0.25;
-  options.tolerance = 1e-4;
+  TAUTLINE_SET(options, horizon = 0.25, tolerance = 1e-4);
   double smallest[2][2];
   for (const int level : { 0, 1 })
   {

@@ -81,13 +81,10 @@ TAUTLINE_PART(testStructure)
       {
         const Context context("basis " + std::to_string(static_cast<int>(basis)) +
           (elastic ? " elastic" : "") + (exact ? " exact" : ""));
-        PeridynamicOptions options;
-        options.horizon = 0.25;
-        options.tolerance = 1e-4;
-        options.basis = basis;
-        options.model = elastic ? PeridynamicModel::Elastic : PeridynamicModel::Scalar;
-        options.discretization = exact ? Discretization::Exact : Discretization::Dissertation;
-        options.kernel.exponent = elastic ? 3.0 : 1.0;
+        TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.25, tolerance = 1e-4, basis = basis,
+          model = elastic ? PeridynamicModel::Elastic : PeridynamicModel::Scalar,
+          discretization = exact ? Discretization::Exact : Discretization::Dissertation,
+          kernel.exponent = elastic ? 3.0 : 1.0);
         const PeridynamicSystem held = assemblePeridynamics(mesh, options);
         TAUTLINE_CHECK(extremeEigenvalues(held.matrix).definite);
         const SparseMatrix& a = held.matrix;
@@ -138,11 +135,8 @@ TAUTLINE_PART(testFormulas)
 {
   // Constant kernel, constant basis: the diagonal is delta^-4 (|T| pi delta^2 - |T|^2).
   const HorizonMesh mesh = horizonSquare(0.125, 1, 0.25);
-  PeridynamicOptions options;
-  options.horizon = 0.25;
-  options.basis = PeridynamicBasis::Constant;
-  options.kernel.shape = KernelShape::Constant;
-  options.tolerance = 1e-8;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.25, basis = PeridynamicBasis::Constant,
+    kernel.shape = KernelShape::Constant, tolerance = 1e-8);
   const double area = 0.5 * 0.125 * 0.125, delta = 0.25;
   PeridynamicSystem system = assemblePeridynamics(mesh, options);
   const double expected = (area * M_PI * delta * delta - area * area) / std::pow(delta, 4);
@@ -152,14 +146,12 @@ TAUTLINE_PART(testFormulas)
   }
   options.kernel.shape = KernelShape::Power;
   // A linear function is in the kernel of the operator: rows of inner vertices vanish on it.
-  options.basis = PeridynamicBasis::Linear;
-  options.constrained = false;
+  TAUTLINE_SET(options, basis = PeridynamicBasis::Linear, constrained = false);
   for (const double p : { 1.0, 2.0, 3.5 })
   {
     options.kernel.exponent = p;
     const HorizonMesh shaken = shakenSquare(4, 1, 0.2);
-    options.horizon = 0.25;
-    options.tolerance = 1e-7;
+    TAUTLINE_SET(options, horizon = 0.25, tolerance = 1e-7);
     system = assemblePeridynamics(shaken, options);
     const auto u = sampled(shaken, options.basis, [](double x, double y) { return x - 2.0 * y; });
     const std::vector<double> r = times(system.matrix, u);
@@ -181,10 +173,7 @@ TAUTLINE_PART(testFormulas)
 double solutionError(int n, double delta, double p, bool quadratic)
 {
   const HorizonMesh mesh = horizonSquare(1.0 / n, 1, delta);
-  PeridynamicOptions options;
-  options.horizon = delta;
-  options.kernel.exponent = p;
-  options.tolerance = 1e-5;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = delta, kernel.exponent = p, tolerance = 1e-5);
   const double factor = M_PI / (2.0 * (4.0 - p)); // of the local limit
   const auto exact = [=](double x, double y)
   { return quadratic ? x * x + y * y : std::sin(M_PI * x) * std::sin(M_PI * y); };
@@ -221,8 +210,7 @@ TAUTLINE_PART(testLocalLimit)
     TAUTLINE_CHECK_NEAR(rate, 2.0, 0.25);
 
     const HorizonMesh mesh = shakenSquare(4, 1, 0.15);
-    PeridynamicOptions options;
-    options.kernel.exponent = p;
+    TAUTLINE_LET(PeridynamicOptions, options, kernel.exponent = p);
     double errors[3];
     for (int level = 0; level < 3; ++level)
     {
@@ -271,13 +259,11 @@ TAUTLINE_PART(testLocalLimit)
 TAUTLINE_PART(testKernels)
 {
   const HorizonMesh mesh = horizonSquare(0.125, 1, 0.25);
-  PeridynamicOptions options;
-  options.horizon = 0.25;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.25);
   const auto with = [&](KernelShape shape, std::vector<double> table, double width)
   {
-    options.kernel.shape = shape;
-    options.kernel.table = std::move(table);
-    options.kernel.width = width;
+    TAUTLINE_SET(
+      options, kernel.shape = shape, kernel.table = std::move(table), kernel.width = width);
     const Spectrum s = extremeEigenvalues(assemblePeridynamics(mesh, options).matrix);
     TAUTLINE_CHECK(s.definite && s.converged);
     return s;
@@ -304,8 +290,7 @@ TAUTLINE_PART(testKernels)
   for (const double p : { 2.0, 3.0 })
   {
     options = {};
-    options.horizon = 0.25;
-    options.kernel.exponent = p;
+    TAUTLINE_SET(options, horizon = 0.25, kernel.exponent = p);
     const double at = conditionOf(mesh, options);
     for (const double side : { -1e-5, 1e-5 })
     {
@@ -326,14 +311,10 @@ TAUTLINE_PART(testThreads)
       for (const Discretization discretization :
         { Discretization::Dissertation, Discretization::Exact })
       {
-        PeridynamicOptions options;
-        options.tolerance = 1e-3;
-        options.basis = basis;
-        options.discretization = discretization;
-        options.threads = 1;
+        TAUTLINE_LET(PeridynamicOptions, options, tolerance = 1e-3, basis = basis,
+          discretization = discretization, threads = 1);
         const PeridynamicSystem one = assemblePeridynamics(*mesh, options);
-        LanczosOptions lanczos;
-        lanczos.threads = 1;
+        TAUTLINE_LET(LanczosOptions, lanczos, threads = 1);
         const Spectrum first = extremeEigenvalues(one.matrix, lanczos);
         for (const int threads : { 2, 3 })
         {
@@ -347,8 +328,7 @@ TAUTLINE_PART(testThreads)
     }
   }
   // Pairs that are congruent give the same whether they are integrated once or each by itself.
-  PeridynamicOptions options;
-  options.kernel.exponent = 2.5;
+  TAUTLINE_LET(PeridynamicOptions, options, kernel.exponent = 2.5);
   const PeridynamicSystem once = assemblePeridynamics(regular, options);
   options.reuseCongruent = false;
   const PeridynamicSystem each = assemblePeridynamics(regular, options);
@@ -389,8 +369,7 @@ TAUTLINE_PART(testInteractionLayer)
   {
     std::swap(reversed.triangles[t], reversed.triangles[t + 1]);
   }
-  PeridynamicOptions options;
-  options.tolerance = 1e-7;
+  TAUTLINE_LET(PeridynamicOptions, options, tolerance = 1e-7);
   const double condition = conditionOf(regular, options);
   for (const HorizonMesh* inner : { &bare, &reversed })
   {
@@ -460,14 +439,12 @@ TAUTLINE_PART(testInteractionLayer)
   layer.width = 0.0;
   TAUTLINE_CHECK_THROWS(
     addInteractionLayer(bare, layer), wording("width-of-the-interaction-layer-is-0"));
-  layer.width = 0.2;
-  layer.elementSize = 1e-7;
+  TAUTLINE_SET(layer, width = 0.2, elementSize = 1e-7);
   TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), wording("larger-element-size"));
   layer.elementSize = 0.0;
   layer.progress = [](double) { return false; };
   TAUTLINE_CHECK_THROWS(addInteractionLayer(bare, layer), "stopped");
-  PeridynamicOptions far;
-  far.horizon = 1e7;
+  TAUTLINE_LET(PeridynamicOptions, far, horizon = 1e7);
   TAUTLINE_CHECK_THROWS(assemblePeridynamics(bare, far), wording("the-mesh-extends-over-1-only"));
 }
 
@@ -499,8 +476,7 @@ TAUTLINE_PART(testEigenvalues)
 {
   // The second difference: 2 - 2 cos(k pi / (n + 1)).
   const Index n = 200;
-  SparseMatrix a;
-  a.size = n;
+  TAUTLINE_LET(SparseMatrix, a, size = n);
   for (Index i = 0; i < n; ++i)
   {
     for (Index j = std::max<Index>(0, i - 1); j <= std::min(n - 1, i + 1); ++j)
@@ -520,8 +496,7 @@ TAUTLINE_PART(testEigenvalues)
   {
     TAUTLINE_CHECK_NEAR(image[i], s.smallest * s.smallestVector[i], 1e-6);
   }
-  LanczosOptions few;
-  few.maxIterations = 10;
+  TAUTLINE_LET(LanczosOptions, few, maxIterations = 10);
   const Spectrum rough = extremeEigenvalues(a, few);
   TAUTLINE_CHECK(!rough.converged && rough.iterations == 10);
   TAUTLINE_CHECK(rough.largest < exact(n) && rough.smallest > exact(1));
@@ -543,8 +518,7 @@ TAUTLINE_PART(testEigenvalues)
 TAUTLINE_PART(testRefusals)
 {
   const HorizonMesh mesh = horizonSquare(0.25, 1, 0.25);
-  PeridynamicOptions good;
-  good.horizon = 0.25;
+  TAUTLINE_LET(PeridynamicOptions, good, horizon = 0.25);
   const auto refuse = [&](const std::string& text, const auto& change)
   {
     HorizonMesh other = mesh;
@@ -559,17 +533,11 @@ TAUTLINE_PART(testRefusals)
   refuse(wording("to-below-4"), [](Mesh2, Options o) { o.kernel.exponent = 4.0; });
   refuse(wording("to-below-3"),
     [](Mesh2, Options o)
-    {
-      o.kernel.exponent = 3.0;
-      o.basis = PeridynamicBasis::Constant;
-    });
+    { TAUTLINE_SET(o, kernel.exponent = 3.0, basis = PeridynamicBasis::Constant); });
   refuse("from 0", [](Mesh2, Options o) { o.kernel.exponent = -0.5; });
   refuse(wording("to-below-6"),
     [](Mesh2, Options o)
-    {
-      o.kernel.exponent = 6.0;
-      o.model = PeridynamicModel::Elastic;
-    });
+    { TAUTLINE_SET(o, kernel.exponent = 6.0, model = PeridynamicModel::Elastic); });
   refuse(wording("an-interaction-layer-of-width-0-3"), [](Mesh2, Options o) { o.horizon = 0.3; });
   refuse(wording("has-no-interaction-layer"),
     [](Mesh2 m, Options) { std::fill(m.layer.begin(), m.layer.end(), 0); });
@@ -593,17 +561,11 @@ TAUTLINE_PART(testRefusals)
     [](Mesh2, Options o) { o.kernel.shape = KernelShape::Table; });
   refuse(wording("width-of-the-gaussian"),
     [](Mesh2, Options o)
-    {
-      o.kernel.shape = KernelShape::Gaussian;
-      o.kernel.width = 0.0;
-    });
+    { TAUTLINE_SET(o, kernel.shape = KernelShape::Gaussian, kernel.width = 0.0); });
   refuse("tolerance", [](Mesh2, Options o) { o.tolerance = 0.0; });
   refuse(wording("find-no-neighbour"),
     [](Mesh2, Options o)
-    {
-      o.discretization = Discretization::Dissertation;
-      o.horizon = 0.01;
-    });
+    { TAUTLINE_SET(o, discretization = Discretization::Dissertation, horizon = 0.01); });
   TAUTLINE_CHECK_THROWS(horizonSquare(0.1, 3, 0.2), wording("whole-number"));
   TAUTLINE_CHECK_EQUAL(layerDeficit(mesh, 0.25), 0.0);
   TAUTLINE_CHECK_NEAR(layerDeficit(mesh, 0.4), 0.15, 1e-12);

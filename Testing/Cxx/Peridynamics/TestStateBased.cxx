@@ -24,11 +24,8 @@ constexpr double RuleError = 5e-4;
 
 PeridynamicOptions stateBased(double nu, PlaneState state = PlaneState::Strain)
 {
-  PeridynamicOptions options;
-  options.horizon = 0.25;
-  options.model = PeridynamicModel::StateBased;
-  options.poissonRatio = nu;
-  options.planeState = state;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.25, model = PeridynamicModel::StateBased,
+    poissonRatio = nu, planeState = state);
   return options;
 }
 
@@ -99,8 +96,7 @@ TAUTLINE_PART_SLOW(testPatch)
       {
         const Context context("nu = " + std::to_string(nu) + ", p = " + std::to_string(p));
         PeridynamicOptions options = stateBased(nu, state);
-        options.kernel.exponent = p;
-        options.tolerance = 1e-4;
+        TAUTLINE_SET(options, kernel.exponent = p, tolerance = 1e-4);
         const double mu = localModulus(options);
         TAUTLINE_CHECK_RELATIVE(mu, M_PI / (8.0 * (6.0 - p)), 1e-12);
         const double lambda =
@@ -151,12 +147,9 @@ TAUTLINE_PART(testReduction)
   for (const PeridynamicBasis basis : bases)
   {
     PeridynamicOptions options = stateBased(0.25);
-    options.horizon = 0.25;
-    options.basis = basis;
-    options.tolerance = 1e-4;
+    TAUTLINE_SET(options, horizon = 0.25, basis = basis, tolerance = 1e-4);
     const PeridynamicSystem strain = assemblePeridynamics(mesh, options);
-    options.poissonRatio = 1.0 / 3.0;
-    options.planeState = PlaneState::Stress;
+    TAUTLINE_SET(options, poissonRatio = 1.0 / 3.0, planeState = PlaneState::Stress);
     const PeridynamicSystem stress = assemblePeridynamics(mesh, options);
     options.poissonRatio = 0.4;
     const PeridynamicSystem other = assemblePeridynamics(mesh, options);
@@ -253,8 +246,7 @@ TAUTLINE_PART(testEnergy)
 {
   HorizonMesh mesh = shakenSquare(4, 0, 0.0);
   PeridynamicOptions options = stateBased(0.4);
-  options.horizon = 0.4;
-  options.constrained = false;
+  TAUTLINE_SET(options, horizon = 0.4, constrained = false);
   Random random(3);
   std::vector<double> u;
   for (Index i = 0; i < 2 * mesh.numberOfPoints(); ++i)
@@ -354,8 +346,7 @@ TAUTLINE_PART(testMatrix)
       const Context context(
         "basis " + std::to_string(static_cast<int>(basis)) + ", nu = " + std::to_string(nu));
       PeridynamicOptions options = stateBased(nu);
-      options.basis = basis;
-      options.tolerance = 1e-4;
+      TAUTLINE_SET(options, basis = basis, tolerance = 1e-4);
       const PeridynamicSystem system = assemblePeridynamics(mesh, options);
       const Spectrum spectrum = extremeEigenvalues(system.matrix);
       TAUTLINE_CHECK(spectrum.definite && spectrum.smallest > 1e-4 * spectrum.largest);
@@ -399,8 +390,7 @@ TAUTLINE_PART(testSolutions)
 {
   const HorizonMesh mesh = shakenSquare(16, 4, 0.1);
   PeridynamicOptions options = stateBased(0.3);
-  options.horizon = 0.125;
-  options.tolerance = 1e-4;
+  TAUTLINE_SET(options, horizon = 0.125, tolerance = 1e-4);
   const PeridynamicSystem system = assemblePeridynamics(mesh, options);
   const std::vector<double> ones(2 * mesh.numberOfTriangles(), 1.0);
   const std::vector<double> load = sourceLoad(mesh, system, options.basis, ones, false);
@@ -493,10 +483,7 @@ double acrossSlit(const HorizonMesh& mesh, const PeridynamicSystem& system, doub
 /// Bonds do not cross a crack or a hole; nothing is cut inside a layer that is wide enough.
 TAUTLINE_PART(testCuts)
 {
-  PeridynamicOptions options;
-  options.horizon = 0.2;
-  options.tolerance = 1e-4;
-  options.constrained = false;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.2, tolerance = 1e-4, constrained = false);
   const HorizonMesh slit = slitSquare(16, true), whole = slitSquare(16, false);
   PeridynamicSystem system = assemblePeridynamics(slit, options);
   TAUTLINE_CHECK_EQUAL(acrossSlit(slit, system, 0.3), 0.0);
@@ -510,8 +497,7 @@ TAUTLINE_PART(testCuts)
   TAUTLINE_CHECK(assemblePeridynamics(whole, options).matrix.values == system.matrix.values);
 
   // A ring whose hole is narrower than the horizon: the two sides do not interact.
-  options.cutBonds = true;
-  options.horizon = 0.5;
+  TAUTLINE_SET(options, cutBonds = true, horizon = 0.5);
   const HorizonMesh narrow = ring(32, 4, 0.15, 0.35);
   const PeridynamicSystem cut = assemblePeridynamics(narrow, options);
   const std::vector<double> ones(cut.matrix.size, 1.0);
@@ -530,10 +516,8 @@ TAUTLINE_PART(testCuts)
   for (const bool state : { false, true })
   {
     options = state ? stateBased(0.4) : PeridynamicOptions();
-    options.horizon = 0.15;
-    options.tolerance = 1e-3;
-    InteractionLayerOptions layer;
-    layer.width = interactionReach(options);
+    TAUTLINE_SET(options, horizon = 0.15, tolerance = 1e-3);
+    TAUTLINE_LET(InteractionLayerOptions, layer, width = interactionReach(options));
     const HorizonMesh surrounded = addInteractionLayer(plate, layer);
     const PeridynamicSystem with = assemblePeridynamics(surrounded, options);
     options.cutBonds = false;
@@ -547,10 +531,8 @@ TAUTLINE_PART(testCuts)
 /// segment between them leaves the mesh; a little apart they do not.
 TAUTLINE_PART(testSharedVertex)
 {
-  PeridynamicOptions options;
-  options.horizon = 1.2;
-  options.basis = PeridynamicBasis::Constant;
-  options.constrained = false;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = 1.2, basis = PeridynamicBasis::Constant,
+    constrained = false);
   HorizonMesh notch;
   notch.points = { 0, 0, 1, 0.2, 0.6, 0.8, 0.6, -0.8, 1, -0.2 };
   notch.triangles = { 0, 1, 2, 0, 3, 4 };
@@ -612,10 +594,7 @@ double energyOfVisiblePoints(double inner, double outer, double delta, int n, do
 TAUTLINE_PART(testCutEnergy)
 {
   constexpr double inner = 0.3, outer = 0.6;
-  PeridynamicOptions options;
-  options.horizon = 0.5;
-  options.tolerance = 1e-3;
-  options.constrained = false;
+  TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.5, tolerance = 1e-3, constrained = false);
   double whole = 0.0;
   const double expected = energyOfVisiblePoints(inner, outer, options.horizon, 24, &whole);
   double before = 1.0;

@@ -27,8 +27,7 @@ MeshData mixedMesh(bool flat, Index n)
     blockMesh(flat ? CellType::Quadrilateral : CellType::Hexahedron, n, n, flat ? 0 : n);
   const MeshData cut = blockMesh(flat ? CellType::Triangle : CellType::Pyramid, n, n, flat ? 0 : n);
   const Index parts = flat ? 2 : 6;
-  MeshData mixed;
-  mixed.points = whole.points;
+  TAUTLINE_LET(MeshData, mixed, points = whole.points);
   for (Index i = 0; i < whole.numberOfCells(); ++i)
   {
     if (i % 2 == 0)
@@ -96,10 +95,7 @@ TAUTLINE_PART(testNothingInverts)
     const Mesh mesh(sample.mesh.view());
     for (double fraction : { 0.5, 1.0 })
     {
-      PerturbOptions options;
-      options.percentage = 100;
-      options.fraction = fraction;
-      options.seed = 11;
+      TAUTLINE_LET(PerturbOptions, options, percentage = 100, fraction = fraction, seed = 11);
       const Perturbation result = perturb(mesh, nullptr, options);
       TAUTLINE_CHECK_EQUAL(result.movable, sample.interior);
       TAUTLINE_CHECK_EQUAL(result.moved, sample.interior);
@@ -149,8 +145,7 @@ TAUTLINE_PART(testStepsAreWithinTheFraction)
     const Context context(sample.name);
     const Mesh mesh(sample.mesh.view());
     const VertexCells adjacency = mesh.vertexCells();
-    PerturbOptions options;
-    options.percentage = 80;
+    TAUTLINE_LET(PerturbOptions, options, percentage = 80);
     const MeshData after = moved(sample.mesh, perturb(mesh, nullptr, options));
     // The vertices moved one after the other: follow them.
     MeshData now = sample.mesh;
@@ -197,9 +192,7 @@ TAUTLINE_PART(testPercentageAndSeed)
       before[v] = moves;
     }
   }
-  options.percentage = 50;
-  options.tangledFraction = 0.05;
-  options.threads = 1;
+  TAUTLINE_SET(options, percentage = 50, tangledFraction = 0.05, threads = 1);
   const std::vector<double> first = perturb(mesh, nullptr, options).points;
   options.threads = 2;
   TAUTLINE_CHECK(first == perturb(mesh, nullptr, options).points);
@@ -210,9 +203,7 @@ TAUTLINE_PART(testPercentageAndSeed)
 TAUTLINE_PART(testSameOnEveryMachine)
 {
   const MeshData data = blockMesh(CellType::Quadrilateral, 2, 2, 0);
-  PerturbOptions options;
-  options.percentage = 100;
-  options.seed = 42;
+  TAUTLINE_LET(PerturbOptions, options, percentage = 100, seed = 42);
   const MeshData after = moved(data, perturb(Mesh(data.view()), nullptr, options));
   TAUTLINE_CHECK_NEAR(after.point(4)[0], 1.0481343153848104, 1e-15);
   TAUTLINE_CHECK_NEAR(after.point(4)[1], 0.9279608648967268, 1e-15);
@@ -226,8 +217,7 @@ TAUTLINE_PART(testTangling)
     for (double fraction : { 0.01, 0.1, 0.5, 0.8 })
     {
       const Context context(sample.name + " " + std::to_string(fraction));
-      PerturbOptions options;
-      options.tangledFraction = fraction;
+      TAUTLINE_LET(PerturbOptions, options, tangledFraction = fraction);
       const Perturbation result = perturb(mesh, nullptr, options);
       const auto validity = validityOf(moved(sample.mesh, result));
       TAUTLINE_CHECK_EQUAL(result.elements, sample.mesh.numberOfCells());
@@ -251,9 +241,8 @@ TAUTLINE_PART(testTanglingOneElement)
     Index reached = 0;
     for (std::uint64_t seed = 0; seed < 50; ++seed)
     {
-      PerturbOptions options;
-      options.seed = seed;
-      options.tangledFraction = 1.0 / double(data.numberOfCells());
+      TAUTLINE_LET(
+        PerturbOptions, options, seed = seed, tangledFraction = 1.0 / double(data.numberOfCells()));
       const Perturbation result = perturb(mesh, nullptr, options);
       TAUTLINE_CHECK(result.invertedAfter <= 1);
       reached += result.invertedAfter;
@@ -266,12 +255,9 @@ TAUTLINE_PART(testTangledInput)
 {
   // Perturbing a tangled mesh tangles no further element.
   const MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
-  PerturbOptions options;
-  options.tangledFraction = 0.1;
+  TAUTLINE_LET(PerturbOptions, options, tangledFraction = 0.1);
   const MeshData tangled = moved(data, perturb(Mesh(data.view()), nullptr, options));
-  options.tangledFraction = 0.0;
-  options.percentage = 100;
-  options.seed = 5;
+  TAUTLINE_SET(options, tangledFraction = 0.0, percentage = 100, seed = 5);
   const Perturbation again = perturb(Mesh(tangled.view()), nullptr, options);
   TAUTLINE_CHECK_EQUAL(again.invertedBefore, 108);
   TAUTLINE_CHECK_EQUAL(again.invertedAfter, 108);
@@ -284,13 +270,9 @@ TAUTLINE_PART(testTangledInput)
 
 TAUTLINE_PART(testSurface)
 {
-  vtkNew<vtkSphereSource> sphere;
-  sphere->SetThetaResolution(24);
-  sphere->SetPhiResolution(24);
-  vtkNew<vtkMeshPerturbation> filter;
-  filter->SetInputConnection(sphere->GetOutputPort());
-  filter->SetPercentage(100);
-  filter->Update();
+  TAUTLINE_NEW(vtkSphereSource, sphere, SetThetaResolution(24), SetPhiResolution(24));
+  TAUTLINE_NEW(vtkMeshPerturbation, filter, SetInputConnection(sphere->GetOutputPort()),
+    SetPercentage(100), Update());
   vtkDataSet *before = filter->GetInput() ? vtkDataSet::SafeDownCast(filter->GetInput()) : nullptr,
              *after = filter->GetOutput();
   TAUTLINE_CHECK(vtkPolyData::SafeDownCast(after));
@@ -322,8 +304,7 @@ TAUTLINE_PART(testSurface)
     after->GetPoint(v, p.data());
     TAUTLINE_CHECK_NEAR(norm(p), 0.5, 0.05); // near the sphere: tangential
   }
-  filter->SetTangledFraction(0.1);
-  filter->Update();
+  TAUTLINE_SET(filter, SetTangledFraction(0.1), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), turned());
   TAUTLINE_CHECK_NEAR(double(turned()), 0.1 * double(before->GetNumberOfCells()), 0.5);
 }
@@ -334,8 +315,7 @@ TAUTLINE_PART(testTiltedPlane)
   const Columns turn = rotation({ 1, 2, 3 }, 0.7);
   data.transform([&](const Vec3& p) { return turn * p; });
   const Mesh mesh(data.view());
-  PerturbOptions options;
-  options.tangledFraction = 0.1;
+  TAUTLINE_LET(PerturbOptions, options, tangledFraction = 0.1);
   const Perturbation result = perturb(mesh, nullptr, options);
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, 20);
   const MeshData after = moved(data, result);
@@ -357,18 +337,14 @@ TAUTLINE_PART(testFloatPoints)
       [](const Vec3& p) {
         return Vec3{ 1024 + p[0] / 1024, 1024 + p[1] / 1024, 1024 + p[2] / 1024 };
       });
-    vtkNew<vtkMeshPerturbation> filter;
-    filter->SetInputData(toGrid(data, VTK_FLOAT));
-    filter->SetPercentage(100);
-    filter->SetFraction(1.0);
-    filter->Update();
+    TAUTLINE_NEW(vtkMeshPerturbation, filter, SetInputData(toGrid(data, VTK_FLOAT)),
+      SetPercentage(100), SetFraction(1.0), Update());
     auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutput());
     TAUTLINE_CHECK_EQUAL(output->GetPoints()->GetDataType(), VTK_FLOAT);
     TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() > filter->GetNumberOfMovablePoints() / 2);
     const auto validity = validityOf(withPointsOf(data, output));
     TAUTLINE_CHECK_EQUAL(count(validity, Valid), data.numberOfCells());
-    filter->SetTangledFraction(0.1);
-    filter->Update();
+    TAUTLINE_SET(filter, SetTangledFraction(0.1), Update());
     TAUTLINE_CHECK_EQUAL(count(validityOf(withPointsOf(data, output)), Inverted),
       Index(0.1 * double(data.numberOfCells()) + 0.5));
   }
@@ -378,28 +354,20 @@ TAUTLINE_PART(testWhatStays)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
   auto grid = toGrid(data);
-  vtkNew<vtkUnsignedCharArray> fixed;
-  fixed->SetName("fixed");
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("ids");
+  TAUTLINE_NEW(vtkUnsignedCharArray, fixed, SetName("fixed"));
+  TAUTLINE_NEW(vtkIdTypeArray, ids, SetName("ids"));
   for (Index v = 0; v < data.numberOfPoints(); ++v)
   {
     fixed->InsertNextValue(data.point(v)[0] <= 3);
     ids->InsertNextValue(v);
   }
-  grid->GetPointData()->AddArray(fixed);
-  grid->GetPointData()->AddArray(ids);
-  vtkNew<vtkDoubleArray> cellData;
-  cellData->SetName("c");
-  cellData->SetNumberOfTuples(data.numberOfCells());
-  cellData->FillValue(2);
+  TAUTLINE_SET(grid, GetPointData()->AddArray(fixed), GetPointData()->AddArray(ids));
+  TAUTLINE_NEW(
+    vtkDoubleArray, cellData, SetName("c"), SetNumberOfTuples(data.numberOfCells()), FillValue(2));
   grid->GetCellData()->AddArray(cellData);
 
-  vtkNew<vtkMeshPerturbation> filter;
-  filter->SetInputData(grid);
-  filter->SetPercentage(100);
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "fixed");
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshPerturbation, filter, SetInputData(grid), SetPercentage(100),
+    SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "fixed"), Update());
   vtkDataSet* output = vtkDataSet::SafeDownCast(filter->GetOutput());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovedPoints(), 50);
   const MeshData after = withPointsOf(data, output);
@@ -440,10 +408,8 @@ TAUTLINE_PART(testReversed)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
   data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], -p[2] }; });
-  vtkNew<vtkMeshPerturbation> filter;
-  filter->SetInputData(toGrid(data));
-  filter->SetPercentage(100);
-  filter->Update();
+  TAUTLINE_NEW(
+    vtkMeshPerturbation, filter, SetInputData(toGrid(data)), SetPercentage(100), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovedPoints(), 125);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
   vtkDataSet* output = vtkDataSet::SafeDownCast(filter->GetOutput());
@@ -457,16 +423,14 @@ TAUTLINE_PART(testKindsOfInput)
   Messages messages(filter);
 
   vtkNew<vtkUnstructuredGrid> nothing;
-  filter->SetInputData(nothing);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(nothing), Update());
   TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
 
   auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
   blocks->SetBlock(0, toGrid(blockMesh(CellType::Hexahedron, 4, 4, 4)));
   blocks->SetBlock(1, toPolyData(blockMesh(CellType::Triangle, 4, 4, 0), VTK_FLOAT));
-  filter->SetInputData(blocks);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(blocks), Update());
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   TAUTLINE_CHECK(messages.empty());
   for (unsigned block = 0; output && block < 2; ++block)
@@ -478,19 +442,15 @@ TAUTLINE_PART(testKindsOfInput)
   }
   TAUTLINE_CHECK(output != nullptr);
 
-  vtkNew<vtkStructuredGrid> structured;
-  structured->SetDimensions(4, 4, 4);
-  structured->SetPoints(toPoints(blockMesh(CellType::Hexahedron, 3, 3, 3)));
-  filter->SetInputData(structured);
-  filter->Update();
+  TAUTLINE_NEW(vtkStructuredGrid, structured, SetDimensions(4, 4, 4),
+    SetPoints(toPoints(blockMesh(CellType::Hexahedron, 3, 3, 3))));
+  TAUTLINE_SET(filter, SetInputData(structured), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 8);
   TAUTLINE_CHECK(vtkStructuredGrid::SafeDownCast(filter->GetOutputDataObject(0)));
   TAUTLINE_CHECK(messages.empty());
 
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(3, 3, 3);
-  filter->SetInputData(image);
-  filter->Update();
+  TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
+  TAUTLINE_SET(filter, SetInputData(image), Update());
   TAUTLINE_CHECK(messages.has(wording("run-image-data-to-point-set")));
 
   messages.clear();
@@ -501,27 +461,21 @@ TAUTLINE_PART(testKindsOfInput)
     quadratic.addPoint(p);
   }
   quadratic.addCell(VTK_QUADRATIC_TRIANGLE, { 0, 1, 2, 3, 4, 5 });
-  filter->SetInputData(toGrid(quadratic));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(quadratic)), Update());
   TAUTLINE_CHECK(messages.has(wording("run-tessellate")));
 
   messages.clear();
   MeshData pentagon = quadratic;
-  pentagon.types = {};
-  pentagon.offsets = { 0 };
-  pentagon.connectivity = {};
+  TAUTLINE_SET(pentagon, types = {}, offsets = { 0 }, connectivity = {});
   pentagon.addCell(VTK_POLYGON, { 0, 3, 1, 4, 2 });
-  filter->SetInputData(toPolyData(pentagon));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toPolyData(pentagon)), Update());
   TAUTLINE_CHECK(messages.has(wording("run-tetrahedralize-first")));
 }
 
 TAUTLINE_PART(testAbortAndProgress)
 {
   const MeshData data = blockMesh(CellType::Triangle, 100, 100, 0);
-  vtkNew<vtkMeshPerturbation> filter;
-  filter->SetInputData(toGrid(data));
-  filter->SetPercentage(100);
+  TAUTLINE_NEW(vtkMeshPerturbation, filter, SetInputData(toGrid(data)), SetPercentage(100));
   vtkNew<vtkCallbackCommand> abort;
   abort->SetCallback(
     [](vtkObject* caller, unsigned long, void*, void* progress)
@@ -531,8 +485,7 @@ TAUTLINE_PART(testAbortAndProgress)
         static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
       }
     });
-  filter->AddObserver(vtkCommand::ProgressEvent, abort);
-  filter->Update();
+  TAUTLINE_SET(filter, AddObserver(vtkCommand::ProgressEvent, abort), Update());
   TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() > 3000);
   TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() < 6000);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
@@ -543,8 +496,7 @@ TAUTLINE_PART(testAbortAndProgress)
 TAUTLINE_PART(testRefusedOptions)
 {
   const MeshData data = blockMesh(CellType::Triangle, 3, 3, 0);
-  PerturbOptions options;
-  options.percentage = 101;
+  TAUTLINE_LET(PerturbOptions, options, percentage = 101);
   TAUTLINE_CHECK_THROWS(perturb(Mesh(data.view()), nullptr, options), wording("between-0-and-100"));
 }
 

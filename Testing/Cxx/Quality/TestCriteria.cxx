@@ -172,13 +172,11 @@ void testFilter(const std::string& folder)
 {
   const double height = std::sqrt(0.75);
   const auto imrOf = [](double h) { return (1 + 2 * (0.25 + h * h)) / (2 * std::sqrt(3.0) * h); };
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(toGrid(triangles({ height, 0.1, 0.02, -0.3 })));
-  filter->AddMetricByName("si");
+  TAUTLINE_NEW(vtkElementQuality, filter,
+    SetInputData(toGrid(triangles({ height, 0.1, 0.02, -0.3 }))), AddMetricByName("si"));
   const std::string file = folder + "/criteria.json";
   std::ofstream(file) << json("imr", R"({ "all": )" + rising + " }");
-  filter->SetCriteria(file.c_str());
-  filter->Update();
+  TAUTLINE_SET(filter, SetCriteria(file.c_str()), Update());
   const double grades[] = { 0, 1, 2, 2 };
   const double indices[] = { 0, 0.5 + 0.25 * (imrOf(0.1) - 3) / 7,
     0.75 + 0.25 * (imrOf(0.02) - 10) / 90, 1 };
@@ -203,8 +201,7 @@ void testFilter(const std::string& folder)
 
   const auto verdict = [&](const std::vector<double>& heights)
   {
-    filter->SetInputData(toGrid(triangles(heights)));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(toGrid(triangles(heights))), Update());
     return std::string(filter->GetVerdict());
   };
   TAUTLINE_CHECK_EQUAL(verdict({ height, height }), "passed");
@@ -218,8 +215,7 @@ void testFilter(const std::string& folder)
   TAUTLINE_CHECK_EQUAL(filter->GetCriteriaTable()->GetNumberOfRows(), 0);
   // A directory is no file to read from.
   Messages messages(filter);
-  filter->SetCriteria(folder.c_str());
-  filter->Update();
+  TAUTLINE_SET(filter, SetCriteria(folder.c_str()), Update());
   TAUTLINE_CHECK(messages.has(wording("neither-a-file-that-can-be-read")));
 }
 }

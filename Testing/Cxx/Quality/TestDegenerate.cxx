@@ -43,8 +43,7 @@ void checkFinite(const MeshData& data, bool degenerate)
     const Context context(info.name);
     for (Combination combination : combinations)
     {
-      EvaluationOptions options;
-      options.combination = combination;
+      TAUTLINE_LET(EvaluationOptions, options, combination = combination);
       const Gradients g = gradientsOf(mesh, info.metric, options);
       TAUTLINE_CHECK(allFinite(g.values));
       TAUTLINE_CHECK(allFinite(g.gradients));
@@ -190,8 +189,7 @@ TAUTLINE_PART(testStraightAndInverted)
   TAUTLINE_CHECK_EQUAL(int(validityOf(data)[0]), int(Inverted));
   for (Combination combination : combinations)
   {
-    EvaluationOptions options;
-    options.combination = combination;
+    TAUTLINE_LET(EvaluationOptions, options, combination = combination);
     for (const MetricInfo& info : metricRegistry())
     {
       if (info.family == MetricFamily::Target && info.definedOn(CellType::Quadrilateral) &&

@@ -57,13 +57,10 @@ double statistic(vtkElementQuality* filter, const char* column, vtkIdType row = 
 
 TAUTLINE_PART(testTables)
 {
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(toGrid(triangles({ height, 0.2, -0.3, 0.0, 0.1, 2.0 })));
-  filter->AddMetricByName("imr");
-  filter->AddMetricByName("MU_2");
-  filter->AddMetric(static_cast<int>(Metric::Size));
-  filter->SetHistogramBins(4);
-  filter->Update();
+  TAUTLINE_NEW(vtkElementQuality, filter,
+    SetInputData(toGrid(triangles({ height, 0.2, -0.3, 0.0, 0.1, 2.0 }))), AddMetricByName("imr"),
+    AddMetricByName("MU_2"), AddMetric(static_cast<int>(Metric::Size)), SetHistogramBins(4),
+    Update());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMetrics(), 3);
   const double expected[] = { 1, imrOf(0.2), imrOf(-0.3), 0, imrOf(0.1), imrOf(2.0) };
   const double validity[] = { 1, 1, -1, 0, 1, 1 };
@@ -134,12 +131,8 @@ TAUTLINE_PART(testWorst)
 {
   vtkNew<vtkElementQuality> filter;
   const auto measure = [&](const std::vector<double>& heights)
-  {
-    filter->SetInputData(toGrid(triangles(heights)));
-    filter->Update();
-  };
-  filter->AddMetricByName("scaled_jacobian");
-  filter->AddMetricByName("imr");
+  { TAUTLINE_SET(filter, SetInputData(toGrid(triangles(heights))), Update()); };
+  TAUTLINE_SET(filter, AddMetricByName("scaled_jacobian"), AddMetricByName("imr"));
   measure({ height, 0.1, -0.05, 0.0 });
   TAUTLINE_CHECK(statistic(filter, "Minimum") < 0);
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Worst"), statistic(filter, "Minimum"));
@@ -163,8 +156,7 @@ TAUTLINE_PART(testAngles)
 {
   vtkNew<vtkElementQuality> filter;
   // Angles 60 60 60, and 90 45 45.
-  filter->SetInputData(toGrid(triangles({ height, 0.5 })));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(triangles({ height, 0.5 }))), Update());
   const double percent[] = { 0, 0, 500.0 / 6, 0, 0 };
   double sum = 0;
   for (vtkIdType row = 0; row < 5; ++row)
@@ -188,8 +180,7 @@ TAUTLINE_PART(testDataSets)
   vtkNew<vtkImageData> image, layer;
   image->SetDimensions(3, 4, 5);
   layer->SetDimensions(3, 1, 4);
-  vtkNew<vtkStructuredGrid> structured;
-  structured->SetDimensions(3, 4, 1);
+  TAUTLINE_NEW(vtkStructuredGrid, structured, SetDimensions(3, 4, 1));
   vtkNew<vtkPoints> points;
   vtkNew<vtkRectilinearGrid> rectilinear;
   vtkNew<vtkDoubleArray> axis;
@@ -202,10 +193,8 @@ TAUTLINE_PART(testDataSets)
     }
   }
   structured->SetPoints(points);
-  rectilinear->SetDimensions(4, 4, 4);
-  rectilinear->SetXCoordinates(axis);
-  rectilinear->SetYCoordinates(axis);
-  rectilinear->SetZCoordinates(axis);
+  TAUTLINE_SET(rectilinear, SetDimensions(4, 4, 4), SetXCoordinates(axis), SetYCoordinates(axis),
+    SetZCoordinates(axis));
   const MeshData quads = blockMesh(CellType::Quadrilateral, 3, 3, 1);
   struct
   {
@@ -217,8 +206,7 @@ TAUTLINE_PART(testDataSets)
   for (const auto& c : cases)
   {
     const Context context(c.data->GetClassName());
-    vtkNew<vtkElementQuality> filter;
-    filter->SetInputData(c.data);
+    TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(c.data));
     for (const char* name : { "mean_ratio", "size", "scaled_jacobian" })
     {
       filter->AddMetricByName(name);
@@ -241,12 +229,9 @@ TAUTLINE_PART(testDataSets)
 /// Two blocks count as one data set, in the order of the blocks.
 TAUTLINE_PART(testBlocks)
 {
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, toGrid(triangles({ height, 0.2 })));
-  blocks->SetBlock(2, toPolyData(triangles({ 0.1, height })));
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(blocks);
-  filter->Update();
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(0, toGrid(triangles({ height, 0.2 }))),
+    SetBlock(2, toPolyData(triangles({ 0.1, height }))));
+  TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(blocks), Update());
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 4);
   TAUTLINE_CHECK_NEAR(statistic(filter, "Maximum"), imrOf(0.1), 1e-14);
@@ -260,8 +245,7 @@ TAUTLINE_PART(testBlocks)
 TAUTLINE_PART(testSpecialCells)
 {
   // Nothing, one unused point, a NaN, and ghosts.
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(vtkNew<vtkUnstructuredGrid>());
+  TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(vtkNew<vtkUnstructuredGrid>()));
   Messages messages(filter);
   filter->Update();
   TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
@@ -271,8 +255,7 @@ TAUTLINE_PART(testSpecialCells)
   MeshData data = triangles({ height, 0.2, 0.5 });
   data.addPoint({ 1e6, -1e6, 0 });
   data.points[3 * 5] = std::numeric_limits<double>::quiet_NaN();
-  filter->SetInputData(toGrid(data));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(data)), Update());
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 2);
   TAUTLINE_CHECK_EQUAL(statistic(filter, "NonFinite"), 1);
   TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Validity", 1), -3);
@@ -282,8 +265,7 @@ TAUTLINE_PART(testSpecialCells)
   auto grid = toGrid(triangles({ height, 0.1 }));
   grid->AllocateCellGhostArray();
   grid->GetCellGhostArray()->SetValue(1, vtkDataSetAttributes::DUPLICATECELL);
-  filter->SetInputData(grid);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(grid), Update());
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 1);
   TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", 1), imrOf(0.1), 1e-14);
 
@@ -293,8 +275,7 @@ TAUTLINE_PART(testSpecialCells)
   mixed.addCell(CellType::Triangle, std::vector<Index>{ 0, 1, 2 });
   mixed.addCell(VTK_LINE, { 0, 1 });
   messages.clear();
-  filter->SetInputData(toGrid(mixed));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(mixed)), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 1);
   TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", 1), 1, 1e-14);
@@ -314,8 +295,7 @@ TAUTLINE_PART(testReversed)
          vtkElementQuality::FLIP_OUTPUT })
   {
     const Context context("mode " + std::to_string(mode));
-    vtkNew<vtkElementQuality> filter;
-    filter->SetReversedMesh(mode);
+    TAUTLINE_NEW(vtkElementQuality, filter, SetReversedMesh(mode));
     const auto input = toGrid(mesh);
     filter->SetInputData(input);
     Messages messages(filter);
@@ -327,8 +307,7 @@ TAUTLINE_PART(testReversed)
     TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", 3), sign * values[3], 1e-13);
 
     // A second measurement of a flipped output reports nothing; the input stays.
-    vtkNew<vtkElementQuality> again;
-    again->SetInputData(filter->GetOutputDataObject(0));
+    TAUTLINE_NEW(vtkElementQuality, again, SetInputData(filter->GetOutputDataObject(0)));
     Messages second(again);
     again->Update();
     TAUTLINE_CHECK_EQUAL(second.empty(), mode == vtkElementQuality::FLIP_OUTPUT);
@@ -339,8 +318,7 @@ TAUTLINE_PART(testReversed)
   {
     std::swap(mesh.connectivity[4 * cell + 1], mesh.connectivity[4 * cell + 2]);
   }
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(toGrid(mesh));
+  TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(toGrid(mesh)));
   Messages messages(filter);
   filter->Update();
   TAUTLINE_CHECK(messages.has(wording("orientation-of-the-mesh-is-mixed")));
@@ -350,14 +328,11 @@ TAUTLINE_PART(testReversed)
   {
     TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", cell), values[cell], 1e-13);
   }
-  filter->SetReversedMesh(vtkElementQuality::MEASURE_AS_GIVEN);
-  filter->Update();
+  TAUTLINE_SET(filter, SetReversedMesh(vtkElementQuality::MEASURE_AS_GIVEN), Update());
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Inverted"), 1);
-  filter->SetReversedMesh(vtkElementQuality::FLIP_OUTPUT);
-  filter->Update();
-  vtkNew<vtkElementQuality> again;
-  again->SetReversedMesh(vtkElementQuality::MEASURE_AS_GIVEN);
-  again->SetInputData(filter->GetOutputDataObject(0));
+  TAUTLINE_SET(filter, SetReversedMesh(vtkElementQuality::FLIP_OUTPUT), Update());
+  TAUTLINE_NEW(vtkElementQuality, again, SetReversedMesh(vtkElementQuality::MEASURE_AS_GIVEN),
+    SetInputData(filter->GetOutputDataObject(0)));
   Messages second(again);
   again->Update();
   TAUTLINE_CHECK(second.empty());
@@ -368,8 +343,7 @@ TAUTLINE_PART(testReversed)
 TAUTLINE_PART(testMoebius)
 {
   constexpr int count = 12;
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(toGrid(moebiusBand(count)));
+  TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(toGrid(moebiusBand(count))));
   Messages messages(filter);
   filter->Update();
   TAUTLINE_CHECK(messages.has(wording("like-those-of-a-moebius-band")));
@@ -379,28 +353,21 @@ TAUTLINE_PART(testMoebius)
 TAUTLINE_PART(testTargets)
 {
   const MeshData data = triangles({ 0.3, 2.0 });
-  vtkNew<vtkElementQuality> filter;
-  filter->AddMetricByName("mu_7");
-  filter->AddMetricByName("mu_size_nb");
+  TAUTLINE_NEW(vtkElementQuality, filter, AddMetricByName("mu_7"), AddMetricByName("mu_size_nb"));
   const auto grid = toGrid(data);
   filter->SetInputData(grid);
 
   // Against itself every element has its target shape.
-  filter->SetTargetType(vtkElementQuality::REFERENCE);
-  filter->SetInputData(1, grid);
-  filter->Update();
+  TAUTLINE_SET(
+    filter, SetTargetType(vtkElementQuality::REFERENCE), SetInputData(1, grid), Update());
   TAUTLINE_CHECK_NEAR(statistic(filter, "Maximum"), 0, 1e-12);
 
   // A size from a cell array, and from a point array that is its constant.
   filter->SetTargetType(vtkElementQuality::SIZE);
   vtkNew<vtkDoubleArray> sizes, pointSizes;
-  sizes->SetName("sizes");
-  sizes->InsertNextValue(0.15);
-  sizes->InsertNextValue(0.5);
+  TAUTLINE_SET(sizes, SetName("sizes"), InsertNextValue(0.15), InsertNextValue(0.5));
   grid->GetCellData()->AddArray(sizes);
-  pointSizes->SetName("sizes");
-  pointSizes->SetNumberOfValues(6);
-  pointSizes->Fill(0.5);
+  TAUTLINE_SET(pointSizes, SetName("sizes"), SetNumberOfValues(6), Fill(0.5));
   grid->GetPointData()->AddArray(pointSizes);
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sizes");
   filter->Update();
@@ -411,17 +378,14 @@ TAUTLINE_PART(testTargets)
   TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "mu_size_nb", 0), 0.7 * 0.7, 1e-13);
 
   // The tensor in which the second triangle is equilateral with unit edges.
-  vtkNew<vtkDoubleArray> tensors;
-  tensors->SetName("tensors");
-  tensors->SetNumberOfComponents(6);
+  TAUTLINE_NEW(vtkDoubleArray, tensors, SetName("tensors"), SetNumberOfComponents(6));
   for (int i = 0; i < 2; ++i)
   {
     tensors->InsertNextTuple6(1, height * height / 4, 1, 0, 0, 0);
   }
   grid->GetCellData()->AddArray(tensors);
-  filter->SetTargetType(vtkElementQuality::TENSOR);
-  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "tensors");
-  filter->Update();
+  TAUTLINE_SET(filter, SetTargetType(vtkElementQuality::TENSOR),
+    SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "tensors"), Update());
   TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "mu_shape_size", 1), 0, 1e-12);
   TAUTLINE_CHECK(component(cellsOf(filter), "mu_shape_size", 0) > 1);
 }
@@ -441,8 +405,7 @@ TAUTLINE_PART(testErrors)
   const auto refused = [&](const char* part)
   {
     messages.clear();
-    filter->Modified();
-    filter->Update();
+    TAUTLINE_SET(filter, Modified(), Update());
     TAUTLINE_CHECK(messages.has(part));
     auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
     TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), 0);
@@ -455,14 +418,11 @@ TAUTLINE_PART(testErrors)
   refused(wording("inverted-or-degenerate-in-the-reference-mesh"));
   filter->SetTargetType(vtkElementQuality::SIZE);
   refused(wording("needs-a-size"));
-  vtkNew<vtkDoubleArray> sizes;
-  sizes->SetName("sizes");
-  sizes->InsertNextValue(-1);
+  TAUTLINE_NEW(vtkDoubleArray, sizes, SetName("sizes"), InsertNextValue(-1));
   grid->GetCellData()->AddArray(sizes);
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "sizes");
   refused(wording("sizes-must-be-positive"));
-  filter->SetTargetType(vtkElementQuality::IDEAL);
-  filter->SetEpsilon(0);
+  TAUTLINE_SET(filter, SetTargetType(vtkElementQuality::IDEAL), SetEpsilon(0));
   refused(wording("epsilon-positive"));
 }
 
@@ -474,10 +434,8 @@ TAUTLINE_PART(testThreads)
   std::vector<double> first;
   for (int threads : { 1, 2, 4 })
   {
-    vtkNew<vtkElementQuality> filter;
-    filter->SetThreads(threads);
-    filter->SetInputData(toGrid(mesh));
-    filter->Update();
+    TAUTLINE_NEW(
+      vtkElementQuality, filter, SetThreads(threads), SetInputData(toGrid(mesh)), Update());
     auto* values = vtkDoubleArray::SafeDownCast(cellsOf(filter)->GetArray("imr"));
     std::vector<double> all(
       values->GetPointer(0), values->GetPointer(0) + values->GetNumberOfValues());
@@ -495,27 +453,21 @@ TAUTLINE_PART(testThreads)
 /// planar mesh has none inside.
 TAUTLINE_PART(testBad)
 {
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
+  TAUTLINE_NEW(vtkPoints, points, SetDataTypeToDouble());
   vtkNew<vtkUnstructuredGrid> grid;
   const double regular = std::sqrt(2.0 / 3.0), flat = 0.05, inverted = -0.3;
   for (const double apex : { regular, flat, inverted })
   {
     const vtkIdType first = points->InsertNextPoint(0, 0, 0);
-    points->InsertNextPoint(1, 0, 0);
-    points->InsertNextPoint(0.5, height, 0);
-    points->InsertNextPoint(0.5, height / 3, apex);
+    TAUTLINE_SET(points, InsertNextPoint(1, 0, 0), InsertNextPoint(0.5, height, 0),
+      InsertNextPoint(0.5, height / 3, apex));
     const vtkIdType ids[] = { first, first + 1, first + 2, first + 3 };
     grid->InsertNextCell(VTK_TETRA, 4, ids);
   }
   grid->SetPoints(points);
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(grid);
-  filter->AddMetricByName("imr");
-  filter->Update();
+  TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(grid), AddMetricByName("imr"), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetBad()->GetNumberOfCells(), 0);
-  filter->ExtractBadOn();
-  filter->Update();
+  TAUTLINE_SET(filter, ExtractBadOn(), Update());
   vtkUnstructuredGrid* bad = filter->GetBad();
   TAUTLINE_CHECK_EQUAL(bad->GetNumberOfCells(), 2);
   TAUTLINE_CHECK_EQUAL(bad->GetNumberOfPoints(), 8);
@@ -527,13 +479,13 @@ TAUTLINE_PART(testBad)
       component(cellsOf(filter), "imr", i + 1));
   }
   // A limit that the flat element keeps: only the inverted one fails.
-  filter->SetCriteria(R"({ "criteria": [ { "metric": "imr",
-    "limits": { "all": { "ideal": 1, "good": 2, "warn": 3, "fail": 1e6, "worst": 1e7 } } } ] })");
-  filter->Update();
+  TAUTLINE_SET(filter,
+    SetCriteria(
+      R"({ "criteria": [ { "metric": "imr", "limits": { "all": { "ideal": 1, "good": 2, "warn": 3, "fail": 1e6, "worst": 1e7 } } } ] })"),
+    Update());
   TAUTLINE_CHECK_EQUAL(filter->GetBad()->GetNumberOfCells(), 1);
-  filter->SetCriteria("");
-  filter->SetInputData(toGrid(triangles({ height, 0.01, -0.3 })));
-  filter->Update();
+  TAUTLINE_SET(
+    filter, SetCriteria(""), SetInputData(toGrid(triangles({ height, 0.01, -0.3 }))), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetBad()->GetNumberOfCells(), 0);
 }
 
@@ -545,14 +497,11 @@ TAUTLINE_PART(testStrayFaces)
   const auto grid = toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2));
   vtkNew<vtkIdTypeArray> faces, places;
   grid->SetCells(grid->GetCellTypesArray(), grid->GetCells(), places, faces);
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, grid);
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(0, grid));
   for (vtkDataObject* input :
     { static_cast<vtkDataObject*>(grid), vtkDataObject::SafeDownCast(blocks) })
   {
-    vtkNew<vtkElementQuality> filter;
-    filter->SetInputDataObject(input);
-    filter->Update();
+    TAUTLINE_NEW(vtkElementQuality, filter, SetInputDataObject(input), Update());
     vtkDataObject* output = filter->GetOutputDataObject(0);
     auto* several = vtkMultiBlockDataSet::SafeDownCast(output);
     auto* measured = vtkUnstructuredGrid::SafeDownCast(several ? several->GetBlock(0) : output);
@@ -562,13 +511,10 @@ TAUTLINE_PART(testStrayFaces)
     TAUTLINE_CHECK(component(measured->GetCellData(), "Validity", 5) == 1);
     TAUTLINE_CHECK(grid->GetFaces() == faces && grid->GetFaceLocations() == places);
   }
-  vtkNew<vtkUnstructuredGrid> solid;
-  solid->SetPoints(grid->GetPoints());
+  TAUTLINE_NEW(vtkUnstructuredGrid, solid, SetPoints(grid->GetPoints()));
   const vtkIdType stream[] = { 3, 0, 1, 3, 3, 0, 1, 9, 3, 1, 3, 9, 3, 0, 3, 9 };
   solid->InsertNextCell(VTK_POLYHEDRON, 4, stream);
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(solid);
-  filter->Update();
+  TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(solid), Update());
   auto* kept = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
   TAUTLINE_CHECK(kept->GetFaces() && kept->GetFaces()->GetNumberOfValues() == 17);
 }
@@ -577,11 +523,8 @@ TAUTLINE_PART(testStrayFaces)
 /// An abort between metrics leaves the mesh with the metrics measured so far.
 TAUTLINE_PART(testAbort)
 {
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputData(toGrid(triangles({ height, 0.2 })));
-  filter->AddMetricByName("imr");
-  filter->AddMetricByName("si");
-  filter->AddMetricByName("rr");
+  TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(toGrid(triangles({ height, 0.2 }))),
+    AddMetricByName("imr"), AddMetricByName("si"), AddMetricByName("rr"));
   vtkNew<vtkCallbackCommand> command;
   command->SetCallback(
     [](vtkObject* caller, unsigned long, void*, void* progress)
@@ -591,8 +534,7 @@ TAUTLINE_PART(testAbort)
         static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
       }
     });
-  filter->AddObserver(vtkCommand::ProgressEvent, command);
-  filter->Update();
+  TAUTLINE_SET(filter, AddObserver(vtkCommand::ProgressEvent, command), Update());
   TAUTLINE_CHECK(cellsOf(filter)->GetArray("imr") != nullptr);
   TAUTLINE_CHECK(cellsOf(filter)->GetArray("rr") == nullptr);
 }

@@ -37,13 +37,8 @@ bool has(const std::string& text, const std::string& part)
 
 TAUTLINE_PART(testText)
 {
-  vtkNew<vtkHtmlReport> report;
-  report->Begin("<a> & \"b\"", "line");
-  report->AddHeading("1 < 2");
-  report->AddRow("name", "<value>");
-  report->AddRow("next", nullptr);
-  report->AddText("one\ntwo");
-  report->AddRow("last", "row");
+  TAUTLINE_NEW(vtkHtmlReport, report, Begin("<a> & \"b\"", "line"), AddHeading("1 < 2"),
+    AddRow("name", "<value>"), AddRow("next", nullptr), AddText("one\ntwo"), AddRow("last", "row"));
   const std::string html = report->GetHtml();
   TAUTLINE_CHECK_EQUAL(count(html, "&lt;a&gt; &amp; &quot;b&quot;"), 2); // title and heading
   TAUTLINE_CHECK(has(html, "<h2>1 &lt; 2</h2>"));
@@ -57,28 +52,20 @@ TAUTLINE_PART(testText)
 
 TAUTLINE_PART(testTable)
 {
-  vtkNew<vtkHtmlReport> report;
-  report->Begin("t", "");
-  report->AddTable(nullptr);
+  TAUTLINE_NEW(vtkHtmlReport, report, Begin("t", ""), AddTable(nullptr));
   vtkNew<vtkTable> table;
   report->AddTable(table);
   TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "<table>"), 0);
-  vtkNew<vtkIdTypeArray> ids;
-  ids->SetName("Id");
-  vtkNew<vtkDoubleArray> values;
-  values->SetName("Value");
-  vtkNew<vtkDoubleArray> places;
-  places->SetName("Places");
-  places->SetNumberOfComponents(4);
+  TAUTLINE_NEW(vtkIdTypeArray, ids, SetName("Id"));
+  TAUTLINE_NEW(vtkDoubleArray, values, SetName("Value"));
+  TAUTLINE_NEW(vtkDoubleArray, places, SetName("Places"), SetNumberOfComponents(4));
   for (int row = 0; row < 61; ++row)
   {
     ids->InsertNextValue(1234567 + row);
     values->InsertNextValue(1.23456789);
     places->InsertNextTuple4(0, 0, 0, 0);
   }
-  table->AddColumn(ids);
-  table->AddColumn(values);
-  table->AddColumn(places);
+  TAUTLINE_SET(table, AddColumn(ids), AddColumn(values), AddColumn(places));
   report->AddTable(table);
   const std::string html = report->GetHtml();
   TAUTLINE_CHECK(has(html, "<tr><th>Id</th><th>Value</th></tr>")); // 4 components are left out
@@ -104,10 +91,8 @@ TAUTLINE_PART(testQuality)
 {
   vtkNew<vtkElementQuality> filter;
   const double height = std::sqrt(0.75);
-  filter->SetInputData(strip({ height, height, 0.02, -0.4 }));
-  filter->Update();
-  vtkNew<vtkHtmlReport> report;
-  report->Begin("t", "");
+  TAUTLINE_SET(filter, SetInputData(strip({ height, height, 0.02, -0.4 })), Update());
+  TAUTLINE_NEW(vtkHtmlReport, report, Begin("t", ""));
   TAUTLINE_CHECK_EQUAL(report->AddHistograms(filter->GetStatistics(), filter->GetHistogram()), 1);
   // Two in the first bin, one above the range, one inverted: the tooltips have the counts.
   TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), ": 2 elements</title>"), 1);
@@ -124,14 +109,12 @@ TAUTLINE_PART(testQuality)
   TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "<img "), 3);
   TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "class=\"legend\""), 2);
   // Areas have no colours of their own: from the smallest to the largest.
-  filter->AddMetricByName("size");
-  filter->Update();
+  TAUTLINE_SET(filter, AddMetricByName("size"), Update());
   TAUTLINE_CHECK(report->AddMeshPicture(filter->GetOutputDataObject(0), "size"));
   TAUTLINE_CHECK(has(report->GetHtml(), "<span>-0.2</span>"));
   // The message of the error event.
   std::string message;
-  vtkNew<vtkCallbackCommand> command;
-  command->SetClientData(&message);
+  TAUTLINE_NEW(vtkCallbackCommand, command, SetClientData(&message));
   command->SetCallback([](vtkObject*, unsigned long, void* data, void* text)
     { *static_cast<std::string*>(data) = static_cast<const char*>(text); });
   report->AddObserver(vtkCommand::ErrorEvent, command);
@@ -141,18 +124,13 @@ TAUTLINE_PART(testQuality)
 
 TAUTLINE_PART(testComposite)
 {
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, strip({ 0.8, 0.5 }));
-  blocks->SetBlock(2, strip({ 0.3 }));
-  vtkNew<vtkElementQuality> filter;
-  filter->SetInputDataObject(blocks);
-  filter->Update();
-  vtkNew<vtkHtmlReport> report;
-  report->Begin("t", "");
+  TAUTLINE_NEW(
+    vtkMultiBlockDataSet, blocks, SetBlock(0, strip({ 0.8, 0.5 })), SetBlock(2, strip({ 0.3 })));
+  TAUTLINE_NEW(vtkElementQuality, filter, SetInputDataObject(blocks), Update());
+  TAUTLINE_NEW(vtkHtmlReport, report, Begin("t", ""));
   TAUTLINE_CHECK(report->AddMeshPicture(filter->GetOutputDataObject(0), "imr"));
   vtkNew<vtkImageData> empty;
-  report->AddImage(empty, "nothing");
-  report->AddImage(nullptr, "nothing");
+  TAUTLINE_SET(report, AddImage(empty, "nothing"), AddImage(nullptr, "nothing"));
   TAUTLINE_CHECK_EQUAL(count(report->GetHtml(), "<img "), 1);
 }
 }

@@ -52,9 +52,8 @@ TAUTLINE_PART(testKnownChanges)
 {
   const MeshData before = triangles({ flat, ideal, inverted, ideal, flat, inverted });
   const MeshData after = triangles({ ideal, flat, flat, ideal, inverted, inverted });
-  vtkNew<vtkMeshComparison> filter;
-  filter->SetInputData(0, toGrid(before));
-  filter->SetInputData(1, toGrid(after));
+  TAUTLINE_NEW(
+    vtkMeshComparison, filter, SetInputData(0, toGrid(before)), SetInputData(1, toGrid(after)));
   for (const char* name : { "imr", "mean_ratio", "size", "untangle_beta" })
   {
     filter->AddMetricByName(name);
@@ -106,22 +105,16 @@ TAUTLINE_PART(testKnownChanges)
 TAUTLINE_PART(testSeveralMetrics)
 {
   // Larger by size-dependent metrics but a worse shape: neither better nor worse on the whole.
-  vtkNew<vtkMeshComparison> filter;
-  filter->SetInputData(0, toGrid(triangles({ flat, flat })));
-  filter->SetInputData(1, toGrid(triangles({ { 0.9, 0.3, 0 }, ideal })));
-  filter->AddMetricByName("imr");
-  filter->AddMetricByName("edge_ratio");
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshComparison, filter, SetInputData(0, toGrid(triangles({ flat, flat }))),
+    SetInputData(1, toGrid(triangles({ { 0.9, 0.3, 0 }, ideal }))), AddMetricByName("imr"),
+    AddMetricByName("edge_ratio"), Update());
   TAUTLINE_CHECK(component(cellsOf(filter), "edge_ratio_difference", 0) > 0);
   TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Change", 0), -1);
   TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Change", 1), 1);
   // A longer base angle but shorter edges: one metric up, the other down.
-  filter->SetInputData(0, toGrid(triangles({ tall, flat })));
-  filter->SetInputData(1, toGrid(triangles({ { 0.9, 1.2, 0 }, ideal })));
-  filter->ClearMetrics();
-  filter->AddMetricByName("edge_ratio");
-  filter->AddMetricByName("max_angle");
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(0, toGrid(triangles({ tall, flat }))),
+    SetInputData(1, toGrid(triangles({ { 0.9, 1.2, 0 }, ideal }))), ClearMetrics(),
+    AddMetricByName("edge_ratio"), AddMetricByName("max_angle"), Update());
   TAUTLINE_CHECK(component(cellsOf(filter), "edge_ratio_difference", 0) < 0);
   TAUTLINE_CHECK(component(cellsOf(filter), "max_angle_difference", 0) > 0);
   TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "Change", 0), 0);
@@ -129,22 +122,16 @@ TAUTLINE_PART(testSeveralMetrics)
 
 TAUTLINE_PART(testTolerance)
 {
-  vtkNew<vtkMeshComparison> filter;
-  filter->SetInputData(0, toGrid(triangles({ flat })));
-  filter->SetInputData(1, toGrid(triangles({ { 0.5, 0.3 * (1 + 1e-5), 0 } })));
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshComparison, filter, SetInputData(0, toGrid(triangles({ flat }))),
+    SetInputData(1, toGrid(triangles({ { 0.5, 0.3 * (1 + 1e-5), 0 } }))), Update());
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 1);
-  filter->SetTolerance(1e-4);
-  filter->Update();
+  TAUTLINE_SET(filter, SetTolerance(1e-4), Update());
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 0);
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 1);
   // Rounding about an ideal of 0 is no change.
-  filter->SetTolerance(1e-6);
-  filter->ClearMetrics();
-  filter->AddMetricByName("mu_shape");
-  filter->SetInputData(0, toGrid(triangles({ { 0.5, height, 0 } })));
-  filter->SetInputData(1, toGrid(triangles({ { 0.5, height + 1e-6, 0 } })));
-  filter->Update();
+  TAUTLINE_SET(filter, SetTolerance(1e-6), ClearMetrics(), AddMetricByName("mu_shape"),
+    SetInputData(0, toGrid(triangles({ { 0.5, height, 0 } }))),
+    SetInputData(1, toGrid(triangles({ { 0.5, height + 1e-6, 0 } }))), Update());
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 1);
 }
 
@@ -157,16 +144,13 @@ TAUTLINE_PART(testReversed)
     data.transform([](const Vec3& p) { return Vec3{ p[0], -p[1], p[2] }; });
     return data;
   };
-  vtkNew<vtkMeshComparison> filter;
-  filter->SetInputData(0, toGrid(reversed({ flat, ideal })));
-  filter->SetInputData(1, toGrid(reversed({ ideal, tall })));
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshComparison, filter, SetInputData(0, toGrid(reversed({ flat, ideal }))),
+    SetInputData(1, toGrid(reversed({ ideal, tall }))), Update());
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 1);
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Worse"), 1);
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "InvertedAfter"), 0);
   // One of them only: it is inverted.
-  filter->SetInputData(1, toGrid(triangles({ ideal, ideal })));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(1, toGrid(triangles({ ideal, ideal }))), Update());
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "InvertedBefore"), 2);
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 2);
 }
@@ -185,19 +169,14 @@ TAUTLINE_PART(testEveryCellAndMetric)
     {
       filter->AddMetric(static_cast<int>(info.metric));
     }
-    filter->SetInputData(0, grid);
-    filter->SetInputData(1, grid);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(0, grid), SetInputData(1, grid), Update());
     for (vtkIdType row = 0; row < tableOf(filter)->GetNumberOfRows(); ++row)
     {
       const bool defined = metricRegistry()[row].definedOn(type);
       TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal", row), defined ? grid->GetNumberOfCells() : 0);
     }
-    vtkNew<vtkMeshPerturbation> perturbation;
-    perturbation->SetInputData(grid);
-    perturbation->SetTangledFraction(0.1);
-    filter->SetInputConnection(1, perturbation->GetOutputPort());
-    filter->Update();
+    TAUTLINE_NEW(vtkMeshPerturbation, perturbation, SetInputData(grid), SetTangledFraction(0.1));
+    TAUTLINE_SET(filter, SetInputConnection(1, perturbation->GetOutputPort()), Update());
     TAUTLINE_CHECK_EQUAL(cellOf(filter, "InvertedAfter"), double(perturbation->GetInvertedAfter()));
     TAUTLINE_CHECK_EQUAL(
       cellOf(filter, "LargestDisplacement"), perturbation->GetLargestDisplacement());
@@ -218,9 +197,7 @@ TAUTLINE_PART(testKindsOfInput)
   Messages messages(filter);
 
   vtkNew<vtkUnstructuredGrid> nothing;
-  filter->SetInputData(0, nothing);
-  filter->SetInputData(1, nothing);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(0, nothing), SetInputData(1, nothing), Update());
   TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 0);
@@ -228,14 +205,12 @@ TAUTLINE_PART(testKindsOfInput)
   auto pair = [&](const MeshData& a, const MeshData& b)
   {
     auto blocks = vtkSmartPointer<vtkMultiBlockDataSet>::New();
-    blocks->SetBlock(0, toGrid(a));
-    blocks->SetBlock(2, toPolyData(b));
+    TAUTLINE_SET(blocks, SetBlock(0, toGrid(a)), SetBlock(2, toPolyData(b)));
     return blocks;
   };
   const auto before = pair(triangles({ flat, ideal }), triangles({ ideal }));
-  filter->SetInputData(0, before);
-  filter->SetInputData(1, pair(triangles({ ideal, ideal }), triangles({ tall })));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(0, before),
+    SetInputData(1, pair(triangles({ ideal, ideal }), triangles({ tall }))), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 1);
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Worse"), 1);
@@ -245,24 +220,18 @@ TAUTLINE_PART(testKindsOfInput)
   TAUTLINE_CHECK_EQUAL(
     component(vtkDataSet::SafeDownCast(output->GetBlock(2))->GetCellData(), "Change", 0), -1);
 
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(3, 3, 3);
-  filter->SetInputData(0, image);
-  filter->SetInputData(1, image);
-  filter->Update();
+  TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
+  TAUTLINE_SET(filter, SetInputData(0, image), SetInputData(1, image), Update());
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 8);
   TAUTLINE_CHECK(vtkImageData::SafeDownCast(filter->GetOutputDataObject(0)));
 
   // Ghost cells are not counted.
   auto grid = toGrid(triangles({ flat, ideal }));
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName("vtkGhostType");
-  ghosts->InsertNextValue(1);
-  ghosts->InsertNextValue(0);
+  TAUTLINE_NEW(
+    vtkUnsignedCharArray, ghosts, SetName("vtkGhostType"), InsertNextValue(1), InsertNextValue(0));
   grid->GetCellData()->AddArray(ghosts);
-  filter->SetInputData(0, toGrid(triangles({ flat, flat })));
-  filter->SetInputData(1, grid);
-  filter->Update();
+  TAUTLINE_SET(
+    filter, SetInputData(0, toGrid(triangles({ flat, flat }))), SetInputData(1, grid), Update());
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 1);
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 0);
 }
@@ -275,9 +244,7 @@ TAUTLINE_PART(testRefusals)
   {
     const Context context(part);
     messages.clear();
-    filter->SetInputData(0, before);
-    filter->SetInputData(1, after);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(0, before), SetInputData(1, after), Update());
     TAUTLINE_CHECK(messages.has(part));
     TAUTLINE_CHECK_EQUAL(
       filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL), 0);
@@ -297,8 +264,7 @@ TAUTLINE_PART(testRefusals)
   refuses(grid, toGrid(MeshData(blockMesh(CellType::Tetrahedron, 1, 1, 1))), "points");
   vtkNew<vtkMultiBlockDataSet> one, two;
   one->SetBlock(0, grid);
-  two->SetBlock(0, grid);
-  two->SetBlock(1, grid);
+  TAUTLINE_SET(two, SetBlock(0, grid), SetBlock(1, grid));
   refuses(one, two, wording("first-at-block-2"));
   refuses(grid, two, wording("extract-block"));
   filter->AddMetricByName("mu_98");

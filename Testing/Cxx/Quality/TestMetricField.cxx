@@ -19,14 +19,12 @@ const double height = std::sqrt(3.0) / 2;
 /// Sets the grid to a single point.
 void setPoint(vtkMetricField* field, double x, double y, double z)
 {
-  field->SetBounds(x, x, y, y, z, z);
-  field->SetDimensions(1, 1, 1);
+  TAUTLINE_SET(field, SetBounds(x, x, y, y, z, z), SetDimensions(1, 1, 1));
 }
 
 TAUTLINE_PART(testDefaults)
 {
-  vtkNew<vtkMetricField> field;
-  field->Update();
+  TAUTLINE_NEW(vtkMetricField, field, Update());
   vtkImageData* image = field->GetOutput();
   const int* size = image->GetDimensions();
   TAUTLINE_CHECK(size[0] == 301 && size[1] == 201 && size[2] == 1);
@@ -57,14 +55,11 @@ TAUTLINE_PART(testDefaults)
 // (3.3): (|A - beta| - (A - beta)) / 2 with A = y / 2, everywhere on the default grid.
 TAUTLINE_PART(testBeta)
 {
-  vtkNew<vtkMetricField> field;
-  field->ClearMetrics();
-  field->AddMetricByName("untangle_beta");
+  TAUTLINE_NEW(vtkMetricField, field, ClearMetrics(), AddMetricByName("untangle_beta"));
   TAUTLINE_CHECK_NEAR(field->GetBeta(), 0.25, 0);
   for (double beta : { 0.25, 0.0, 0.6, -0.1 })
   {
-    field->SetBeta(beta);
-    field->Update();
+    TAUTLINE_SET(field, SetBeta(beta), Update());
     vtkImageData* image = field->GetOutput();
     double largest = 0;
     for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
@@ -83,8 +78,7 @@ TAUTLINE_PART(testIdealApex)
   for (int cell : { vtkMetricField::TRIANGLE, vtkMetricField::TETRAHEDRON })
   {
     const bool flat = cell == vtkMetricField::TRIANGLE;
-    field->SetCell(cell);
-    field->ClearMetrics();
+    TAUTLINE_SET(field, SetCell(cell), ClearMetrics());
     for (const MetricInfo& info : metricRegistry())
     {
       if (info.definedOn(flat ? CellType::Triangle : CellType::Tetrahedron))
@@ -121,17 +115,11 @@ TAUTLINE_PART(testIdealApex)
 
 TAUTLINE_PART(testTetrahedronAgainstCells)
 {
-  vtkNew<vtkMetricField> field;
-  field->SetCellToTetrahedron();
-  field->SetVertex1(0.1, 0.2, -0.3);
-  field->SetVertex2(1.2, -0.1, 0.1);
-  field->SetVertex3(0.3, 0.9, 0.2);
-  field->SetBounds(-1, 1, -2, 2, -1, 3);
-  field->SetDimensions(5, 4, 3);
-  field->AddMetricByName("radius ratio");
+  TAUTLINE_NEW(vtkMetricField, field, SetCellToTetrahedron(), SetVertex1(0.1, 0.2, -0.3),
+    SetVertex2(1.2, -0.1, 0.1), SetVertex3(0.3, 0.9, 0.2), SetBounds(-1, 1, -2, 2, -1, 3),
+    SetDimensions(5, 4, 3), AddMetricByName("radius ratio"));
   field->AddMetricByName("rr"); // the same
-  field->AddMetricByName("mu_303");
-  field->Update();
+  TAUTLINE_SET(field, AddMetricByName("mu_303"), Update());
   vtkImageData* image = field->GetOutput();
   TAUTLINE_CHECK_EQUAL(field->GetNumberOfMetrics(), 2);
   TAUTLINE_CHECK_EQUAL(image->GetNumberOfPoints(), 60);
@@ -153,11 +141,9 @@ TAUTLINE_PART(testPieces)
   vtkNew<vtkMetricField> whole, part;
   for (vtkMetricField* field : { whole.Get(), part.Get() })
   {
-    field->SetCellToTetrahedron();
-    field->SetDimensions(31, 21, 11);
+    TAUTLINE_SET(field, SetCellToTetrahedron(), SetDimensions(31, 21, 11));
   }
-  whole->SetThreads(1);
-  whole->Update();
+  TAUTLINE_SET(whole, SetThreads(1), Update());
   part->SetThreads(2);
   const int extent[] = { 3, 17, 5, 20, 4, 9 };
   part->UpdateExtent(extent);
@@ -185,10 +171,8 @@ TAUTLINE_PART(testContour)
 {
   // Where the inverse mean ratio of a triangle is q, its apex is on a circle.
   vtkNew<vtkMetricField> field;
-  vtkNew<vtkContourFilter> contour;
-  contour->SetInputConnection(field->GetOutputPort());
-  contour->SetValue(0, 1.5);
-  contour->Update();
+  TAUTLINE_NEW(vtkContourFilter, contour, SetInputConnection(field->GetOutputPort()),
+    SetValue(0, 1.5), Update());
   vtkPolyData* lines = contour->GetOutput();
   TAUTLINE_CHECK(lines->GetNumberOfPoints() > 100);
   const double centre = 1.5 * height, radius = std::sqrt(centre * centre - 0.75);
@@ -214,18 +198,13 @@ TAUTLINE_PART(testRefusals)
     TAUTLINE_CHECK(messages.has(part));
     TAUTLINE_CHECK_EQUAL(field->GetOutput()->GetNumberOfPoints(), 0);
   };
-  field->AddMetricByName("width_ratio");
-  field->SetCellToTetrahedron();
+  TAUTLINE_SET(field, AddMetricByName("width_ratio"), SetCellToTetrahedron());
   refuses(wording("aspect-ratio-w-w-is-not-defined"));
-  field->ClearMetrics();
-  field->SetVertex2(0.3, 0.1, 0.7);
-  field->SetVertex3(0.99, 0.33, 2.31);
+  TAUTLINE_SET(field, ClearMetrics(), SetVertex2(0.3, 0.1, 0.7), SetVertex3(0.99, 0.33, 2.31));
   refuses(wording("are-on-a-line"));
-  field->SetCellToTriangle();
-  field->SetVertex2(0, 0, 5);
+  TAUTLINE_SET(field, SetCellToTriangle(), SetVertex2(0, 0, 5));
   refuses("coincide");
-  field->SetVertex2(1, 0, 0);
-  field->SetBounds(1, 1, 0, 2, 0, 0);
+  TAUTLINE_SET(field, SetVertex2(1, 0, 0), SetBounds(1, 1, 0, 2, 0, 0));
   refuses("Along x");
   messages.clear();
   field->AddMetric(99);
@@ -242,13 +221,10 @@ vtkPointData* fieldAt(
   vtkMetricField* field, int cell, double size, double place, const std::vector<const char*>& names)
 {
   const auto at = [=](double x) { return place + size * x; };
-  field->SetCell(cell);
-  field->SetVertex1(at(0.25), at(0), at(0));
-  field->SetVertex2(at(1.25), at(0.25), at(0));
-  field->SetVertex3(at(0.5), at(1), at(0));
-  field->SetBounds(at(-0.5), at(1), at(0.5), at(2), at(0.5), at(1.25));
-  field->SetDimensions(4, 4, 4);
-  field->ClearMetrics();
+  TAUTLINE_SET(field, SetCell(cell), SetVertex1(at(0.25), at(0), at(0)),
+    SetVertex2(at(1.25), at(0.25), at(0)), SetVertex3(at(0.5), at(1), at(0)),
+    SetBounds(at(-0.5), at(1), at(0.5), at(2), at(0.5), at(1.25)), SetDimensions(4, 4, 4),
+    ClearMetrics());
   for (const char* name : names)
   {
     field->AddMetricByName(name);

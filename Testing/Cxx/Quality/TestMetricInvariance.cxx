@@ -160,8 +160,7 @@ void testRenumbering(const Cloud& cloud)
       for (Combination combination :
         { Combination::Mean, Combination::Worst, Combination::PowerMean })
       {
-        EvaluationOptions options;
-        options.combination = combination;
+        TAUTLINE_LET(EvaluationOptions, options, combination = combination);
         const Context context(info.name);
         const Gradients before = gradientsOf(Mesh(cloud.data.view()), info.metric, options);
         const Gradients after = gradientsOf(Mesh(renumbered.view()), info.metric, options);

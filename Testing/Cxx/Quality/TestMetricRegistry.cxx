@@ -217,8 +217,7 @@ TAUTLINE_PART(testRefusedOptions)
 {
   const MeshData data = singleCell(CellType::Triangle, idealCell(CellType::Triangle));
   const Mesh mesh(data.view());
-  EvaluationOptions options;
-  options.combination = Combination::PowerMean;
+  TAUTLINE_LET(EvaluationOptions, options, combination = Combination::PowerMean);
   for (double bad : { 0.5, -1.0, std::nan("") })
   {
     options.power = bad;
@@ -232,8 +231,7 @@ TAUTLINE_PART(testRefusedOptions)
     TAUTLINE_CHECK_THROWS(
       valuesOf(mesh, Metric::SizeUntangle, options), wording("epsilon-positive"));
   }
-  options.parameters = {};
-  options.parameters.beta = HUGE_VAL;
+  TAUTLINE_SET(options, parameters = {}, parameters.beta = HUGE_VAL);
   TAUTLINE_CHECK_THROWS(
     valuesOf(mesh, Metric::UntangleBeta, options), wording("beta-must-be-finite"));
   TAUTLINE_CHECK_THROWS(

@@ -31,19 +31,12 @@ struct Distortion
 
 MetricDescription description(const std::string& name)
 {
-  MetricDescription d;
-  d.name = name;
-  d.label = "A label of " + name;
-  d.symbol = "S_" + name;
-  d.aliases = name + "_1," + name + "_2";
-  d.formula = "|T|^2 / det T^(2/n) - n";
-  d.unit = "unit";
-  d.cellTypes = 1u << topologyIndex(CellType::Tetrahedron);
+  TAUTLINE_LET(MetricDescription, d, name = name, label = "A label of " + name,
+    symbol = "S_" + name, aliases = name + "_1," + name + "_2", formula = "|T|^2 / det T^(2/n) - n",
+    unit = "unit", cellTypes = 1u << topologyIndex(CellType::Tetrahedron));
   d.full = { 0, MetricDescription::infinity };
   d.acceptable = { 0.1, 2.0 / 3 };
-  d.ideal = 1e-17 / 3;
-  d.barrier = true;
-  d.scaleInvariant = true;
+  TAUTLINE_SET(d, ideal = 1e-17 / 3, barrier = true, scaleInvariant = true);
   return d;
 }
 
@@ -143,10 +136,7 @@ TAUTLINE_PART(testFilters)
   const auto grid = toGrid(movedBlock(CellType::Tetrahedron, 2, 0.1));
   vtkNew<vtkElementQuality> quality;
   Messages messages(quality);
-  quality->SetInputData(grid);
-  quality->AddMetricByName("imr");
-  quality->AddMetric(elsewhere);
-  quality->Update();
+  TAUTLINE_SET(quality, SetInputData(grid), AddMetricByName("imr"), AddMetric(elsewhere), Update());
   TAUTLINE_CHECK(messages.has(wording("the-metric-1234567890-of-a-user-is-2")));
   TAUTLINE_CHECK(messages.has("TAUTLINE_METRICS"));
   TAUTLINE_CHECK_EQUAL(
@@ -164,10 +154,8 @@ TAUTLINE_PART(testFilters)
   };
   optimizer->SetWorstMetric(elsewhere);
   refuses();
-  optimizer->SetWorstMetric(-1);
-  optimizer->SetPreset(vtkMeshOptimizer::CUSTOM);
-  optimizer->SetNumberOfObjectives(1);
-  optimizer->SetMetric1(elsewhere);
+  TAUTLINE_SET(optimizer, SetWorstMetric(-1), SetPreset(vtkMeshOptimizer::CUSTOM),
+    SetNumberOfObjectives(1), SetMetric1(elsewhere));
   refuses();
   optimizer->SetMetric1(0);
   others.clear();

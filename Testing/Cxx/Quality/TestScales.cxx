@@ -183,8 +183,7 @@ TAUTLINE_PART(testTensors)
     const MeshData far = scaled(data, exponent);
     const Mesh mesh(far.view());
     const Targets targets = tensorTargets(mesh, tensors.data());
-    EvaluationOptions options;
-    options.targets = &targets;
+    TAUTLINE_LET(EvaluationOptions, options, targets = &targets);
     return valuesOf(mesh, metric, options);
   };
   for (int exponent : { -498, -332, 332, 498 })

@@ -132,8 +132,7 @@ double targetValue(const MetricInfo& info, CellType type, const Corners& p, cons
 /// Random W^-1 with positive determinants, different at each sample of each cell.
 Targets randomTargets(const MeshData& data, int samples, int n, Random& random)
 {
-  Targets targets;
-  targets.offsets = { 0 };
+  TAUTLINE_LET(Targets, targets, offsets = { 0 });
   for (Index cell = 0; cell < data.numberOfCells(); ++cell)
   {
     for (int s = 0; s < samples; ++s)
@@ -189,14 +188,11 @@ void testType(CellType type, bool surface)
     {
       const Context context(
         info.name + (", combination " + std::to_string(static_cast<int>(combination))));
-      EvaluationOptions options;
-      options.combination = combination;
-      options.parameters.beta = 0.3;
-      options.parameters.epsilon = 0.01;
+      TAUTLINE_LET(EvaluationOptions, options, combination = combination, parameters.beta = 0.3,
+        parameters.epsilon = 0.01);
       options.power = 200; // overflows unless values are scaled
       testMetric(info, type, mesh, cells, options);
-      options.power = 3;
-      options.targets = &targets;
+      TAUTLINE_SET(options, power = 3, targets = &targets);
       testMetric(info, type, mesh, cells, options);
     }
   }

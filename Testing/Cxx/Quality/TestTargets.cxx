@@ -46,8 +46,7 @@ double valueAtTarget(const MetricInfo& info, int dimension)
 template <class Choice>
 void checkIdeal(const Mesh& mesh, CellType type, const Targets& targets, const Choice& concerned)
 {
-  EvaluationOptions options;
-  options.targets = &targets;
+  TAUTLINE_LET(EvaluationOptions, options, targets = &targets);
   for (const MetricInfo& info : metricRegistry())
   {
     if (!info.definedOn(type) || !takesTargets(info) || !concerned(info))
@@ -82,8 +81,7 @@ void testReference(CellType type, bool surface)
   const Targets targets = referenceTargets(grownMesh, mesh);
   checkIdeal(grownMesh, type, targets,
     [](const MetricInfo& info) { return info.scaleInvariant && info.rotationInvariant; });
-  EvaluationOptions options;
-  options.targets = &targets;
+  TAUTLINE_LET(EvaluationOptions, options, targets = &targets);
   const double tau = std::pow(growth, topology(type).dimension);
   for (double value : valuesOf(grownMesh, Metric::SizeNonBarrier, options))
   {
@@ -104,8 +102,7 @@ void testReference(CellType type, bool surface)
     TAUTLINE_CHECK_THROWS(referenceTargets(reversedMesh, referenceMesh), "Cell 0");
     referenceMesh.setMirrored(true);
     const Targets reversedTargets = referenceTargets(reversedMesh, referenceMesh);
-    EvaluationOptions reversedOptions;
-    reversedOptions.targets = &reversedTargets;
+    TAUTLINE_LET(EvaluationOptions, reversedOptions, targets = &reversedTargets);
     for (Metric metric : { Metric::InverseMeanRatio, Metric::ShapeSizeOrientation })
     {
       const std::vector<double> expected = valuesOf(grownMesh, metric, options);
@@ -325,8 +322,7 @@ TAUTLINE_PART(testGivenIdeal)
     std::vector<double> values[2], gradients[2];
     for (const bool given : { false, true })
     {
-      EvaluationOptions options;
-      options.targets = given ? &targets : nullptr;
+      TAUTLINE_LET(EvaluationOptions, options, targets = given ? &targets : nullptr);
       values[given].resize(cells);
       gradients[given].resize(numbers);
       evaluateMetricGradient(

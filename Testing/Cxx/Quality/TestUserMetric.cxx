@@ -159,20 +159,12 @@ struct Limited
 MetricDescription copyOf(Metric metric, const std::string& suffix = "")
 {
   const MetricInfo& info = metricInfo(metric);
-  MetricDescription d;
-  d.name = std::string("user_") + info.name + suffix;
-  d.label = std::string("User's ") + info.label + suffix;
-  d.unit = info.unit;
-  d.in2D = info.in2D;
-  d.in3D = info.in3D;
-  d.cellTypes = info.cellTypes;
-  d.full = info.in2D ? info.full2D : info.full3D;
-  d.direction = info.direction;
-  d.inverted = info.inverted;
-  d.barrier = info.barrier;
-  d.differentiable = info.differentiable;
-  d.scaleInvariant = info.scaleInvariant;
-  d.rotationInvariant = info.rotationInvariant;
+  TAUTLINE_LET(MetricDescription, d, name = std::string("user_") + info.name + suffix,
+    label = std::string("User's ") + info.label + suffix, unit = info.unit, in2D = info.in2D,
+    in3D = info.in3D, cellTypes = info.cellTypes, full = info.in2D ? info.full2D : info.full3D,
+    direction = info.direction, inverted = info.inverted, barrier = info.barrier,
+    differentiable = info.differentiable, scaleInvariant = info.scaleInvariant,
+    rotationInvariant = info.rotationInvariant);
   return d;
 }
 
@@ -261,8 +253,7 @@ void testValues(const std::vector<Twin>& pairs)
         const Context context(metricInfo(pair.user).name + std::string(" ") + topology(type).name);
         std::vector<std::vector<Vec3>> cells;
         MeshData data = scatteredCells(type, surface, 37, random, cells);
-        EvaluationOptions options;
-        options.threads = 2;
+        TAUTLINE_LET(EvaluationOptions, options, threads = 2);
         compared += compare(pair, Mesh(data.view()), options);
         options.combination = Combination::Worst;
         compared += compare(pair, Mesh(data.view()), options);
@@ -270,8 +261,7 @@ void testValues(const std::vector<Twin>& pairs)
         const MeshData moved = movedBlock(type, 2, 0.12, 3);
         const Mesh mesh(moved.view());
         const Targets targets = referenceTargets(mesh, Mesh(like.view()));
-        options.targets = &targets;
-        options.combination = Combination::PowerMean;
+        TAUTLINE_SET(options, targets = &targets, combination = Combination::PowerMean);
         compared += compare(pair, mesh, options);
       }
     }
@@ -367,9 +357,7 @@ void testObjectives(const std::vector<Twin>& pairs)
           }
           const Context context(std::string(metricInfo(pair.user).name) + " " +
             topology(type).name + " " + std::to_string(static_cast<int>(form)));
-          Objective objective;
-          objective.metric = pair.builtIn;
-          objective.objectiveTemplate = form;
+          TAUTLINE_LET(Objective, objective, metric = pair.builtIn, objectiveTemplate = form);
           std::vector<double> expected(data.points.size(), 0.0), found(expected);
           const double F = ObjectiveSum(mesh, objective).addGradient(1, expected.data());
           objective.metric = pair.user;
@@ -413,11 +401,9 @@ void testOptimize(const std::vector<Twin>& pairs)
       double optimum[2] = {};
       for (const bool user : { false, true })
       {
-        OptimizeOptions options;
-        options.optimizer = optimizer;
-        options.objectives[0].metric = user ? pairs[0].user : pairs[0].builtIn;
-        options.stopping.maximumIterations = 200;
-        options.stopping.relativeChange = 1e-12;
+        TAUTLINE_LET(OptimizeOptions, options, optimizer = optimizer,
+          objectives[0].metric = user ? pairs[0].user : pairs[0].builtIn,
+          stopping.maximumIterations = 200, stopping.relativeChange = 1e-12);
         const OptimizeResult result = optimize(Mesh(data.view()), options);
         TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective);
         TAUTLINE_CHECK_EQUAL(result.invertedAfter, Index(0));
@@ -434,20 +420,15 @@ void testOptimize(const std::vector<Twin>& pairs)
 void testWithoutValue()
 {
   MetricDescription d = copyOf(Metric::InverseMeanRatio);
-  d.name = "limited";
-  d.label = "Limited";
-  d.barrier = false;
-  d.full.low = 0;
+  TAUTLINE_SET(d, name = "limited", label = "Limited", barrier = false, full.low = 0);
   const Metric limited = registerJacobianMetric(d, Limited());
   for (const CellType type : { CellType::Triangle, CellType::Tetrahedron, CellType::Hexahedron })
   {
     const Context context(topology(type).name);
     MeshData data = movedBlock(type, 3, 0.1);
-    OptimizeOptions options;
-    options.objectives[0].metric = limited;
+    TAUTLINE_LET(OptimizeOptions, options, objectives[0].metric = limited);
     // The objective has its minimum where single elements are at the limit.
-    options.holdWorst = false;
-    options.stopping.maximumIterations = 20;
+    TAUTLINE_SET(options, holdWorst = false, stopping.maximumIterations = 20);
     for (const Optimizer optimizer : { Optimizer::LocalNewton, Optimizer::LocalConjugateGradient,
            Optimizer::NewtonConjugateGradient, Optimizer::LimitedMemoryBFGS })
     {
@@ -470,10 +451,8 @@ void testWithoutValue()
       for (const Combination combination :
         { Combination::Mean, Combination::Worst, Combination::PowerMean })
       {
-        Objective objective;
-        objective.metric = limited;
-        objective.objectiveTemplate = form;
-        objective.evaluation.combination = combination;
+        TAUTLINE_LET(Objective, objective, metric = limited, objectiveTemplate = form,
+          evaluation.combination = combination);
         std::vector<double> gradient(data.points.size(), 0.0);
         const double F = ObjectiveSum(stretched, objective).addGradient(1, gradient.data());
         TAUTLINE_CHECK_EQUAL(F, HUGE_VAL);
@@ -549,8 +528,7 @@ void testRefused()
   d.scaleInvariant = false;
   TAUTLINE_CHECK_THROWS(
     registerJacobianMetric(d, DistanceByTrace()), wording("depends-on-the-rotation"));
-  RatioBySlope wrong;
-  wrong.fault = 1e-3;
+  TAUTLINE_LET(RatioBySlope, wrong, fault = 1e-3);
   TAUTLINE_CHECK_THROWS(
     registerJacobianMetric(good, wrong), wording("differ-from-finite-differences"));
   TAUTLINE_CHECK_THROWS(registerMetric(good, nullptr), wording("has-no-function"));
@@ -565,9 +543,7 @@ void testRefused()
 /// A function of many elements at once: it measures, and is not optimized.
 void testElements()
 {
-  MetricDescription d;
-  d.name = "centre_height";
-  d.rotationInvariant = false;
+  TAUTLINE_LET(MetricDescription, d, name = "centre_height", rotationInvariant = false);
   Index calls = 0;
   const Metric metric = registerElementsMetric(d,
     [&](CellType type, Index count, const double* points, double* values)
@@ -597,15 +573,13 @@ void testElements()
     }
     TAUTLINE_CHECK_RELATIVE(values[c], expected, 1e-14);
   }
-  Objective objective;
-  objective.metric = metric;
+  TAUTLINE_LET(Objective, objective, metric = metric);
   const Mesh mesh(data.view());
   TAUTLINE_CHECK_THROWS(ObjectiveSum(mesh, objective), wording("has-no-derivatives"));
   std::vector<double> q(data.numberOfCells()), g(3 * data.connectivity.size());
   TAUTLINE_CHECK_THROWS(
     evaluateMetricGradient(mesh, metric, {}, q.data(), g.data()), wording("has-no-derivatives"));
-  OptimizeOptions options;
-  options.objectives[0].metric = metric;
+  TAUTLINE_LET(OptimizeOptions, options, objectives[0].metric = metric);
   TAUTLINE_CHECK_THROWS(optimize(mesh, options), wording("has-no-derivatives"));
   unregisterMetric("centre_height");
 }

@@ -129,11 +129,8 @@ struct CornerRatio
 
 MetricDescription describe(const std::string& name, bool barrier, bool scale, bool rotation)
 {
-  MetricDescription d;
-  d.name = name;
-  d.barrier = barrier;
-  d.scaleInvariant = scale;
-  d.rotationInvariant = rotation;
+  TAUTLINE_LET(MetricDescription, d, name = name, barrier = barrier, scaleInvariant = scale,
+    rotationInvariant = rotation);
   return d;
 }
 
@@ -241,11 +238,9 @@ MeshData start(CellType type, double scale)
 std::vector<double> sweep(
   const MeshData& data, Metric metric, ObjectiveTemplate form = ObjectiveTemplate::SumOfSquares)
 {
-  OptimizeOptions options;
-  options.optimizer = Optimizer::LocalNewton;
-  options.stopping.maximumIterations = 6;
-  options.objectives[0].metric = metric;
-  options.objectives[0].objectiveTemplate = form;
+  TAUTLINE_LET(OptimizeOptions, options, optimizer = Optimizer::LocalNewton,
+    stopping.maximumIterations = 6, objectives[0].metric = metric,
+    objectives[0].objectiveTemplate = form);
   const OptimizeResult result = optimize(Mesh(data.view()), options);
   TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective);
   return result.points;
@@ -268,8 +263,7 @@ TAUTLINE_PART(testSweeps)
   const Metric entries =
     registerJacobianMetric(describe("s_entries", true, true, true), EntryRatio());
   MetricDescription tetrahedra = describe("s_tetrahedra", true, true, true);
-  tetrahedra.in2D = false;
-  tetrahedra.cellTypes = 1u << topologyIndex(CellType::Tetrahedron);
+  TAUTLINE_SET(tetrahedra, in2D = false, cellTypes = 1u << topologyIndex(CellType::Tetrahedron));
   const Metric corners = registerCornerMetric(tetrahedra, CornerRatio());
   for (const CellType type :
     { CellType::Triangle, CellType::Quadrilateral, CellType::Tetrahedron, CellType::Hexahedron })

@@ -34,11 +34,8 @@ constexpr int blockSize = 2; ///< unit cubes (squares) in each direction
 void testSource(int vtkType, bool higher)
 {
   const Context context(cellClassName(vtkType));
-  vtkNew<vtkCellTypeSource> source;
-  source->SetCellType(vtkType);
-  source->SetBlocksDimensions(blockSize, blockSize, blockSize);
-  source->SetCellOrder(2);
-  source->Update();
+  TAUTLINE_NEW(vtkCellTypeSource, source, SetCellType(vtkType),
+    SetBlocksDimensions(blockSize, blockSize, blockSize), SetCellOrder(2), Update());
   vtkUnstructuredGrid* grid = source->GetOutput();
   const MeshAdapter adapter(grid);
   const Mesh& mesh = adapter.mesh();
@@ -64,15 +61,11 @@ void testIdealCells(CellType type)
   const Context context(topology(type).name);
   const std::vector<Vec3> corners = idealCell(type);
   const auto grid = toGrid(singleCell(type, corners));
-  vtkNew<vtkCellSizeFilter> size;
-  size->SetInputData(grid);
-  size->Update();
+  TAUTLINE_NEW(vtkCellSizeFilter, size, SetInputData(grid), Update());
   vtkDataSetAttributes* sizes = vtkDataSet::SafeDownCast(size->GetOutput())->GetCellData();
   TAUTLINE_CHECK_NEAR(component(sizes, topology(type).dimension == 2 ? "Area" : "Volume", 0),
     valueOf(type, corners, Metric::Size), 1e-15);
-  vtkNew<vtkCellValidator> validator;
-  validator->SetInputData(grid);
-  validator->Update();
+  TAUTLINE_NEW(vtkCellValidator, validator, SetInputData(grid), Update());
   TAUTLINE_CHECK_EQUAL(component(validator->GetOutput()->GetCellData(), "ValidityState", 0), 0.0);
 }
 }

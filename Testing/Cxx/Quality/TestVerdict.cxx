@@ -154,8 +154,7 @@ void compare(const Comparison& c)
     data.addCell(c.type, validCell(c.type, 0.35, 0.05, random));
   }
   const auto grid = toVerdict(data);
-  EvaluationOptions options;
-  options.combination = c.combination;
+  TAUTLINE_LET(EvaluationOptions, options, combination = c.combination);
   const std::vector<double> values = valuesOf(data, c.metric, options);
   for (int i = 0; i < cellsPerType; ++i)
   {

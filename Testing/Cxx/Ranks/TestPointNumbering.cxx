@@ -66,13 +66,10 @@ struct Part
   }
   Mesh mesh() const
   {
-    MeshView view;
-    view.numberOfPoints = this->numberOfPoints();
-    view.points = this->points.data();
-    view.numberOfCells = static_cast<Index>(this->types.size());
-    view.cellTypes = this->types.data();
-    view.offsets = this->offsets.data();
-    view.connectivity = this->connectivity.data();
+    TAUTLINE_LET(MeshView, view, numberOfPoints = this->numberOfPoints(),
+      points = this->points.data(), numberOfCells = static_cast<Index>(this->types.size()),
+      cellTypes = this->types.data(), offsets = this->offsets.data(),
+      connectivity = this->connectivity.data());
     return Mesh(view);
   }
 };
@@ -320,11 +317,8 @@ std::vector<double> solvedOver(
   }
   const PointNumbering numbering(&comm, part.numberOfPoints(), part.ids.data(), used.data());
   const Springs springs(part, numbering, block, scale);
-  LinearSystem system;
-  system.matrix = &springs.matrix;
-  system.blockSize = block;
-  system.coordinates = springs.coordinates.data();
-  system.numbering = &numbering;
+  TAUTLINE_LET(LinearSystem, system, matrix = &springs.matrix, blockSize = block,
+    coordinates = springs.coordinates.data(), numbering = &numbering);
   LinearSolver solver(system, options);
   std::vector<double> x(springs.b.size());
   const LinearSolution solution = solver.solve(springs.b.data(), x.data());
@@ -338,8 +332,7 @@ void testSolutions(MPI_Comm comm)
 {
   for (const int block : { 1, 2 })
   {
-    SolverOptions options;
-    options.method = KrylovMethod::Direct;
+    TAUTLINE_LET(SolverOptions, options, method = KrylovMethod::Direct);
     const std::vector<double> expected = solvedOver(MPI_COMM_SELF, false, block, 1.0, options);
     for (const double scale : { 1e-8, 1.0, 1e8 })
     {
@@ -354,9 +347,8 @@ void testSolutions(MPI_Comm comm)
       {
         const Context context(std::string(nameOf(preconditioner)) + " block " +
           std::to_string(block) + " scattered " + std::to_string(scattered));
-        options.method = KrylovMethod::ConjugateGradient;
-        options.preconditioner = preconditioner;
-        options.relativeTolerance = 1e-13;
+        TAUTLINE_SET(options, method = KrylovMethod::ConjugateGradient,
+          preconditioner = preconditioner, relativeTolerance = 1e-13);
         TAUTLINE_CHECK(
           relativeDifference(solvedOver(comm, scattered, block, 1.0, options), expected) < 1e-10);
       }
@@ -372,20 +364,16 @@ void testConditions(MPI_Comm comm)
   const Mesh wholeMesh = whole.mesh(), mesh = part.mesh();
   for (const Pde pde : { Pde::Poisson, Pde::Elasticity })
   {
-    EllipticProblem problem;
-    problem.pde = pde;
+    TAUTLINE_LET(EllipticProblem, problem, pde = pde);
     MeshPart alone, shared;
-    alone.communicator = &self;
-    alone.globalIds = whole.ids.data();
-    shared.communicator = &comm;
-    shared.globalIds = part.ids.data();
+    TAUTLINE_SET(alone, communicator = &self, globalIds = whole.ids.data());
+    TAUTLINE_SET(shared, communicator = &comm, globalIds = part.ids.data());
     const EllipticSystem expected(wholeMesh, problem, alone), system(mesh, problem, shared);
     for (const Preconditioner preconditioner :
       { Preconditioner::None, Preconditioner::Jacobi, Preconditioner::BoomerAMG })
     {
       const Context context(nameOf(preconditioner));
-      ConditionOptions options;
-      options.preconditioner = preconditioner;
+      TAUTLINE_LET(ConditionOptions, options, preconditioner = preconditioner);
       const ConditionEstimate one = estimateCondition(expected.linearSystem(), options),
                               all = estimateCondition(system.linearSystem(), options);
       TAUTLINE_CHECK(one.converged && all.converged);
@@ -431,11 +419,8 @@ void testTogether(MPI_Comm comm)
   }
   const PointNumbering numbering(&comm, part.numberOfPoints(), part.ids.data(), used.data());
   Springs springs(part, numbering, 1, 1.0);
-  LinearSystem system;
-  system.matrix = &springs.matrix;
-  system.numbering = &numbering;
-  SolverOptions options;
-  options.preconditioner = Preconditioner::None;
+  TAUTLINE_LET(LinearSystem, system, matrix = &springs.matrix, numbering = &numbering);
+  TAUTLINE_LET(SolverOptions, options, preconditioner = Preconditioner::None);
   options.observer = [&](int iteration, double) { return !last || iteration < 4; };
   std::vector<double> x(springs.b.size());
   {
@@ -485,13 +470,10 @@ void testEmptyRank(MPI_Comm comm)
   const PointNumbering numbering(&comm, part.numberOfPoints(), part.ids.data(), used.data());
   TAUTLINE_CHECK_EQUAL(numbering.globalSize(), Index(columns - 1) * (rows - 1));
   const Springs springs(part, numbering, 1, 1.0);
-  LinearSystem system;
-  system.matrix = &springs.matrix;
-  system.numbering = &numbering;
+  TAUTLINE_LET(LinearSystem, system, matrix = &springs.matrix, numbering = &numbering);
   for (const Preconditioner preconditioner : { Preconditioner::BoomerAMG, Preconditioner::ILU })
   {
-    SolverOptions options;
-    options.preconditioner = preconditioner;
+    TAUTLINE_LET(SolverOptions, options, preconditioner = preconditioner);
     LinearSolver solver(system, options);
     std::vector<double> x(springs.b.size());
     TAUTLINE_CHECK(converged(solver.solve(springs.b.data(), x.data()).reason));
@@ -510,8 +492,7 @@ TAUTLINE_TEST(TestPointNumbering)
     const SparseMatrix a = laplacian(20);
     const std::vector<double> b = someVector(a.size);
     std::vector<double> x(b.size());
-    LinearSystem system;
-    system.matrix = &a;
+    TAUTLINE_LET(LinearSystem, system, matrix = &a);
     LinearSolver solver(system, {});
     TAUTLINE_CHECK(converged(solver.solve(b.data(), x.data()).reason));
     TAUTLINE_CHECK(estimateCondition(system, {}).converged);

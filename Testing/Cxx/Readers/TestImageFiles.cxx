@@ -35,9 +35,8 @@ fs::path folder; ///< to write to
 std::string errorOf(vtkAlgorithm* reader)
 {
   vtkNew<vtkTest::ErrorObserver> errors, executive;
-  reader->AddObserver(vtkCommand::ErrorEvent, errors);
-  reader->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executive);
-  reader->Update();
+  TAUTLINE_SET(reader, AddObserver(vtkCommand::ErrorEvent, errors),
+    GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executive), Update());
   return errors->GetErrorMessage();
 }
 
@@ -46,8 +45,7 @@ std::string complaintOf(const std::string& bytes)
 {
   const std::string name = (folder / "image").string();
   writeText(name, bytes);
-  vtkNew<vtkImageFileReader> reader;
-  reader->SetFileName(name.c_str());
+  TAUTLINE_NEW(vtkImageFileReader, reader, SetFileName(name.c_str()));
   const std::string message = errorOf(reader);
   TAUTLINE_CHECK(message.empty() || message.find(name) != message.npos);
   TAUTLINE_CHECK(message.empty() == (reader->GetOutput()->GetNumberOfPoints() > 0));
@@ -76,8 +74,7 @@ void testPixels()
          "colour.ppm", "colour.jpg", "grey.jpg" })
   {
     const Context context(name);
-    vtkNew<vtkImageFileReader> reader;
-    reader->SetFileName((corpus / name).string().c_str());
+    TAUTLINE_NEW(vtkImageFileReader, reader, SetFileName((corpus / name).string().c_str()));
     TAUTLINE_CHECK(reader->CanReadFile(reader->GetFileName()));
     TAUTLINE_CHECK_EQUAL(errorOf(reader), std::string());
     const int* size = reader->GetOutput()->GetDimensions();
@@ -94,9 +91,8 @@ void testPixels()
   // VTK alone takes the last bytes of a BMP file for the pixels.
   const std::string bmp = readText((corpus / "colour.bmp").string());
   TAUTLINE_CHECK_EQUAL(complaintOf(bmp + "xyz"), std::string());
-  vtkNew<vtkImageFileReader> longer;
-  longer->SetFileName((folder / "image").string().c_str());
-  longer->Update();
+  TAUTLINE_NEW(
+    vtkImageFileReader, longer, SetFileName((folder / "image").string().c_str()), Update());
   TAUTLINE_CHECK_EQUAL(longer->GetOutput()->GetPointData()->GetScalars()->GetComponent(0, 1), 37.0);
 }
 
@@ -152,9 +148,8 @@ void testTiff()
   for (const bool oriented : { false, true })
   {
     TAUTLINE_CHECK_EQUAL(complaintOf(oriented ? tiff({ { 274, 1 } }) : tiff({})), std::string());
-    vtkNew<vtkImageFileReader> reader;
-    reader->SetFileName((folder / "image").string().c_str());
-    reader->Update();
+    TAUTLINE_NEW(
+      vtkImageFileReader, reader, SetFileName((folder / "image").string().c_str()), Update());
     vtkDataArray* values = reader->GetOutput()->GetPointData()->GetScalars();
     for (vtkIdType i = 0; i < 4; ++i) // the first row is the top one
     {
@@ -205,8 +200,7 @@ void testFolder()
   fs::copy_file(corpus / "short.tga", set / "short.tga");
   writeText((set / "notes.png").string(), "no picture");
   TAUTLINE_CHECK(mkfifo((set / "pipe.png").string().c_str(), 0600) == 0);
-  vtkNew<vtkSilhouetteSetReader> reader;
-  reader->SetFileName(set.string().c_str());
+  TAUTLINE_NEW(vtkSilhouetteSetReader, reader, SetFileName(set.string().c_str()));
   TAUTLINE_CHECK_EQUAL(errorOf(reader), std::string());
   auto* blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
   TAUTLINE_CHECK_EQUAL(blocks->GetNumberOfBlocks(), 2u); // by content, in the order of the names
@@ -214,20 +208,17 @@ void testFolder()
   for (const char* name : { "short.tga", "notes.png", "pipe.png" })
   {
     writeText((set / "list.csv").string(), "file,class\nb1.png,b\n" + std::string(name) + ",c\n");
-    vtkNew<vtkSilhouetteSetReader> listed;
-    listed->SetFileName((set / "list.csv").string().c_str());
+    TAUTLINE_NEW(vtkSilhouetteSetReader, listed, SetFileName((set / "list.csv").string().c_str()));
     TAUTLINE_CHECK(errorOf(listed).find(name) != std::string::npos);
   }
   const std::string whole = readText((set / "b1.png").string());
   writeText((set / "b1.png").string(), whole.substr(0, whole.size() / 2));
-  vtkNew<vtkSilhouetteSetReader> damaged;
-  damaged->SetFileName(set.string().c_str());
+  TAUTLINE_NEW(vtkSilhouetteSetReader, damaged, SetFileName(set.string().c_str()));
   const std::string message = errorOf(damaged);
   TAUTLINE_CHECK(message.find(wording("b1-png-the-image-cannot-be-read")) != std::string::npos);
   fs::remove(set / "b1.png");
   fs::remove(set / "a1.txt");
-  vtkNew<vtkSilhouetteSetReader> none;
-  none->SetFileName(set.string().c_str());
+  TAUTLINE_NEW(vtkSilhouetteSetReader, none, SetFileName(set.string().c_str()));
   TAUTLINE_CHECK(errorOf(none).find(wording("no-images-png")) != std::string::npos);
   for (const char* name : { "", "nowhere.png", "pipe.png" })
   {

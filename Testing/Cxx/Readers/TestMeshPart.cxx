@@ -200,19 +200,16 @@ template <class Reader, class Output>
 void testReader(const std::string& name, vtkIdType cells)
 {
   constexpr int pieces = 3;
-  vtkNew<Reader> reader;
-  reader->SetFileName(name.c_str());
-  reader->Update();
+  TAUTLINE_NEW(Reader, reader, SetFileName(name.c_str()), Update());
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == cells);
   TAUTLINE_CHECK(reader->GetOutput()->GetCellData()->GetGlobalIds() == nullptr);
   std::set<vtkIdType> all;
   for (int piece = 0; piece < pieces; ++piece)
   {
     using Executive = vtkStreamingDemandDrivenPipeline;
-    vtkNew<vtkInformation> request;
-    request->Set(Executive::UPDATE_PIECE_NUMBER(), piece);
-    request->Set(Executive::UPDATE_NUMBER_OF_PIECES(), pieces);
-    request->Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 1);
+    TAUTLINE_NEW(vtkInformation, request, Set(Executive::UPDATE_PIECE_NUMBER(), piece),
+      Set(Executive::UPDATE_NUMBER_OF_PIECES(), pieces),
+      Set(Executive::UPDATE_NUMBER_OF_GHOST_LEVELS(), 1));
     reader->Update(request);
     vtkPointSet* part = reader->GetOutput();
     TAUTLINE_CHECK(part->IsA("vtkPolyData") == (std::is_same_v<Output, vtkPolyData>));
@@ -241,8 +238,7 @@ protected:
 
 void testMemory()
 {
-  vtkNew<ReaderWithoutMemory> reader;
-  reader->SetFileName("some.mesh");
+  TAUTLINE_NEW(ReaderWithoutMemory, reader, SetFileName("some.mesh"));
   vtkObject::GlobalWarningDisplayOff();
   reader->UpdatePiece(1, 3, 1);
   vtkObject::GlobalWarningDisplayOn();

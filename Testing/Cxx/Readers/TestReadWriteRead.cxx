@@ -89,9 +89,8 @@ void checkArrays()
   MeshFile mesh = readByName(data + "/cube.1.ele", false);
   const auto points = static_cast<std::size_t>(mesh.numberOfPoints());
   const auto cells = static_cast<std::size_t>(mesh.numberOfCells());
-  mesh.points[0] = 0.1 + 0.2;
-  mesh.points[1] = 4.9406564584124654e-324;
-  mesh.points[2] = -1.7976931348623157e308;
+  TAUTLINE_SET(mesh, points[0] = 0.1 + 0.2, points[1] = 4.9406564584124654e-324,
+    points[2] = -1.7976931348623157e308);
   mesh.pointArrays.push_back(MeshArray::make("heat flux, %", 3, 'f', 3 * points));
   std::get<MeshArray::Doubles>(mesh.pointArrays.back().values)[4] = 1.0 / 3.0;
   std::get<MeshArray::Doubles>(mesh.pointArrays.back().values)[5] = std::nan("");
@@ -172,24 +171,15 @@ void checkViews()
 /// Writers take any data set, reject by name, and report when a file cannot be written.
 void checkWriterClasses()
 {
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(3, 3, 2);
-  vtkNew<vtkFloatArray> heat;
-  heat->SetName("heat");
-  heat->SetNumberOfTuples(18);
-  heat->Fill(0.1f);
+  TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 2));
+  TAUTLINE_NEW(vtkFloatArray, heat, SetName("heat"), SetNumberOfTuples(18), Fill(0.1f));
   image->GetPointData()->AddArray(heat);
-  vtkNew<vtkUnsignedCharArray> ghosts;
-  ghosts->SetName(vtkDataSetAttributes::GhostArrayName());
-  ghosts->SetNumberOfTuples(4);
-  ghosts->Fill(0);
-  ghosts->SetValue(2, vtkDataSetAttributes::DUPLICATECELL);
+  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()),
+    SetNumberOfTuples(4), Fill(0), SetValue(2, vtkDataSetAttributes::DUPLICATECELL));
   image->GetCellData()->AddArray(ghosts);
 
-  vtkNew<vtkGmshWriter> gmsh;
-  gmsh->SetInputData(image);
-  gmsh->SetFileName((output + "/image.msh").c_str());
-  gmsh->BinaryOn();
+  TAUTLINE_NEW(vtkGmshWriter, gmsh, SetInputData(image),
+    SetFileName((output + "/image.msh").c_str()), BinaryOn());
   TAUTLINE_CHECK(gmsh->Write() == 1 && gmsh->GetNumberOfFilesWritten() == 1);
   const MeshFile read = readByName(output + "/image.msh", false);
   TAUTLINE_CHECK(countCells(read, FileHexahedron) == 3); // one of four is a ghost
@@ -200,16 +190,14 @@ void checkWriterClasses()
     TAUTLINE_CHECK(read.connectivity[i] == first[i]);
   }
 
-  gmsh->SetFileName((output + "/image.pos").c_str());
-  gmsh->BinaryOff();
+  TAUTLINE_SET(gmsh, SetFileName((output + "/image.pos").c_str()), BinaryOff());
   TAUTLINE_CHECK(gmsh->Write() == 1 && fileExists(output + "/image.pos"));
 
   const auto refusal = [&](vtkMeshFileWriter* writer, const std::string& name)
   {
     vtkNew<vtkTest::ErrorObserver> errors;
-    writer->AddObserver(vtkCommand::ErrorEvent, errors);
-    writer->SetInputData(image);
-    writer->SetFileName(name.c_str());
+    TAUTLINE_SET(writer, AddObserver(vtkCommand::ErrorEvent, errors), SetInputData(image),
+      SetFileName(name.c_str()));
     TAUTLINE_CHECK(writer->Write() == 0 && errors->GetError());
     return std::string(writer->GetErrorText());
   };

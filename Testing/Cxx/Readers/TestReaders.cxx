@@ -297,9 +297,8 @@ void testHighOrder()
 
   vtkNew<vtkGmshReader> reader;
   vtkNew<vtkTest::ErrorObserver> observer;
-  reader->AddObserver(vtkCommand::WarningEvent, observer);
-  reader->SetFileName(file.c_str());
-  reader->Update();
+  TAUTLINE_SET(
+    reader, AddObserver(vtkCommand::WarningEvent, observer), SetFileName(file.c_str()), Update());
   TAUTLINE_CHECK_EQUAL(observer->CheckWarningMessage("read as linear ones"), 0);
 }
 
@@ -369,9 +368,7 @@ void testFreeFemAndOff()
 /// In VTK's own view, middle nodes are in the middle of edges: the node orders are right.
 void testOrderOfMiddleNodes(vtkMeshFileReader* reader, const char* name, int points)
 {
-  reader->SetFileName((data + name).c_str());
-  reader->SetLowerCells(true);
-  reader->Update();
+  TAUTLINE_SET(reader, SetFileName((data + name).c_str()), SetLowerCells(true), Update());
   auto* grid = vtkUnstructuredGrid::SafeDownCast(reader->GetOutputDataObject(0));
   TAUTLINE_CHECK(grid && grid->GetNumberOfPoints() == points);
   int middles = 0;
@@ -400,24 +397,19 @@ void testReaderClasses()
 {
   vtkNew<vtkTetGenReader> reader;
   vtkNew<vtkTest::ErrorObserver> errors;
-  reader->AddObserver(vtkCommand::ErrorEvent, errors);
-  reader->SetFileName((data + "/cube.1.ele").c_str());
-  reader->Update();
+  TAUTLINE_SET(reader, AddObserver(vtkCommand::ErrorEvent, errors),
+    SetFileName((data + "/cube.1.ele").c_str()), Update());
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 171 && !errors->GetError());
   TAUTLINE_CHECK(reader->GetOutput()->GetCellData()->GetArray("Reference") != nullptr);
-  reader->SetFileName((data + "/none.ele").c_str());
-  reader->Update();
+  TAUTLINE_SET(reader, SetFileName((data + "/none.ele").c_str()), Update());
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfPoints() == 0);
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 0);
   TAUTLINE_CHECK(
     errors->GetErrorMessage().find(wording("none-node-cannot-be-opened")) != std::string::npos);
-  reader->SetFileName((data + "/cube.1.ele").c_str());
-  reader->Update();
+  TAUTLINE_SET(reader, SetFileName((data + "/cube.1.ele").c_str()), Update());
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 171);
 
-  vtkNew<vtkOffReader> off;
-  off->SetFileName((data + "/house.off").c_str());
-  off->Update();
+  TAUTLINE_NEW(vtkOffReader, off, SetFileName((data + "/house.off").c_str()), Update());
   TAUTLINE_CHECK(off->GetOutput()->IsA("vtkPolyData") && off->GetOutput()->GetNumberOfCells() == 7);
   vtkNew<vtkGmshReader> gmsh;
   vtkNew<vtkMeditReader> medit;

@@ -109,8 +109,7 @@ inline MeshData roundMesh(int directions, unsigned seed = 7, Index cubes = Round
 
 inline MeshData outputOf(const ReconnectionResult& result)
 {
-  MeshData data;
-  data.points = result.points;
+  TAUTLINE_LET(MeshData, data, points = result.points);
   for (std::size_t i = 0; i < result.tetrahedra.size(); i += 4)
   {
     const Index* v = &result.tetrahedra[i];

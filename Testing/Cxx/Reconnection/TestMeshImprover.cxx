@@ -61,14 +61,10 @@ double linear(const Vec3& p)
 vtkSmartPointer<vtkUnstructuredGrid> withArrays(const MeshData& data, int type = VTK_DOUBLE)
 {
   auto grid = toGrid(data, type);
-  vtkNew<vtkDoubleArray> field;
-  field->SetName("field");
-  vtkNew<vtkIdTypeArray> point;
-  point->SetName("point");
-  vtkNew<vtkIntArray> region;
-  region->SetName("region");
-  vtkNew<vtkStringArray> text;
-  text->SetName("text");
+  TAUTLINE_NEW(vtkDoubleArray, field, SetName("field"));
+  TAUTLINE_NEW(vtkIdTypeArray, point, SetName("point"));
+  TAUTLINE_NEW(vtkIntArray, region, SetName("region"));
+  TAUTLINE_NEW(vtkStringArray, text, SetName("text"));
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {
     field->InsertNextValue(linear(data.point(i)));
@@ -79,10 +75,8 @@ vtkSmartPointer<vtkUnstructuredGrid> withArrays(const MeshData& data, int type =
     region->InsertNextValue(i < data.numberOfCells() / 2 ? 7 : -2);
     text->InsertNextValue("c" + std::to_string(i));
   }
-  grid->GetPointData()->AddArray(field);
-  grid->GetPointData()->SetGlobalIds(point);
-  grid->GetCellData()->AddArray(region);
-  grid->GetCellData()->AddArray(text);
+  TAUTLINE_SET(grid, GetPointData()->AddArray(field), GetPointData()->SetGlobalIds(point),
+    GetCellData()->AddArray(region), GetCellData()->AddArray(text));
   return grid;
 }
 
@@ -98,9 +92,7 @@ TAUTLINE_PART(testKernel)
       reconnect(data, optionsOf(static_cast<ReconnectionPreset>(preset)));
     vtkNew<vtkMeshImprover> filter;
     Messages messages(filter);
-    filter->SetInputData(toGrid(data));
-    filter->SetPreset(preset);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetPreset(preset), Update());
     TAUTLINE_CHECK(messages.empty());
     const MeshData after = dataOf(meshOf(filter));
     TAUTLINE_CHECK(after.points == expected.points);
@@ -146,11 +138,8 @@ TAUTLINE_PART(testRemedies)
     { vtkMeshImprover::FIXED, vtkMeshImprover::SLIDING, vtkMeshImprover::ON_SURFACE })
   {
     const Context context("boundary " + std::to_string(boundary));
-    vtkNew<vtkMeshImprover> filter;
-    filter->SetInputData(toGrid(sliverBlock(Cubes)));
-    filter->SetBoundary(boundary);
-    filter->SetTargetAngle(highest);
-    filter->Update();
+    TAUTLINE_NEW(vtkMeshImprover, filter, SetInputData(toGrid(sliverBlock(Cubes))),
+      SetBoundary(boundary), SetTargetAngle(highest), Update());
     const std::string text = filter->GetSummary();
     TAUTLINE_CHECK(filter->GetRemaining() > 0);
     TAUTLINE_CHECK(contains(text, wording("it-has-a-point-on-the-boundary")));
@@ -169,11 +158,9 @@ TAUTLINE_PART(testData)
   const auto input = withArrays(data);
   vtkNew<vtkMeshImprover> filter;
   Messages messages(filter);
-  filter->SetInputData(input);
-  filter->SetPreset(vtkMeshImprover::AGGRESSIVE);
-  filter->SetTargetAngle(40);
-  filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "region");
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(input), SetPreset(vtkMeshImprover::AGGRESSIVE),
+    SetTargetAngle(40),
+    SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "region"), Update());
   TAUTLINE_CHECK(messages.empty());
   vtkUnstructuredGrid* output = meshOf(filter);
   const MeshData after = dataOf(output);
@@ -229,16 +216,12 @@ TAUTLINE_PART(testFixed)
 {
   const MeshData data = sliverBlock(Cubes);
   const auto input = toGrid(data);
-  vtkNew<vtkDoubleArray> all;
-  all->SetName("all");
-  all->SetNumberOfValues(data.numberOfPoints());
-  all->Fill(1);
+  TAUTLINE_NEW(
+    vtkDoubleArray, all, SetName("all"), SetNumberOfValues(data.numberOfPoints()), Fill(1));
   input->GetPointData()->AddArray(all);
-  vtkNew<vtkMeshImprover> filter;
-  filter->SetInputData(0, input);
-  filter->SetPreset(vtkMeshImprover::SWAP_AND_SMOOTH);
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "all");
-  filter->Update();
+  TAUTLINE_NEW(vtkMeshImprover, filter, SetInputData(0, input),
+    SetPreset(vtkMeshImprover::SWAP_AND_SMOOTH),
+    SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "all"), Update());
   TAUTLINE_CHECK(dataOf(meshOf(filter)).points == data.points);
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("it-has-a-fixed-point-fix-fewer")));
   filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "None");
@@ -250,14 +233,10 @@ TAUTLINE_PART(testFixed)
   {
     ids->InsertNextValue(i);
   }
-  vtkNew<vtkSelectionNode> node;
-  node->SetContentType(vtkSelectionNode::INDICES);
-  node->SetFieldType(vtkSelectionNode::CELL);
-  node->SetSelectionList(ids);
-  vtkNew<vtkSelection> selection;
-  selection->AddNode(node);
-  filter->SetInputData(1, selection);
-  filter->Update();
+  TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+    SetFieldType(vtkSelectionNode::CELL), SetSelectionList(ids));
+  TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
+  TAUTLINE_SET(filter, SetInputData(1, selection), Update());
   TAUTLINE_CHECK(dataOf(meshOf(filter)).points == data.points);
 }
 
@@ -270,8 +249,7 @@ TAUTLINE_PART(testRefusals)
   {
     const Context context(text);
     messages.clear();
-    filter->SetInputDataObject(0, input);
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputDataObject(0, input), Update());
     TAUTLINE_CHECK(messages.has(text));
     TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetNumberOfRows(), 0);
     TAUTLINE_CHECK(std::string(filter->GetSummary()).empty());
@@ -285,8 +263,7 @@ TAUTLINE_PART(testRefusals)
     "1 quadrilaterals: Improve Mesh takes linear triangles only; run Triangulate first";
   refused(toGrid(mixed), triangulate);
   refused(toPolyData(mixed), triangulate);
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(3, 3, 3);
+  TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
   refused(image, wording("run-tetrahedralize-first-2"));
 
   MeshData inverted = blockMesh(CellType::Tetrahedron, 2, 2, 2);
@@ -297,21 +274,17 @@ TAUTLINE_PART(testRefusals)
   refused(toGrid(broken), wording("nan-or-infinite"));
 
   const auto ghosts = toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2));
-  vtkNew<vtkUnsignedCharArray> flags;
-  flags->SetName(vtkDataSetAttributes::GhostArrayName());
-  flags->SetNumberOfValues(ghosts->GetNumberOfCells());
-  flags->Fill(0);
-  flags->SetValue(3, vtkDataSetAttributes::DUPLICATECELL);
+  TAUTLINE_NEW(vtkUnsignedCharArray, flags, SetName(vtkDataSetAttributes::GhostArrayName()),
+    SetNumberOfValues(ghosts->GetNumberOfCells()), Fill(0),
+    SetValue(3, vtkDataSetAttributes::DUPLICATECELL));
   ghosts->GetCellData()->AddArray(flags);
   refused(ghosts, wording("1-ghost-or-hidden-cells"));
 
   const auto regions = withArrays(blockMesh(CellType::Tetrahedron, 2, 2, 2));
   filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "absent");
   refused(regions, "absent");
-  vtkNew<vtkDoubleArray> holes;
-  holes->SetName("holes");
-  holes->SetNumberOfValues(regions->GetNumberOfCells());
-  holes->Fill(std::numeric_limits<double>::quiet_NaN());
+  TAUTLINE_NEW(vtkDoubleArray, holes, SetName("holes"),
+    SetNumberOfValues(regions->GetNumberOfCells()), Fill(std::numeric_limits<double>::quiet_NaN()));
   regions->GetCellData()->AddArray(holes);
   filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "holes");
   refused(regions, wording("is-nan-in-cell-0"));
@@ -326,8 +299,7 @@ TAUTLINE_PART(testRefusals)
 TAUTLINE_PART(testSurfaceCells)
 {
   const MeshData data = sliverBlock(3);
-  MeshData mixed;
-  mixed.points = data.points;
+  TAUTLINE_LET(MeshData, mixed, points = data.points);
   mixed.addCell(CellType::Triangle, { 0, 1, 4 });
   for (Index i = 0; i < data.numberOfCells(); ++i)
   {
@@ -336,10 +308,8 @@ TAUTLINE_PART(testSurfaceCells)
   }
   vtkNew<vtkMeshImprover> filter, plain;
   Messages messages(filter);
-  filter->SetInputData(toGrid(mixed));
-  filter->Update();
-  plain->SetInputData(toGrid(data));
-  plain->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(mixed)), Update());
+  TAUTLINE_SET(plain, SetInputData(toGrid(data)), Update());
   TAUTLINE_CHECK(messages.has(wording("1-triangles-beside-the-tetrahedra-are-left")));
   TAUTLINE_CHECK(messages.has(wording("that-triangles-mark-are-kept")));
   TAUTLINE_CHECK(
@@ -380,8 +350,7 @@ TAUTLINE_PART(testMarkedFacet)
     {
       mixed.addCell(CellType::Triangle, { (*marked)[2], (*marked)[0], (*marked)[1] });
     }
-    vtkNew<vtkMeshImprover> filter;
-    filter->SetInputData(toGrid(mixed));
+    TAUTLINE_NEW(vtkMeshImprover, filter, SetInputData(toGrid(mixed)));
     filter->SetPreset(vtkMeshImprover::SWAP_ONLY); // the ids of points stay
     const Messages messages(filter);
     filter->Update();
@@ -424,14 +393,12 @@ TAUTLINE_PART(testSeams)
   }
   vtkNew<vtkMeshImprover> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(pieces));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(pieces)), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK(filter->GetSmallestAngleAfter() > filter->GetSmallestAngleBefore());
   TAUTLINE_CHECK(meshOf(filter)->GetNumberOfPoints() < 2 * data.numberOfPoints());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("one-point-in-place-of-each-group")));
-  filter->MergeCoincidentPointsOff();
-  filter->Update();
+  TAUTLINE_SET(filter, MergeCoincidentPointsOff(), Update());
   TAUTLINE_CHECK(dataOf(meshOf(filter)).points == pieces.points);
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("treated-as-boundary")));
 }
@@ -442,20 +409,16 @@ TAUTLINE_PART(testInputs)
   vtkNew<vtkMeshImprover> filter;
   Messages messages(filter);
   vtkNew<vtkUnstructuredGrid> empty;
-  filter->SetInputData(empty);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(empty), Update());
   TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), 0);
 
   MeshData data = sliverBlock(3), apart = sliverBlock(4, 5);
   apart.transform([](const Vec3& p) { return p + Vec3{ 10, 0, 0 }; });
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, toGrid(data, VTK_FLOAT));
-  blocks->SetBlock(1, empty);
-  blocks->SetBlock(2, toGrid(apart));
-  filter->SetInputData(blocks);
-  filter->Update();
+  TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(0, toGrid(data, VTK_FLOAT)),
+    SetBlock(1, empty), SetBlock(2, toGrid(apart)));
+  TAUTLINE_SET(filter, SetInputData(blocks), Update());
   TAUTLINE_CHECK(messages.empty());
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   auto* first = vtkUnstructuredGrid::SafeDownCast(output->GetBlock(0));
@@ -477,8 +440,7 @@ TAUTLINE_PART(testInputs)
   // The mirror image, cells not renumbered: reversed throughout.
   data.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
   messages.clear();
-  filter->SetInputData(withArrays(data));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(withArrays(data)), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("as-if-its-cells-were-flipped")));
   const MeshData mirrored = dataOf(meshOf(filter));
@@ -495,8 +457,7 @@ TAUTLINE_PART(testStops)
   const MeshData data = sliverBlock(12);
   vtkNew<vtkMeshImprover> filter;
   Messages messages(filter);
-  filter->SetInputData(toGrid(data));
-  filter->SetPreset(vtkMeshImprover::AGGRESSIVE);
+  TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetPreset(vtkMeshImprover::AGGRESSIVE));
   vtkNew<vtkCallbackCommand> abort;
   abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
     { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
@@ -511,11 +472,9 @@ TAUTLINE_PART(testStops)
   filter->Update();
   check();
   TAUTLINE_CHECK(contains(filter->GetReason(), wording("stopped-on-request-2")));
-  filter->RemoveObserver(observer);
-  filter->SetAbortExecute(0);
+  TAUTLINE_SET(filter, RemoveObserver(observer), SetAbortExecute(0));
   filter->SetTargetAngle(60); // not to be reached
-  filter->SetTimeLimit(0.001);
-  filter->Update();
+  TAUTLINE_SET(filter, SetTimeLimit(0.001), Update());
   check();
   TAUTLINE_CHECK(contains(filter->GetReason(), wording("time-limit")));
 }

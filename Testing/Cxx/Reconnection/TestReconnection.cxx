@@ -137,8 +137,7 @@ TAUTLINE_PART(testTargets)
   TAUTLINE_CHECK(all.history.back().moves > 2 * slivers.history.back().moves);
   TAUTLINE_CHECK(all.history.back().smallestAngle > slivers.history.back().smallestAngle + 5.0);
   // A mesh that is good enough is not touched.
-  ReconnectionOptions options;
-  options.targetAngle = 10.0;
+  TAUTLINE_LET(ReconnectionOptions, options, targetAngle = 10.0);
   const ReconnectionResult none = reconnect(output, options);
   TAUTLINE_CHECK(none.points == output.points && none.tetrahedra == output.connectivity);
   TAUTLINE_CHECK_EQUAL(none.history.size(), std::size_t(1));
@@ -153,9 +152,7 @@ TAUTLINE_PART(testCount)
   const MeshData data = sliverBlock(5, 6, 1.2);
   for (const auto& bounds : { std::array<double, 2>{ 1.0, 1.02 }, { 0.97, 1.0 }, { 0.5, 2.0 } })
   {
-    ReconnectionOptions options;
-    options.smallestCount = bounds[0];
-    options.largestCount = bounds[1];
+    TAUTLINE_LET(ReconnectionOptions, options, smallestCount = bounds[0], largestCount = bounds[1]);
     const ReconnectionResult result = reconnect(data, options);
     checkResult(data, result);
     const double n = static_cast<double>(data.numberOfCells());
@@ -168,10 +165,8 @@ TAUTLINE_PART(testCount)
   ReconnectionOptions none; // nor by repairs, which are tried for high targets
   none.smallestCount = none.largestCount = 1.0;
   ReconnectionOptions high = none;
-  high.boundary = ReconnectionBoundary::Sliding;
-  high.targetAngle = 38.8;
-  ReconnectionOptions off;
-  off.insert = off.contract = false;
+  TAUTLINE_SET(high, boundary = ReconnectionBoundary::Sliding, targetAngle = 38.8);
+  TAUTLINE_LET(ReconnectionOptions, off, insert = off.contract = false);
   for (const ReconnectionOptions& options : { none, high, off })
   {
     const ReconnectionResult result = reconnect(data, options);
@@ -244,9 +239,7 @@ TAUTLINE_PART(testRegions)
   for (ReconnectionBoundary boundary :
     { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
-    ReconnectionOptions options;
-    options.regions = regions.data();
-    options.boundary = boundary;
+    TAUTLINE_LET(ReconnectionOptions, options, regions = regions.data(), boundary = boundary);
     const bool fixed = boundary == ReconnectionBoundary::Fixed;
     // With the flat boundary the interfaces are to be flat at the start.
     MeshData input = slivers;
@@ -300,8 +293,7 @@ TAUTLINE_PART(testDividedBoundary)
   constexpr double length = 6.0;
   MeshData data = blockMesh(CellType::Tetrahedron, 1, 1, 1);
   data.transform([](const Vec3& p) { return Vec3{ length * p[0], p[1], p[2] }; });
-  ReconnectionOptions options;
-  options.largestCount = 100.0;
+  TAUTLINE_LET(ReconnectionOptions, options, largestCount = 100.0);
   const ReconnectionResult fixed = reconnect(data, options);
   options.boundary = ReconnectionBoundary::Sliding;
   const ReconnectionResult flat = reconnect(data, options);
@@ -376,8 +368,7 @@ TAUTLINE_PART(testFlat)
 TAUTLINE_PART(testLimits)
 {
   const MeshData data = sliverBlock(8, 7, 1.2);
-  ReconnectionOptions options;
-  options.maximumSeconds = 1e-9;
+  TAUTLINE_LET(ReconnectionOptions, options, maximumSeconds = 1e-9);
   const ReconnectionResult timed = reconnect(data, options);
   checkResult(data, timed);
   TAUTLINE_CHECK_EQUAL(static_cast<int>(timed.reason), static_cast<int>(StopReason::TimeLimit));
@@ -408,8 +399,7 @@ TAUTLINE_PART(testObstacles)
   {
     fixed[i] = 1;
   }
-  ReconnectionOptions options;
-  options.fixed = fixed.data();
+  TAUTLINE_LET(ReconnectionOptions, options, fixed = fixed.data());
   const ReconnectionResult result = reconnect(data, options);
   checkResult(data, result);
   std::vector<Index> place(data.numberOfPoints(), -1);
@@ -475,8 +465,7 @@ TAUTLINE_PART_SLOW(testBlocks)
   for (ReconnectionBoundary boundary :
     { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
-    options.boundary = boundary;
-    options.threads = 1;
+    TAUTLINE_SET(options, boundary = boundary, threads = 1);
     const ReconnectionResult one = reconnect(data, options);
     checkResult(data, one);
     for (int threads : { 2, 5 })
@@ -528,16 +517,13 @@ TAUTLINE_PART(testSizes)
     }
     return lengths;
   };
-  ReconnectionOptions options;
-  options.smallestCount = 0.0;
-  options.largestCount = 10.0;
-  options.swap = options.smooth = options.contract = false;
+  TAUTLINE_LET(ReconnectionOptions, options, smallestCount = 0.0, largestCount = 10.0,
+    swap = options.smooth = options.contract = false);
   const ReconnectionResult inserted = reconnect(data, options);
   const std::vector<double> anyInserted = newLengths(inserted);
   const double shortest = *std::min_element(anyInserted.begin(), anyInserted.end());
-  options.size = ReconnectionSize::Length;
-  options.edgeFactor = 1.25;
-  options.edgeLength = 2.0 * shortest;
+  TAUTLINE_SET(
+    options, size = ReconnectionSize::Length, edgeFactor = 1.25, edgeLength = 2.0 * shortest);
   const ReconnectionResult fewer = reconnect(data, options);
   const std::vector<double> longer = newLengths(fewer);
   TAUTLINE_CHECK(longer.size() > 1 && longer.size() < anyInserted.size());
@@ -545,9 +531,7 @@ TAUTLINE_PART(testSizes)
   options.edgeLength = 10.0;
   TAUTLINE_CHECK_EQUAL(reconnect(data, options).history.back().insertions, Index(0));
 
-  options.insert = false;
-  options.contract = true;
-  options.edgeLength = 100.0;
+  TAUTLINE_SET(options, insert = false, contract = true, edgeLength = 100.0);
   const std::vector<double> anyContracted = newLengths(reconnect(data, options));
   const double longest = *std::max_element(anyContracted.begin(), anyContracted.end());
   options.edgeLength = 0.75 * longest;
@@ -558,18 +542,15 @@ TAUTLINE_PART(testSizes)
   // The same by a length and by a tensor per point; other tensors and the input's lengths differ.
   const double length = 2.0 * shortest, entry = 1.0 / (length * length);
   ReconnectionOptions all = options;
-  all.insert = true;
-  all.contract = false;
+  TAUTLINE_SET(all, insert = true, contract = false);
   std::vector<double> lengths(data.numberOfPoints(), length), tensors;
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {
     tensors.insert(tensors.end(), { entry, entry, entry, 0.0, 0.0, 0.0 });
   }
-  all.size = ReconnectionSize::Lengths;
-  all.sizes = lengths.data();
+  TAUTLINE_SET(all, size = ReconnectionSize::Lengths, sizes = lengths.data());
   TAUTLINE_CHECK(reconnect(data, all).points == fewer.points);
-  all.size = ReconnectionSize::Metrics;
-  all.sizes = tensors.data();
+  TAUTLINE_SET(all, size = ReconnectionSize::Metrics, sizes = tensors.data());
   TAUTLINE_CHECK(reconnect(data, all).points == fewer.points);
   for (std::size_t i = 0; i < tensors.size(); i += 6)
   {
@@ -584,14 +565,12 @@ TAUTLINE_PART(testSizes)
   tensors[3] = 2.0 * entry;
   TAUTLINE_CHECK_THROWS(
     reconnect(data, all), wording("1-metric-tensors-are-not-positive-definite"));
-  all.size = ReconnectionSize::Lengths;
-  all.sizes = lengths.data();
+  TAUTLINE_SET(all, size = ReconnectionSize::Lengths, sizes = lengths.data());
   lengths[4] = 0.0;
   TAUTLINE_CHECK_THROWS(reconnect(data, all), wording("1-target-lengths-of-edges-are-not"));
   all.sizes = nullptr;
   TAUTLINE_CHECK_THROWS(reconnect(data, all), wording("are-missing"));
-  all.size = ReconnectionSize::Length;
-  all.edgeLength = 0.0;
+  TAUTLINE_SET(all, size = ReconnectionSize::Length, edgeLength = 0.0);
   TAUTLINE_CHECK_THROWS(reconnect(data, all), wording("must-be-above-0"));
   all.edgeLength = all.edgeFactor = 1.0;
   TAUTLINE_CHECK_THROWS(reconnect(data, all), wording("must-be-above-1"));

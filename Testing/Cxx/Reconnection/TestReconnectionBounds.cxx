@@ -90,9 +90,8 @@ MeshData bipyramid()
 TAUTLINE_PART(testObjectives)
 {
   const MeshData data = bipyramid();
-  ReconnectionOptions options;
-  options.swap = options.insert = options.contract = options.compound = false;
-  options.targetAngle = 60.0;
+  TAUTLINE_LET(ReconnectionOptions, options,
+    swap = options.insert = options.contract = options.compound = false, targetAngle = 60.0);
   const auto run = [&](ReconnectionObjective objective)
   {
     options.objective = objective;
@@ -119,8 +118,7 @@ TAUTLINE_PART(testObjectives)
 TAUTLINE_PART(testBounds)
 {
   const MeshData data = bipyramid();
-  ReconnectionOptions options;
-  options.targetAngle = 60.0;
+  TAUTLINE_LET(ReconnectionOptions, options, targetAngle = 60.0);
   const ReconnectionResult result = reconnect(data, options);
   const std::size_t count = result.obstacles.size();
   TAUTLINE_CHECK(result.bounds.size() == count && result.qualities.size() == count);

@@ -84,9 +84,7 @@ TAUTLINE_PART(testOptions)
 
 TAUTLINE_PART(testSmall)
 {
-  ReconnectionOptions options;
-  options.smallestCount = 0.0;
-  options.largestCount = 100.0;
+  TAUTLINE_LET(ReconnectionOptions, options, smallestCount = 0.0, largestCount = 100.0);
   for (ReconnectionBoundary boundary :
     { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
@@ -110,8 +108,7 @@ TAUTLINE_PART(testSmall)
     const MeshData block = sliverBlock(3, 3, 1.0);
     const std::vector<unsigned char> fixed(block.numberOfPoints(), 1);
     ReconnectionOptions nothing = options;
-    nothing.fixed = fixed.data();
-    nothing.swap = nothing.insert = nothing.contract = false;
+    TAUTLINE_SET(nothing, fixed = fixed.data(), swap = nothing.insert = nothing.contract = false);
     const ReconnectionResult kept = reconnect(block, nothing);
     TAUTLINE_CHECK(kept.points == block.points && kept.tetrahedra == block.connectivity);
     nothing.swap = nothing.insert = nothing.contract = true;
@@ -150,8 +147,7 @@ TAUTLINE_PART(testNonManifold)
     for (ReconnectionBoundary boundary :
       { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
     {
-      ReconnectionOptions options;
-      options.boundary = boundary;
+      TAUTLINE_LET(ReconnectionOptions, options, boundary = boundary);
       const ReconnectionResult result = reconnect(data, options);
       checkResult(data, result);
       TAUTLINE_CHECK(result.history.back().smallestAngle > result.history.front().smallestAngle);
@@ -186,9 +182,7 @@ TAUTLINE_PART(testRegionsAtPoint)
   }
   for (Index blockSize : { data.numberOfCells(), data.numberOfCells() / 4 })
   {
-    ReconnectionOptions options;
-    options.regions = regions.data();
-    options.blockSize = blockSize;
+    TAUTLINE_LET(ReconnectionOptions, options, regions = regions.data(), blockSize = blockSize);
     const ReconnectionResult result = reconnect(data, options);
     checkResult(data, result);
     TAUTLINE_CHECK(result.history.back().edgeRemovals > 0);
@@ -265,9 +259,7 @@ TAUTLINE_PART(testMarkedFacets)
       {
         for (Index blockSize : { data.numberOfCells(), data.numberOfCells() / 4 })
         {
-          ReconnectionOptions options;
-          options.boundary = boundary;
-          options.blockSize = blockSize;
+          TAUTLINE_LET(ReconnectionOptions, options, boundary = boundary, blockSize = blockSize);
           TAUTLINE_CHECK(lostOf(reconnect(data, options)) > 0);
           options.markedFacets = marked;
           options.markedFacets.push_back({ 0, 1, 124 }); // no facet: without effect
@@ -278,9 +270,8 @@ TAUTLINE_PART(testMarkedFacets)
           TAUTLINE_CHECK(result.history.back().edgeRemovals > 0);
         }
       }
-      ReconnectionOptions options;
-      options.markedFacets = marked;
-      options.boundary = ReconnectionBoundary::Surface;
+      TAUTLINE_LET(ReconnectionOptions, options, markedFacets = marked,
+        boundary = ReconnectionBoundary::Surface);
       TAUTLINE_CHECK_THROWS(reconnect(data, options), "marked");
       options.markedFacets = { { 0, 1, data.numberOfPoints() } };
       TAUTLINE_CHECK_THROWS(reconnect(data, options), wording("does-not-have"));
@@ -303,8 +294,7 @@ TAUTLINE_PART(testThinPlate)
   for (ReconnectionBoundary boundary :
     { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
-    ReconnectionOptions options;
-    options.boundary = boundary;
+    TAUTLINE_LET(ReconnectionOptions, options, boundary = boundary);
     const ReconnectionResult result = reconnect(data, options);
     checkResult(data, result);
     if (boundary == ReconnectionBoundary::Fixed)

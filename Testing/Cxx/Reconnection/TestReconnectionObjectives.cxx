@@ -14,8 +14,7 @@ namespace
 ReconnectionOptions metricOptions(Metric metric)
 {
   ReconnectionOptions options = optionsOf(ReconnectionPreset::Aggressive);
-  options.objective = ReconnectionObjective::Metric;
-  options.metric = metric;
+  TAUTLINE_SET(options, objective = ReconnectionObjective::Metric, metric = metric);
   return options;
 }
 
@@ -88,9 +87,7 @@ TAUTLINE_PART(testMetric)
   TAUTLINE_CHECK(reconnect(scaled, options).tetrahedra == result.tetrahedra);
   options.metric = Metric::ConditioningSizeShape;
   checkResult(data, reconnect(data, options));
-  options.metric = info.metric;
-  options.blockSize = 200;
-  options.threads = 1;
+  TAUTLINE_SET(options, metric = info.metric, blockSize = 200, threads = 1);
   const ReconnectionResult one = reconnect(data, options);
   options.threads = 3;
   TAUTLINE_CHECK(reconnect(data, options).points == one.points);
@@ -123,8 +120,7 @@ TAUTLINE_PART(testSum)
     const ReconnectionRecord& last = result.history.back();
     TAUTLINE_CHECK(last.edgeRemovals > 0 && last.faceRemovals > 0 && last.moves > 0);
     TAUTLINE_CHECK(count >= 0.9 * static_cast<double>(data.numberOfCells()));
-    options.blockSize = 200;
-    options.threads = 1;
+    TAUTLINE_SET(options, blockSize = 200, threads = 1);
     const ReconnectionResult one = reconnect(data, options);
     options.threads = 3;
     TAUTLINE_CHECK(reconnect(data, options).points == one.points);

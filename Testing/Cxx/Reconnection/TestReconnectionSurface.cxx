@@ -78,8 +78,7 @@ Index eulerOf(const std::set<Facet>& facets)
 ReconnectionOptions surfaceOptions()
 {
   ReconnectionOptions options = optionsOf(ReconnectionPreset::Aggressive);
-  options.boundary = ReconnectionBoundary::Surface;
-  options.threads = 1;
+  TAUTLINE_SET(options, boundary = ReconnectionBoundary::Surface, threads = 1);
   return options;
 }
 
@@ -204,8 +203,7 @@ TAUTLINE_PART(testKept)
     fixed[i] = 1;
   }
   ReconnectionOptions options = surfaceOptions();
-  options.regions = regions.data();
-  options.fixed = fixed.data();
+  TAUTLINE_SET(options, regions = regions.data(), fixed = fixed.data());
   const ReconnectionResult result = reconnect(ball, options);
   const MeshData output = outputOf(result);
   checkBoundary(ball, result, options.surfaceDistance * diagonalOf(ball));
@@ -241,8 +239,7 @@ TAUTLINE_PART(testThreads)
   const Context context("threads");
   const MeshData ball = roundMesh(3);
   ReconnectionOptions options = surfaceOptions();
-  options.blockSize = 600;
-  options.improveMean = true;
+  TAUTLINE_SET(options, blockSize = 600, improveMean = true);
   const ReconnectionResult one = reconnect(ball, options);
   options.threads = 3;
   const ReconnectionResult three = reconnect(ball, options);

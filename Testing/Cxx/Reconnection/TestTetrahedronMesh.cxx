@@ -43,8 +43,7 @@ void prepare(TetrahedronMesh& mesh, CavityOperations& operations)
       }
     }
   }
-  operations.smallestSize = 0;
-  operations.largestSize = 1000000;
+  TAUTLINE_SET(operations, smallestSize = 0, largestSize = 1000000);
   operations.prepareStamps();
 }
 

@@ -127,8 +127,7 @@ TAUTLINE_PART(testHexagon)
     data.addCell(CellType::Triangle, { k, (k + 1) % 6, 6 });
   }
   TriangleOptions options = triangleOptions(Preset::SwapAndSmooth);
-  options.swap = false;
-  options.targetAngle = 60.0;
+  TAUTLINE_SET(options, swap = false, targetAngle = 60.0);
   const ReconnectionResult result = reconnect(data, options);
   TAUTLINE_CHECK(result.history.back().smallestAngle > 59.5);
   TAUTLINE_CHECK(norm(trianglesOf(result).point(6)) < 0.01);
@@ -272,8 +271,7 @@ TAUTLINE_PART(testRegions)
   for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     TriangleOptions options = triangleOptions(Preset::Aggressive);
-    options.regions = regions.data();
-    options.boundary = boundary;
+    TAUTLINE_SET(options, regions = regions.data(), boundary = boundary);
     const ReconnectionResult result = reconnect(data, options);
     const MeshData output = trianglesOf(result);
     checkTriangles(data, result);
@@ -302,8 +300,7 @@ TAUTLINE_PART(testFlat)
     });
   TriangleOptions options = triangleOptions(Preset::Aggressive);
   const double kept = reconnect(data, options).history.back().smallestAngle;
-  options.boundary = ReconnectionBoundary::Sliding;
-  options.smallestCount = 0.5;
+  TAUTLINE_SET(options, boundary = ReconnectionBoundary::Sliding, smallestCount = 0.5);
   const ReconnectionResult result = reconnect(data, options);
   const MeshData output = trianglesOf(result);
   checkTriangles(data, result);
@@ -368,8 +365,7 @@ TAUTLINE_PART(testCount)
   for (double factor : { 1.0, 1.02, 1.1 })
   {
     TriangleOptions options = triangleOptions(Preset::Aggressive);
-    options.smallestCount = 1.0 / factor;
-    options.largestCount = factor;
+    TAUTLINE_SET(options, smallestCount = 1.0 / factor, largestCount = factor);
     const ReconnectionResult result = reconnect(data, options);
     const double ratio = static_cast<double>(result.history.back().tetrahedra) /
       static_cast<double>(data.numberOfCells());

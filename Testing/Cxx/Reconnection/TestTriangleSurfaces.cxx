@@ -250,9 +250,7 @@ TAUTLINE_PART(testFold)
   const auto flips = [](double fold, double angle, double distance, double feature)
   {
     TriangleOptions options = triangleOptions(Preset::SwapOnly);
-    options.surfaceAngle = angle;
-    options.surfaceDistance = distance;
-    options.featureAngle = feature;
+    TAUTLINE_SET(options, surfaceAngle = angle, surfaceDistance = distance, featureAngle = feature);
     return reconnect(roof(fold), options).history.back().edgeRemovals;
   };
   TAUTLINE_CHECK_EQUAL(flips(30, 60, 1, 40), 1);
@@ -363,11 +361,8 @@ TAUTLINE_PART(testSmall)
     tetrahedron.addCell(CellType::Triangle, v);
   }
   TriangleOptions free = triangleOptions(Preset::Aggressive);
-  free.featureAngle = 180.0;
-  free.surfaceAngle = 90.0;
-  free.surfaceDistance = 1.0;
-  free.smallestCount = 0.0;
-  free.largestCount = 10.0;
+  TAUTLINE_SET(free, featureAngle = 180.0, surfaceAngle = 90.0, surfaceDistance = 1.0,
+    smallestCount = 0.0, largestCount = 10.0);
   const ReconnectionResult closed = reconnect(tetrahedron, free);
   checkTriangles(tetrahedron, closed);
   TAUTLINE_CHECK(isClosed(trianglesOf(closed)));

@@ -47,16 +47,13 @@ TAUTLINE_PART_SLOW(testSizes)
   const Context context("sizes");
   const MeshData data = delaunaySquare(60, 4);
   TriangleOptions options = triangleOptions(Preset::Aggressive);
-  options.smallestCount = 0.0;
-  options.largestCount = 10.0;
-  options.contract = false;
+  TAUTLINE_SET(options, smallestCount = 0.0, largestCount = 10.0, contract = false);
   const ReconnectionResult any = reconnect(data, options);
   const std::vector<double> lengths = insertedLengths(any);
   TAUTLINE_CHECK(lengths.size() > 20);
   const double shortest = *std::min_element(lengths.begin(), lengths.end());
   // Insertions leave no edge shorter than the target over the factor; then points move further.
-  options.size = ReconnectionSize::Length;
-  options.edgeFactor = 1.25;
+  TAUTLINE_SET(options, size = ReconnectionSize::Length, edgeFactor = 1.25);
   options.edgeLength = 5.0 * shortest; // the counts of smaller ones depend on the rounding
   const ReconnectionResult fewer = reconnect(data, options);
   checkTriangles(data, fewer);
@@ -73,11 +70,9 @@ TAUTLINE_PART_SLOW(testSizes)
   }
 
   options = triangleOptions(Preset::Aggressive);
-  options.smallestCount = 0.0;
-  options.insert = false;
+  TAUTLINE_SET(options, smallestCount = 0.0, insert = false);
   const Index contracted = reconnect(data, options).history.back().contractions;
-  options.size = ReconnectionSize::Length;
-  options.edgeLength = 0.01;
+  TAUTLINE_SET(options, size = ReconnectionSize::Length, edgeLength = 0.01);
   TAUTLINE_CHECK(contracted > 0);
   TAUTLINE_CHECK_EQUAL(reconnect(data, options).history.back().contractions, Index(0));
   options.size = ReconnectionSize::Input;
@@ -106,15 +101,12 @@ TAUTLINE_PART(testMetrics)
       { entry + more * n[0] * n[0], entry + more * n[1] * n[1], entry + more * n[2] * n[2],
         more * n[0] * n[1], more * n[1] * n[2], more * n[0] * n[2] });
   }
-  options.size = ReconnectionSize::Length;
-  options.edgeLength = length;
+  TAUTLINE_SET(options, size = ReconnectionSize::Length, edgeLength = length);
   const ReconnectionResult expected = reconnect(data, options);
   TAUTLINE_CHECK(expected.history.back().insertions > 0);
-  options.size = ReconnectionSize::Lengths;
-  options.sizes = lengths.data();
+  TAUTLINE_SET(options, size = ReconnectionSize::Lengths, sizes = lengths.data());
   TAUTLINE_CHECK(reconnect(data, options).points == expected.points);
-  options.size = ReconnectionSize::Metrics;
-  options.sizes = tensors.data();
+  TAUTLINE_SET(options, size = ReconnectionSize::Metrics, sizes = tensors.data());
   TAUTLINE_CHECK(reconnect(data, options).triangles == expected.triangles);
   options.sizes = stretched.data();
   TAUTLINE_CHECK(reconnect(data, options).triangles == expected.triangles);
@@ -125,8 +117,7 @@ TAUTLINE_PART(testMetrics)
   options.sizes = tensors.data();
   TAUTLINE_CHECK(reconnect(data, options).triangles != expected.triangles);
   lengths[4] = 0.0;
-  options.size = ReconnectionSize::Lengths;
-  options.sizes = lengths.data();
+  TAUTLINE_SET(options, size = ReconnectionSize::Lengths, sizes = lengths.data());
   TAUTLINE_CHECK_THROWS(reconnect(data, options), wording("1-target-lengths-of-edges-are-not"));
 }
 
@@ -190,11 +181,9 @@ TAUTLINE_PART(testPlanarOverlaps)
       first.push_back(regions.back() == 0 ? field.back() : 0.0);
     }
     TriangleOptions options = triangleOptions(Preset::Aggressive);
-    options.boundary = boundary;
-    options.regions = regions.data();
+    TAUTLINE_SET(options, boundary = boundary, regions = regions.data());
     TAUTLINE_CHECK(reconnect(data, options).overlaps.offsets.empty());
-    options.overlaps = true;
-    options.threads = 1;
+    TAUTLINE_SET(options, overlaps = true, threads = 1);
     const ReconnectionResult result = reconnect(data, options);
     checkTriangles(data, result);
     checkRows(result);

@@ -41,8 +41,7 @@ inline double areaOf(
 
 inline MeshData trianglesOf(const ReconnectionResult& result)
 {
-  MeshData data;
-  data.points = result.points;
+  TAUTLINE_LET(MeshData, data, points = result.points);
   for (std::size_t i = 0; i < result.triangles.size(); i += 3)
   {
     const Index* v = &result.triangles[i];
@@ -143,8 +142,7 @@ inline MeshData randomlyFlipped(const MeshData& data, int flips, unsigned seed)
       }
     }
   }
-  MeshData result;
-  result.points = data.points;
+  TAUTLINE_LET(MeshData, result, points = data.points);
   for (const auto& t : cells)
   {
     result.addCell(CellType::Triangle, { t[0], t[1], t[2] });

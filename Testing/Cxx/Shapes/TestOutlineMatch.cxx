@@ -118,9 +118,8 @@ TAUTLINE_PART(testExact)
 /// The energy with all weights but one at 0, of a shape and itself on all its locations.
 TAUTLINE_PART(testTerms)
 {
-  OutlineOptions options;
-  options.deformation = options.distortion = options.descriptor = 0.0;
-  options.mirrored = false;
+  TAUTLINE_LET(OutlineOptions, options, deformation = options.distortion = options.descriptor = 0.0,
+    mirrored = false);
   const OutlineModel model = prepareOutline(traceSilhouette(blob(120, 60, 60, 30).view()), options);
   // Only the ordering is left: advances are rounded, each to one of its neighbours.
   const OutlineMatch match = matchOutlines(model, model, options);

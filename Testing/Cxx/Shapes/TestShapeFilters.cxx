@@ -43,13 +43,11 @@ vtkSmartPointer<vtkImageData> makeImage(
   const Picture& picture, int components = 1, double spacing = 1.0)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(static_cast<int>(picture.width), static_cast<int>(picture.height), 1);
-  image->SetSpacing(spacing, spacing, 1.0);
-  image->SetOrigin(10.0, 20.0, 3.0);
-  vtkNew<vtkUnsignedCharArray> values;
-  values->SetName("Pixels");
-  values->SetNumberOfComponents(components);
-  values->SetNumberOfTuples(image->GetNumberOfPoints());
+  TAUTLINE_SET(image,
+    SetDimensions(static_cast<int>(picture.width), static_cast<int>(picture.height), 1),
+    SetSpacing(spacing, spacing, 1.0), SetOrigin(10.0, 20.0, 3.0));
+  TAUTLINE_NEW(vtkUnsignedCharArray, values, SetName("Pixels"), SetNumberOfComponents(components),
+    SetNumberOfTuples(image->GetNumberOfPoints()));
   for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
   {
     for (int c = 0; c < components; ++c)
@@ -67,10 +65,8 @@ vtkSmartPointer<vtkImageData> makeImage(
 TAUTLINE_PART(testMesher)
 {
   const Picture picture = blob(100, 50, 50, 25);
-  vtkNew<vtkSilhouetteMesher> mesher;
-  mesher->SetInputData(makeImage(picture, 1, 0.5));
-  mesher->SetSpacing(15);
-  mesher->Update();
+  TAUTLINE_NEW(vtkSilhouetteMesher, mesher, SetInputData(makeImage(picture, 1, 0.5)),
+    SetSpacing(15), Update());
   auto* mesh = vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0));
   const vtkIdType n = mesh->GetNumberOfPoints();
   TAUTLINE_CHECK(n > 6 && mesh->GetNumberOfCells() == n - 2);
@@ -97,10 +93,8 @@ TAUTLINE_PART(testMesher)
   // Grey, grey with alpha, colour, colour with alpha: the same mesh.
   for (int components : { 2, 3, 4 })
   {
-    vtkNew<vtkSilhouetteMesher> other;
-    other->SetInputData(makeImage(picture, components, 0.5));
-    other->SetSpacing(15);
-    other->Update();
+    TAUTLINE_NEW(vtkSilhouetteMesher, other, SetInputData(makeImage(picture, components, 0.5)),
+      SetSpacing(15), Update());
     auto* same = vtkUnstructuredGrid::SafeDownCast(other->GetOutputDataObject(0));
     TAUTLINE_CHECK_EQUAL(same->GetNumberOfPoints(), n);
     for (vtkIdType i = 0; i < std::min(n, same->GetNumberOfPoints()); ++i)
@@ -115,10 +109,8 @@ TAUTLINE_PART(testCellPixels)
 {
   const Picture picture = blob(80, 40, 40, 20);
   auto points = makeImage(picture);
-  vtkNew<vtkImageData> cells;
-  cells->SetDimensions(81, 81, 1);
-  cells->SetOrigin(9.5, 19.5, 3.0);
-  cells->GetCellData()->SetScalars(points->GetPointData()->GetScalars());
+  TAUTLINE_NEW(vtkImageData, cells, SetDimensions(81, 81, 1), SetOrigin(9.5, 19.5, 3.0),
+    GetCellData()->SetScalars(points->GetPointData()->GetScalars()));
   vtkNew<vtkSilhouetteMesher> first, second;
   first->SetInputData(points);
   second->SetInputData(cells);
@@ -136,9 +128,8 @@ TAUTLINE_PART(testCellPixels)
 std::string errorOf(vtkAlgorithm* algorithm)
 {
   vtkNew<vtkTest::ErrorObserver> errors, executive;
-  algorithm->AddObserver(vtkCommand::ErrorEvent, errors);
-  algorithm->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executive);
-  algorithm->Update();
+  TAUTLINE_SET(algorithm, AddObserver(vtkCommand::ErrorEvent, errors),
+    GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executive), Update());
   return errors->GetErrorMessage();
 }
 
@@ -146,8 +137,7 @@ TAUTLINE_PART(testMesherErrors)
 {
   const auto with = [](vtkImageData* image, const char* part)
   {
-    vtkNew<vtkSilhouetteMesher> mesher;
-    mesher->SetInputData(image);
+    TAUTLINE_NEW(vtkSilhouetteMesher, mesher, SetInputData(image));
     TAUTLINE_CHECK(errorOf(mesher).find(part) != std::string::npos);
     TAUTLINE_CHECK_EQUAL(
       vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0))->GetNumberOfPoints(), 0);
@@ -156,12 +146,9 @@ TAUTLINE_PART(testMesherErrors)
   auto oblong = makeImage(disc(30, 15, 15, 9));
   oblong->SetSpacing(1, 2, 1);
   with(oblong, "not square");
-  vtkNew<vtkImageData> volume;
-  volume->SetDimensions(4, 4, 4);
-  volume->AllocateScalars(VTK_FLOAT, 1);
+  TAUTLINE_NEW(vtkImageData, volume, SetDimensions(4, 4, 4), AllocateScalars(VTK_FLOAT, 1));
   with(volume, "slice");
-  vtkNew<vtkImageData> bare;
-  bare->SetDimensions(4, 4, 1);
+  TAUTLINE_NEW(vtkImageData, bare, SetDimensions(4, 4, 1));
   with(bare, "no array");
   vtkNew<vtkSilhouetteMesher> empty;
   vtkNew<vtkImageData> none;
@@ -172,16 +159,13 @@ TAUTLINE_PART(testMesherErrors)
 TAUTLINE_PART(testMatcher)
 {
   auto source = makeImage(blob(100, 50, 50, 25)), target = makeImage(blob(120, 60, 58, 30, 0.3));
-  vtkNew<vtkSilhouetteMesher> mesher;
-  mesher->SetInputData(source);
+  TAUTLINE_NEW(vtkSilhouetteMesher, mesher, SetInputData(source));
   vtkNew<vtkShapeMatcher> fromImage, fromMesh;
   fromImage->SetInputDataObject(0, source);
   fromMesh->SetInputConnection(0, mesher->GetOutputPort());
   for (vtkShapeMatcher* matcher : { fromImage.Get(), fromMesh.Get() })
   {
-    matcher->SetTargetData(target);
-    matcher->SetGridSize(16, 16);
-    matcher->Update();
+    TAUTLINE_SET(matcher, SetTargetData(target), SetGridSize(16, 16), Update());
   }
   TAUTLINE_CHECK(fromImage->GetExact());
   TAUTLINE_CHECK_RELATIVE(fromMesh->GetEnergy(), fromImage->GetEnergy(), 1e-5);
@@ -231,32 +215,22 @@ TAUTLINE_PART(testMatcher)
   TAUTLINE_CHECK(
     std::string(fromMesh->GetSummary()).find(wording("best-so-far")) != std::string::npos);
   // Wrong input is named.
-  vtkNew<vtkShapeMatcher> wrong;
-  wrong->SetInputDataObject(0, source);
-  wrong->SetTargetData(target);
-  wrong->SetGridSize(1, 1);
+  TAUTLINE_NEW(vtkShapeMatcher, wrong, SetInputDataObject(0, source), SetTargetData(target),
+    SetGridSize(1, 1));
   TAUTLINE_CHECK(errorOf(wrong).find(wording("too-small")) != std::string::npos);
-  vtkNew<vtkShapeMatcher> weights;
-  weights->SetInputDataObject(0, source);
-  weights->SetTargetData(target);
-  weights->SetDistortionWeight(std::nan(""));
+  TAUTLINE_NEW(vtkShapeMatcher, weights, SetInputDataObject(0, source), SetTargetData(target),
+    SetDistortionWeight(std::nan("")));
   TAUTLINE_CHECK(errorOf(weights).find(wording("distortion-weight")) != std::string::npos);
-  vtkNew<vtkUnstructuredGrid> loose;
-  loose->DeepCopy(before);
-  loose->GetPoints()->InsertNextPoint(0, 0, 3);
+  TAUTLINE_NEW(vtkUnstructuredGrid, loose, DeepCopy(before), GetPoints()->InsertNextPoint(0, 0, 3));
   loose->GetPointData()->Initialize(); // its arrays have no value for that point
-  vtkNew<vtkShapeMatcher> stray;
-  stray->SetInputDataObject(0, loose);
-  stray->SetTargetData(target);
+  TAUTLINE_NEW(vtkShapeMatcher, stray, SetInputDataObject(0, loose), SetTargetData(target));
   TAUTLINE_CHECK(errorOf(stray).find(wording("points-inside")) != std::string::npos);
 }
 
 void writeImage(const std::filesystem::path& file, const Picture& picture)
 {
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetInputData(makeImage(picture));
-  writer->SetFileName(file.string().c_str());
-  writer->Write();
+  TAUTLINE_NEW(vtkPNGWriter, writer, SetInputData(makeImage(picture)),
+    SetFileName(file.string().c_str()), Write());
 }
 
 /// The frames on the sheet are as many as the ranking has right and wrong matches; the first query
@@ -265,8 +239,7 @@ void checkSheet(vtkShapeRetrieval* retrieval)
 {
   const int size = 700, queries = 6;
   retrieval->SetBestMatches(3); // two of them can be right
-  retrieval->SetSheetSize(size);
-  retrieval->Update();
+  TAUTLINE_SET(retrieval, SetSheetSize(size), Update());
   auto* sheet = vtkImageData::SafeDownCast(retrieval->GetOutputDataObject(4));
   TAUTLINE_CHECK_EQUAL(sheet->GetDimensions()[0], size);
   TAUTLINE_CHECK_EQUAL(sheet->GetDimensions()[1], size);
@@ -323,10 +296,8 @@ void testRetrieval(const std::string& output)
   vtkNew<vtkSilhouetteSetReader> reader;
   reader->SetFileName((folder / "labels.csv").string().c_str());
   TAUTLINE_CHECK_EQUAL(reader->CanReadFile(reader->GetFileName()), 1);
-  vtkNew<vtkShapeRetrieval> retrieval;
-  retrieval->SetInputConnection(reader->GetOutputPort());
-  retrieval->SetBestMatches(2);
-  retrieval->Update();
+  TAUTLINE_NEW(vtkShapeRetrieval, retrieval, SetInputConnection(reader->GetOutputPort()),
+    SetBestMatches(2), Update());
   TAUTLINE_CHECK_NEAR(retrieval->GetRecognitionRate(), 100.0, 1e-12);
   auto* blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
   TAUTLINE_CHECK_EQUAL(blocks->GetNumberOfBlocks(), 6u);
@@ -370,8 +341,7 @@ void testRetrieval(const std::string& output)
   const auto refused = [&](const std::string& text, const char* part)
   {
     std::ofstream(folder / "bad.csv") << text;
-    vtkNew<vtkSilhouetteSetReader> bad;
-    bad->SetFileName((folder / "bad.csv").string().c_str());
+    TAUTLINE_NEW(vtkSilhouetteSetReader, bad, SetFileName((folder / "bad.csv").string().c_str()));
     TAUTLINE_CHECK(errorOf(bad).find(part) != std::string::npos);
   };
   refused("", "empty");
@@ -380,8 +350,7 @@ void testRetrieval(const std::string& output)
   refused("file,class\nblob0.png\n", wording("bad-csv-2-1-fields"));
   std::ofstream(folder / "images" / "text.png") << "no picture";
   refused("file,class\ntext.png,b\n", "text.png");
-  vtkNew<vtkSilhouetteSetReader> missing;
-  missing->SetFileName("nowhere.csv");
+  TAUTLINE_NEW(vtkSilhouetteSetReader, missing, SetFileName("nowhere.csv"));
   TAUTLINE_CHECK(errorOf(missing).find(wording("no-such-file")) != std::string::npos);
 }
 }

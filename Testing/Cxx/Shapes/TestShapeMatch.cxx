@@ -113,16 +113,11 @@ TAUTLINE_PART(testBruteForce)
   for (int variant = 0; variant < 6; ++variant)
   {
     Context context("variant " + std::to_string(variant));
-    MatchOptions options;
-    options.centreTolerance = 0.0;
-    options.energy.signedDistortion = variant == 1;
-    options.energy.directedEdges = variant == 2;
-    options.energy.reflection = variant == 3 ? Reflection::Free : Reflection::Forbidden;
-    options.energy.rotation = variant == 4 ? 2.0 : 0.0;
-    options.energy.distortion = variant == 5 ? 0.0 : 3.0;
-    LocationOptions grid;
-    grid.columns = 4;
-    grid.rows = 5;
+    TAUTLINE_LET(MatchOptions, options, centreTolerance = 0.0,
+      energy.signedDistortion = variant == 1, energy.directedEdges = variant == 2,
+      energy.reflection = variant == 3 ? Reflection::Free : Reflection::Forbidden,
+      energy.rotation = variant == 4 ? 2.0 : 0.0, energy.distortion = variant == 5 ? 0.0 : 3.0);
+    TAUTLINE_LET(LocationOptions, grid, columns = 4, rows = 5);
     const ShapeTarget coarse(shape, grid, options.energy);
     TAUTLINE_CHECK_RELATIVE(matchShape(triangle, coarse, options).energy,
       bruteForce(triangle, coarse, options.energy), 2e-6);
@@ -130,8 +125,7 @@ TAUTLINE_PART(testBruteForce)
     const ShapeTarget tiny(shape, grid, options.energy);
     TAUTLINE_CHECK_RELATIVE(matchShape(quadrilateral, tiny, options).energy,
       bruteForce(quadrilateral, tiny, options.energy), 2e-6);
-    grid.kind = Locations::Contour;
-    grid.contour = 8;
+    TAUTLINE_SET(grid, kind = Locations::Contour, contour = 8);
     options.energy.ordering = variant == 2 ? 1.0 : 0.0;
     const ShapeTarget contour(shape, grid, options.energy);
     TAUTLINE_CHECK_RELATIVE(matchShape(quadrilateral, contour, options).energy,
@@ -149,12 +143,8 @@ TAUTLINE_PART(testDescriptorWeight)
   for (const double weight : { 0.3, 1.0, 3.0, 10.0, 30.0 })
   {
     const Context context("weight " + std::to_string(weight));
-    MatchOptions options;
-    options.centreTolerance = 0.0;
-    options.energy.descriptor = weight;
-    LocationOptions contour;
-    contour.kind = Locations::Contour;
-    contour.contour = 8;
+    TAUTLINE_LET(MatchOptions, options, centreTolerance = 0.0, energy.descriptor = weight);
+    TAUTLINE_LET(LocationOptions, contour, kind = Locations::Contour, contour = 8);
     const ShapeTarget target(to, contour, options.energy);
     const ShapeMatch match = matchShape(source, target, options);
     TAUTLINE_CHECK(match.descriptor > 0.0);
@@ -170,15 +160,11 @@ TAUTLINE_PART(testPlainLoop)
   for (int variant = 0; variant < 6; ++variant)
   {
     Context context("variant " + std::to_string(variant));
-    MatchOptions options;
-    options.energy.directedEdges = variant >= 2;
-    options.energy.ordering = variant >= 3 ? 1.0 : 0.0;
-    options.energy.descriptor = variant >= 4 ? 30.0 : 0.0;
-    options.energy.rotation = variant == 5 ? 0.5 : 0.0;
-    options.centreTolerance = variant == 1 ? 0.02 : 0.0;
-    LocationOptions locations;
-    locations.columns = locations.rows = 14;
-    locations.kind = variant < 2 ? Locations::Grid : Locations::Contour;
+    TAUTLINE_LET(MatchOptions, options, energy.directedEdges = variant >= 2,
+      energy.ordering = variant >= 3 ? 1.0 : 0.0, energy.descriptor = variant >= 4 ? 30.0 : 0.0,
+      energy.rotation = variant == 5 ? 0.5 : 0.0, centreTolerance = variant == 1 ? 0.02 : 0.0);
+    TAUTLINE_LET(LocationOptions, locations, columns = locations.rows = 14,
+      kind = variant < 2 ? Locations::Grid : Locations::Contour);
     const ShapeSource source = makeShapeSource(from, 15.0);
     const ShapeTarget target(to, locations, options.energy);
     const ShapeMatch fast = matchShape(source, target, options);
@@ -223,8 +209,7 @@ TAUTLINE_PART(testPlainLoop)
 TAUTLINE_PART(testInvariance)
 {
   MatchOptions options;
-  LocationOptions grid;
-  grid.columns = grid.rows = 16;
+  TAUTLINE_LET(LocationOptions, grid, columns = grid.rows = 16);
   const ShapeSource source = makeShapeSource(traceSilhouette(blob(96, 40, 44, 22).view()), 14.0);
   const auto energyOf = [&](const Picture& picture)
   {
@@ -283,8 +268,7 @@ TAUTLINE_PART(testInvariance)
 TAUTLINE_PART(testCentreRule)
 {
   MatchOptions options;
-  LocationOptions grid;
-  grid.columns = grid.rows = 12;
+  TAUTLINE_LET(LocationOptions, grid, columns = grid.rows = 12);
   // A small triangle fits anywhere on the outline of a disc; the rule places it in the middle.
   const ShapeSource source = makeShapeSource({ { 0, 0 }, { 30, 0 }, { 15, 9 } });
   const ShapeTarget target(traceSilhouette(disc(96, 48, 48, 36).view()), grid, options.energy);
@@ -297,8 +281,7 @@ TAUTLINE_PART(testCentreRule)
   TAUTLINE_CHECK(next.rank > 1 && next.energy >= first.energy);
   TAUTLINE_CHECK(next.centreAccepted &&
     next.centreDistance <= options.centreTolerance * target.maxDistance() + 1e-9);
-  options.centreTolerance = 1e-9;
-  options.maxSolutions = 3;
+  TAUTLINE_SET(options, centreTolerance = 1e-9, maxSolutions = 3);
   const ShapeMatch none = matchShape(source, target, options);
   TAUTLINE_CHECK(!none.centreAccepted && std::isfinite(none.energy));
 }
@@ -311,9 +294,7 @@ TAUTLINE_PART(testThreadsAndStops)
   for (const Locations kind : { Locations::Grid, Locations::NearGrid, Locations::Contour })
   {
     MatchOptions options;
-    LocationOptions locations;
-    locations.kind = kind;
-    locations.columns = locations.rows = 15;
+    TAUTLINE_LET(LocationOptions, locations, kind = kind, columns = locations.rows = 15);
     const ShapeTarget target(shape, locations, options.energy);
     options.threads = 1;
     const ShapeMatch one = matchShape(source, target, options);
@@ -343,8 +324,7 @@ TAUTLINE_PART(testThreadsAndStops)
     TAUTLINE_CHECK(stopped.stop == MatchStop::Stopped && !stopped.exact && calls == 5);
     TAUTLINE_CHECK(stopped.points.size() == one.points.size() && std::isfinite(stopped.energy));
     TAUTLINE_CHECK(stopped.energy >= one.energy * (1 - 1e-6));
-    options.progress = nullptr;
-    options.timeLimit = 1e-9;
+    TAUTLINE_SET(options, progress = nullptr, timeLimit = 1e-9);
     const ShapeMatch late = matchShape(source, target, options);
     TAUTLINE_CHECK(late.stop == MatchStop::TimeLimit && std::isfinite(late.energy));
   }
@@ -353,19 +333,16 @@ TAUTLINE_PART(testThreadsAndStops)
 TAUTLINE_PART(testRefused)
 {
   const Silhouette shape = traceSilhouette(disc(60, 30, 30, 20).view());
-  LocationOptions one;
-  one.columns = one.rows = 1;
+  TAUTLINE_LET(LocationOptions, one, columns = one.rows = 1);
   TAUTLINE_CHECK_THROWS(ShapeTarget(shape, one), wording("too-small"));
-  one.kind = Locations::Contour;
-  one.contour = 2;
+  TAUTLINE_SET(one, kind = Locations::Contour, contour = 2);
   TAUTLINE_CHECK_THROWS(ShapeTarget(shape, one), wording("at-least-3-2"));
   const ShapeSource source = makeShapeSource(shape, 20.0);
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const ShapeTarget target(shape, {}, {});
   for (double bad : { nan, inf, -1.0 })
   {
-    MatchOptions options;
-    options.energy.deformation = bad;
+    TAUTLINE_LET(MatchOptions, options, energy.deformation = bad);
     TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("deformation-weight-a"));
     options = {};
     options.energy.distortion = bad;
@@ -373,22 +350,19 @@ TAUTLINE_PART(testRefused)
     options = {};
     options.centreTolerance = bad;
     TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("centre-tolerance"));
-    ShapeEnergy energy;
-    energy.lambda = bad;
+    TAUTLINE_LET(ShapeEnergy, energy, lambda = bad);
     TAUTLINE_CHECK_THROWS(ShapeTarget(shape, {}, energy), "lambda");
     energy = {};
     energy.smoothing = bad;
     TAUTLINE_CHECK_THROWS(ShapeTarget(shape, {}, energy), "smoothing");
   }
-  MatchOptions options;
-  options.energy.lambda = 0.2;
+  TAUTLINE_LET(MatchOptions, options, energy.lambda = 0.2);
   TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("prepared-for-another"));
   options = {};
   options.scales = 2;
   TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("odd-number"));
   TAUTLINE_CHECK_THROWS(matchShape(ShapeSource(), target, {}), wording("no-triangles"));
-  LocationOptions huge;
-  huge.columns = huge.rows = 300;
+  TAUTLINE_LET(LocationOptions, huge, columns = huge.rows = 300);
   TAUTLINE_CHECK_THROWS(ShapeTarget(shape, huge), "4 GiB");
 }
 
@@ -401,9 +375,7 @@ TAUTLINE_PART(testOddTargets)
     64, 64, [](double x, double y) { return y > 30 && y < 34 && x > 3 && x < 60 ? 1.0 : -1.0; });
   for (const Locations kind : { Locations::Grid, Locations::Contour })
   {
-    LocationOptions locations;
-    locations.kind = kind;
-    locations.columns = locations.rows = 10;
+    TAUTLINE_LET(LocationOptions, locations, kind = kind, columns = locations.rows = 10);
     const ShapeTarget target(traceSilhouette(bar.view()), locations);
     const ShapeMatch match = matchShape(source, target, {});
     TAUTLINE_CHECK(std::isfinite(match.energy) && match.energy > 0.0);
@@ -411,8 +383,7 @@ TAUTLINE_PART(testOddTargets)
       matchShape(makeShapeSource({ { 0, 0 }, { 3, 0 }, { 0, 3 } }), target, {});
     TAUTLINE_CHECK_EQUAL(triangle.points.size(), 3u);
     TAUTLINE_CHECK(std::isfinite(triangle.energy));
-    MatchOptions search;
-    search.scales = 5;
+    TAUTLINE_LET(MatchOptions, search, scales = 5);
     const ShapeMatch sized = matchShape(source, target, search);
     search.scales = 1;
     TAUTLINE_CHECK(

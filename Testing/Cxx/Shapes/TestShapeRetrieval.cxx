@@ -52,8 +52,7 @@ TAUTLINE_PART(testFamilies)
     labels.push_back(2);
   }
   RetrievalOptions options = RetrievalOptions::highest();
-  options.best = 2;
-  options.match.threads = 1;
+  TAUTLINE_SET(options, best = 2, match.threads = 1);
   const Retrieval one = retrieveShapes(shapes, labels, options);
   TAUTLINE_CHECK_NEAR(one.recognition.rate, 1.0, 1e-15);
   TAUTLINE_CHECK(one.stop == MatchStop::Complete);
@@ -75,26 +74,22 @@ TAUTLINE_PART(testFamilies)
   TAUTLINE_CHECK(stopped.stop == MatchStop::Stopped);
   TAUTLINE_CHECK(std::count(stopped.distances.begin(), stopped.distances.end(), -1.0) > 0);
   TAUTLINE_CHECK_EQUAL(stopped.ranking.size(), 72u);
-  options.match.progress = nullptr;
-  options.match.timeLimit = 1e-9;
+  TAUTLINE_SET(options, match.progress = nullptr, match.timeLimit = 1e-9);
   TAUTLINE_CHECK(retrieveShapes(shapes, labels, options).stop == MatchStop::TimeLimit);
   options.match.timeLimit = 0;
 
   options.outline.spacing = -1.0;
   TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("shape-0-outlines-need"));
   options = RetrievalOptions();
-  options.locations.kind = Locations::Contour;
-  options.spacing = -1.0;
+  TAUTLINE_SET(options, locations.kind = Locations::Contour, spacing = -1.0);
   TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("shape-0-the-spacing"));
-  options.spacing = 15.0;
-  options.match.energy.distortion = std::nan("");
+  TAUTLINE_SET(options, spacing = 15.0, match.energy.distortion = std::nan(""));
   TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("distortion-weight"));
   options = RetrievalOptions::highest();
   options.complexity = 0.0;
   TAUTLINE_CHECK_THROWS(
     retrieveShapes(shapes, labels, options), wording("complexity-must-be-above-0"));
-  options.complexity = 0.3;
-  options.shortlist = -1;
+  TAUTLINE_SET(options, complexity = 0.3, shortlist = -1);
   TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("at-least-0"));
   TAUTLINE_CHECK_THROWS(rerank({ 0, 1, 1, 0 }, 2, 0), wording("at-least-1-neighbour"));
   TAUTLINE_CHECK_THROWS(retrieveShapes({ shapes[0] }, { 0 }, {}), wording("at-least-2"));
@@ -199,8 +194,7 @@ TAUTLINE_PART(testArticulation)
   TAUTLINE_CHECK_EQUAL(computed, some.matches);
 
   // Diffusion ranks no worse; wrong labels give a low rate with it, too.
-  options.shortlist = 0;
-  options.neighbours = 5;
+  TAUTLINE_SET(options, shortlist = 0, neighbours = 5);
   const Retrieval passed = retrieveShapes(shapes, labels, options);
   std::cout << "after diffusion: " << 100.0 * passed.recognition.rate << " %\n";
   TAUTLINE_CHECK(passed.recognition.rate >= all.recognition.rate);
@@ -224,10 +218,8 @@ TAUTLINE_PART(testRanks)
     shapes.push_back(animal(kind, 1));
     labels.insert(labels.end(), 2, kind);
   }
-  RetrievalOptions image;
-  image.spacing = 20.0;
-  image.locations.kind = Locations::Contour;
-  image.locations.contour = 24;
+  TAUTLINE_LET(RetrievalOptions, image, spacing = 20.0, locations.kind = Locations::Contour,
+    locations.contour = 24);
   RetrievalOptions shortlist = RetrievalOptions::highest();
   shortlist.shortlist = 2;
   for (RetrievalOptions options : { RetrievalOptions::highest(), shortlist, image })

@@ -24,8 +24,7 @@ constexpr Preconditioner preconditioners[] = { Preconditioner::None, Preconditio
 
 LinearSystem systemOf(const SparseMatrix& matrix)
 {
-  LinearSystem system;
-  system.matrix = &matrix;
+  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
   return system;
 }
 
@@ -159,9 +158,7 @@ void testDense(const LinearSystem& system, double tolerance)
   for (const Preconditioner preconditioner : preconditioners)
   {
     const Context context(nameOf(preconditioner));
-    ConditionOptions options;
-    options.preconditioner = preconditioner;
-    options.tolerance = tolerance;
+    TAUTLINE_LET(ConditionOptions, options, preconditioner = preconditioner, tolerance = tolerance);
     const std::array<double, 2> expected =
       denseEnds(a, inverseOf(preconditioner, a, system.blockSize));
     const ConditionEstimate estimate = estimateCondition(system, options);
@@ -187,13 +184,10 @@ void testFormulas()
   const Dense lower = Dense(dense.triangularView<Eigen::StrictlyLower>()) + diagonal / omega;
   const Dense p = omega / (2 - omega) * lower * diagonal.inverse() * lower.transpose();
   const std::array<double, 2> expected = denseEnds(dense, p.inverse());
-  ConditionOptions options;
-  options.preconditioner = Preconditioner::SSOR;
-  options.omega = omega;
+  TAUTLINE_LET(ConditionOptions, options, preconditioner = Preconditioner::SSOR, omega = omega);
   checkEnds(estimateCondition(systemOf(a), options), expected[0], expected[1], options.tolerance);
   // Options reach the preconditioner.
-  options.omega = 1.0;
-  options.petscOptions = "-pc_sor_omega 1.5";
+  TAUTLINE_SET(options, omega = 1.0, petscOptions = "-pc_sor_omega 1.5");
   checkEnds(estimateCondition(systemOf(a), options), expected[0], expected[1], options.tolerance);
 }
 
@@ -270,13 +264,10 @@ struct BoxMesh
 
   Mesh mesh() const
   {
-    MeshView view;
-    view.numberOfPoints = static_cast<Index>(this->points.size()) / 3;
-    view.points = this->points.data();
-    view.numberOfCells = static_cast<Index>(this->types.size());
-    view.cellTypes = this->types.data();
-    view.offsets = this->offsets.data();
-    view.connectivity = this->connectivity.data();
+    TAUTLINE_LET(MeshView, view, numberOfPoints = static_cast<Index>(this->points.size()) / 3,
+      points = this->points.data(), numberOfCells = static_cast<Index>(this->types.size()),
+      cellTypes = this->types.data(), offsets = this->offsets.data(),
+      connectivity = this->connectivity.data());
     return Mesh(view);
   }
 };
@@ -317,8 +308,7 @@ void testEquations()
     {
       const Context context(
         std::string(topology(type).name) + " pde " + std::to_string(static_cast<int>(pde)));
-      EllipticProblem problem;
-      problem.pde = pde;
+      TAUTLINE_LET(EllipticProblem, problem, pde = pde);
       problem.diffusion.tensor = { 2, 1, 5, 0.5, 0, 0 };
       problem.diffusion.reaction = 3;
       const EllipticSystem system(mesh, problem);
@@ -392,8 +382,7 @@ void testTrouble()
   for (const Preconditioner preconditioner : { Preconditioner::None, Preconditioner::Jacobi })
   {
     const Context context(nameOf(preconditioner));
-    ConditionOptions options;
-    options.preconditioner = preconditioner;
+    TAUTLINE_LET(ConditionOptions, options, preconditioner = preconditioner);
     const ConditionEstimate singular = estimateCondition(systemOf(neumann), options);
     TAUTLINE_CHECK_EQUAL(singular.condition, 0.0);
     TAUTLINE_CHECK(!singular.converged);
@@ -433,8 +422,7 @@ void testTrouble()
   for (const Preconditioner preconditioner : preconditioners)
   {
     const Context context(nameOf(preconditioner));
-    ConditionOptions limited;
-    limited.preconditioner = preconditioner;
+    TAUTLINE_LET(ConditionOptions, limited, preconditioner = preconditioner);
     // The Lanczos method calls more often.
     const int limit = preconditioner == Preconditioner::SSOR ? 200 : 3;
     int calls = 0;
@@ -449,8 +437,7 @@ void testTrouble()
     const ConditionEstimate aborted = estimateCondition(systemOf(large), limited);
     TAUTLINE_CHECK_EQUAL(aborted.message, std::string("Stopped by the user."));
     TAUTLINE_CHECK(!aborted.converged);
-    limited.progress = {};
-    limited.maximumSeconds = 1e-6;
+    TAUTLINE_SET(limited, progress = {}, maximumSeconds = 1e-6);
     const ConditionEstimate late = estimateCondition(systemOf(large), limited);
     TAUTLINE_CHECK(late.message.find(wording("time-limit")) != std::string::npos);
     TAUTLINE_CHECK(!late.converged);

@@ -24,8 +24,7 @@ constexpr Preconditioner preconditioners[] = { Preconditioner::Jacobi, Precondit
 
 LinearSystem systemOf(const SparseMatrix& matrix)
 {
-  LinearSystem system;
-  system.matrix = &matrix;
+  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
   return system;
 }
 
@@ -47,8 +46,7 @@ Result solved(
 
 Result directly(const SparseMatrix& a, const std::vector<double>& b)
 {
-  SolverOptions options;
-  options.method = KrylovMethod::Direct;
+  TAUTLINE_LET(SolverOptions, options, method = KrylovMethod::Direct);
   return solved(systemOf(a), options, b);
 }
 
@@ -73,11 +71,8 @@ TAUTLINE_PART(testAllPairs)
     {
       for (const Preconditioner preconditioner : preconditioners)
       {
-        SolverOptions options;
-        options.method = method;
-        options.preconditioner = preconditioner;
-        options.relativeTolerance = 1e-11;
-        options.absoluteTolerance = 0.0;
+        TAUTLINE_LET(SolverOptions, options, method = method, preconditioner = preconditioner,
+          relativeTolerance = 1e-11, absoluteTolerance = 0.0);
         const Context context(nameOf(options));
         const Result result = solved(systemOf(a), options, b);
         TAUTLINE_CHECK(result.solution.reason == SolveReason::RelativeTolerance);
@@ -109,13 +104,11 @@ TAUTLINE_PART(testOtherMatrices)
   const std::vector<double> b = someVector(upwind.size);
   LinearSystem system = systemOf(upwind);
   system.symmetric = system.positiveDefinite = false;
-  SolverOptions options;
-  options.relativeTolerance = 1e-12;
+  TAUTLINE_LET(SolverOptions, options, relativeTolerance = 1e-12);
   for (const KrylovMethod method :
     { KrylovMethod::Direct, KrylovMethod::GMRES, KrylovMethod::BiCGStab })
   {
-    options.method = method;
-    options.preconditioner = Preconditioner::ILU;
+    TAUTLINE_SET(options, method = method, preconditioner = Preconditioner::ILU);
     const Context context(nameOf(options));
     const Result result = solved(system, options, b);
     TAUTLINE_CHECK(converged(result.solution.reason));
@@ -133,8 +126,7 @@ TAUTLINE_PART(testOtherMatrices)
   const LinearSolution broken = solved(system, options, b).solution;
   TAUTLINE_CHECK(broken.reason == SolveReason::IndefiniteMatrix && broken.iterations > 0);
   TAUTLINE_CHECK(broken.ritzSmallest == 0.0 && broken.ritzLargest == 0.0);
-  options.ritzValues = false;
-  options.method = KrylovMethod::Direct;
+  TAUTLINE_SET(options, ritzValues = false, method = KrylovMethod::Direct);
   const Result claimed = solved(system, options, b);
   TAUTLINE_CHECK(claimed.solution.reason == SolveReason::IndefiniteMatrix ||
     relativeResidual(shifted, claimed.x, b) < 1e-10);
@@ -185,8 +177,7 @@ TAUTLINE_PART(testSingular)
     {
       LinearSystem system = systemOf(*matrix);
       system.positiveDefinite = definite;
-      SolverOptions options;
-      options.method = KrylovMethod::Direct;
+      TAUTLINE_LET(SolverOptions, options, method = KrylovMethod::Direct);
       const Result result = solved(system, options, b);
       TAUTLINE_CHECK(!converged(result.solution.reason));
       TAUTLINE_CHECK(!result.solution.message.empty());
@@ -198,16 +189,13 @@ TAUTLINE_PART(testSingular)
   }
   for (const Preconditioner preconditioner : preconditioners)
   {
-    SolverOptions options;
-    options.preconditioner = preconditioner;
-    options.maximumIterations = 500;
+    TAUTLINE_LET(SolverOptions, options, preconditioner = preconditioner, maximumIterations = 500);
     const Context context(nameOf(options));
     const Result result = solved(systemOf(empty), options, b);
     TAUTLINE_CHECK(!converged(result.solution.reason));
     TAUTLINE_CHECK(std::isfinite(result.x[0]));
   }
-  SolverOptions options;
-  options.preconditioner = Preconditioner::ILU;
+  TAUTLINE_LET(SolverOptions, options, preconditioner = Preconditioner::ILU);
   const LinearSolution pivot = solved(systemOf(empty), options, b).solution;
   TAUTLINE_CHECK(pivot.reason == SolveReason::PreconditionerFailed);
   TAUTLINE_CHECK(pivot.message.find("pivot") != std::string::npos);
@@ -218,8 +206,7 @@ TAUTLINE_PART(testOptions)
 {
   const SparseMatrix a = laplacian(40);
   const std::vector<double> b = someVector(a.size);
-  SolverOptions options;
-  options.preconditioner = Preconditioner::Jacobi;
+  TAUTLINE_LET(SolverOptions, options, preconditioner = Preconditioner::Jacobi);
   const int loose = solved(systemOf(a), options, b).solution.iterations;
   options.petscOptions = "-ksp_rtol 1e-12";
   const Result tight = solved(systemOf(a), options, b);
@@ -262,16 +249,14 @@ TAUTLINE_PART(testOptions)
          Bad{ "-pc_hypre_boomeramg_max_levels 2", "-pc_hypre_boomeramg_max_levels" },
          Bad{ "-mg_levels_ksp_max_it 3", "-mg_levels_ksp_max_it" } })
   {
-    SolverOptions wrong;
-    wrong.preconditioner = Preconditioner::Jacobi;
-    wrong.petscOptions = bad.text;
+    TAUTLINE_LET(
+      SolverOptions, wrong, preconditioner = Preconditioner::Jacobi, petscOptions = bad.text);
     const Context context(bad.text);
     TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), bad.named);
   }
   // What only the set-up can miss is missed each time.
-  SolverOptions late;
-  late.preconditioner = Preconditioner::Jacobi;
-  late.petscOptions = "-sub_pc_type icc";
+  TAUTLINE_LET(SolverOptions, late, preconditioner = Preconditioner::Jacobi,
+    petscOptions = "-sub_pc_type icc");
   LinearSolver mistaken(systemOf(a), late);
   std::vector<double> x(b.size());
   TAUTLINE_CHECK_THROWS(mistaken.setUp(), "-sub_pc_type");
@@ -279,8 +264,7 @@ TAUTLINE_PART(testOptions)
 
   const auto refuse = [&](const SolverOptions& wrong, const char* text)
   { TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), text); };
-  SolverOptions wrong;
-  wrong.omega = 2.0;
+  TAUTLINE_LET(SolverOptions, wrong, omega = 2.0);
   refuse(wrong, wording("between-0-and-2"));
   wrong = {};
   wrong.relativeTolerance = -1.0;
@@ -302,9 +286,8 @@ TAUTLINE_PART(testControls)
   const int n = 60;
   const SparseMatrix a = laplacian(n);
   const std::vector<double> b = someVector(a.size);
-  SolverOptions options;
-  options.method = KrylovMethod::GMRES;
-  options.preconditioner = Preconditioner::Jacobi;
+  TAUTLINE_LET(
+    SolverOptions, options, method = KrylovMethod::GMRES, preconditioner = Preconditioner::Jacobi);
   int before = 100000;
   for (const int restart : { 5, 20, 80 })
   {
@@ -347,8 +330,7 @@ TAUTLINE_PART(testControls)
 
   // From the solution on there is nothing to do; tolerances may change between solves.
   options = {};
-  options.preconditioner = Preconditioner::ILU;
-  options.relativeTolerance = 1e-12;
+  TAUTLINE_SET(options, preconditioner = Preconditioner::ILU, relativeTolerance = 1e-12);
   LinearSolver solver(systemOf(a), options);
   TAUTLINE_CHECK(solver.setUp() > 0.0);
   TAUTLINE_CHECK_EQUAL(solver.setUp(), 0.0);
@@ -364,8 +346,7 @@ TAUTLINE_PART(testControls)
   TAUTLINE_CHECK(loose.iterations > 5 && loose.iterations < first.iterations);
 
   // One set-up serves many right-hand sides.
-  SolverOptions multigrid;
-  multigrid.relativeTolerance = 1e-10;
+  TAUTLINE_LET(SolverOptions, multigrid, relativeTolerance = 1e-10);
   LinearSolver reused(systemOf(a), multigrid);
   for (unsigned k = 0; k < 3; ++k)
   {
@@ -384,14 +365,12 @@ TAUTLINE_PART(testControls)
   TAUTLINE_CHECK(solver.solve(zero.data(), x.data()).reason == SolveReason::NotANumber);
 
   options = {};
-  options.preconditioner = Preconditioner::None;
-  options.ritzValues = true;
-  options.relativeTolerance = 1e-10;
+  TAUTLINE_SET(
+    options, preconditioner = Preconditioner::None, ritzValues = true, relativeTolerance = 1e-10);
   const LinearSolution ritz = solved(systemOf(a), options, b).solution;
   TAUTLINE_CHECK_RELATIVE(ritz.ritzSmallest, laplacianEigenvalue(n, 1, 1), 1e-4);
   TAUTLINE_CHECK_RELATIVE(ritz.ritzLargest, laplacianEigenvalue(n, n, n), 1e-4);
-  options.method = KrylovMethod::GMRES;
-  options.restart = 500;
+  TAUTLINE_SET(options, method = KrylovMethod::GMRES, restart = 500);
   const LinearSolution singular = solved(systemOf(a), options, b).solution;
   TAUTLINE_CHECK_RELATIVE(singular.ritzSmallest, laplacianEigenvalue(n, 1, 1), 1e-2);
   TAUTLINE_CHECK_RELATIVE(singular.ritzLargest, laplacianEigenvalue(n, n, n), 1e-2);
@@ -413,8 +392,7 @@ TAUTLINE_PART(testStranger)
 {
   const SparseMatrix a = laplacian(30);
   const std::vector<double> b = someVector(a.size);
-  SolverOptions options;
-  options.preconditioner = Preconditioner::Jacobi;
+  TAUTLINE_LET(SolverOptions, options, preconditioner = Preconditioner::Jacobi);
   const Result alone = solved(systemOf(a), options, b);
 
   PetscOptionsSetValue(nullptr, "-ksp_rtol", "0.5");
@@ -461,8 +439,7 @@ TAUTLINE_PART(testTogether)
   const SparseMatrix a = laplacian(30), c = laplacian(25, 2.0, 0.5);
   const std::vector<double> b = someVector(a.size), d = someVector(c.size, 2);
   SolverOptions jacobi, amg;
-  jacobi.preconditioner = Preconditioner::Jacobi;
-  jacobi.petscOptions = "-ksp_rtol 1e-9";
+  TAUTLINE_SET(jacobi, preconditioner = Preconditioner::Jacobi, petscOptions = "-ksp_rtol 1e-9");
   const Result one = solved(systemOf(a), jacobi, b), two = solved(systemOf(c), amg, d);
 
   LinearSolver first(systemOf(a), jacobi), second(systemOf(c), amg);
@@ -510,9 +487,7 @@ TAUTLINE_PART(testUnchanged)
   const std::vector<double> b = someVector(a.size);
   for (const char* text : { "-ksp_diagonal_scale", "-pc_factor_in_place", "" })
   {
-    SolverOptions options;
-    options.preconditioner = Preconditioner::ILU;
-    options.petscOptions = text;
+    TAUTLINE_LET(SolverOptions, options, preconditioner = Preconditioner::ILU, petscOptions = text);
     const Context context(text);
     solved(systemOf(a), options, b);
     TAUTLINE_CHECK(a.values == copy.values && a.columns == copy.columns);
@@ -542,23 +517,17 @@ TAUTLINE_PART(testRigidBodyModes)
       types.push_back(static_cast<unsigned char>(CellType::Quadrilateral));
     }
   }
-  MeshView view;
-  view.numberOfPoints = static_cast<Index>(fixed.size());
-  view.points = points.data();
-  view.numberOfCells = static_cast<Index>(types.size());
-  view.cellTypes = types.data();
-  view.offsets = offsets.data();
-  view.connectivity = connectivity.data();
+  TAUTLINE_LET(MeshView, view, numberOfPoints = static_cast<Index>(fixed.size()),
+    points = points.data(), numberOfCells = static_cast<Index>(types.size()),
+    cellTypes = types.data(), offsets = offsets.data(), connectivity = connectivity.data());
   const Mesh mesh(view);
-  EllipticProblem problem;
-  problem.pde = Pde::Elasticity;
+  TAUTLINE_LET(EllipticProblem, problem, pde = Pde::Elasticity);
   problem.source = { 0, 1, 0 };
   problem.fixed = fixed.data();
   const EllipticSystem elastic(mesh, problem);
   LinearSystem system = elastic.linearSystem();
-  SolverOptions options;
-  options.preconditioner = Preconditioner::GAMG;
-  options.relativeTolerance = 1e-8;
+  TAUTLINE_LET(
+    SolverOptions, options, preconditioner = Preconditioner::GAMG, relativeTolerance = 1e-8);
   const Result with = solved(system, options, elastic.rightHandSide());
   system.coordinates = nullptr;
   const Result without = solved(system, options, elastic.rightHandSide());
@@ -570,8 +539,7 @@ TAUTLINE_PART(testRigidBodyModes)
 TAUTLINE_PART(testFastMultigrid)
 {
   const int n = 28;
-  SparseMatrix a;
-  a.size = n * n * n;
+  TAUTLINE_LET(SparseMatrix, a, size = n * n * n);
   for (int i = 0; i < a.size; ++i)
   {
     const int x = i % n, y = i / n % n, z = i / n / n;
@@ -612,20 +580,16 @@ TAUTLINE_PART(testRefused)
   TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(a), {}), wording("not-complete"));
 
   // One unknown.
-  SparseMatrix one;
-  one.size = 1;
+  TAUTLINE_LET(SparseMatrix, one, size = 1);
   one.offsets = { 0, 1 };
-  one.columns = { 0 };
-  one.values = { 4.0 };
+  TAUTLINE_SET(one, columns = { 0 }, values = { 4.0 });
   const std::vector<double> b = { 2.0 };
   for (const KrylovMethod method : { KrylovMethod::ConjugateGradient, KrylovMethod::GMRES,
          KrylovMethod::MINRES, KrylovMethod::BiCGStab, KrylovMethod::Direct })
   {
     for (const Preconditioner preconditioner : preconditioners)
     {
-      SolverOptions options;
-      options.method = method;
-      options.preconditioner = preconditioner;
+      TAUTLINE_LET(SolverOptions, options, method = method, preconditioner = preconditioner);
       const Context context(nameOf(options));
       const Result result = solved(systemOf(one), options, b);
       TAUTLINE_CHECK(converged(result.solution.reason));

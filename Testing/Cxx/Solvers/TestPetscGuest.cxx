@@ -19,8 +19,7 @@ const SparseMatrix matrix = laplacian(20);
 
 LinearSystem theSystem()
 {
-  LinearSystem system;
-  system.matrix = &matrix;
+  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
   return system;
 }
 
@@ -63,8 +62,7 @@ TAUTLINE_TEST(TestPetscGuest)
 
   const std::vector<double> x = solved();
   TAUTLINE_RUN(checkCondition());
-  SolverOptions wrong;
-  wrong.petscOptions = "-ksp_type none of these";
+  TAUTLINE_LET(SolverOptions, wrong, petscOptions = "-ksp_type none of these");
   TAUTLINE_CHECK_THROWS(LinearSolver(theSystem(), wrong), wording("none-of-these"));
   TAUTLINE_CHECK_EQUAL(errors, 0);
 

@@ -21,8 +21,7 @@ std::string directory; // to write to
 
 LinearSystem systemOf(const SparseMatrix& matrix)
 {
-  LinearSystem system;
-  system.matrix = &matrix;
+  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
   return system;
 }
 
@@ -34,9 +33,8 @@ bool exists(const std::string& file)
 /// The error of a solver with these options; "" if there is none.
 std::string errorOf(const std::string& text, const SparseMatrix& matrix)
 {
-  SolverOptions options;
-  options.preconditioner = Preconditioner::Jacobi;
-  options.petscOptions = text;
+  TAUTLINE_LET(
+    SolverOptions, options, preconditioner = Preconditioner::Jacobi, petscOptions = text);
   const std::vector<double> b = someVector(matrix.size);
   std::vector<double> x(b.size());
   try
@@ -92,8 +90,7 @@ void testRefused()
     TAUTLINE_CHECK(contains(error, wording("not-permitted")));
     TAUTLINE_CHECK(contains(error, "-ksp_..."));
     // The condition estimate reads the same options.
-    ConditionOptions condition;
-    condition.petscOptions = option;
+    TAUTLINE_LET(ConditionOptions, condition, petscOptions = option);
     TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(a), condition), wording("not-permitted"));
   }
   TAUTLINE_CHECK(!exists(file));
@@ -190,9 +187,7 @@ Outcome attempt(
   const SparseMatrix& a = *system.matrix;
   const std::vector<double> b = someVector(a.size);
   std::vector<double> x(b.size(), 0.0);
-  options.petscOptions = text;
-  options.maximumIterations = 2000;
-  options.maximumSeconds = 20.0;
+  TAUTLINE_SET(options, petscOptions = text, maximumIterations = 2000, maximumSeconds = 20.0);
   LinearSolution solution;
   try
   {
@@ -232,8 +227,7 @@ void testEveryType()
     for (const Preconditioner preconditioner :
       { Preconditioner::None, Preconditioner::Jacobi, Preconditioner::ILU, Preconditioner::GAMG })
     {
-      SolverOptions options;
-      options.preconditioner = preconditioner;
+      TAUTLINE_LET(SolverOptions, options, preconditioner = preconditioner);
       const std::string text = "-ksp_type " + type;
       const Outcome outcome = attempt(systemOf(a), text, options, "-ksp_type");
       any = any || outcome == Outcome::Solved;
@@ -294,10 +288,9 @@ void testWording()
       system.positiveDefinite = definite;
       SolverOptions options;
       const bool direct = choice > static_cast<int>(Preconditioner::None);
-      options.method = direct ? KrylovMethod::Direct : KrylovMethod::GMRES;
-      options.preconditioner = direct ? Preconditioner::None : static_cast<Preconditioner>(choice);
-      options.maximumIterations = 200;
-      options.defaultPetscOptions = fastMultigridOptions();
+      TAUTLINE_SET(options, method = direct ? KrylovMethod::Direct : KrylovMethod::GMRES,
+        preconditioner = direct ? Preconditioner::None : static_cast<Preconditioner>(choice),
+        maximumIterations = 200, defaultPetscOptions = fastMultigridOptions());
       std::vector<double> x(b.size());
       LinearSolver solver(system, options);
       const LinearSolution solution = solver.solve(b.data(), x.data());
@@ -313,8 +306,7 @@ void testWording()
   TAUTLINE_CHECK(failed >= 8);
 
   // With an option of the user, the error of PETSc is added.
-  SolverOptions options;
-  options.petscOptions = "-pc_type lu -pc_factor_mat_solver_type klu";
+  TAUTLINE_LET(SolverOptions, options, petscOptions = "-pc_type lu -pc_factor_mat_solver_type klu");
   LinearSystem system = systemOf(empty);
   system.positiveDefinite = false;
   std::vector<double> x(b.size());
@@ -354,9 +346,8 @@ void testFalseConvergence()
       "-ksp_norm_type none -ksp_max_it 3", "-ksp_rtol 1e-7 -ksp_converged_maxits -ksp_max_it 5" })
   {
     const Context context(text);
-    SolverOptions options;
-    options.preconditioner = Preconditioner::Jacobi;
-    options.petscOptions = text;
+    TAUTLINE_LET(
+      SolverOptions, options, preconditioner = Preconditioner::Jacobi, petscOptions = text);
     const std::vector<double> b = someVector(a.size);
     std::vector<double> x(b.size());
     LinearSolver solver(systemOf(a), options);
@@ -374,9 +365,8 @@ void testFalseConvergence()
     const Context context(text);
     SparseMatrix uneven = gridMatrix(40, [](int i, int j) { return i == j ? 4.0 + i % 7 : -1.0; });
     const std::vector<double> before = uneven.values;
-    SolverOptions options;
-    options.preconditioner = Preconditioner::Jacobi;
-    options.petscOptions = text;
+    TAUTLINE_LET(
+      SolverOptions, options, preconditioner = Preconditioner::Jacobi, petscOptions = text);
     const std::vector<double> b = someVector(uneven.size);
     std::vector<double> x(b.size());
     LinearSolver solver(systemOf(uneven), options);
@@ -414,10 +404,8 @@ void testResidualsOfFailures()
                                                      : 4.0; });
       const std::vector<double> b = someVector(a.size);
       std::vector<double> x(b.size(), 1.0);
-      SolverOptions options;
-      options.preconditioner = Preconditioner::Jacobi;
-      options.petscOptions = failure.text;
-      options.initialGuess = guess;
+      TAUTLINE_LET(SolverOptions, options, preconditioner = Preconditioner::Jacobi,
+        petscOptions = failure.text, initialGuess = guess);
       LinearSolver solver(systemOf(a), options);
       for (int i = 0; i < 2; ++i)
       {

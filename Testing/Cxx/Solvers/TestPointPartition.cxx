@@ -137,8 +137,7 @@ void testLimits(RankGroup& group, Communicator communicator)
 //------------------------------------------------------------------------------
 TAUTLINE_TEST(TestPointPartition)
 {
-  vtkNew<vtkMPIController> controller;
-  controller->Initialize(&argc, &argv);
+  TAUTLINE_NEW(vtkMPIController, controller, Initialize(&argc, &argv));
   vtkMultiProcessController::SetGlobalController(controller);
   {
     const auto group = makeProcessGroup();

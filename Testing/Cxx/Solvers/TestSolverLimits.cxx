@@ -21,8 +21,7 @@ namespace
 /// The 7-point Laplacian on n^3 points of a cube: its factors are large.
 SparseMatrix cubeLaplacian(int n)
 {
-  SparseMatrix a;
-  a.size = static_cast<Index>(n) * n * n;
+  TAUTLINE_LET(SparseMatrix, a, size = static_cast<Index>(n) * n * n);
   for (Index i = 0; i < a.size; ++i)
   {
     const Index x = i % n, y = i / n % n, z = i / n / n;
@@ -190,8 +189,7 @@ void testWatchdog()
 //------------------------------------------------------------------------------
 LinearSystem systemOf(const SparseMatrix& matrix)
 {
-  LinearSystem system;
-  system.matrix = &matrix;
+  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
   return system;
 }
 
@@ -201,8 +199,7 @@ void checkSolves()
   const SparseMatrix a = laplacian(30);
   const std::vector<double> b = someVector(a.size);
   std::vector<double> x(b.size());
-  SolverOptions options;
-  options.maximumSeconds = 100.0;
+  TAUTLINE_LET(SolverOptions, options, maximumSeconds = 100.0);
   LinearSolver solver(systemOf(a), options);
   const LinearSolution solution = solver.solve(b.data(), x.data());
   TAUTLINE_CHECK(converged(solution.reason));
@@ -245,15 +242,12 @@ void testSetUps()
   // Some seconds each without a limit.
   constexpr int size = 34;
   constexpr double limit = 0.2, longest = 4.0;
-  SolverOptions direct;
-  direct.method = KrylovMethod::Direct;
-  direct.maximumSeconds = limit;
+  TAUTLINE_LET(SolverOptions, direct, method = KrylovMethod::Direct, maximumSeconds = limit);
   testGivenUp(direct, SolveReason::TimeLimit, longest, "The factorization", size);
   {
     // While it goes on, a limit is kept; without destroying anything that it uses.
     const SparseMatrix a = laplacian(5);
-    SolverOptions options;
-    options.maximumSeconds = 0.1;
+    TAUTLINE_LET(SolverOptions, options, maximumSeconds = 0.1);
     const Stopwatch time;
     try
     {
@@ -271,9 +265,8 @@ void testSetUps()
   }
   checkSolves();
 
-  SolverOptions incomplete;
-  incomplete.preconditioner = Preconditioner::ILU;
-  incomplete.petscOptions = "-pc_factor_levels 8";
+  TAUTLINE_LET(SolverOptions, incomplete, preconditioner = Preconditioner::ILU,
+    petscOptions = "-pc_factor_levels 8");
   const Stopwatch sinceStart;
   incomplete.cancelled = [&]() { return sinceStart.seconds() > 0.2; };
   testGivenUp(incomplete, SolveReason::Aborted, longest, "", size);
@@ -283,9 +276,7 @@ void testSetUps()
 void testCondition()
 {
   const SparseMatrix a = cubeLaplacian(30); // shift-invert by a factorization
-  ConditionOptions options;
-  options.tolerance = 1e-14;
-  options.maximumSeconds = 0.05;
+  TAUTLINE_LET(ConditionOptions, options, tolerance = 1e-14, maximumSeconds = 0.05);
   const Stopwatch time;
   const ConditionEstimate estimate = estimateCondition(systemOf(a), options);
   TAUTLINE_CHECK(!estimate.converged);
@@ -310,9 +301,8 @@ void testSame()
   std::vector<double> without, with;
   for (std::vector<double>* x : { &without, &with })
   {
-    SolverOptions options;
-    options.preconditioner = Preconditioner::Jacobi;
-    options.maximumSeconds = x == &with ? 100.0 : 0.0;
+    TAUTLINE_LET(SolverOptions, options, preconditioner = Preconditioner::Jacobi,
+      maximumSeconds = x == &with ? 100.0 : 0.0);
     int calls = 0;
     options.observer = [&](int iteration, double norm)
     {
@@ -354,9 +344,7 @@ void testSame()
 /// Left running at the end of the process, which must neither wait nor crash.
 void leaveRunning()
 {
-  SolverOptions direct;
-  direct.method = KrylovMethod::Direct;
-  direct.maximumSeconds = 0.1;
+  TAUTLINE_LET(SolverOptions, direct, method = KrylovMethod::Direct, maximumSeconds = 0.1);
   testGivenUp(direct, SolveReason::TimeLimit, 4.0, "The factorization", 34);
 }
 }

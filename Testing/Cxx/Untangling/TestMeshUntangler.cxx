@@ -26,10 +26,7 @@ namespace
 MeshData tangled(CellType type, Index n, double fraction)
 {
   MeshData data = blockMesh(type, n, n, topology(type).dimension == 2 ? 0 : n);
-  PerturbOptions options;
-  options.fraction = 0.5;
-  options.tangledFraction = fraction;
-  options.seed = 7;
+  TAUTLINE_LET(PerturbOptions, options, fraction = 0.5, tangledFraction = fraction, seed = 7);
   data.points = perturb(Mesh(data.view()), nullptr, options).points;
   return data;
 }
@@ -60,13 +57,11 @@ TAUTLINE_PART(testValid)
     const Mesh mesh(data.view());
     const auto boundary = mesh.boundary().isBoundaryPoint;
     const std::vector<unsigned char> fixed(boundary.begin(), boundary.end());
-    UntangleOptions options;
-    options.fixed = fixed.data();
+    TAUTLINE_LET(UntangleOptions, options, fixed = fixed.data());
     const UntangleResult expected = untangle(mesh, options);
     vtkNew<vtkMeshUntangler> filter;
     Messages messages(filter);
-    filter->SetInputData(toGrid(data));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(toGrid(data)), Update());
     const MeshData after = withPointsOf(data, meshOf(filter));
     TAUTLINE_CHECK(after.points == expected.points);
     TAUTLINE_CHECK(invalidOf(data) > 0);
@@ -93,8 +88,7 @@ TAUTLINE_PART(testValid)
         after.point(i)[0] - data.point(i)[0], 0);
     }
     const MeshData valid = blockMesh(type, 3, 3, flat ? 0 : 3);
-    filter->SetInputData(toGrid(valid));
-    filter->Update();
+    TAUTLINE_SET(filter, SetInputData(toGrid(valid)), Update());
     TAUTLINE_CHECK(withPointsOf(valid, meshOf(filter)).points == valid.points);
     TAUTLINE_CHECK(contains(filter->GetSummary(), wording("all-elements-are-valid-0-were-not")));
   }
@@ -106,8 +100,7 @@ TAUTLINE_PART(testImpossible)
   MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
   data.setPoint(6, { 2.5, 2.6, 0 }); // a point of the second row beyond its neighbours
   auto grid = toGrid(data);
-  vtkNew<vtkDoubleArray> all;
-  all->SetName("all");
+  TAUTLINE_NEW(vtkDoubleArray, all, SetName("all"));
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {
     all->InsertNextValue(1);
@@ -115,9 +108,8 @@ TAUTLINE_PART(testImpossible)
   grid->GetPointData()->AddArray(all);
   vtkNew<vtkMeshUntangler> filter;
   Messages messages(filter);
-  filter->SetInputData(grid);
-  filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "all");
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(grid),
+    SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "all"), Update());
   const Index inverted = invalidOf(data);
   TAUTLINE_CHECK(inverted > 0);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), inverted);
@@ -135,29 +127,22 @@ TAUTLINE_PART(testImpossible)
   TAUTLINE_CHECK(messages.has(wording("because-of-fixed-points")));
 
   // Freed but for the one point, the others cannot follow: or they can, and all is valid.
-  all->Fill(0);
-  all->Modified();
+  TAUTLINE_SET(all, Fill(0), Modified());
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
 
   // A selection that fixes the misplaced point: its star reaches over fixed points of the boundary.
   MeshData star = blockMesh(CellType::Triangle, 2, 2, 0);
   star.setPoint(4, { 5, 5, 0 });
-  vtkNew<vtkIdTypeArray> ids;
-  ids->InsertNextValue(4);
-  vtkNew<vtkSelectionNode> node;
-  node->SetContentType(vtkSelectionNode::INDICES);
-  node->SetFieldType(vtkSelectionNode::POINT);
-  node->SetSelectionList(ids);
-  vtkNew<vtkSelection> selection;
-  selection->AddNode(node);
+  TAUTLINE_NEW(vtkIdTypeArray, ids, InsertNextValue(4));
+  TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+    SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
+  TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
   vtkNew<vtkMeshUntangler> chosen;
   Messages warnings(chosen);
-  chosen->SetInputData(0, toGrid(star));
-  chosen->Update();
+  TAUTLINE_SET(chosen, SetInputData(0, toGrid(star)), Update());
   TAUTLINE_CHECK_EQUAL(chosen->GetInvertedAfter(), 0);
-  chosen->SetInputData(1, selection);
-  chosen->Update();
+  TAUTLINE_SET(chosen, SetInputData(1, selection), Update());
   TAUTLINE_CHECK(chosen->GetInvertedAfter() > 0);
   TAUTLINE_CHECK_EQUAL(chosen->GetImpossible(), chosen->GetInvertedAfter());
 }
@@ -167,15 +152,12 @@ TAUTLINE_PART(testInputs)
   vtkNew<vtkMeshUntangler> filter;
   Messages messages(filter);
   vtkNew<vtkUnstructuredGrid> empty;
-  filter->SetInputData(empty);
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(empty), Update());
   TAUTLINE_CHECK(messages.has(wording("the-input-has-no-cells")));
   messages.clear();
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), 0);
-  vtkNew<vtkImageData> image;
-  image->SetDimensions(3, 3, 3);
-  filter->SetInputData(image);
-  filter->Update();
+  TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
+  TAUTLINE_SET(filter, SetInputData(image), Update());
   TAUTLINE_CHECK(messages.has(wording("image-data-to-point-set")));
   messages.clear();
 
@@ -193,16 +175,14 @@ TAUTLINE_PART(testInputs)
   const auto validity = validityOf(worse);
   TAUTLINE_CHECK(
     2 * std::count(validity.begin(), validity.end(), Inverted) > worse.numberOfCells());
-  filter->SetInputData(toGrid(worse));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(worse)), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
   TAUTLINE_CHECK(!contains(filter->GetSummary(), "reversed"));
 
   // A corner that is NaN: its elements cannot be valid, the rest is.
   MeshData broken = tangled(CellType::Triangle, 8, 0.05);
   broken.points[0] = std::numeric_limits<double>::quiet_NaN();
-  filter->SetInputData(toGrid(broken));
-  filter->Update();
+  TAUTLINE_SET(filter, SetInputData(toGrid(broken)), Update());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("2-elements-are-not-valid")));
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("nan-or-infinite")));
   TAUTLINE_CHECK(messages.has(wording("2-elements-are-not-valid")));
@@ -210,11 +190,9 @@ TAUTLINE_PART(testInputs)
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
 
   const MeshData data = tangled(CellType::Tetrahedron, 4, 0.05);
-  vtkNew<vtkMultiBlockDataSet> blocks;
-  blocks->SetBlock(0, toGrid(data, VTK_FLOAT));
-  blocks->SetBlock(1, toGrid(data));
-  filter->SetInputData(blocks);
-  filter->Update();
+  TAUTLINE_NEW(
+    vtkMultiBlockDataSet, blocks, SetBlock(0, toGrid(data, VTK_FLOAT)), SetBlock(1, toGrid(data)));
+  TAUTLINE_SET(filter, SetInputData(blocks), Update());
   auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
   for (unsigned int i : { 0u, 1u })
   {
@@ -249,8 +227,7 @@ TAUTLINE_PART(testRandom)
       }
       vtkNew<vtkMeshUntangler> filter;
       Messages messages(filter);
-      filter->SetInputData(toGrid(data));
-      filter->Update();
+      TAUTLINE_SET(filter, SetInputData(toGrid(data)), Update());
       TAUTLINE_CHECK(!contains(filter->GetSummary(), "reversed"));
       TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
       TAUTLINE_CHECK_EQUAL(invalidOf(withPointsOf(data, meshOf(filter))), 0);
@@ -274,29 +251,24 @@ TAUTLINE_PART(testStops)
   const auto aborting = filter->AddObserver(vtkCommand::ProgressEvent, abort);
   filter->Update();
   TAUTLINE_CHECK(invalidOf(withPointsOf(data, meshOf(filter))) <= invalidOf(data));
-  filter->RemoveObserver(aborting);
-  filter->SetAbortExecute(0);
+  TAUTLINE_SET(filter, RemoveObserver(aborting), SetAbortExecute(0));
   // Before the first iteration there is nothing: no output, or an error that names the limit.
   abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
     { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
   const auto early = filter->AddObserver(vtkInterruption::PollEvent, abort);
-  filter->Modified();
-  filter->Update();
+  TAUTLINE_SET(filter, Modified(), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
   TAUTLINE_CHECK_EQUAL(
     vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
-  filter->RemoveObserver(early);
-  filter->SetAbortExecute(0);
+  TAUTLINE_SET(filter, RemoveObserver(early), SetAbortExecute(0));
   messages.clear();
-  filter->SetTimeLimit(1e-9);
-  filter->Update();
+  TAUTLINE_SET(filter, SetTimeLimit(1e-9), Update());
   TAUTLINE_CHECK(messages.has(wording("the-time-limit-of-1e-09-s")));
   filter->SetTimeLimit(0);
   std::vector<double> first;
   for (int threads : { 1, 2, 4 })
   {
-    filter->SetThreads(threads);
-    filter->Update();
+    TAUTLINE_SET(filter, SetThreads(threads), Update());
     const auto points = withPointsOf(data, meshOf(filter)).points;
     first = first.empty() ? points : first;
     TAUTLINE_CHECK(points == first);

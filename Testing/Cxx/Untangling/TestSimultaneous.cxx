@@ -19,8 +19,7 @@ namespace
 {
 UntangleOptions simultaneous()
 {
-  UntangleOptions options;
-  options.method = UntangleMethod::Simultaneous;
+  TAUTLINE_LET(UntangleOptions, options, method = UntangleMethod::Simultaneous);
   return options;
 }
 
@@ -46,8 +45,7 @@ MeshData withPoints(MeshData data, const std::vector<double>& points)
 
 MeshData tangled(const MeshData& data, double part)
 {
-  PerturbOptions options;
-  options.tangledFraction = part;
+  TAUTLINE_LET(PerturbOptions, options, tangledFraction = part);
   return withPoints(data, perturb(Mesh(data.view()), nullptr, options).points);
 }
 

@@ -96,8 +96,7 @@ MeshData turnedHole(CellType type, Index n, double degrees)
   constexpr double halfWidth = 0.15, pi = 3.14159265358979323846;
   const double middle = 0.5 * static_cast<double>(n);
   const int dimension = topology(type).dimension;
-  MeshData data;
-  data.points = full.points;
+  TAUTLINE_LET(MeshData, data, points = full.points);
   for (Index cell = 0; cell < full.numberOfCells(); ++cell)
   {
     const std::vector<Index> nodes(full.connectivity.begin() + full.offsets[cell],
@@ -139,8 +138,7 @@ MeshData turnedHole(CellType type, Index n, double degrees)
 /// A few elements inverted.
 MeshData slightlyTangled(const MeshData& data, double part)
 {
-  PerturbOptions options;
-  options.tangledFraction = part;
+  TAUTLINE_LET(PerturbOptions, options, tangledFraction = part);
   MeshData result = data;
   result.points = perturb(Mesh(data.view()), nullptr, options).points;
   return result;
@@ -235,8 +233,7 @@ void testLocality()
   const Index center = 6 + 13 * (6 + 13 * 6);
   const Vec3 from = data.point(center);
   data.setPoint(center, from + Vec3{ 1.4, 0.1, 0.2 });
-  UntangleOptions options;
-  options.effort = Effort::Local;
+  TAUTLINE_LET(UntangleOptions, options, effort = Effort::Local);
   const UntangleResult result = checkUntangles(data, "one vertex astray", options);
   Index far = 0, any = 0;
   const MeshData after = moved(data, result);
@@ -303,8 +300,7 @@ void testFiles(const std::string& directory)
       {
         fixed[i] = flags->GetTuple1(i) != 0;
       }
-      UntangleOptions options;
-      options.fixed = fixed.data();
+      TAUTLINE_LET(UntangleOptions, options, fixed = fixed.data());
       checkUntangles(data, std::string(name) + ", its own flags", options);
     }
   }
@@ -352,8 +348,7 @@ void testThreads()
     UntangleResult one;
     for (int threads : { 1, 2, 4 })
     {
-      UntangleOptions options;
-      options.threads = threads;
+      TAUTLINE_LET(UntangleOptions, options, threads = threads);
       // Far enough into the phase of all vertices.
       options.observer = [](const IterationState& state) { return state.record.iteration < 8; };
       const UntangleResult result = untangle(Mesh(data.view()), options);
@@ -557,8 +552,7 @@ void testLimits()
                            static_cast<signed char>(Obstacle::Unknown)),
       result.invertedAfter);
   }
-  UntangleOptions options;
-  options.maximumSeconds = 1e-4;
+  TAUTLINE_LET(UntangleOptions, options, maximumSeconds = 1e-4);
   const UntangleResult result = untangle(Mesh(data.view()), options);
   TAUTLINE_CHECK(result.reason == StopReason::TimeLimit);
   TAUTLINE_CHECK(result.history.size() <= 2);
@@ -572,8 +566,7 @@ void testTimeLimitWithinSweep()
   const auto sleep = [](double seconds)
   { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); };
   const MeshData data = movedBlock(CellType::Tetrahedron, 40, 0.9);
-  UntangleOptions options;
-  options.maximumSeconds = limit;
+  TAUTLINE_LET(UntangleOptions, options, maximumSeconds = limit);
   bool begun = false, slept = false;
   options.observer = [&](const IterationState&)
   {
