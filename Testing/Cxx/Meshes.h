@@ -14,7 +14,11 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
+#include <map>
+#include <numeric>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 

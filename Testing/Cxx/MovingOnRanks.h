@@ -10,8 +10,6 @@
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DistributedMesh.h"
 
-#include <vector>
-
 namespace tautline
 {
 /** Points of the whole mesh, and what a rank has found besides. */

@@ -8,8 +8,6 @@
 
 #include "Blocks.h"
 
-#include <functional>
-#include <map>
 #include <utility>
 
 namespace tautline

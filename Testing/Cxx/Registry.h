@@ -31,7 +31,6 @@
 #include "Set.h"
 
 #include <chrono>
-#include <string>
 #include <vector>
 
 namespace tautline

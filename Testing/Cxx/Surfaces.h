@@ -9,7 +9,6 @@
 #include "Blocks.h"
 
 #include <cmath>
-#include <map>
 
 namespace tautline
 {

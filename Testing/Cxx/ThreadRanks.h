@@ -11,7 +11,6 @@
 
 #include <condition_variable>
 #include <exception>
-#include <map>
 #include <mutex>
 #include <thread>
 #include <utility>

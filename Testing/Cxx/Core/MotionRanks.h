@@ -10,15 +10,7 @@
 #include "ThreadRanks.h"
 #include "VtkMeshes.h"
 
-#include "vtkCellData.h"
-#include "vtkDataArray.h"
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkMPIController.h"
-#include "vtkPointData.h"
-#include "vtkPoints.h"
-#include "vtkUnsignedCharArray.h"
-#include "vtkUnstructuredGrid.h"
 
 namespace tautline
 {

@@ -7,14 +7,11 @@
 #ifndef tautline_Seams_h
 #define tautline_Seams_h
 
-#include "Check.h"
 #include "Optimization/Optimizing.h"
 #include "Pieces.h"
 #include "VtkMeshes.h"
 
 #include "vtkPointSet.h"
-
-#include <string>
 
 namespace tautline
 {

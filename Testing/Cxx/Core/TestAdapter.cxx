@@ -2,19 +2,10 @@
 // Data sets of VTK through MeshAdapter: what is copied, what becomes of the cells, the messages.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "MeshAdapter.h"
-
 #include "vtkDataSetAttributes.h"
-#include "vtkDoubleArray.h"
-#include "vtkIdList.h"
-#include "vtkImageData.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"
-#include "vtkUnsignedCharArray.h"
-
-#include <algorithm>
-#include <numeric>
 
 using namespace tautline;
 

@@ -3,7 +3,6 @@
 // the stopwatch.
 #include "Registry.h"
 #include "Meshes.h"
-
 #include "tautline/Core/LimitedMemory.h"
 #include "tautline/Core/SmallCholesky.h"
 #include "tautline/Core/Stopwatch.h"

@@ -6,26 +6,12 @@
 #include "Registry.h"
 #include "ThreadRanks.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Mesh/CellOrder.h"
-
 #include "vtkConditionEstimator.h"
 #include "vtkElementQuality.h"
 #include "vtkEllipticSolver.h"
 #include "vtkSolverStudy.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkMPIController.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkStringArray.h"
-#include "vtkTable.h"
-
-#include <algorithm>
-#include <functional>
-#include <limits>
-#include <map>
-#include <utility>
 
 using namespace tautline;
 

@@ -4,7 +4,6 @@
 
 #include "Registry.h"
 #include "Mutator.h"
-
 #include "vtkObject.h"
 
 #include <filesystem>

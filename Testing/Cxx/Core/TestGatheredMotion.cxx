@@ -5,12 +5,7 @@
 #include "MotionRanks.h"
 #include "MovableMesh.h"
 #include "Surfaces.h"
-
 #include "vtkMeshOptimizer.h"
-
-#include "vtkImageData.h"
-
-#include <limits>
 
 using namespace tautline;
 

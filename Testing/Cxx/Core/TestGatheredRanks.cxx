@@ -4,9 +4,7 @@
 // numbers on all processes; errors on all. Python-parallel-filters compares values.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Shapes/ShapeRetrieval.h"
-
 #include "vtkHorizonNeighbors.h"
 #include "vtkInteractionLayer.h"
 #include "vtkMeshComparison.h"
@@ -18,30 +16,22 @@
 #include "vtkShapeMatcher.h"
 #include "vtkShapeRetrieval.h"
 #include "vtkSilhouetteMesher.h"
+
 #ifdef TAUTLINE_MESHING
 #include "vtkTetGenMesher.h"
 #include "vtkTriangleMesher.h"
 #endif
 
-#include "vtkCellData.h"
 #include "vtkCleanPolyData.h"
 #include "vtkCubeSource.h"
 #include "vtkDataSet.h"
-#include "vtkIdTypeArray.h"
-#include "vtkImageData.h"
 #include "vtkMPIController.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkObjectFactory.h"
 #include "vtkPartitionedDataSet.h"
-#include "vtkPointData.h"
-#include "vtkPolyData.h"
 #include "vtkRegularPolygonSource.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
-#include "vtkTable.h"
 #include "vtkUnstructuredGridAlgorithm.h"
-
-#include <cmath>
 
 using namespace tautline;
 

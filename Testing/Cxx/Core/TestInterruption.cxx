@@ -2,31 +2,21 @@
 // Interruption.h and the limits of an execution: scopes nest and restore the handler of SIGINT, a
 // loop, an iteration and a factorization of a linear solver end, filters end on abort and at the
 // time limit, which blocks share.
-#include "Blocks.h"
 #include "Registry.h"
 #include "Systems.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/LoopInterruption.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Solvers/LinearSolver.h"
-
-#include "vtkCallbackCommand.h"
 #include "vtkElementQuality.h"
 #include "vtkHorizonNeighbors.h"
 #include "vtkInterruption.h"
 #include "vtkMeshOptimizer.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkNew.h"
-#include "vtkTable.h"
 
 #include <atomic>
-#include <chrono>
-#include <functional>
 #include <thread>
-
 #include <csignal>
 #include <ctime>
 

@@ -3,16 +3,12 @@
 // suffice.
 #include "Registry.h"
 #include "Sanitized.h"
-
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Types.h"
 
-#include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <new>
-
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

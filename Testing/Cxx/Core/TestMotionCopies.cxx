@@ -4,14 +4,11 @@
 // one, and in one data set on one process.
 #include "Registry.h"
 #include "MotionRanks.h"
-
 #include "vtkMeshImprover.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
-
 #include "vtkAppendFilter.h"
-#include "vtkIdList.h"
 
 using namespace tautline;
 

@@ -3,24 +3,10 @@
 // process, however the mesh is cut.
 #include "Registry.h"
 #include "MotionRanks.h"
-
 #include "tautline/Optimization/Optimize.h"
-
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshUntangler.h"
-
-#include "vtkCallbackCommand.h"
-#include "vtkInformation.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkTable.h"
-
-#include <cmath>
-#include <functional>
-#include <numeric>
-#include <set>
-#include <string>
-#include <utility>
 
 using namespace tautline;
 

@@ -3,20 +3,16 @@
 // several callers and of the child of a fork, callbacks on the calling thread, threads that wait
 // asleep.
 #include "Registry.h"
-
 #include "tautline/Core/LoopProgress.h"
 #include "tautline/Core/MachineLoad.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 
 #include <atomic>
-#include <chrono>
 #include <csignal>
 #include <functional>
 #include <numeric>
 #include <thread>
-#include <vector>
-
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>

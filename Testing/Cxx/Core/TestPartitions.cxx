@@ -4,7 +4,6 @@
 // blocks and partitions in messages. Python-partitions-on-ranks has several processes.
 #include "Registry.h"
 #include "Seams.h"
-
 #include "vtkElementQuality.h"
 #include "vtkMeshComparison.h"
 #include "vtkMeshImprover.h"
@@ -12,17 +11,10 @@
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
 #include "vtkMeshWarp.h"
-
 #include "vtkCompositeDataIterator.h"
-#include "vtkIdTypeArray.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkMultiPieceDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
-#include "vtkTable.h"
-
-#include <functional>
-#include <numeric>
 
 using namespace tautline;
 

@@ -5,10 +5,6 @@
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 
-#include <functional>
-#include <string>
-#include <vector>
-
 using namespace tautline;
 
 namespace

@@ -3,7 +3,6 @@
 // ordinary size, or an error or a warning names the problem and the remedy.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Perturbation/Perturb.h"
 #include "vtkConditionEstimator.h"
 #include "vtkElementQuality.h"
@@ -15,11 +14,6 @@
 #include "vtkMeshUntangler.h"
 #include "vtkMeshWarp.h"
 #include "tautline/Optimization/OptimizeOptions.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkTable.h"
-
-#include <functional>
 
 using namespace tautline;
 

@@ -3,7 +3,6 @@
 // models on them are those of the whole mesh; blocks with seams between them.
 #include "Registry.h"
 #include "Seams.h"
-
 #include "vtkConditionEstimator.h"
 #include "vtkEllipticSolver.h"
 #include "vtkInteractionLayer.h"
@@ -12,11 +11,6 @@
 #include "vtkMeshUntangler.h"
 #include "vtkPeridynamicStiffness.h"
 #include "vtkSolverStudy.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkMultiBlockDataSet.h"
-
-#include <cmath>
 
 using namespace tautline;
 

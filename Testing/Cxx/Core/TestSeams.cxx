@@ -3,17 +3,12 @@
 // points take them as the whole mesh; duplicate cells; why no point is free.
 #include "Registry.h"
 #include "Seams.h"
-
 #include "vtkElementQuality.h"
 #include "vtkEllipticSolver.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
 #include "vtkMeshWarp.h"
-
-#include "vtkDoubleArray.h"
-
-#include <cmath>
 
 using namespace tautline;
 

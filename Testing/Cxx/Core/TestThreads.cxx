@@ -5,9 +5,6 @@
 #include "Blocks.h"
 #include "tautline/Mesh/MeshElements.h"
 
-#include <algorithm>
-#include <numeric>
-
 using namespace tautline;
 
 namespace

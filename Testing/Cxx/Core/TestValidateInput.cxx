@@ -3,25 +3,12 @@
 // is tested by TestHostileInput.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
-#include "Meshes.h"
 #include "ValidateInput.h"
 #include "VtkCompatibility.h"
-
 #include "tautline/Mesh/ArrayChecks.h"
-
-#include "vtkIdTypeArray.h"
-#include "vtkImageData.h"
-#include "vtkIntArray.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
-#include "vtkStringArray.h"
 #include "vtkStructuredGrid.h"
-#include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
-
-#include <limits>
 
 using namespace tautline;
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Registry.h"
-
 #include "tautline/Core/Version.h"
-
-#include <string>
 
 TAUTLINE_TEST(TestVersion)
 {

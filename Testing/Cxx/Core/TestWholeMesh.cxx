@@ -6,15 +6,6 @@
 #include "VtkMeshes.h"
 #include "WholeMesh.h"
 
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
-#include "vtkImageData.h"
-#include "vtkPolyData.h"
-#include "vtkStringArray.h"
-#include "vtkUnsignedCharArray.h"
-
-#include <functional>
-
 using namespace tautline;
 
 namespace

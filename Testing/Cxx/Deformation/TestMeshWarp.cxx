@@ -2,13 +2,9 @@
 // Warp Mesh: what is exact, what is kept between executions, what comes out.
 #include "Registry.h"
 #include "WarpingMeshes.h"
-
 #include "tautline/Deformation/PointMotion.h"
 #include "tautline/Deformation/Warp.h"
 #include "tautline/Deformation/WarpQuality.h"
-
-#include "vtkCellData.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkTransform.h"
 
 using namespace tautline;

@@ -2,15 +2,9 @@
 // Warp Mesh: what is refused, by name; boundaries that intersect themselves, and other cells.
 #include "Registry.h"
 #include "WarpingMeshes.h"
-
-#include "vtkCellData.h"
 #include "vtkDataSetSurfaceFilter.h"
-#include "vtkImageData.h"
 #include "vtkSphereSource.h"
 #include "vtkTransform.h"
-#include "vtkUnsignedCharArray.h"
-
-#include <limits>
 
 using namespace tautline;
 

@@ -2,11 +2,9 @@
 // Warp Mesh to a target: which of its points belong to which, and the closest ones.
 #include "Registry.h"
 #include "WarpingMeshes.h"
-
 #include "vtkDataSetSurfaceFilter.h"
 #include "vtkFeatureEdges.h"
 #include "vtkLineSource.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkSphereSource.h"
 #include "vtkTransform.h"
 #include "vtkTransformFilter.h"

@@ -2,12 +2,8 @@
 // Warp Mesh: the paths of transforms, steps along them, and which part of the boundary they move.
 #include "Registry.h"
 #include "WarpingMeshes.h"
-
 #include "tautline/Mesh/BoundaryParts.h"
 #include "tautline/Deformation/PointMotion.h"
-
-#include "vtkIdTypeArray.h"
-#include "vtkInformation.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
 #include "vtkStreamingDemandDrivenPipeline.h"

@@ -3,9 +3,7 @@
 #include "Registry.h"
 #include "Processes.h"
 #include "WarpingMeshes.h"
-
 #include "vtkMPIController.h"
-#include "vtkMultiBlockDataSet.h"
 
 using namespace tautline;
 

@@ -3,7 +3,6 @@
 // one process, from the first time step or from the one before, whatever the order of the requests.
 #include "Registry.h"
 #include "MovingPieces.h"
-
 #include "vtkCommand.h"
 #include "vtkPassThrough.h"
 

@@ -2,8 +2,6 @@
 // Warp Mesh over time steps: from the first or from the one before, and what is kept.
 #include "Registry.h"
 #include "WarpingMeshes.h"
-
-#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkStreamingDemandDrivenPipeline.h"

@@ -4,12 +4,7 @@
 // refuse.
 #include "Registry.h"
 #include "WarpingMeshes.h"
-
 #include "vtkMovingBoundary.h"
-
-#include "vtkMultiBlockDataSet.h"
-#include "vtkPointData.h"
-#include "vtkPolyData.h"
 
 using namespace tautline;
 

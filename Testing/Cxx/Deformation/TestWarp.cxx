@@ -5,7 +5,6 @@
 #include "Registry.h"
 #include "../../Benchmark/KuhnMesh.h"
 #include "Warping.h"
-
 #include "tautline/Elliptic/FiniteElements.h"
 
 using namespace tautline;

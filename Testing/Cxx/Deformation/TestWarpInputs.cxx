@@ -4,9 +4,6 @@
 #include "Registry.h"
 #include "Warping.h"
 
-#include <limits>
-#include <set>
-
 using namespace tautline;
 
 namespace

@@ -4,7 +4,6 @@
 
 #include "Registry.h"
 #include "Warping.h"
-
 #include "tautline/Elliptic/FiniteElements.h"
 
 using namespace tautline;

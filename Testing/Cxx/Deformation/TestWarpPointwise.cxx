@@ -3,10 +3,7 @@
 // invariances, limits.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Deformation/WarpPointwise.h"
-
-#include <map>
 
 using namespace tautline;
 

@@ -9,12 +9,9 @@
 #include "Check.h"
 #include "VtkMeshes.h"
 
-#include "vtkDoubleArray.h"
 #include "vtkMeshWarp.h"
-#include "vtkTable.h"
 
 #include <array>
-#include <map>
 
 namespace tautline
 {

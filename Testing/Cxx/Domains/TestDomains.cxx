@@ -2,10 +2,8 @@
 // Every domain: number of cells, valid cells, exact size, markers, motion; structured ones exactly.
 
 #include "Registry.h"
-
 #include "tautline/Domains/Domains.h"
 #include "tautline/Mesh/Mesh.h"
-
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDomainSource.h"
@@ -16,7 +14,6 @@
 #include "vtkTestErrorObserver.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>

@@ -2,11 +2,7 @@
 // Condition Estimator: eigenvalues that are known, which element hurts, tables and messages.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "vtkConditionEstimator.h"
-
-#include "vtkMultiBlockDataSet.h"
-#include "vtkTable.h"
 
 using namespace tautline;
 

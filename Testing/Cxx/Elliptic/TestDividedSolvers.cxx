@@ -5,21 +5,12 @@
 #include "Registry.h"
 #include "ThreadRanks.h"
 #include "VtkMeshes.h"
-
 #include "vtkConditionEstimator.h"
 #include "vtkEllipticSolver.h"
 #include "vtkSolverStudy.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkMPIController.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
-#include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
-
-#include <functional>
-#include <numeric>
 
 using namespace tautline;
 

@@ -4,11 +4,8 @@
 // threads, whatever is refused.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Elliptic/ErrorNorms.h"
 #include "tautline/Elliptic/EllipticSystem.h"
-
-#include <limits>
 
 using namespace tautline;
 

@@ -4,14 +4,11 @@
 // rejects all reject. Runs on any number of ranks.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Elliptic/ErrorNorms.h"
 #include "tautline/Elliptic/SolverStudy.h"
 #include "tautline/Elliptic/TimeStepping.h"
 
 #include <mpi.h>
-
-#include <limits>
 
 using namespace tautline;
 

@@ -3,22 +3,12 @@
 // rejected input.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "vtkEllipticSolver.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
-#include "vtkImageData.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkMultiPieceDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
-#include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
-
-#include <limits>
 
 using namespace tautline;
 

@@ -3,10 +3,7 @@
 // symmetry, threads, degenerate and inverted elements, and whatever is refused.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Elliptic/FiniteElements.h"
-
-#include <limits>
 
 using namespace tautline;
 

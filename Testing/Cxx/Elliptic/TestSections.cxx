@@ -2,13 +2,7 @@
 // Solve PDE: the sections of volume meshes, by their areas and the values on them.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "vtkEllipticSolver.h"
-
-#include "vtkCell.h"
-#include "vtkIdList.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkPolyData.h"
 #include "vtkPolygon.h"
 
 #include <array>

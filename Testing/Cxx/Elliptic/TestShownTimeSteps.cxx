@@ -2,10 +2,7 @@
 // Time steps of Solve PDE that are shown one after the other: one assembly for all of them.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "vtkEllipticSolver.h"
-
-#include "vtkMultiBlockDataSet.h"
 
 using namespace tautline;
 

@@ -3,10 +3,7 @@
 // recommendation and what it warns of, limits, stopping, PETSc options.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Elliptic/SolverStudy.h"
-
-#include <limits>
 
 using namespace tautline;
 

@@ -2,12 +2,7 @@
 // Solver Study, the filter: combinations by number, the table, the recommendation, limits.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "vtkSolverStudy.h"
-
-#include "vtkTable.h"
-
-#include <set>
 
 using namespace tautline;
 

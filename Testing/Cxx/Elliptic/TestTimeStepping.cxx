@@ -4,7 +4,6 @@
 // what is refused and what stops.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Elliptic/TimeStepping.h"
 
 #include <array>

@@ -3,7 +3,6 @@
 // refused ones.
 
 #include "Registry.h"
-
 #include "tautline/Geometry/Polygon.h"
 
 #include <limits>

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HostileParts.h"
-
 #include "Check.h"
-#include "Meshes.h"
 #include "VtkCompatibility.h"
 #include "VtkMeshes.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkIntArray.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkStringArray.h"
 #include "vtkTypeInt64Array.h"
-#include "vtkUnsignedCharArray.h"
 
-#include <functional>
-#include <limits>
 #include <sstream>
 
 namespace tautline

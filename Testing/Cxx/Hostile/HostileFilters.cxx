@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HostileFilters.h"
-
 #include "Check.h"
-#include "Meshes.h"
 #include "VtkMeshes.h"
-
 #include "vtkConditionEstimator.h"
 #include "vtkElementQuality.h"
 #include "vtkEllipticSolver.h"
@@ -26,19 +23,14 @@
 #include "vtkSilhouetteMesher.h"
 #include "vtkSolverStudy.h"
 #include "vtkTetGenWriter.h"
+
 #ifdef TAUTLINE_MESHING
 #include "vtkTetGenMesher.h"
 #include "vtkTriangleMesher.h"
 #endif
 
-#include "vtkDoubleArray.h"
 #include "vtkFloatArray.h"
-#include "vtkImageData.h"
-#include "vtkIntArray.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkStringArray.h"
 #include "vtkTransform.h"
-#include "vtkUnsignedCharArray.h"
 
 namespace tautline
 {

@@ -1,28 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HostileParts.h"
-
 #include "Check.h"
-#include "Meshes.h"
 #include "VtkCompatibility.h"
 #include "VtkMeshes.h"
-
-#include "vtkDoubleArray.h"
 #include "vtkExplicitStructuredGrid.h"
 #include "vtkHyperTreeGrid.h"
-#include "vtkImageData.h"
 #include "vtkMolecule.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkMutableUndirectedGraph.h"
 #include "vtkOverlappingAMR.h"
 #include "vtkAMRBox.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkStructuredGrid.h"
-#include "vtkTable.h"
 #include "vtkUniformGrid.h"
 
-#include <functional>
-#include <limits>
 #include <sstream>
 
 namespace tautline

@@ -1,19 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HostileParts.h"
-
 #include "Check.h"
-#include "Meshes.h"
 #include "VtkCompatibility.h"
 #include "VtkMeshes.h"
-
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 
-#include <functional>
-#include <limits>
 #include <sstream>
 
 namespace tautline

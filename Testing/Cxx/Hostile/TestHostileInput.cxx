@@ -8,31 +8,22 @@
 // TAUTLINE_FUZZ is the number of random mutations per filter.
 #include "HostileData.h"
 #include "HostileFilters.h"
-
 #include "Registry.h"
 #include "Sanitized.h"
 #include "VtkMeshes.h"
-
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
-#include "vtkIdTypeArray.h"
 #include "vtkOutputWindow.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkStringArray.h"
-#include "vtkTable.h"
 #include "vtkWriter.h"
 
-#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
-#include <limits>
-#include <set>
-
 #include <poll.h>
 #include <sys/resource.h>
 #include <sys/wait.h>

@@ -2,10 +2,7 @@
 // Which points of a boundary may slide, and where.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Mesh/BoundaryShape.h"
-
-#include <cmath>
 
 using namespace tautline;
 

@@ -3,7 +3,6 @@
 // values go to the parts and back to the pieces.
 #include "Registry.h"
 #include "MovingOnRanks.h"
-
 #include "tautline/Mesh/CellDivision.h"
 
 #include <limits>

@@ -3,14 +3,10 @@
 // Duplicate cells, and the boundary of meshes that have some.
 #include "Registry.h"
 #include "Pieces.h"
-
 #include "tautline/Core/CountingSort.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoincidentPoints.h"
 #include "tautline/Mesh/CornerPoints.h"
-
-#include <limits>
-#include <set>
 
 using namespace tautline;
 

@@ -5,8 +5,6 @@
 #include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Mesh/DistributedMesh.h"
 
-#include <numeric>
-
 using namespace tautline;
 
 namespace

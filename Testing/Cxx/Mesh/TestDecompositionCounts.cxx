@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is counted for parts of a mesh is what ranks with these parts have and send.
-#include "Blocks.h"
 #include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DecompositionCounts.h"

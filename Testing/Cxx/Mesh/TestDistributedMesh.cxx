@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A mesh on ranks: numbers, owners, halos and sets are those of the mesh, however it is cut.
-#include "Blocks.h"
 #include "Registry.h"
 #include "Sanitized.h"
 #include "ThreadRanks.h"
 #include "tautline/Mesh/DistributedMesh.h"
 #include "tautline/Mesh/PointDivision.h"
-
-#include <numeric>
-#include <set>
-
-#include <limits>
 
 using namespace tautline;
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Validity between the corners of hexahedra and wedges, and of pyramids: against dense samples of
 // the determinant, in any frame and numbering, at the limits; the minimum.
-#include "Blocks.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
 

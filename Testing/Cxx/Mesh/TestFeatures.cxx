@@ -2,10 +2,7 @@
 // Corners, curves and patches of surfaces, of boundaries and of regions.
 #include "Registry.h"
 #include "Surfaces.h"
-
 #include "tautline/Mesh/Features.h"
-
-#include <cmath>
 
 using namespace tautline;
 

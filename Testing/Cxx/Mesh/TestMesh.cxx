@@ -3,9 +3,6 @@
 #include "Registry.h"
 #include "Blocks.h"
 
-#include <algorithm>
-#include <set>
-
 using namespace tautline;
 
 namespace

@@ -5,8 +5,6 @@
 #include "Blocks.h"
 #include "tautline/Mesh/CellOrder.h"
 
-#include <algorithm>
-
 using namespace tautline;
 
 namespace

@@ -6,8 +6,6 @@
 #include "tautline/Mesh/DistributedMesh.h"
 #include "tautline/Mesh/PointCopies.h"
 
-#include <numeric>
-
 using namespace tautline;
 
 namespace

@@ -3,9 +3,6 @@
 #include "Registry.h"
 #include "Meshes.h"
 
-#include <map>
-#include <set>
-
 using namespace tautline;
 
 namespace

@@ -3,7 +3,6 @@
 // exits.
 
 #include "Registry.h"
-
 #include "vtkCallbackCommand.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
@@ -22,13 +21,9 @@
 #include "vtkTransformFilter.h"
 #include "vtkTriangleMesher.h"
 #include "vtkUnstructuredGrid.h"
-
 #include "tautline/Core/Types.h"
 
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <string>
 
 using tautline::wording;
 

@@ -3,11 +3,8 @@
 // meshes, with their preconditioners, and at work in a truncated Newton method.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Objectives/HessianMatrix.h"
 #include "tautline/Optimization/Minimize.h"
-
-#include <numeric>
 
 using namespace tautline;
 

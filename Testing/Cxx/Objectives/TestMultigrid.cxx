@@ -3,12 +3,7 @@
 
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Objectives/HessianMatrix.h"
-
-#include <cmath>
-#include <numeric>
-#include <random>
 
 using namespace tautline;
 

@@ -3,12 +3,8 @@
 // fourth-order differences; weights, scales, elements at fault, threads, moving points, errors.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Mesh/MeshElements.h"
 #include "tautline/Objectives/ObjectiveSum.h"
-
-#include <limits>
-#include <numeric>
 
 using namespace tautline;
 

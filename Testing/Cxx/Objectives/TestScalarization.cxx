@@ -2,7 +2,6 @@
 // Scalarizations: values against closed forms in long double, slopes against fourth-order
 // differences, extreme values, errors.
 #include "Registry.h"
-
 #include "tautline/Objectives/Scalarization.h"
 
 #include <limits>

@@ -8,9 +8,6 @@
 
 #include "Optimizing.h"
 
-#include <cmath>
-#include <numeric>
-
 namespace tautline
 {
 /// A block with a wavy side, as a surface if wanted; inner points are moved by up to `amplitude`.

@@ -9,10 +9,6 @@
 
 #include "Meshes.h"
 
-#include <algorithm>
-#include <map>
-#include <set>
-
 namespace tautline
 {
 using Triangle = std::array<Vec3, 3>;

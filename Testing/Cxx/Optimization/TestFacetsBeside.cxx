@@ -5,11 +5,8 @@
 #include "Optimizing.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshUntangler.h"
-
-#include <map>
 
 using namespace tautline;
 

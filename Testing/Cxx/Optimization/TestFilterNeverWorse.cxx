@@ -5,10 +5,7 @@
 #include "Registry.h"
 #include "NeverWorse.h"
 #include "VtkMeshes.h"
-
-#include "vtkIntArray.h"
 #include "vtkMeshOptimizer.h"
-#include "vtkTable.h"
 
 #include <cstdio>
 

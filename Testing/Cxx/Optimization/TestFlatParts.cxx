@@ -2,12 +2,9 @@
 // Points that slide on flat and straight parts of a boundary, moved all at once by Newton's method.
 #include "Registry.h"
 #include "Optimizing.h"
-
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Mesh/Features.h"
 #include "tautline/Optimization/FlatParts.h"
-
-#include <cmath>
 
 using namespace tautline;
 

@@ -4,10 +4,7 @@
 #include "Registry.h"
 #include "Surfaces.h"
 #include "VtkMeshes.h"
-
 #include "vtkMeshOptimizer.h"
-
-#include <cmath>
 
 using namespace tautline;
 

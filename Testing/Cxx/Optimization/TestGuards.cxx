@@ -3,7 +3,6 @@
 // follows. After 20 rounds everything goes back.
 #include "Registry.h"
 #include "Optimizing.h"
-
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Optimization/QualityGuard.h"
 

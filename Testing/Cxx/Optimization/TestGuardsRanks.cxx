@@ -4,7 +4,6 @@
 // input. The same however the mesh is cut.
 #include "Registry.h"
 #include "OptimizingRanks.h"
-
 #include "tautline/Quality/UserMetric.h"
 
 using namespace tautline;

@@ -3,11 +3,9 @@
 // allowed and inverts nothing; the points are those of the last such round.
 #include "Registry.h"
 #include "Optimizing.h"
-
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Optimization/ImproveWorst.h"
 
-#include <numeric>
 #include <utility>
 
 using namespace tautline;

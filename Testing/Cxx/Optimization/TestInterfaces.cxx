@@ -5,14 +5,8 @@
 #include "Optimizing.h"
 #include "SurfaceDistance.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Mesh/Features.h"
-#include "vtkCellData.h"
-#include "vtkDoubleArray.h"
 #include "vtkMeshOptimizer.h"
-
-#include <cmath>
-#include <functional>
 
 using namespace tautline;
 

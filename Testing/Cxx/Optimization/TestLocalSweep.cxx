@@ -3,11 +3,9 @@
 // the objective; after it only the vertices that moved and their neighbours are visited.
 #include "Registry.h"
 #include "Optimizing.h"
-
 #include "tautline/Optimization/LocalSweep.h"
 #include "tautline/Patches/SimplexMesh.h"
 
-#include <numeric>
 #include <utility>
 
 using namespace tautline;

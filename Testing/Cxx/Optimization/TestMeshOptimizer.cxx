@@ -2,21 +2,12 @@
 // Optimize Mesh against the kernel: every option arrives, arrays and tables report what happened.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Perturbation/Perturb.h"
 #include "vtkMeshOptimizer.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
-#include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
 
-#include <functional>
-#include <limits>
-#include <numeric>
 #include <sstream>
 
 using namespace tautline;

@@ -3,27 +3,14 @@
 // iterations as time steps, abort.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Perturbation/Perturb.h"
 #include "vtkMeshOptimizer.h"
-
-#include "vtkCallbackCommand.h"
-#include "vtkCellData.h"
-#include "vtkDoubleArray.h"
-#include "vtkImageData.h"
-#include "vtkInformation.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkPointData.h"
 #include "vtkSphereSource.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
-#include "vtkTable.h"
 #include "vtkTriangleFilter.h"
 
 #include <array>
-#include <functional>
-#include <limits>
-#include <numeric>
 
 using namespace tautline;
 using Pipeline = vtkStreamingDemandDrivenPipeline;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The global minimizers on functions whose minima are known.
 #include "Registry.h"
-
 #include "tautline/Optimization/Minimize.h"
 
 #include <limits>

@@ -3,10 +3,7 @@
 // neither the number of invalid elements, nor the worst element, nor the objective gets worse.
 #include "Registry.h"
 #include "NeverWorse.h"
-
 #include "tautline/Mesh/BoundaryShape.h"
-
-#include <cmath>
 
 using namespace tautline;
 

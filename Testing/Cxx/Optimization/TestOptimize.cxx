@@ -2,11 +2,8 @@
 // The optimizer: minima, invariances, objectives, stopping, faulty input.
 #include "Registry.h"
 #include "Optimizing.h"
-
 #include "tautline/Optimization/SweepControl.h"
-#include "tautline/Quality/Targets.h"
 
-#include <chrono>
 #include <cstring>
 #include <iterator>
 #include <thread>

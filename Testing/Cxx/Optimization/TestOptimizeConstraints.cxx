@@ -2,7 +2,6 @@
 // What the optimizer must keep: fixed points, limits, planes, lines, surfaces.
 #include "Registry.h"
 #include "Optimizing.h"
-
 #include "tautline/Patches/SimplexMesh.h"
 #include "tautline/Optimization/SurfaceProjection.h"
 

@@ -3,7 +3,6 @@
 #include "Registry.h"
 #include "Optimizing.h"
 #include "Surfaces.h"
-
 #include "tautline/Mesh/Features.h"
 #include "tautline/Optimization/GeometryMatch.h"
 

@@ -3,10 +3,7 @@
 // from its minimum for converged.
 #include "Registry.h"
 #include "StretchedMeshes.h"
-
 #include "tautline/Untangling/Untangle.h"
-
-#include <cmath>
 
 using namespace tautline;
 

@@ -3,7 +3,6 @@
 // when it is untangled.
 #include "Registry.h"
 #include "Optimizing.h"
-
 #include "tautline/Untangling/Untangle.h"
 
 using namespace tautline;

@@ -3,7 +3,6 @@
 #include "Registry.h"
 #include "OptimizingRanks.h"
 #include "StretchedMeshes.h"
-
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Untangling/Untangle.h"
 

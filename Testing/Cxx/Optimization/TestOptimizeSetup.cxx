@@ -3,7 +3,6 @@
 // threads, and what is handed on is what would be measured anew.
 #include "Registry.h"
 #include "Optimizing.h"
-
 #include "tautline/Core/CountingSort.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Patches/SimplexMesh.h"

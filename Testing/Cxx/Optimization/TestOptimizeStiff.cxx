@@ -3,7 +3,6 @@
 #include "Registry.h"
 #include "Sanitized.h"
 #include "StretchedMeshes.h"
-
 #include "tautline/Core/Memory.h"
 
 #include <sys/resource.h>

@@ -3,7 +3,6 @@
 // back to a surface would invert, fold, turn over or worsen the elements.
 #include "Registry.h"
 #include "Optimizing.h"
-
 #include "tautline/Optimization/LocalSweep.h"
 #include "tautline/Patches/SimplexMesh.h"
 

@@ -6,21 +6,9 @@
 #include "SurfaceDistance.h"
 #include "Surfaces.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Mesh/Features.h"
 #include "tautline/Optimization/SurfaceLimit.h"
-#include "vtkCellData.h"
-#include "vtkDoubleArray.h"
 #include "vtkMeshOptimizer.h"
-#include "vtkPointData.h"
-#include "vtkPoints.h"
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <map>
-#include <numeric>
-#include <set>
 
 using namespace tautline;
 

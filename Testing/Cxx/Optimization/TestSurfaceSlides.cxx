@@ -2,12 +2,7 @@
 // Stretched meshes of curved surfaces, whose points Newton's method moves all at once.
 #include "Registry.h"
 #include "StretchedMeshes.h"
-
 #include "tautline/Mesh/Features.h"
-
-#include <cmath>
-#include <functional>
-#include <string>
 
 using namespace tautline;
 

@@ -4,10 +4,8 @@
 #include "Registry.h"
 #include "Optimizing.h"
 #include "VtkMeshes.h"
-
 #include "vtkMeshOptimizer.h"
 
-#include <cmath>
 #include <cstdio>
 
 using namespace tautline;

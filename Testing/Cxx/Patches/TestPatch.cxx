@@ -2,7 +2,6 @@
 // Simplices, patches and energies against the metrics and against differences.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Patches/Energies.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Patches/SimplexMesh.h"

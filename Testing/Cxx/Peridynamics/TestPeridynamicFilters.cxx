@@ -4,17 +4,10 @@
 #include "Registry.h"
 #include "HorizonMeshes.h"
 #include "VtkMeshes.h"
-
 #include "vtkDomainSource.h"
 #include "vtkInteractionLayer.h"
 #include "vtkHorizonNeighbors.h"
 #include "vtkPeridynamicStiffness.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkImageData.h"
-#include "vtkIntArray.h"
-#include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
 
 using namespace tautline;
 

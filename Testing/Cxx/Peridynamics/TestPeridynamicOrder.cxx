@@ -2,7 +2,6 @@
 // The nonlocal matrix and the strains do not depend on the order of points, triangles and corners.
 #include "Registry.h"
 #include "HorizonMeshes.h"
-
 #include "tautline/Peridynamics/Dilatation.h"
 
 using namespace tautline;

@@ -4,9 +4,7 @@
 #include "Registry.h"
 #include "HorizonMeshes.h"
 #include "ThreadRanks.h"
-
 #include "tautline/Core/Interruption.h"
-#include "tautline/Peridynamics/Peridynamics.h"
 
 using namespace tautline;
 

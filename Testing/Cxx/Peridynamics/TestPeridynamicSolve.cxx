@@ -3,7 +3,6 @@
 // iterations bounded in h, delta and p in the range of Tables 4.1 to 4.3 and beyond.
 #include "Registry.h"
 #include "HorizonMeshes.h"
-
 #include "tautline/Peridynamics/LocalLimit.h"
 #include "tautline/Peridynamics/PeridynamicSolve.h"
 

@@ -4,11 +4,7 @@
 // they need.
 #include "Registry.h"
 #include "HorizonMeshes.h"
-
 #include "tautline/Peridynamics/InteractionLayer.h"
-
-#include <limits>
-#include <set>
 
 using namespace tautline;
 

@@ -4,7 +4,6 @@
 // definiteness, scales, threads; bonds that are cut at holes and cracks.
 #include "Registry.h"
 #include "HorizonMeshes.h"
-
 #include "tautline/Peridynamics/Dilatation.h"
 #include "tautline/Peridynamics/InteractionLayer.h"
 #include "tautline/Peridynamics/LocalLimit.h"

@@ -3,18 +3,11 @@
 // the same seed gives the same mesh.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Perturbation/Perturb.h"
 #include "vtkMeshPerturbation.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
-#include "vtkImageData.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkSphereSource.h"
 #include "vtkStructuredGrid.h"
 #include "vtkTriangleFilter.h"
-#include "vtkUnsignedCharArray.h"
 
 using namespace tautline;
 

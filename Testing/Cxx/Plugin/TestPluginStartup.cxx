@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the plugin does when it is loaded, as far as it needs no ParaView.
 #include "Registry.h"
-
 #include "ColorMaps.h"
 #include "VersionCheck.h"
 
-#include <cmath>
 #include <limits>
 
 using tautline::wording;

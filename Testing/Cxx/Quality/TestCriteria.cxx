@@ -3,14 +3,9 @@
 // hand, and what the reader refuses.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Quality/Criteria.h"
-
-#include "vtkCellData.h"
 #include "vtkDataSet.h"
 #include "vtkElementQuality.h"
-#include "vtkNew.h"
-#include "vtkTable.h"
 
 #include <fstream>
 

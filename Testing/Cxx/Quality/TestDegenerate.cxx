@@ -4,9 +4,6 @@
 #include "Registry.h"
 #include "Meshes.h"
 
-#include <algorithm>
-#include <limits>
-
 using namespace tautline;
 
 namespace

@@ -3,23 +3,12 @@
 // beforehand.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
-#include "Meshes.h"
-
 #include "vtkElementQuality.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
-#include "vtkImageData.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"
-#include "vtkTable.h"
-#include "vtkUnstructuredGrid.h"
 #include "vtkVersionMacros.h"
 
 #include <cstring>
-#include <limits>
 
 using namespace tautline;
 

@@ -4,11 +4,7 @@
 #include "Registry.h"
 #include "Blocks.h"
 #include "Sanitized.h"
-
 #include "tautline/Quality/Statistics.h"
-
-#include <algorithm>
-#include <limits>
 
 using namespace tautline;
 

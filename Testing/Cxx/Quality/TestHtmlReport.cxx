@@ -2,19 +2,8 @@
 /// Reports: text is escaped, elements are closed, tables and histograms have the numbers.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
-#include "vtkCallbackCommand.h"
-#include "vtkDoubleArray.h"
 #include "vtkElementQuality.h"
 #include "vtkHtmlReport.h"
-#include "vtkIdTypeArray.h"
-#include "vtkImageData.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkNew.h"
-#include "vtkTable.h"
-#include "vtkUnstructuredGrid.h"
-
-#include <cmath>
 
 using namespace tautline;
 

@@ -2,17 +2,8 @@
 // The comparison of two meshes: what is better, worse and equal, in numbers known beforehand.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "vtkMeshComparison.h"
 #include "vtkMeshPerturbation.h"
-
-#include "vtkImageData.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
-
-#include <algorithm>
-#include <numeric>
 
 using namespace tautline;
 

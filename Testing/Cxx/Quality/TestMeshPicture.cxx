@@ -4,8 +4,6 @@
 #include "MeshPicture.h"
 #include "Meshes.h"
 
-#include <cmath>
-
 using namespace tautline;
 
 namespace

@@ -3,12 +3,9 @@
 // the same when streamed in pieces, and smooth enough to contour.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Quality/MetricField.h"
 #include "vtkMetricField.h"
-
 #include "vtkContourFilter.h"
-#include "vtkImageData.h"
 
 using namespace tautline;
 

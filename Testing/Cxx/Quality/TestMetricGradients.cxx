@@ -9,8 +9,6 @@
 #include "Registry.h"
 #include "Meshes.h"
 
-#include <algorithm>
-
 using namespace tautline;
 
 namespace

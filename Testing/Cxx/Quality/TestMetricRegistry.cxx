@@ -4,8 +4,6 @@
 #include "Registry.h"
 #include "Meshes.h"
 
-#include <algorithm>
-#include <set>
 #include <sstream>
 
 using namespace tautline;

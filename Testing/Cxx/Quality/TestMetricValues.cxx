@@ -6,8 +6,6 @@
 #include "Matrix.h"
 #include "Meshes.h"
 
-#include <algorithm>
-
 using namespace tautline;
 
 namespace

@@ -2,19 +2,12 @@
 // The metrics of a server in its client: their facts are those that the server has sent, they are
 // found by name, but not evaluated; one that is registered here takes the place of a server's.
 // The filters refuse a user's metric that this process does not have.
-#include "Blocks.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Quality/Criteria.h"
 #include "tautline/Quality/UserMetric.h"
-
 #include "vtkElementQuality.h"
 #include "vtkMeshOptimizer.h"
-#include "vtkNew.h"
-#include "vtkUnstructuredGrid.h"
-
-#include <algorithm>
 
 using namespace tautline;
 

@@ -3,11 +3,8 @@
 // two; those with a unit or relative to a target follow it, or are counted as beyond the range.
 #include "Registry.h"
 #include "Blocks.h"
-
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Quality/Statistics.h"
-
-#include <limits>
 
 using namespace tautline;
 

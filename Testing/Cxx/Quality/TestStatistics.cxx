@@ -2,12 +2,7 @@
 // Summaries of a metric against sums done by hand and by brute force.
 #include "Registry.h"
 #include "Meshes.h"
-
 #include "tautline/Quality/Statistics.h"
-
-#include <algorithm>
-#include <limits>
-#include <numeric>
 
 using namespace tautline;
 

@@ -5,9 +5,6 @@
 #include "Matrix.h"
 #include "Meshes.h"
 
-#include <algorithm>
-#include <numeric>
-
 using namespace tautline;
 
 namespace

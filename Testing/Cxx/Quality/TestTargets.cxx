@@ -3,8 +3,6 @@
 #include "Registry.h"
 #include "Meshes.h"
 
-#include <algorithm>
-
 using namespace tautline;
 
 namespace

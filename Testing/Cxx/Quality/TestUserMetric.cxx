@@ -4,12 +4,9 @@
 // to the same mesh. What registration refuses; numbers, names and lists.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Objectives/ObjectiveSum.h"
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Quality/UserMetric.h"
-
-#include <algorithm>
 
 using namespace tautline;
 

@@ -4,7 +4,6 @@
 // built-in metrics lead.
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Quality/UserMetric.h"
 

@@ -5,15 +5,11 @@
 // Bezier wedges from inside.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "MeshAdapter.h"
 #include "VtkCompatibility.h"
-
 #include "vtkCellSizeFilter.h"
 #include "vtkCellTypeSource.h"
 #include "vtkCellValidator.h"
-
-#include <numeric>
 
 using namespace tautline;
 

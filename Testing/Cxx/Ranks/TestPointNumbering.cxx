@@ -3,14 +3,12 @@
 // not depend on the number of ranks. Runs on however many ranks it is started on.
 #include "Registry.h"
 #include "Systems.h"
-
 #include "tautline/Elliptic/ElementContributions.h"
 #include "tautline/Elliptic/EllipticSystem.h"
 #include "tautline/Solvers/ConditionEstimate.h"
 #include "tautline/Solvers/LinearSolver.h"
 
 #include <mpi.h>
-
 #include <limits>
 #include <set>
 

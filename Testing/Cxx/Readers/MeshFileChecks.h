@@ -18,7 +18,6 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
-#include <string>
 
 namespace tautline
 {

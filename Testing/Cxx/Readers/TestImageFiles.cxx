@@ -5,7 +5,6 @@
 
 #include "Registry.h"
 #include "MeshFileChecks.h"
-
 #include "vtkAlgorithm.h"
 #include "vtkCommand.h"
 #include "vtkDataArray.h"
@@ -20,7 +19,6 @@
 
 #include <filesystem>
 #include <map>
-
 #include <sys/stat.h>
 
 using namespace tautline;

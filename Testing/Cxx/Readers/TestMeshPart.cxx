@@ -4,7 +4,6 @@
 #include "Registry.h"
 #include "MeshFileChecks.h"
 #include "MeshPart.h"
-
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkGmshReader.h"
@@ -19,7 +18,6 @@
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <algorithm>
 #include <new>
 #include <set>
 

@@ -4,7 +4,6 @@
 #include "Registry.h"
 #include "MeshFileAdapter.h"
 #include "MeshFileChecks.h"
-
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"
@@ -21,8 +20,6 @@
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <cmath>
-#include <fstream>
 #include <iterator>
 
 using namespace tautline;

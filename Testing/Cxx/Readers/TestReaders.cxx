@@ -3,9 +3,7 @@
 
 #include "Registry.h"
 #include "MeshFileChecks.h"
-
 #include "tautline/Mesh/Mesh.h"
-
 #include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
@@ -19,8 +17,6 @@
 #include "vtkTetGenReader.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <initializer_list>
 

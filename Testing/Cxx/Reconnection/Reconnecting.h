@@ -11,9 +11,6 @@
 
 #include "tautline/Reconnection/Reconnection.h"
 
-#include <map>
-#include <set>
-
 namespace tautline
 {
 inline double volumeOf(const MeshData& data, Index cell)

@@ -3,21 +3,9 @@
 #include "Registry.h"
 #include "Reconnecting.h"
 #include "VtkMeshes.h"
-
 #include "vtkMeshImprover.h"
-
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
-#include "vtkImageData.h"
-#include "vtkIntArray.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
-#include "vtkStringArray.h"
-#include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
-
-#include <limits>
 
 using namespace tautline;
 

@@ -3,7 +3,6 @@
 #include "Registry.h"
 #include "Reconnecting.h"
 #include "ThreadRanks.h"
-
 #include "tautline/Reconnection/ReconnectionRounds.h"
 
 #include <atomic>

@@ -3,10 +3,7 @@
 
 #include "Registry.h"
 #include "Reconnecting.h"
-
 #include "tautline/Optimization/Optimize.h"
-
-#include <numeric>
 
 using namespace tautline;
 

@@ -3,12 +3,9 @@
 
 #include "Registry.h"
 #include "Reconnecting.h"
-
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Reconnection/FacetBound.h"
-
-#include <numeric>
 
 #include <sys/wait.h>
 #include <unistd.h>

@@ -4,8 +4,6 @@
 #include "Registry.h"
 #include "Reconnecting.h"
 
-#include <limits>
-
 using namespace tautline;
 
 namespace

@@ -4,9 +4,6 @@
 #include "Registry.h"
 #include "Reconnecting.h"
 
-#include <cmath>
-#include <numeric>
-
 using namespace tautline;
 
 namespace

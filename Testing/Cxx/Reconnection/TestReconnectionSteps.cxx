@@ -4,7 +4,6 @@
 
 #include "Registry.h"
 #include "ReconnectionSteps.h"
-
 #include "tautline/Core/Random.h"
 
 using namespace tautline;

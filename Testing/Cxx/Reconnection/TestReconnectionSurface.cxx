@@ -4,8 +4,6 @@
 #include "Registry.h"
 #include "Reconnecting.h"
 
-#include <cmath>
-
 using namespace tautline;
 
 namespace

@@ -4,7 +4,6 @@
 
 #include "Registry.h"
 #include "Reconnecting.h"
-
 #include "tautline/Reconnection/CavityOperations.h"
 
 using namespace tautline;

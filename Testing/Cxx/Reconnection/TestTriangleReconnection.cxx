@@ -4,8 +4,6 @@
 #include "Registry.h"
 #include "Triangulating.h"
 
-#include <chrono>
-#include <numeric>
 #include <thread>
 
 using namespace tautline;

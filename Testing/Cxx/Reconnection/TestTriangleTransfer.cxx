@@ -4,8 +4,6 @@
 #include "Registry.h"
 #include "Triangulating.h"
 
-#include <cmath>
-
 using namespace tautline;
 
 namespace

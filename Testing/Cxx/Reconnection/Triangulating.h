@@ -13,10 +13,6 @@
 #include "tautline/Geometry/Predicates.h"
 #include "tautline/Reconnection/TriangleReconnection.h"
 
-#include <limits>
-#include <map>
-#include <set>
-
 namespace tautline
 {
 using EdgeKey = std::array<Index, 2>;

@@ -4,7 +4,6 @@
 
 #include "Registry.h"
 #include "Shapes.h"
-
 #include "tautline/Shapes/OutlineMatch.h"
 
 #include <cstdio>

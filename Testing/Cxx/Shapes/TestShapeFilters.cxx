@@ -4,7 +4,6 @@
 
 #include "Registry.h"
 #include "Shapes.h"
-
 #include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"

@@ -5,9 +5,6 @@
 #include "Registry.h"
 #include "Shapes.h"
 
-#include "tautline/Shapes/ShapeMatch.h"
-
-#include <chrono>
 #include <limits>
 
 using namespace tautline;

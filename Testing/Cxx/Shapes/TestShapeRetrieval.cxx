@@ -4,7 +4,6 @@
 #include "Registry.h"
 #include "Shapes.h"
 #include "ThreadRanks.h"
-
 #include "tautline/Shapes/ShapeRetrieval.h"
 
 using namespace tautline;

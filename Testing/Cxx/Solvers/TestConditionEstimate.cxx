@@ -3,13 +3,11 @@
 // bounds that hold, limits and matrices that have no condition number.
 #include "Registry.h"
 #include "Systems.h"
-
 #include "tautline/Elliptic/ElementContributions.h"
 #include "tautline/Solvers/ConditionEstimate.h"
 
 #include <Eigen/Dense>
 #include <petscksp.h>
-
 #include <limits>
 
 using namespace tautline;

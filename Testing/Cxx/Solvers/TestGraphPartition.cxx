@@ -4,8 +4,6 @@
 #include "Registry.h"
 #include "tautline/Solvers/GraphPartition.h"
 
-#include <map>
-
 using namespace tautline;
 
 namespace

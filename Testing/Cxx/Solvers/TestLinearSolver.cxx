@@ -3,12 +3,10 @@
 // a solve fails, options and their databases, limits, reuse, and whatever is refused.
 #include "Registry.h"
 #include "Systems.h"
-
 #include "tautline/Elliptic/EllipticSystem.h"
 #include "tautline/Solvers/LinearSolver.h"
 
 #include <petscksp.h>
-
 #include <limits>
 #include <thread>
 

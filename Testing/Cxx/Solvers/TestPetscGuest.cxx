@@ -4,7 +4,6 @@
 #include "Registry.h"
 #include "Sanitized.h"
 #include "Systems.h"
-
 #include "tautline/Solvers/ConditionEstimate.h"
 #include "tautline/Solvers/LinearSolver.h"
 

@@ -3,12 +3,10 @@
 // nothing reads or writes, and every method and preconditioner that this PETSc has.
 #include "Registry.h"
 #include "Systems.h"
-
 #include "tautline/Solvers/ConditionEstimate.h"
 #include "tautline/Solvers/LinearSolver.h"
 
 #include <petscksp.h>
-
 #include <cstdio>
 #include <fstream>
 #include <unistd.h>

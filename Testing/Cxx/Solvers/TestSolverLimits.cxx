@@ -3,7 +3,6 @@
 // and factorizations that are given up. The process ends while one is still running.
 #include "Registry.h"
 #include "Systems.h"
-
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Solvers/ConditionEstimate.h"
 #include "tautline/Solvers/LinearSolver.h"

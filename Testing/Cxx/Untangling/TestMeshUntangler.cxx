@@ -2,22 +2,12 @@
 // Untangle Mesh: valid, or a report of which elements remain, where and why.
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Perturbation/Perturb.h"
 #include "tautline/Untangling/Untangle.h"
 #include "vtkInterruption.h"
 #include "vtkMeshUntangler.h"
-
-#include "vtkCallbackCommand.h"
-#include "vtkDoubleArray.h"
-#include "vtkIdTypeArray.h"
-#include "vtkImageData.h"
-#include "vtkMultiBlockDataSet.h"
 #include "vtkSelection.h"
 #include "vtkSelectionNode.h"
-#include "vtkTable.h"
-
-#include <limits>
 
 using namespace tautline;
 

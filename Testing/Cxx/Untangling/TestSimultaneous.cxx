@@ -6,12 +6,8 @@
 
 #include "Blocks.h"
 #include "Registry.h"
-
 #include "tautline/Perturbation/Perturb.h"
-#include "tautline/Quality/Metrics.h"
 #include "tautline/Untangling/Untangle.h"
-
-#include <numeric>
 
 using namespace tautline;
 

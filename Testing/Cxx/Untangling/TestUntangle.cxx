@@ -5,24 +5,15 @@
  * any number of threads.
  */
 
-#include "Blocks.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
-
 #include "tautline/Core/Interruption.h"
 #include "tautline/Untangling/LinearProgram.h"
 #include "tautline/Perturbation/Perturb.h"
 #include "tautline/Untangling/Untangle.h"
 
-#include "vtkDataArray.h"
-#include "vtkPointData.h"
-#include "vtkUnstructuredGrid.h"
-
-#include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <thread>
 
 using namespace tautline;
