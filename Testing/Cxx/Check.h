@@ -14,6 +14,8 @@
 #include <iomanip>
 #include <iostream>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 namespace tautline
 {
@@ -111,6 +113,28 @@ void checkThrows(const Statement& statement, const std::string& part, const char
   }
 }
 
+/** f of each number below a count, or of each element of a range. */
+template <class T, class Range, class Function>
+std::vector<T> collect(const Range& range, const Function& f)
+{
+  std::vector<T> result;
+  if constexpr (std::is_arithmetic<Range>::value)
+  {
+    for (Range i = 0; i < range; ++i)
+    {
+      result.push_back(f(i));
+    }
+  }
+  else
+  {
+    for (const auto& element : range)
+    {
+      result.push_back(f(element));
+    }
+  }
+  return result;
+}
+
 } // namespace tautline
 
 #define TAUTLINE_CHECK(expression) tautline::check((expression), #expression, __FILE__, __LINE__)
@@ -126,5 +150,12 @@ void checkThrows(const Statement& statement, const std::string& part, const char
 /** The statement throws an exception whose message contains a text. */
 #define TAUTLINE_CHECK_THROWS(statement, text) \
   tautline::checkThrows([&]() { statement; }, (text), __FILE__, __LINE__)
+/** The same check for each index from 0 to a count. */
+#define TAUTLINE_EACH(type, index, count, ...)   \
+  for (type index = 0; index < (count); ++index) \
+  {                                              \
+    __VA_ARGS__;                                 \
+  }                                              \
+  static_assert(true, "")
 
 #endif

@@ -31,7 +31,6 @@
 #include "Set.h"
 
 #include <chrono>
-#include <vector>
 
 namespace tautline
 {

@@ -90,10 +90,8 @@ TAUTLINE_PART(testRelatedTypes)
   const std::vector<double> expected = { 1, 0, 1, 0.5, 1, 0, 0, 0.5 };
   TAUTLINE_CHECK(sizes(adapter) == expected);
   const std::vector<signed char> validity = validityOf(adapter.mesh());
-  for (std::size_t i = 0; i < expected.size(); ++i)
-  {
-    TAUTLINE_CHECK_EQUAL(int(validity[i]), int(expected[i] > 0 ? Valid : NotMeasured));
-  }
+  TAUTLINE_EACH(std::size_t, i, expected.size(),
+    TAUTLINE_CHECK_EQUAL(int(validity[i]), int(expected[i] > 0 ? Valid : NotMeasured)));
   TAUTLINE_CHECK(!contains(adapter.notice(), "vtkVertex")); // no quality is expected of it
   TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkPolygon"));
   TAUTLINE_CHECK(contains(adapter.notice(), "1 vtkTriangleStrip"));

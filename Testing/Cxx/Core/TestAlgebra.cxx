@@ -70,10 +70,7 @@ void testCholesky()
   }
   TAUTLINE_CHECK(Factor::factor(A, shift, 0.0, L));
   Factor::solve(L, b);
-  for (int r = 0; r < N; ++r)
-  {
-    TAUTLINE_CHECK_NEAR(b[r], x[r], 1e-12);
-  }
+  TAUTLINE_EACH(int, r, N, TAUTLINE_CHECK_NEAR(b[r], x[r], 1e-12));
   double trace = 0;
   for (int r = 0; r < N; ++r)
   {

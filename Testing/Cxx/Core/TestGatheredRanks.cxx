@@ -431,11 +431,9 @@ void testRetrieval()
   for (unsigned int i = 0; i < count; ++i)
   {
     const auto image = disc(7, 1.0 + 0.4 * i);
-    std::vector<float> values;
-    for (vtkIdType p = 0; p < image->GetNumberOfPoints(); ++p)
-    {
-      values.push_back(static_cast<float>(image->GetPointData()->GetScalars()->GetComponent(p, 0)));
-    }
+    auto values = collect<float>(image->GetNumberOfPoints(),
+      [&](vtkIdType p)
+      { return static_cast<float>(image->GetPointData()->GetScalars()->GetComponent(p, 0)); });
     const int* size = image->GetDimensions();
     shapes.push_back(traceSilhouette({ values.data(), size[0], size[1] }));
     if (rank() == 0)

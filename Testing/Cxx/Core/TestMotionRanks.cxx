@@ -63,11 +63,9 @@ void testFilter(const char* name, vtkMPIController* controller, const MeshData& 
 void checkTables(vtkTable* serial, vtkTable* ranks, int rank, const char* column)
 {
   TAUTLINE_CHECK_EQUAL(ranks->GetNumberOfRows(), rank == 0 ? serial->GetNumberOfRows() : 0);
-  for (vtkIdType row = 0; row < ranks->GetNumberOfRows(); ++row)
-  {
+  TAUTLINE_EACH(vtkIdType, row, ranks->GetNumberOfRows(),
     TAUTLINE_CHECK_RELATIVE(ranks->GetValueByName(row, column).ToDouble(),
-      serial->GetValueByName(row, column).ToDouble(), 1e-12);
-  }
+      serial->GetValueByName(row, column).ToDouble(), 1e-12));
 }
 
 void checkOptimizer(vtkMeshOptimizer* serial, vtkMeshOptimizer* ranks, int rank)

@@ -182,10 +182,8 @@ void testSums(const MeshData& data, const std::vector<Metric>& metrics)
           TAUTLINE_CHECK_NEAR(value, expected, 1e-12 * size);
           TAUTLINE_CHECK_NEAR(again, expected, 1e-12 * size);
           const double slack = 1e-12 * largest(expectedGradient);
-          for (std::size_t i = 0; i < gradient.size(); ++i)
-          {
-            TAUTLINE_CHECK_NEAR(gradient[i], expectedGradient[i], slack);
-          }
+          TAUTLINE_EACH(std::size_t, i, gradient.size(),
+            TAUTLINE_CHECK_NEAR(gradient[i], expectedGradient[i], slack));
         }
         TAUTLINE_CHECK(value == firstValue && again == firstSum && gradient == first);
       }
@@ -244,10 +242,8 @@ TAUTLINE_PART_SLOW(testNonFinite)
   TAUTLINE_CHECK_RELATIVE(
     MetricSum(badMesh, Metric::InverseMeanRatio, {}, 2).valueAndGradient(gradient.data()), sum,
     1e-8);
-  for (std::size_t i = 0; i < expected.size(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(gradient[i], expected[i], 1e-6 * largest(expected));
-  }
+  TAUTLINE_EACH(std::size_t, i, expected.size(),
+    TAUTLINE_CHECK_NEAR(gradient[i], expected[i], 1e-6 * largest(expected)));
 }
 
 /// A fan of so many triangles that no colouring is left is refused in words.

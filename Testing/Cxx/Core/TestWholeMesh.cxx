@@ -161,11 +161,10 @@ TAUTLINE_PART(testPartitions)
       {
         const Context context(
           (ids ? "ids " : "places ") + std::to_string(count) + (ghosts ? " ghosts" : ""));
-        std::vector<Grid> pieces;
-        for (int i = 0; i < count; ++i)
-        {
-          pieces.push_back(piece(data, owner, i, { ids, ghosts }));
-        }
+        auto pieces = collect<Grid>(count,
+          [&](int i) {
+            return piece(data, owner, i, { ids, ghosts });
+          });
         const WholeMesh whole = assemble(plain(pieces));
         checkNumbers(whole, pieces);
         TAUTLINE_CHECK(!whole.mesh->GetCellData()->GetArray("vtkGhostType"));
@@ -248,10 +247,8 @@ TAUTLINE_PART(testOtherTypes)
   auto* joined = vtkImageData::SafeDownCast(whole.mesh);
   if (TAUTLINE_CHECK(joined && joined->GetNumberOfPoints() == image->GetNumberOfPoints()))
   {
-    for (vtkIdType i = 0; i < image->GetNumberOfPoints(); ++i)
-    {
-      TAUTLINE_CHECK_EQUAL(joined->GetPointData()->GetScalars()->GetComponent(i, 0), i);
-    }
+    TAUTLINE_EACH(vtkIdType, i, image->GetNumberOfPoints(),
+      TAUTLINE_CHECK_EQUAL(joined->GetPointData()->GetScalars()->GetComponent(i, 0), i));
     TAUTLINE_CHECK_EQUAL(whole.pieces[0].cells.back(), 8);
     TAUTLINE_CHECK_EQUAL(whole.pieces[1].cells.front(), 0);
   }

@@ -23,10 +23,7 @@ void checkBounds(vtkPolyData* data, double low, double high, double lowZ, double
   const double expected[6] = { low, high, low, high, lowZ, highZ };
   double bounds[6];
   data->GetBounds(bounds);
-  for (int i = 0; i < 6; ++i)
-  {
-    TAUTLINE_CHECK(bounds[i] == expected[i]);
-  }
+  TAUTLINE_EACH(int, i, 6, TAUTLINE_CHECK(bounds[i] == expected[i]));
 }
 
 TAUTLINE_PART(testHoles)

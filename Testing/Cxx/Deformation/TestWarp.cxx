@@ -280,10 +280,7 @@ TAUTLINE_PART(testCoefficients)
     }())
                                  .tensor;
   const SymmetricTensor directions = warped(data, axes, options).tensor;
-  for (int k = 0; k < 6; ++k)
-  {
-    TAUTLINE_CHECK_NEAR(directions[k], sums[k], 1e-14);
-  }
+  TAUTLINE_EACH(int, k, 6, TAUTLINE_CHECK_NEAR(directions[k], sums[k], 1e-14));
 
   // A mesh turned with its motion gives the result turned: also where directions are not unique.
   const Columns turn = rotation({ 1, 2, -1 }, 0.7);

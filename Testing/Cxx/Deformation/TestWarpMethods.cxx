@@ -242,10 +242,7 @@ TAUTLINE_PART(testBiharmonic)
     w[i] /= mass[i];
   }
   K.multiply(w.data(), r.data());
-  for (Index i = 0; i < K.size; ++i)
-  {
-    TAUTLINE_CHECK(boundary[i] || std::abs(r[i]) < 1e-9);
-  }
+  TAUTLINE_EACH(Index, i, K.size, TAUTLINE_CHECK(boundary[i] || std::abs(r[i]) < 1e-9));
   // Clamped, it comes into the mesh farther than the harmonic motion does.
   TAUTLINE_CHECK_NEAR(most, 0.025, 1e-12);
   TAUTLINE_CHECK(
@@ -285,10 +282,7 @@ TAUTLINE_PART(testElasticity)
       u[i] = result.points[3 * (i / 2) + i % 2] - data.points[3 * (i / 2) + i % 2];
     }
     K.multiply(u.data(), r.data());
-    for (Index i = 0; i < K.size; ++i)
-    {
-      TAUTLINE_CHECK(boundary[i / 2] || std::abs(r[i]) < 1e-9);
-    }
+    TAUTLINE_EACH(Index, i, K.size, TAUTLINE_CHECK(boundary[i / 2] || std::abs(r[i]) < 1e-9));
   }
 
   // With it, small elements keep their shape better than large ones.

@@ -438,10 +438,7 @@ TAUTLINE_PART(testWeights)
     }
   }
   const std::vector<double> moves = problem.run(warpByWeightedLaplacian);
-  for (std::size_t i = 0; i < u.size(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(moves[i], u[i], 1e-8);
-  }
+  TAUTLINE_EACH(std::size_t, i, u.size(), TAUTLINE_CHECK_NEAR(moves[i], u[i], 1e-8));
 }
 
 /// Square and cube that turn in a larger one: how many elements each method inverts.

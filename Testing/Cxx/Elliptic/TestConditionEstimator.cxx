@@ -55,11 +55,9 @@ TAUTLINE_PART(testKnown)
     TAUTLINE_CHECK(error >= 0 && error < 1e-5);
     TAUTLINE_CHECK_NEAR(sumOf(meshOf(filter), "Share"), 1, 1e-9);
     // A right triangle: half of (1 0 -1; 0 1 -1; -1 -1 2), largest eigenvalue 3/2.
-    for (vtkIdType i = 0; i < meshOf(filter)->GetNumberOfCells(); ++i)
-    {
+    TAUTLINE_EACH(vtkIdType, i, meshOf(filter)->GetNumberOfCells(),
       TAUTLINE_CHECK_NEAR(
-        component(meshOf(filter)->GetCellData(), "LargestEigenvalue", i), 1.5, 0.51);
-    }
+        component(meshOf(filter)->GetCellData(), "LargestEigenvalue", i), 1.5, 0.51));
     TAUTLINE_CHECK(messages.empty());
 
     TAUTLINE_SET(

@@ -190,11 +190,8 @@ TAUTLINE_PART(testLinearFields)
     }
     const Mesh mesh(data.view());
     const Vec3 slope = flat ? turn * Vec3{ 1, -2, 0 } : Vec3{ 1, -2, 0.5 };
-    std::vector<double> linear;
-    for (Index i = 0; i < data.numberOfPoints(); ++i)
-    {
-      linear.push_back(5 + dot(slope, data.point(i)));
-    }
+    auto linear = collect<double>(
+      data.numberOfPoints(), [&](Index i) { return 5 + dot(slope, data.point(i)); });
     EllipticProblem problem;
     problem.source = { 0, 0, 0 };
     problem.fixedValues = linear.data();
@@ -206,14 +203,10 @@ TAUTLINE_PART(testLinearFields)
       TAUTLINE_CHECK_EQUAL(system.blockSize(), 1);
       TAUTLINE_CHECK_EQUAL(system.unknowns(), static_cast<Index>(system.freePoints().size()));
       const EllipticSolution solution = system.solve(direct);
-      for (std::size_t i = 0; i < linear.size(); ++i)
-      {
-        TAUTLINE_CHECK_NEAR(solution.values[i], linear[i], 1e-10);
-      }
-      for (std::size_t i = 0; i < solution.gradients.size(); ++i)
-      {
-        TAUTLINE_CHECK_NEAR(solution.gradients[i], slope[i % 3], 1e-10);
-      }
+      TAUTLINE_EACH(
+        std::size_t, i, linear.size(), TAUTLINE_CHECK_NEAR(solution.values[i], linear[i], 1e-10));
+      TAUTLINE_EACH(std::size_t, i, solution.gradients.size(),
+        TAUTLINE_CHECK_NEAR(solution.gradients[i], slope[i % 3], 1e-10));
     }
 
     // Displacement G p, in the frame of the mesh for planar ones; its stress is known.
@@ -235,10 +228,8 @@ TAUTLINE_PART(testLinearFields)
       TAUTLINE_CHECK_EQUAL(system.blockSize(), flat ? 2 : 3);
       const EllipticSolution solution = system.solve(direct);
       TAUTLINE_CHECK_EQUAL(solution.components, 3);
-      for (std::size_t i = 0; i < displacement.size(); ++i)
-      {
-        TAUTLINE_CHECK_NEAR(solution.values[i], displacement[i], 1e-10);
-      }
+      TAUTLINE_EACH(std::size_t, i, displacement.size(),
+        TAUTLINE_CHECK_NEAR(solution.values[i], displacement[i], 1e-10));
       // E = 2, nu = 1/4: lambda = mu = 4/5, and lambda = 8/15 in plane stress.
       const double lambda = flat && plane == PlaneState::Stress ? 8.0 / 15 : 0.8, mu = 0.8;
       const double trace = strain[0][0] + strain[1][1] + strain[2][2];
@@ -261,10 +252,8 @@ TAUTLINE_PART(testLinearFields)
       };
       const double expected[6] = { at(0, 0), at(1, 1), at(2, 2), at(0, 1), at(1, 2), at(0, 2) };
       TAUTLINE_CHECK_EQUAL(static_cast<Index>(solution.gradients.size()), 6 * data.numberOfCells());
-      for (std::size_t i = 0; i < solution.gradients.size(); ++i)
-      {
-        TAUTLINE_CHECK_NEAR(solution.gradients[i], expected[i % 6], 1e-10);
-      }
+      TAUTLINE_EACH(std::size_t, i, solution.gradients.size(),
+        TAUTLINE_CHECK_NEAR(solution.gradients[i], expected[i % 6], 1e-10));
     }
   }
 }
@@ -422,14 +411,10 @@ TAUTLINE_PART(testScales)
         const Mesh scaled(other.view());
         const EllipticSolution there = EllipticSystem(scaled, problem).solve(options);
         TAUTLINE_CHECK(converged(there.linear.reason));
-        for (std::size_t i = 0; i < solution.values.size(); ++i)
-        {
-          TAUTLINE_CHECK_NEAR(there.values[i] / (scale * scale), solution.values[i], 1e-9);
-        }
-        for (std::size_t i = 0; i < solution.gradients.size(); ++i)
-        {
-          TAUTLINE_CHECK_NEAR(there.gradients[i] / scale, solution.gradients[i], 1e-9);
-        }
+        TAUTLINE_EACH(std::size_t, i, solution.values.size(),
+          TAUTLINE_CHECK_NEAR(there.values[i] / (scale * scale), solution.values[i], 1e-9));
+        TAUTLINE_EACH(std::size_t, i, solution.gradients.size(),
+          TAUTLINE_CHECK_NEAR(there.gradients[i] / scale, solution.gradients[i], 1e-9));
       }
     }
   }

@@ -117,11 +117,9 @@ void testSolutions(MPI_Comm comm, CellType type, Pde pde, bool scattered, bool l
   TAUTLINE_CHECK_EQUAL(solution.components, given);
   for (std::size_t i = 0; i < share.points.size(); ++i)
   {
-    for (int k = 0; k < given; ++k)
-    {
+    TAUTLINE_EACH(int, k, given,
       TAUTLINE_CHECK_NEAR(
-        solution.values[given * i + k], expected.values[given * share.points[i] + k], 1e-9);
-    }
+        solution.values[given * i + k], expected.values[given * share.points[i] + k], 1e-9));
   }
   // The same steps in time; the values that are fixed serve as a start.
   for (const TimeScheme scheme :
@@ -139,11 +137,9 @@ void testSolutions(MPI_Comm comm, CellType type, Pde pde, bool scattered, bool l
     const EllipticSolution known = alone.fields(there.values.back());
     for (std::size_t i = 0; i < share.points.size(); ++i)
     {
-      for (int k = 0; k < given; ++k)
-      {
+      TAUTLINE_EACH(int, k, given,
         TAUTLINE_CHECK_NEAR(
-          last.values[given * i + k], known.values[given * share.points[i] + k], 1e-8);
-      }
+          last.values[given * i + k], known.values[given * share.points[i] + k], 1e-8));
     }
   }
   const int size = given == 1 ? 3 : 6;

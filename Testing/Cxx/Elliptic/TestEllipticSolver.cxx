@@ -264,10 +264,8 @@ TAUTLINE_PART(testElasticity)
         3 * tau[3] * tau[3]);
       for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
       {
-        for (int k = 0; k < 6; ++k)
-        {
-          TAUTLINE_CHECK_NEAR(component(mesh->GetCellData(), "Stress", i, k), tau[k], 1e-8);
-        }
+        TAUTLINE_EACH(int, k, 6,
+          TAUTLINE_CHECK_NEAR(component(mesh->GetCellData(), "Stress", i, k), tau[k], 1e-8));
         TAUTLINE_CHECK_NEAR(component(mesh->GetCellData(), "VonMises", i), mises, 1e-8);
       }
       for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
@@ -415,10 +413,8 @@ TAUTLINE_PART(testBlocks)
   const auto upper =
     values(vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPartition(1));
   TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(), 25);
-  for (Index i = 0; i < halves[1].numberOfPoints(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(upper[i], expected[shift + i], 1e-10);
-  }
+  TAUTLINE_EACH(Index, i, halves[1].numberOfPoints(),
+    TAUTLINE_CHECK_NEAR(upper[i], expected[shift + i], 1e-10));
   TAUTLINE_CHECK_NEAR(upper[corners[1]], expected[2 * 7 + 1], 1e-10);
   TAUTLINE_CHECK(messages.empty());
 

@@ -41,10 +41,8 @@ double totalSize(const MeshData& data)
 void checkMatrix(const SparseMatrix& a, const std::vector<double>& expected, double tolerance)
 {
   TAUTLINE_CHECK_EQUAL(a.size * a.size, static_cast<Index>(expected.size()));
-  for (std::size_t i = 0; i < expected.size(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(a.at(i / a.size, i % a.size), expected[i], tolerance);
-  }
+  TAUTLINE_EACH(std::size_t, i, expected.size(),
+    TAUTLINE_CHECK_NEAR(a.at(i / a.size, i % a.size), expected[i], tolerance));
 }
 
 void checkSameMatrix(const SparseMatrix& a, const SparseMatrix& b, double scale, double tolerance)
@@ -130,11 +128,9 @@ TAUTLINE_PART(testSmallMatrices)
 /// Meshes of one type each, of all types.
 std::vector<MeshData> sampleMeshes()
 {
-  std::vector<MeshData> meshes;
-  for (CellType type : allTypes)
-  {
-    meshes.push_back(shuffled(movedBlock(type, topology(type).dimension == 2 ? 6 : 4, 0.15), 3));
-  }
+  auto meshes = collect<MeshData>(allTypes,
+    [&](CellType type)
+    { return shuffled(movedBlock(type, topology(type).dimension == 2 ? 6 : 4, 0.15), 3); });
   return meshes;
 }
 
@@ -264,10 +260,8 @@ TAUTLINE_PART(testMassAndLoad)
     }
     const std::vector<double> both = loadVector(mesh, f.data(), 2);
     const std::vector<double> expected = times(stiffnessMatrix(mesh, zero), first);
-    for (std::size_t i = 0; i < ones.size(); ++i)
-    {
-      TAUTLINE_CHECK_NEAR(both[2 * i], expected[i], 1e-13);
-    }
+    TAUTLINE_EACH(
+      std::size_t, i, ones.size(), TAUTLINE_CHECK_NEAR(both[2 * i], expected[i], 1e-13));
   }
 }
 

@@ -524,11 +524,9 @@ Data doubledMesh(vtkDataObject* suitable, double shift, bool newPoints)
   {
     for (vtkIdType cell = 0; cell < copy->GetNumberOfCells(); ++cell)
     {
-      std::vector<vtkIdType> ids;
-      for (vtkIdType k = 0; k < copy->GetCell(cell)->GetNumberOfPoints(); ++k)
-      {
-        ids.push_back(copy->GetCell(cell)->GetPointId(k) + (newPoints ? times * n : 0));
-      }
+      auto ids = collect<vtkIdType>(copy->GetCell(cell)->GetNumberOfPoints(),
+        [&](vtkIdType k)
+        { return copy->GetCell(cell)->GetPointId(k) + (newPoints ? times * n : 0); });
       result->InsertNextCell(
         copy->GetCellType(cell), static_cast<vtkIdType>(ids.size()), ids.data());
     }

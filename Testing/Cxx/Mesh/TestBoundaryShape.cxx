@@ -97,10 +97,8 @@ TAUTLINE_PART(testSmooth)
   const BoundaryShape rim = boundaryShape(Mesh(disk.view()), 1, 60);
   TAUTLINE_CHECK_EQUAL(rim.onSurface, 64);
   TAUTLINE_CHECK_EQUAL(std::count(rim.fixed.begin(), rim.fixed.end(), 1), 0);
-  for (Index i = 0; i < disk.numberOfPoints(); ++i)
-  {
-    TAUTLINE_CHECK_EQUAL(int(rim.surface[i]), int(onRim[i]));
-  }
+  TAUTLINE_EACH(
+    Index, i, disk.numberOfPoints(), TAUTLINE_CHECK_EQUAL(int(rim.surface[i]), int(onRim[i])));
   // A cube has planes and straight sharp edges only; bent a little, its top is smooth.
   const MeshData cube = blockMesh(CellType::Tetrahedron, 4, 4, 4);
   const BoundaryShape sharp = boundaryShape(Mesh(cube.view()), 1, 60);

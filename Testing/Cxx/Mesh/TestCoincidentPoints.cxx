@@ -75,11 +75,9 @@ void checkAgainstWhole(const Pieces& pieces, const MeshData& whole)
   const Boundary mine = Mesh(one.view()).boundary(), given = Mesh(whole.view()).boundary();
   TAUTLINE_CHECK_EQUAL(mine.facets, given.facets);
   TAUTLINE_CHECK_EQUAL(mine.nonManifold, given.nonManifold);
-  for (Index n = 0; n < static_cast<Index>(one.connectivity.size()); ++n)
-  {
+  TAUTLINE_EACH(Index, n, static_cast<Index>(one.connectivity.size()),
     TAUTLINE_CHECK_EQUAL(int(mine.isBoundaryPoint[one.connectivity[n]]),
-      int(given.isBoundaryPoint[whole.connectivity[n]]));
-  }
+      int(given.isBoundaryPoint[whole.connectivity[n]])));
 }
 
 TAUTLINE_PART(testPieces)

@@ -37,10 +37,8 @@ TAUTLINE_PART(testOrder)
         const RankPart part = partOf(whole, group.rank(), rankOf);
         const DistributedMesh mesh(group, { part.data.view(), nullptr, nullptr });
         const std::vector<Index> order = coordinateOrder(mesh);
-        for (std::size_t p = 0; p < part.pointOf.size(); ++p)
-        {
-          TAUTLINE_CHECK_EQUAL(order[mesh.localOfPiece()[p]], places[part.pointOf[p]]);
-        }
+        TAUTLINE_EACH(std::size_t, p, part.pointOf.size(),
+          TAUTLINE_CHECK_EQUAL(order[mesh.localOfPiece()[p]], places[part.pointOf[p]]));
       });
   }
 }

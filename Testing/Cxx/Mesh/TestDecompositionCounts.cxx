@@ -23,11 +23,7 @@ std::vector<unsigned char> inside(const MeshData& whole)
 std::vector<int> partsOf(const MeshData& whole, Cut cut, int ranks)
 {
   const auto rankOf = cutBy(whole, cut, ranks);
-  std::vector<int> parts;
-  for (Index cell = 0; cell < whole.numberOfCells(); ++cell)
-  {
-    parts.push_back(rankOf(cell));
-  }
+  auto parts = collect<int>(whole.numberOfCells(), [&](Index cell) { return rankOf(cell); });
   return parts;
 }
 

@@ -337,19 +337,12 @@ TAUTLINE_PART(testTranspose)
     onRanks(ranks,
       [&](ThreadRank& group)
       {
-        std::vector<Index> numbers;
-        for (int r = 0; r < ranks; ++r)
-        {
-          numbers.push_back(1000 * group.rank() + r);
-        }
+        auto numbers = collect<Index>(ranks, [&](int r) { return 1000 * group.rank() + r; });
         const std::vector<Index> received = group.transpose(numbers);
         const std::lock_guard<std::mutex> lock(mutex);
         TAUTLINE_CHECK_EQUAL(group.messages, rounds);
         TAUTLINE_CHECK_EQUAL(static_cast<int>(received.size()), ranks);
-        for (int r = 0; r < ranks; ++r)
-        {
-          TAUTLINE_CHECK_EQUAL(received[r], 1000 * r + group.rank());
-        }
+        TAUTLINE_EACH(int, r, ranks, TAUTLINE_CHECK_EQUAL(received[r], 1000 * r + group.rank()));
       });
   }
 }
@@ -419,11 +412,8 @@ TAUTLINE_PART(testMemoryOfMessages)
 TAUTLINE_PART(testSum)
 {
   Random random(11);
-  std::vector<double> values;
-  for (int i = 0; i < 1000; ++i)
-  {
-    values.push_back(random.uniform(-1, 1) * std::pow(10.0, random.uniform(-8, 8)));
-  }
+  auto values = collect<double>(
+    1000, [&](int i) { return random.uniform(-1, 1) * std::pow(10.0, random.uniform(-8, 8)); });
   SingleRank single;
   const double expected = single.orderlessSum(values);
   long double sum = 0;

@@ -285,11 +285,7 @@ void testKnownValues()
   const std::vector<Vec3> cube = idealCell(CellType::Hexahedron);
   const auto sheared = [&](const std::vector<int>& nodes)
   {
-    std::vector<Vec3> p;
-    for (int n : nodes)
-    {
-      p.push_back(shear * cube[n]);
-    }
+    auto p = collect<Vec3>(nodes, [&](int n) { return shear * cube[n]; });
     return p;
   };
   const Metric metric = Metric::MinimumJacobian;

@@ -147,10 +147,8 @@ void testAtOtherPoints(MeshData data, bool mirrored)
     TAUTLINE_CHECK_EQUAL(moved.blocks().size(), fresh.blocks().size());
     TAUTLINE_CHECK_EQUAL(moved.higherOrderCells(), fresh.higherOrderCells());
     TAUTLINE_CHECK_EQUAL(moved.unsupportedCells(), fresh.unsupportedCells());
-    for (std::size_t b = 0; b < fresh.blocks().size(); ++b)
-    {
-      TAUTLINE_CHECK(moved.blocks()[b].cells == fresh.blocks()[b].cells);
-    }
+    TAUTLINE_EACH(std::size_t, b, fresh.blocks().size(),
+      TAUTLINE_CHECK(moved.blocks()[b].cells == fresh.blocks()[b].cells));
   }
   TAUTLINE_CHECK(mesh.view().points == data.points.data());
 }

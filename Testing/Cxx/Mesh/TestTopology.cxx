@@ -25,10 +25,8 @@ void testIdealInverse(const CellTopology& t)
     {
       const double* inverse = &t.idealInverse[c][3 * row];
       const Vec3 inverseRow = { inverse[0], inverse[1], inverse[2] };
-      for (int k = 0; k < 3; ++k)
-      {
-        TAUTLINE_CHECK_NEAR(dot(inverseRow, w[k]), row == k ? 1.0 : 0.0, rounding);
-      }
+      TAUTLINE_EACH(
+        int, k, 3, TAUTLINE_CHECK_NEAR(dot(inverseRow, w[k]), row == k ? 1.0 : 0.0, rounding));
     }
   }
 }

@@ -339,10 +339,8 @@ TAUTLINE_PART(testRestriction)
   };
   const Vector d = projected(randomVector(data.points.size(), false, 49));
   const Vector expected = projected(times(whole, mesh, d)), got = times(restricted, mesh, d);
-  for (std::size_t i = 0; i < d.size(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(got[i], expected[i], 1e-11 * norm(expected));
-  }
+  TAUTLINE_EACH(
+    std::size_t, i, d.size(), TAUTLINE_CHECK_NEAR(got[i], expected[i], 1e-11 * norm(expected)));
 }
 
 /// The sum of squared inverse mean ratios over the inner points of a block.

@@ -263,11 +263,9 @@ void testByHand(const MeshData& data, bool tangled, int& infinite)
         const double slack = largestOf(expected.gradient);
         TAUTLINE_CHECK_NEAR(
           value, expected.value, valueTolerance * (std::abs(expected.value) + slack));
-        for (std::size_t i = 0; i < gradient.size(); ++i)
-        {
+        TAUTLINE_EACH(std::size_t, i, gradient.size(),
           TAUTLINE_CHECK_NEAR(
-            (1 - gradient[i]) / 2, expected.gradient[i], valueTolerance * (slack + 1));
-        }
+            (1 - gradient[i]) / 2, expected.gradient[i], valueTolerance * (slack + 1)));
       }
     });
 }

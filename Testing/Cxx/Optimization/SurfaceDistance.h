@@ -45,11 +45,8 @@ std::vector<Triangle> boundaryOf(
     const CellTopology& t = topology(cornerType(view.cellTypes[cell]));
     for (int f = 0; f < t.faces && keep(cell); ++f)
     {
-      std::vector<Index> nodes;
-      for (int k = 0; k < t.faceSizes[f]; ++k)
-      {
-        nodes.push_back(data.connectivity[data.offsets[cell] + t.faceNodes[f][k]]);
-      }
+      auto nodes = collect<Index>(t.faceSizes[f],
+        [&](int k) { return data.connectivity[data.offsets[cell] + t.faceNodes[f][k]]; });
       const std::set<Index> key(nodes.begin(), nodes.end());
       faces.count(key) ? faces[key].clear() : void(faces[key] = nodes);
     }

@@ -29,11 +29,8 @@ Cells facetsOf(const MeshData& data, int uses)
     const Index* nodes = data.connectivity.data() + data.offsets[c];
     for (int f = 0; f < (t.dimension == 2 ? t.edges : t.faces); ++f)
     {
-      std::vector<Index> facet;
-      for (int k = 0; k < (t.dimension == 2 ? 2 : t.faceSizes[f]); ++k)
-      {
-        facet.push_back(nodes[t.dimension == 2 ? t.edgeNodes[f][k] : t.faceNodes[f][k]]);
-      }
+      auto facet = collect<Index>((t.dimension == 2 ? 2 : t.faceSizes[f]),
+        [&](int k) { return nodes[t.dimension == 2 ? t.edgeNodes[f][k] : t.faceNodes[f][k]]; });
       std::vector<Index> key = facet;
       std::sort(key.begin(), key.end());
       auto& found = facets.emplace(key, std::pair(facet, 0)).first->second;

@@ -308,10 +308,8 @@ TAUTLINE_PART(testArrays)
     for (Index i = 0; i < data.numberOfPoints(); ++i)
     {
       const Vec3 step = after.point(i) - data.point(i);
-      for (int c = 0; c < 3; ++c)
-      {
-        TAUTLINE_CHECK_EQUAL(component(output->GetPointData(), "Displacement", i, c), step[c]);
-      }
+      TAUTLINE_EACH(int, c, 3,
+        TAUTLINE_CHECK_EQUAL(component(output->GetPointData(), "Displacement", i, c), step[c]));
       TAUTLINE_CHECK(!boundary[i] || norm(step) == 0);
       moved += norm(step) > 0.01;
     }
@@ -560,10 +558,8 @@ TAUTLINE_PART(testTargets)
       "mu_shape_size_orientation_nb", vtkMeshOptimizer::SUM, 1.0, vtkMeshOptimizer::REFERENCE),
     SetMaximumIterations(300), SetRelativeChange(1e-12), Update());
   const auto points = pointsOf(filter);
-  for (std::size_t i = 0; i < points.size(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(points[i], wanted.points[i], 1e-4);
-  }
+  TAUTLINE_EACH(
+    std::size_t, i, points.size(), TAUTLINE_CHECK_NEAR(points[i], wanted.points[i], 1e-4));
   TAUTLINE_SET(filter, SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE), Update());
   TAUTLINE_CHECK(cell(filter->GetStatistics(), 0, "MeanAfter") < 1.001);
 

@@ -201,10 +201,8 @@ TAUTLINE_PART(testTaken)
   TAUTLINE_SET(filter, SetInputData(toGrid(reversed)), Update());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("the-mesh-is-reversed")));
   const MeshData mirrored = withPointsOf(data, meshOf(filter));
-  for (std::size_t i = 0; i < data.points.size(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(mirrored.points[i], straight.points[i], 1e-3);
-  }
+  TAUTLINE_EACH(std::size_t, i, data.points.size(),
+    TAUTLINE_CHECK_NEAR(mirrored.points[i], straight.points[i], 1e-3));
   TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Validity", 0), 1);
 
   // Every third cell the other way round; the output keeps the cells as they are, with data.
@@ -216,10 +214,8 @@ TAUTLINE_PART(testTaken)
   TAUTLINE_SET(filter, SetInputData(toGrid(mixed)), Update());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("24-of-the-72-cells-are-treated")));
   const MeshData alike = withPointsOf(data, meshOf(filter));
-  for (std::size_t i = 0; i < data.points.size(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(alike.points[i], straight.points[i], 1e-3);
-  }
+  TAUTLINE_EACH(std::size_t, i, data.points.size(),
+    TAUTLINE_CHECK_NEAR(alike.points[i], straight.points[i], 1e-3));
   for (Index i = 0; i < data.numberOfCells(); ++i)
   {
     TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetCell(i)->GetPointId(1), mixed.connectivity[3 * i + 1]);
@@ -236,10 +232,8 @@ TAUTLINE_PART(testTaken)
     Messages told(shaped);
     shaped->Update();
     const MeshData restored = withPointsOf(reference, meshOf(shaped));
-    for (std::size_t i = 0; i < data.points.size(); ++i)
-    {
-      TAUTLINE_CHECK_NEAR(restored.points[i], reference.points[i], 1e-2);
-    }
+    TAUTLINE_EACH(std::size_t, i, data.points.size(),
+      TAUTLINE_CHECK_NEAR(restored.points[i], reference.points[i], 1e-2));
   }
 
   MeshData far = data;
@@ -269,10 +263,8 @@ TAUTLINE_PART(testTaken)
   MeshData broken = data;
   broken.points[3 * 24] = std::numeric_limits<double>::quiet_NaN();
   TAUTLINE_SET(filter, SetInputData(toGrid(broken)), Update());
-  for (vtkIdType i = 0; i < meshOf(filter)->GetNumberOfPoints(); ++i)
-  {
-    TAUTLINE_CHECK(i == 24 || std::isfinite(meshOf(filter)->GetPoint(i)[0]));
-  }
+  TAUTLINE_EACH(vtkIdType, i, meshOf(filter)->GetNumberOfPoints(),
+    TAUTLINE_CHECK(i == 24 || std::isfinite(meshOf(filter)->GetPoint(i)[0])));
   TAUTLINE_CHECK(!messages.empty() || contains(filter->GetSummary(), "NaN"));
 }
 

@@ -542,10 +542,8 @@ TAUTLINE_PART(testFaulty)
   TAUTLINE_CHECK(std::isfinite(result.history.back().objective));
   TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective);
   TAUTLINE_CHECK(std::isnan(result.points[3 * 24]));
-  for (std::size_t i = 0; i < nan.points.size(); ++i)
-  {
-    TAUTLINE_CHECK(i == 3 * 24 || std::isfinite(result.points[i]));
-  }
+  TAUTLINE_EACH(std::size_t, i, nan.points.size(),
+    TAUTLINE_CHECK(i == 3 * 24 || std::isfinite(result.points[i])));
 
   // Two parts, one of them far away.
   MeshData parts = perturbedBlock(CellType::Quadrilateral, 4, 0.2);

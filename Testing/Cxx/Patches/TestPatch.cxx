@@ -161,11 +161,9 @@ void testEnergy(const char* name, const Energy& energy)
       { return (-a + 8 * b - 8 * e + f) / (12 * step); };
       TAUTLINE_CHECK_NEAR(
         difference(far.f, near.f, back.f, farBack.f), sum.g[c], 1e-6 * (scale + std::abs(sum.f)));
-      for (int r = 0; r < Dim; ++r)
-      {
+      TAUTLINE_EACH(int, r, Dim,
         TAUTLINE_CHECK_NEAR(difference(far.g[r], near.g[r], back.g[r], farBack.g[r]), sum.H[r][c],
-          1e-6 * (curvature + scale));
-      }
+          1e-6 * (curvature + scale)));
     }
     // Newton's direction solves the system where the Hessian is positive definite.
     double s[Dim], slope = 0;

@@ -139,10 +139,8 @@ TAUTLINE_PART(testGiven)
     SetUniformSource(0.0), SetComputeSpectrum(false),
     SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "g"), Update());
   vtkDataArray* solution = filter->GetOutput()->GetPointData()->GetArray("Solution");
-  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(solution->GetTuple1(i), given->GetValue(i), 2e-4);
-  }
+  TAUTLINE_EACH(vtkIdType, i, mesh->GetNumberOfPoints(),
+    TAUTLINE_CHECK_NEAR(solution->GetTuple1(i), given->GetValue(i), 2e-4));
   TAUTLINE_CHECK(filter->GetOutput()->GetPointData()->GetArray("SmallestMode") == nullptr);
   TAUTLINE_SET(filter,
     SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "cells"),
@@ -170,10 +168,8 @@ TAUTLINE_PART(testInteractionLayer)
       TAUTLINE_CHECK_RELATIVE(filter->GetCondition(), first, 2e-4);
       vtkUnstructuredGrid* made = layer->GetOutput();
       vtkDataArray* reference = made->GetCellData()->GetArray("Reference");
-      for (vtkIdType cell = 0; cell < made->GetNumberOfCells(); ++cell)
-      {
-        TAUTLINE_CHECK_EQUAL(reference->GetTuple1(cell), cell < bare->GetNumberOfCells() ? 1 : 2);
-      }
+      TAUTLINE_EACH(vtkIdType, cell, made->GetNumberOfCells(),
+        TAUTLINE_CHECK_EQUAL(reference->GetTuple1(cell), cell < bare->GetNumberOfCells() ? 1 : 2));
       for (vtkIdType i = 0; i < made->GetNumberOfPoints(); ++i)
       {
         double p[3];

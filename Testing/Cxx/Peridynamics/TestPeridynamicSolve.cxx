@@ -157,11 +157,8 @@ TAUTLINE_PART(testShortWaves)
     const PeridynamicOptions options;
     const PeridynamicSystem system = assemblePeridynamics(mesh, options);
     const LocalLimit limit = localLimit(mesh, options, system);
-    std::vector<double> wave;
-    for (Index row = 0; row < system.matrix.size; ++row)
-    {
-      wave.push_back((row % (n - 1) + row / (n - 1)) % 2 ? -1.0 : 1.0);
-    }
+    auto wave = collect<double>(system.matrix.size,
+      [&](Index row) { return (row % (n - 1) + row / (n - 1)) % 2 ? -1.0 : 1.0; });
     const double ratio =
       product(wave, times(limit.matrix, wave)) / product(wave, times(system.matrix, wave));
     TAUTLINE_CHECK(ratio > (n == 10 ? 1.0 : 3.0 * before));
@@ -199,10 +196,7 @@ void checkCoarseSpace(
   const std::vector<double> image = times(system.matrix, std::vector<double>(n, 1.0));
   std::vector<double> b(n);
   own.apply(image.data(), b.data());
-  for (Index i = 0; i < n; ++i)
-  {
-    TAUTLINE_CHECK_NEAR(b[i], 1.0, 1e-7);
-  }
+  TAUTLINE_EACH(Index, i, n, TAUTLINE_CHECK_NEAR(b[i], 1.0, 1e-7));
 }
 
 TAUTLINE_PART(testOperators)

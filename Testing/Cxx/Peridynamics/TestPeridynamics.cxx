@@ -244,10 +244,8 @@ TAUTLINE_PART(testLocalLimit)
       errors[level] = std::abs(nonlocal / (M_PI / (2.0 * (4.0 - p)) * local) - 1.0);
     }
     TAUTLINE_CHECK(errors[0] < 0.1);
-    for (int level = 0; level < 2; ++level)
-    {
-      TAUTLINE_CHECK_NEAR(std::log2(errors[level] / errors[level + 1]), 1.0, 0.15);
-    }
+    TAUTLINE_EACH(
+      int, level, 2, TAUTLINE_CHECK_NEAR(std::log2(errors[level] / errors[level + 1]), 1.0, 0.15));
   }
 }
 
@@ -330,10 +328,9 @@ TAUTLINE_PART(testThreads)
   const PeridynamicSystem each = assemblePeridynamics(regular, options);
   TAUTLINE_CHECK(once.integratedPairs < each.integratedPairs);
   TAUTLINE_CHECK_EQUAL(once.matrix.nonzeros(), each.matrix.nonzeros());
-  for (std::size_t k = 0; k < once.matrix.values.size(); ++k)
-  {
-    TAUTLINE_CHECK_NEAR(once.matrix.values[k], each.matrix.values[k], 1e-4 * once.matrix.values[0]);
-  }
+  TAUTLINE_EACH(std::size_t, k, once.matrix.values.size(),
+    TAUTLINE_CHECK_NEAR(
+      once.matrix.values[k], each.matrix.values[k], 1e-4 * once.matrix.values[0]));
 }
 
 //------------------------------------------------------------------------------
@@ -488,10 +485,7 @@ TAUTLINE_PART(testEigenvalues)
   TAUTLINE_CHECK_RELATIVE(s.smallest, exact(1), 1e-9);
   TAUTLINE_CHECK_RELATIVE(s.largest, exact(n), 1e-9);
   const std::vector<double> image = times(a, s.smallestVector);
-  for (Index i = 0; i < n; ++i)
-  {
-    TAUTLINE_CHECK_NEAR(image[i], s.smallest * s.smallestVector[i], 1e-6);
-  }
+  TAUTLINE_EACH(Index, i, n, TAUTLINE_CHECK_NEAR(image[i], s.smallest * s.smallestVector[i], 1e-6));
   TAUTLINE_LET(LanczosOptions, few, maxIterations = 10);
   const Spectrum rough = extremeEigenvalues(a, few);
   TAUTLINE_CHECK(!rough.converged && rough.iterations == 10);

@@ -129,10 +129,8 @@ TAUTLINE_PART_SLOW(testPatch)
       {
         scale = std::max(scale, system.matrix.at(row, row));
       }
-      for (std::size_t i = 0; i < force.size(); ++i)
-      {
-        TAUTLINE_CHECK_NEAR(force[i] + system.constraintLoad[i], 0.0, RuleError * scale);
-      }
+      TAUTLINE_EACH(std::size_t, i, force.size(),
+        TAUTLINE_CHECK_NEAR(force[i] + system.constraintLoad[i], 0.0, RuleError * scale));
     }
   }
 }
@@ -404,10 +402,8 @@ TAUTLINE_PART(testSolutions)
     std::printf("%s: %d iterations, Jacobi %d\n", nameOf(kind), static_cast<int>(report.iterations),
       static_cast<int>(jacobi.iterations));
     TAUTLINE_CHECK(report.converged && report.iterations < jacobi.iterations);
-    for (std::size_t i = 0; i < found.size(); ++i)
-    {
-      TAUTLINE_CHECK_NEAR(found[i], expected[i], 1e-9 * (1.0 + std::abs(expected[i])));
-    }
+    TAUTLINE_EACH(std::size_t, i, found.size(),
+      TAUTLINE_CHECK_NEAR(found[i], expected[i], 1e-9 * (1.0 + std::abs(expected[i]))));
   }
 }
 

@@ -255,10 +255,7 @@ TAUTLINE_PART(testTangledInput)
   TAUTLINE_CHECK_EQUAL(again.invertedBefore, 108);
   TAUTLINE_CHECK_EQUAL(again.invertedAfter, 108);
   const auto before = validityOf(tangled), after = validityOf(moved(tangled, again));
-  for (std::size_t i = 0; i < before.size(); ++i)
-  {
-    TAUTLINE_CHECK(after[i] >= before[i]);
-  }
+  TAUTLINE_EACH(std::size_t, i, before.size(), TAUTLINE_CHECK(after[i] >= before[i]));
 }
 
 TAUTLINE_PART(testSurface)
@@ -312,10 +309,8 @@ TAUTLINE_PART(testTiltedPlane)
   const Perturbation result = perturb(mesh, nullptr, options);
   TAUTLINE_CHECK_EQUAL(result.invertedAfter, 20);
   const MeshData after = moved(data, result);
-  for (Index v = 0; v < data.numberOfPoints(); ++v)
-  {
-    TAUTLINE_CHECK_NEAR(dot(after.point(v), turn[2]), 0, 1e-13);
-  }
+  TAUTLINE_EACH(
+    Index, v, data.numberOfPoints(), TAUTLINE_CHECK_NEAR(dot(after.point(v), turn[2]), 0, 1e-13));
 }
 
 TAUTLINE_PART(testFloatPoints)
@@ -370,11 +365,9 @@ TAUTLINE_PART(testWhatStays)
     const bool inside =
       *std::min_element(p.begin(), p.end()) > 0 && *std::max_element(p.begin(), p.end()) < 6;
     TAUTLINE_CHECK_EQUAL(after.point(v) != p, inside && p[0] > 3);
-    for (int c = 0; c < 3; ++c)
-    {
+    TAUTLINE_EACH(int, c, 3,
       TAUTLINE_CHECK_EQUAL(
-        component(output->GetPointData(), "Displacement", v, c), after.point(v)[c] - p[c]);
-    }
+        component(output->GetPointData(), "Displacement", v, c), after.point(v)[c] - p[c]));
   }
   TAUTLINE_CHECK(output->GetPointData()->GetArray("ids") == ids);
   TAUTLINE_CHECK(output->GetCellData()->GetArray("c") == cellData);

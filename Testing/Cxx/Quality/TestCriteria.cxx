@@ -31,10 +31,7 @@ TAUTLINE_PART(testGrades)
   TAUTLINE_CHECK(gradeOf(up, 11) == Grade::Failed);
   const double values[] = { 0.5, 1, 1.25, 1.5, 3, 6.5, 10, 55, 100, 1e9 };
   const double penalty[] = { 0, 0, 0.125, 0.25, 0.5, 0.625, 0.75, 0.875, 1, 1 };
-  for (int i = 0; i < 10; ++i)
-  {
-    TAUTLINE_CHECK_NEAR(penaltyOf(up, values[i]), penalty[i], 1e-15);
-  }
+  TAUTLINE_EACH(int, i, 10, TAUTLINE_CHECK_NEAR(penaltyOf(up, values[i]), penalty[i], 1e-15));
   const QualityLimits down = { 1, 0.6, 0.3, 0.1, 0 };
   TAUTLINE_CHECK(gradeOf(down, 0.3) == Grade::Passed);
   TAUTLINE_CHECK(gradeOf(down, 0.2) == Grade::Warning);

@@ -236,10 +236,8 @@ void testSigns(CellType type)
     }
     const Context name(info.name);
     const std::vector<double> values = valuesOf(mesh, info.metric);
-    for (int i = 0; i < cells; ++i)
-    {
-      TAUTLINE_CHECK(expected[i] == Valid ? values[i] > 0 : values[i] < 0);
-    }
+    TAUTLINE_EACH(
+      int, i, cells, TAUTLINE_CHECK(expected[i] == Valid ? values[i] > 0 : values[i] < 0));
   }
 }
 }

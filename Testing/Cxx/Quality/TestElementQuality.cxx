@@ -79,10 +79,7 @@ TAUTLINE_PART(testTables)
   auto* worst =
     vtkIdTypeArray::SafeDownCast(filter->GetStatistics()->GetColumnByName("WorstCells"));
   const vtkIdType order[] = { 2, 3, 4, 1, 5, 0, -1, -1, -1, -1 };
-  for (int k = 0; k < 10; ++k)
-  {
-    TAUTLINE_CHECK_EQUAL(worst->GetTypedComponent(0, k), order[k]);
-  }
+  TAUTLINE_EACH(int, k, 10, TAUTLINE_CHECK_EQUAL(worst->GetTypedComponent(0, k), order[k]));
   auto* at =
     vtkDoubleArray::SafeDownCast(filter->GetStatistics()->GetColumnByName("WorstPositions"));
   TAUTLINE_CHECK_NEAR(at->GetTypedComponent(0, 0), 0.5, 1e-15);
@@ -107,10 +104,8 @@ TAUTLINE_PART(testTables)
   TAUTLINE_CHECK_EQUAL(histogram->GetValueByName(1, "imr from").ToDouble(), 1);
   TAUTLINE_CHECK_EQUAL(histogram->GetValueByName(4, "imr to").ToDouble(), 3);
   const int counts[] = { 0, 2, 0, 1, 0, 1 };
-  for (int row = 0; row < 6; ++row)
-  {
-    TAUTLINE_CHECK_EQUAL(histogram->GetValueByName(row, "imr count").ToInt(), counts[row]);
-  }
+  TAUTLINE_EACH(int, row, 6,
+    TAUTLINE_CHECK_EQUAL(histogram->GetValueByName(row, "imr count").ToInt(), counts[row]));
   TAUTLINE_CHECK_NEAR(histogram->GetValueByName(5, "imr to").ToDouble(), imrOf(0.1), 1e-14);
 }
 
@@ -313,10 +308,8 @@ TAUTLINE_PART(testReversed)
   TAUTLINE_CHECK(messages.has(wording("orientation-of-the-mesh-is-mixed")));
   TAUTLINE_CHECK(messages.has("1 of the " + std::to_string(cells) + " cells is treated as if"));
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Inverted"), 0);
-  for (Index cell = 0; cell < cells; ++cell)
-  {
-    TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", cell), values[cell], 1e-13);
-  }
+  TAUTLINE_EACH(Index, cell, cells,
+    TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", cell), values[cell], 1e-13));
   TAUTLINE_SET(filter, SetReversedMesh(vtkElementQuality::MEASURE_AS_GIVEN), Update());
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Inverted"), 1);
   TAUTLINE_SET(filter, SetReversedMesh(vtkElementQuality::FLIP_OUTPUT), Update());
@@ -462,11 +455,9 @@ TAUTLINE_PART(testBad)
   TAUTLINE_CHECK_EQUAL(bad->GetNumberOfPoints(), 8);
   TAUTLINE_CHECK_NEAR(bad->GetPoint(3)[2], flat, 1e-15);
   TAUTLINE_CHECK_NEAR(bad->GetPoint(7)[2], inverted, 1e-15);
-  for (vtkIdType i = 0; i < 2; ++i)
-  {
+  TAUTLINE_EACH(vtkIdType, i, 2,
     TAUTLINE_CHECK_EQUAL(bad->GetCellData()->GetArray("imr")->GetComponent(i, 0),
-      component(cellsOf(filter), "imr", i + 1));
-  }
+      component(cellsOf(filter), "imr", i + 1)));
   // A limit that the flat element keeps: only the inverted one fails.
   TAUTLINE_SET(filter,
     SetCriteria(

@@ -97,11 +97,8 @@ void checkIndependence(CellType type, const MeshData& data, Dimension dimension,
   const int nodes = topology(type).nodes;
   for (Index i = 0; i < some; ++i)
   {
-    std::vector<Vec3> corners;
-    for (int k = 0; k < nodes; ++k)
-    {
-      corners.push_back(data.point((some - 1 - i) * nodes + k));
-    }
+    auto corners =
+      collect<Vec3>(nodes, [&](int k) { return data.point((some - 1 - i) * nodes + k); });
     few.addCell(type, corners);
   }
   const Mesh mesh(few.view());
@@ -110,10 +107,7 @@ void checkIndependence(CellType type, const MeshData& data, Dimension dimension,
     return; // a few cells may lie in a plane where many do not
   }
   const std::vector<double> again = valuesOf(mesh, metric, options);
-  for (Index i = 0; i < some; ++i)
-  {
-    TAUTLINE_CHECK_EQUAL(again[i], values[some - 1 - i]);
-  }
+  TAUTLINE_EACH(Index, i, some, TAUTLINE_CHECK_EQUAL(again[i], values[some - 1 - i]));
 }
 
 void checkStatistics(const Mesh& mesh, const MetricInfo& info, const std::vector<double>& values,

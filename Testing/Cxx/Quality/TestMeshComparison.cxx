@@ -174,10 +174,8 @@ TAUTLINE_PART(testEveryCellAndMetric)
     TAUTLINE_CHECK(cellOf(filter, "Worse") > cellOf(filter, "Better"));
     for (const char* column : { "MinimumAfter", "MeanAfter", "MaximumAfter" })
     {
-      for (vtkIdType row = 0; row < tableOf(filter)->GetNumberOfRows(); ++row)
-      {
-        TAUTLINE_CHECK(std::isfinite(cellOf(filter, column, row)));
-      }
+      TAUTLINE_EACH(vtkIdType, row, tableOf(filter)->GetNumberOfRows(),
+        TAUTLINE_CHECK(std::isfinite(cellOf(filter, column, row))));
     }
   }
 }

@@ -27,10 +27,7 @@ TAUTLINE_PART(testDefaults)
   TAUTLINE_CHECK(size[0] == 301 && size[1] == 201 && size[2] == 1);
   const double* bounds = image->GetBounds();
   const double expected[] = { -1, 2, 0, 2, 0, 0 };
-  for (int i = 0; i < 6; ++i)
-  {
-    TAUTLINE_CHECK_NEAR(bounds[i], expected[i], 1e-14);
-  }
+  TAUTLINE_EACH(int, i, 6, TAUTLINE_CHECK_NEAR(bounds[i], expected[i], 1e-14));
   TAUTLINE_CHECK_EQUAL(image->GetPointData()->GetNumberOfArrays(), 2);
   TAUTLINE_CHECK_EQUAL(std::string(image->GetPointData()->GetScalars()->GetName()), "imr");
 
@@ -145,10 +142,7 @@ TAUTLINE_PART(testPieces)
   const int extent[] = { 3, 17, 5, 20, 4, 9 };
   part->UpdateExtent(extent);
   vtkImageData* image = part->GetOutput();
-  for (int i = 0; i < 6; ++i)
-  {
-    TAUTLINE_CHECK_EQUAL(image->GetExtent()[i], extent[i]);
-  }
+  TAUTLINE_EACH(int, i, 6, TAUTLINE_CHECK_EQUAL(image->GetExtent()[i], extent[i]));
   for (int k = extent[4]; k <= extent[5]; ++k)
   {
     for (int j = extent[2]; j <= extent[3]; ++j)
@@ -245,11 +239,9 @@ TAUTLINE_PART(testScales)
     const vtkIdType count = dimension == 2 ? 16 : 64;
     const auto same = [&](vtkPointData* data, const char* name, double factor, double tolerance)
     {
-      for (vtkIdType i = 0; i < count; ++i)
-      {
+      TAUTLINE_EACH(vtkIdType, i, count,
         TAUTLINE_CHECK_RELATIVE(
-          component(data, name, i), factor * component(expected, name, i), tolerance);
-      }
+          component(data, name, i), factor * component(expected, name, i), tolerance));
     };
     const struct
     {

@@ -236,11 +236,9 @@ void testScale(const Cloud& cloud)
         const Gradients before = gradientsOf(mesh, info.metric, options);
         const Gradients after = gradientsOf(scaledMesh, info.metric, scaledOptions);
         checkSame(after.values, before.values, factor);
-        for (std::size_t i = 0; i < before.gradients.size(); ++i)
-        {
+        TAUTLINE_EACH(std::size_t, i, before.gradients.size(),
           TAUTLINE_CHECK_NEAR(after.gradients[i] * scale / factor, before.gradients[i],
-            100 * tolerance * std::max(1.0, std::abs(before.gradients[i])));
-        }
+            100 * tolerance * std::max(1.0, std::abs(before.gradients[i]))));
       }
       if (info.family == MetricFamily::Target)
       {
@@ -324,11 +322,9 @@ void testMirror(const Cloud& cloud)
     {
       const Vec3 expected =
         reflect({ before.gradients[i], before.gradients[i + 1], before.gradients[i + 2] });
-      for (int c = 0; c < 3; ++c)
-      {
+      TAUTLINE_EACH(int, c, 3,
         TAUTLINE_CHECK_NEAR(after.gradients[i + c], expected[c],
-          100 * tolerance * std::max(1.0, std::abs(expected[c])));
-      }
+          100 * tolerance * std::max(1.0, std::abs(expected[c]))));
     }
   }
 }

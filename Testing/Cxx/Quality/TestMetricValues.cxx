@@ -258,11 +258,8 @@ double cellValue(Metric metric, CellType type, const Corners& p)
 {
   const CellTopology& t = topology(type);
   const std::vector<double> angles = anglesOf(type, p), sines = cornerSines(type, p);
-  std::vector<double> lengths;
-  for (int e = 0; e < t.edges; ++e)
-  {
-    lengths.push_back(norm(p[t.edgeNodes[e][1]] - p[t.edgeNodes[e][0]]));
-  }
+  auto lengths = collect<double>(
+    t.edges, [&](int e) { return norm(p[t.edgeNodes[e][1]] - p[t.edgeNodes[e][0]]); });
   const double idealSine = cornerSines(type, idealCell(type))[0];
   // The inradius of the simplex with unit edges, in units of its edge.
   const double regular = t.dimension == 2 ? std::sqrt(3.0) / 6 : std::sqrt(6.0) / 12;

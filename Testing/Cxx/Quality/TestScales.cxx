@@ -190,10 +190,8 @@ TAUTLINE_PART(testTensors)
     {
       const Context context(metricInfo(metric).name + (", 2^" + std::to_string(exponent)));
       const std::vector<double> expected = valuesAt(0, metric), found = valuesAt(exponent, metric);
-      for (std::size_t i = 0; i < found.size(); ++i)
-      {
-        TAUTLINE_CHECK_RELATIVE(found[i], expected[i], 1e-12);
-      }
+      TAUTLINE_EACH(
+        std::size_t, i, found.size(), TAUTLINE_CHECK_RELATIVE(found[i], expected[i], 1e-12));
     }
   }
 }

@@ -103,10 +103,8 @@ TAUTLINE_PART(testByHand)
   TAUTLINE_CHECK_EQUAL(s.outsideAcceptable, 1);
   // Quantiles at 3 x fraction between the sorted values.
   const double expected[] = { 1.03, 1.15, 1.75, 2.5, 3.25, 3.85, 3.97 };
-  for (std::size_t i = 0; i < quantileFractions.size(); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(s.quantiles[i], expected[i], 1e-14);
-  }
+  TAUTLINE_EACH(std::size_t, i, quantileFractions.size(),
+    TAUTLINE_CHECK_NEAR(s.quantiles[i], expected[i], 1e-14));
 
   const MetricStatistics without = summarize(imr, 2, values, false);
   TAUTLINE_CHECK(without.quantiles == decltype(without.quantiles){});
@@ -222,11 +220,7 @@ TAUTLINE_PART(testHistogram)
   TAUTLINE_CHECK_THROWS(histogram({ 1 }, 0), wording("at-least-one-bin"));
 
   Random random(20);
-  std::vector<double> values;
-  for (int i = 0; i < 10000; ++i)
-  {
-    values.push_back(random.uniform(-3, 5));
-  }
+  auto values = collect<double>(10000, [&](int i) { return random.uniform(-3, 5); });
   const Histogram r = histogram(values, 37);
   for (std::size_t bin = 0; bin < r.counts.size(); ++bin)
   {
@@ -278,13 +272,11 @@ TAUTLINE_PART(testWorst)
   cells.add(50, Valid, triangle, true);
   auto ids = [&](const MetricInfo& info)
   {
-    std::vector<Index> result;
-    for (const WorstElement& e : worstElements(info, cells.view()))
-    {
-      result.push_back(e.cell);
-      TAUTLINE_CHECK_EQUAL(e.value, cells.values[e.cell]);
-      TAUTLINE_CHECK_EQUAL(int(e.validity), int(cells.validity[e.cell]));
-    }
+    auto result = collect<Index>(worstElements(info, cells.view()),
+      [&](const WorstElement& e)
+      { return e.cell);
+        TAUTLINE_CHECK_EQUAL(e.value, cells.values[e.cell]); TAUTLINE_CHECK_EQUAL(int(e.validity), int(cells.validity[e.cell]);
+      });
     return result;
   };
   TAUTLINE_CHECK((ids(imr) == std::vector<Index>{ 3, 2, 1, 4, 0 }));
@@ -315,10 +307,7 @@ TAUTLINE_PART(testWorst)
       });
     const std::vector<WorstElement> worst = worstElements(*info, many.view());
     TAUTLINE_CHECK_EQUAL(worst.size(), static_cast<std::size_t>(WorstCount));
-    for (std::size_t i = 0; i < worst.size(); ++i)
-    {
-      TAUTLINE_CHECK_EQUAL(worst[i].cell, all[i].cell);
-    }
+    TAUTLINE_EACH(std::size_t, i, worst.size(), TAUTLINE_CHECK_EQUAL(worst[i].cell, all[i].cell));
   }
 }
 

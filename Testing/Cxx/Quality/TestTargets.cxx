@@ -105,10 +105,7 @@ void testReference(CellType type, bool surface)
     {
       const std::vector<double> expected = valuesOf(grownMesh, metric, options);
       const std::vector<double> actual = valuesOf(reversedMesh, metric, reversedOptions);
-      for (int i = 0; i < cellsPerMesh; ++i)
-      {
-        TAUTLINE_CHECK_NEAR(actual[i], expected[i], tolerance);
-      }
+      TAUTLINE_EACH(int, i, cellsPerMesh, TAUTLINE_CHECK_NEAR(actual[i], expected[i], tolerance));
     }
   }
 }
@@ -148,10 +145,7 @@ void testSize(CellType type, bool surface)
     {
       const std::vector<double> with = valuesOf(mesh, info.metric, options);
       const std::vector<double> without = valuesOf(mesh, info.metric);
-      for (int i = 0; i < cellsPerMesh; ++i)
-      {
-        TAUTLINE_CHECK_RELATIVE(with[i], without[i], tolerance);
-      }
+      TAUTLINE_EACH(int, i, cellsPerMesh, TAUTLINE_CHECK_RELATIVE(with[i], without[i], tolerance));
     }
   }
   if (topology(type).samples == 1)
@@ -292,11 +286,7 @@ TAUTLINE_PART(testGivenIdeal)
   {
     for (int i = 0; i < cellsPerMesh; ++i)
     {
-      std::vector<Vec3> corners;
-      for (int k = 0; k < 4; ++k)
-      {
-        corners.push_back(size * random.vector(-1, 1));
-      }
+      auto corners = collect<Vec3>(4, [&](int k) { return size * random.vector(-1, 1); });
       if (i == 0 && size == 1)
       {
         corners[3] = corners[1]; // flat: of larger ones rounding decides the determinant

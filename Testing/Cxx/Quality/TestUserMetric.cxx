@@ -224,10 +224,8 @@ bool compare(const Twin& pair, const Mesh& mesh, const EvaluationOptions& option
     const std::vector<double> g(
       expected.gradients.begin() + 3 * nodes * i, expected.gradients.begin() + 3 * nodes * (i + 1));
     const double size = largest(g);
-    for (std::size_t k = 0; k < g.size(); ++k)
-    {
-      TAUTLINE_CHECK_NEAR(found.gradients[3 * nodes * i + k], g[k], 1e-9 * size);
-    }
+    TAUTLINE_EACH(std::size_t, k, g.size(),
+      TAUTLINE_CHECK_NEAR(found.gradients[3 * nodes * i + k], g[k], 1e-9 * size));
   }
   return true;
 }
@@ -367,10 +365,8 @@ void testObjectives(const std::vector<Twin>& pairs)
           }
           TAUTLINE_CHECK_RELATIVE(G, F, 1e-11);
           const double size = largest(expected);
-          for (std::size_t i = 0; i < found.size(); ++i)
-          {
-            TAUTLINE_CHECK_NEAR(found[i], expected[i], 1e-9 * size);
-          }
+          TAUTLINE_EACH(
+            std::size_t, i, found.size(), TAUTLINE_CHECK_NEAR(found[i], expected[i], 1e-9 * size));
           ++compared;
         }
       }

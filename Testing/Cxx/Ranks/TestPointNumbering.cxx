@@ -180,10 +180,8 @@ void testBoundary(MPI_Comm comm)
     }
     const std::vector<unsigned char> flags =
       globalBoundaryPoints(part.mesh(), &comm, part.ids.data(), skip.data());
-    for (Index p = 0; p < part.numberOfPoints(); ++p)
-    {
-      TAUTLINE_CHECK_EQUAL(flags[p] != 0, part.onBoundary(p));
-    }
+    TAUTLINE_EACH(
+      Index, p, part.numberOfPoints(), TAUTLINE_CHECK_EQUAL(flags[p] != 0, part.onBoundary(p)));
   }
   // Alone, and without a communicator, the same as Mesh.
   const Part whole(0, 1, false);

@@ -131,11 +131,9 @@ std::set<Index> checkPart(
   std::set<Index> inCells(whole.connectivity.begin(), whole.connectivity.end());
   for (std::size_t point = 0; point < pointIds.size(); ++point)
   {
-    for (std::size_t c = 0; c < 3; ++c)
-    {
+    TAUTLINE_EACH(std::size_t, c, 3,
       TAUTLINE_CHECK(part.points[3 * point + c] ==
-        whole.points[3 * static_cast<std::size_t>(pointIds[point]) + c]);
-    }
+        whole.points[3 * static_cast<std::size_t>(pointIds[point]) + c]));
     const bool loose = inCells.count(pointIds[point]) == 0;
     TAUTLINE_CHECK(!loose || request.part == 0);
     TAUTLINE_CHECK(

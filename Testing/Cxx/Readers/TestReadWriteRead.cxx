@@ -182,10 +182,7 @@ void checkWriterClasses()
   TAUTLINE_CHECK(countCells(read, FileHexahedron) == 3); // one of four is a ghost
   TAUTLINE_CHECK(findArray(read.pointArrays, "heat")->at(5) == static_cast<double>(0.1f));
   const Index first[] = { 0, 1, 4, 3, 9, 10, 13, 12 };
-  for (std::size_t i = 0; i < 8; ++i)
-  {
-    TAUTLINE_CHECK(read.connectivity[i] == first[i]);
-  }
+  TAUTLINE_EACH(std::size_t, i, 8, TAUTLINE_CHECK(read.connectivity[i] == first[i]));
 
   TAUTLINE_SET(gmsh, SetFileName((output + "/image.pos").c_str()), BinaryOff());
   TAUTLINE_CHECK(gmsh->Write() == 1 && fileExists(output + "/image.pos"));

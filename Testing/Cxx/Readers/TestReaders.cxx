@@ -111,10 +111,8 @@ void testMedit()
     FilePyramid, FilePyramid, FileTriangle, FileQuadrilateral, FileLine, FileLine };
   TAUTLINE_CHECK(zoo.cellTypes == types);
   const double references[] = { 14, 11, 13, 12, 12, 21, 22, 31, 32 };
-  for (std::size_t i = 0; i < 9; ++i)
-  {
-    TAUTLINE_CHECK(value(zoo.cellArrays, "Reference", i) == references[i]);
-  }
+  TAUTLINE_EACH(
+    std::size_t, i, 9, TAUTLINE_CHECK(value(zoo.cellArrays, "Reference", i) == references[i]));
   TAUTLINE_CHECK(value(zoo.pointArrays, "Reference", 13) == 6.0);
   TAUTLINE_CHECK(
     value(zoo.pointArrays, "Corner", 8) == 1.0 && value(zoo.pointArrays, "Corner", 12) == 0.0);
@@ -129,16 +127,12 @@ void testMedit()
   TAUTLINE_CHECK(value(zoo.pointArrays, "Solution2", 3 * 2 + 1) == -2.0);
   // m11 m21 m22 m31 m32 m33 = 1 0.5 2 0.25 0.125 3 of vertex 0, as a matrix
   const double tensor[] = { 1, 0.5, 0.25, 0.5, 2, 0.125, 0.25, 0.125, 3 };
-  for (std::size_t i = 0; i < 9; ++i)
-  {
-    TAUTLINE_CHECK(value(zoo.pointArrays, "Solution3", i) == tensor[i]);
-  }
+  TAUTLINE_EACH(
+    std::size_t, i, 9, TAUTLINE_CHECK(value(zoo.pointArrays, "Solution3", i) == tensor[i]));
   // VTK's wedge has its first triangle counter-clockwise from outside
   const Index wedge[] = { 1, 2, 9, 5, 6, 10 };
-  for (std::size_t i = 0; i < 6; ++i)
-  {
-    TAUTLINE_CHECK(zoo.connectivity[static_cast<std::size_t>(zoo.offsets[2]) + i] == wedge[i]);
-  }
+  TAUTLINE_EACH(std::size_t, i, 6,
+    TAUTLINE_CHECK(zoo.connectivity[static_cast<std::size_t>(zoo.offsets[2]) + i] == wedge[i]));
   TAUTLINE_CHECK(readMedit(data + "/zoo.mesh", false).numberOfCells() == 5);
 }
 
@@ -280,10 +274,8 @@ void testHighOrder()
   // In the order of the file: 11, 4, 3, 2, 1.
   TAUTLINE_CHECK_EQUAL(mesh.points[0], 11.0);
   const double numbers[] = { 11, 4, 0, 2, 1 };
-  for (std::size_t i = 0; i < 5; ++i)
-  {
-    TAUTLINE_CHECK(i == 2 || value(mesh.pointArrays, "number", i) == numbers[i]);
-  }
+  TAUTLINE_EACH(std::size_t, i, 5,
+    TAUTLINE_CHECK(i == 2 || value(mesh.pointArrays, "number", i) == numbers[i]));
   const std::vector<Index> nodes = { 4, 3, 2, 1, 4, 3, 0 };
   TAUTLINE_CHECK(mesh.connectivity == nodes);
   TAUTLINE_CHECK(mesh.warnings.size() == 1 &&
@@ -350,10 +342,8 @@ void testFreeFemAndOff()
     "OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 10 20 30 40\n3 0 1 2 1 2 3\n3 0 1 2\n");
   const MeshFile colors = readOff(output + "/colors.off", false);
   const double expected[] = { 10, 20, 30, 40, 1, 2, 3, 255, 170, 170, 170, 255 };
-  for (std::size_t i = 0; i < std::size(expected); ++i)
-  {
-    TAUTLINE_CHECK_EQUAL(value(colors.cellArrays, "Color", i), expected[i]);
-  }
+  TAUTLINE_EACH(std::size_t, i, std::size(expected),
+    TAUTLINE_CHECK_EQUAL(value(colors.cellArrays, "Color", i), expected[i]));
   writeText(
     output + "/fractions.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0.25 0.5 1.0\n3 0 1 2\n");
   const MeshFile fractions = readOff(output + "/fractions.off", false);
@@ -378,10 +368,8 @@ void testOrderOfMiddleNodes(vtkMeshFileReader* reader, const char* name, int poi
       {
         cell->GetEdge(e)->GetPoints()->GetPoint(k, p[k]);
       }
-      for (int c = 0; c < 3; ++c)
-      {
-        TAUTLINE_CHECK(std::abs(0.5 * (p[0][c] + p[1][c]) - p[2][c]) < 1e-9);
-      }
+      TAUTLINE_EACH(
+        int, c, 3, TAUTLINE_CHECK(std::abs(0.5 * (p[0][c] + p[1][c]) - p[2][c]) < 1e-9));
       ++middles;
     }
   }

@@ -303,11 +303,9 @@ TAUTLINE_PART(testSurfaceCells)
   TAUTLINE_CHECK(
     !contains(filter->GetSummary(), wording("that-triangles-mark-and"))); // of the boundary
   TAUTLINE_CHECK_EQUAL(meshOf(filter)->GetNumberOfCells(), meshOf(plain)->GetNumberOfCells());
-  for (Index i = 0; i < meshOf(filter)->GetNumberOfCells(); ++i)
-  {
+  TAUTLINE_EACH(Index, i, meshOf(filter)->GetNumberOfCells(),
     TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "OriginalCellId", i),
-      component(meshOf(plain)->GetCellData(), "OriginalCellId", i) + 1);
-  }
+      component(meshOf(plain)->GetCellData(), "OriginalCellId", i) + 1));
 }
 
 /// A facet inside the mesh that is lost without a mark stays where a triangle marks it.
@@ -370,13 +368,11 @@ TAUTLINE_PART(testSeams)
   MeshData pieces;
   for (Index i = 0; i < data.numberOfCells(); ++i)
   {
-    std::vector<Index> ids;
-    for (int k = 0; k < 4; ++k)
-    {
-      ids.push_back(pieces.numberOfPoints());
-      const Vec3 p = data.point(data.connectivity[data.offsets[i] + k]);
-      pieces.points.insert(pieces.points.end(), p.begin(), p.end());
-    }
+    auto ids = collect<Index>(4,
+      [&](int k)
+      { return pieces.numberOfPoints());
+        const Vec3 p = data.point(data.connectivity[data.offsets[i] + k]); pieces.points.insert(pieces.points.end(), p.begin(), p.end();
+      });
     pieces.addCell(CellType::Tetrahedron, ids);
   }
   vtkNew<vtkMeshImprover> filter;
@@ -433,10 +429,7 @@ TAUTLINE_PART(testInputs)
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("as-if-its-cells-were-flipped")));
   const MeshData mirrored = dataOf(meshOf(filter));
   TAUTLINE_CHECK_RELATIVE(volumeOf(mirrored), volumeOf(data), 1e-12);
-  for (Index i = 0; i < mirrored.numberOfCells(); ++i)
-  {
-    TAUTLINE_CHECK(volumeOf(mirrored, i) < 0);
-  }
+  TAUTLINE_EACH(Index, i, mirrored.numberOfCells(), TAUTLINE_CHECK(volumeOf(mirrored, i) < 0));
 }
 
 /// An abort and the time limit return the best mesh so far.

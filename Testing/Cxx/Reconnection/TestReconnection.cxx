@@ -201,10 +201,8 @@ TAUTLINE_PART(testScales)
       const ReconnectionResult result = reconnect(scaled, options);
       TAUTLINE_CHECK(result.tetrahedra == reference.tetrahedra);
       TAUTLINE_CHECK(result.points.size() == reference.points.size());
-      for (std::size_t i = 0; i < result.points.size(); ++i)
-      {
-        TAUTLINE_CHECK_EQUAL(result.points[i] / scale, reference.points[i]);
-      }
+      TAUTLINE_EACH(std::size_t, i, result.points.size(),
+        TAUTLINE_CHECK_EQUAL(result.points[i] / scale, reference.points[i]));
     }
     const auto compare = [&](const auto& map)
     {
@@ -259,11 +257,7 @@ TAUTLINE_PART(testRegions)
     const ReconnectionResult result = reconnect(input, options);
     checkResult(input, result);
     const MeshData output = outputOf(result);
-    std::vector<Index> after;
-    for (Index c : result.originalCells)
-    {
-      after.push_back(regions[c]);
-    }
+    auto after = collect<Index>(result.originalCells, [&](Index c) { return regions[c]; });
     for (Index region : { -7, 100, 4 })
     {
       double before = 0.0, now = 0.0;
@@ -449,11 +443,8 @@ TAUTLINE_PART_SLOW(testBlocks)
   TAUTLINE_CHECK(worst(result) > 0.7 * worst(whole));
   TAUTLINE_CHECK(result.history.back().belowTarget < 1.25 * whole.history.back().belowTarget);
   TAUTLINE_CHECK(result.history.back().insertions > 0);
-  std::vector<Index> regionsAfter;
-  for (Index original : result.originalCells)
-  {
-    regionsAfter.push_back(regions[original]);
-  }
+  auto regionsAfter =
+    collect<Index>(result.originalCells, [&](Index original) { return regions[original]; });
   const MeshData output = outputOf(result);
   for (Index region : { 0, 1 })
   {

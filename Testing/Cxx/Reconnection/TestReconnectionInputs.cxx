@@ -184,11 +184,8 @@ TAUTLINE_PART(testRegionsAtPoint)
     const ReconnectionResult result = reconnect(data, options);
     checkResult(data, result);
     TAUTLINE_CHECK(result.history.back().edgeRemovals > 0);
-    std::vector<Index> after;
-    for (Index original : result.originalCells)
-    {
-      after.push_back(regions[original]);
-    }
+    auto after =
+      collect<Index>(result.originalCells, [&](Index original) { return regions[original]; });
     for (Index region : { 0, 1 })
     {
       TAUTLINE_CHECK(

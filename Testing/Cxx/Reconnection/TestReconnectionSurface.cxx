@@ -205,11 +205,8 @@ TAUTLINE_PART(testKept)
   const ReconnectionResult result = reconnect(ball, options);
   const MeshData output = outputOf(result);
   checkBoundary(ball, result, options.surfaceDistance * diagonalOf(ball));
-  std::vector<Index> after;
-  for (Index original : result.originalCells)
-  {
-    after.push_back(regions[original]);
-  }
+  auto after =
+    collect<Index>(result.originalCells, [&](Index original) { return regions[original]; });
   const auto interface = [](const MeshData& data, const std::vector<Index>& of)
   {
     const std::set<Facet> first = outerFacets(data, of, 0), second = outerFacets(data, of, 1);

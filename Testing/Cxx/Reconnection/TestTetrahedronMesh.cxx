@@ -12,11 +12,7 @@ namespace
 {
 TetrahedronMesh meshOf(const MeshData& data)
 {
-  std::vector<Vec3> points;
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    points.push_back(data.point(i));
-  }
+  auto points = collect<Vec3>(data.numberOfPoints(), [&](Index i) { return data.point(i); });
   std::vector<TetVertices> cells(data.numberOfCells());
   for (std::size_t i = 0; i < data.connectivity.size(); ++i)
   {

@@ -53,10 +53,8 @@ TAUTLINE_PART(testDelaunay)
       const Index* v = &output.connectivity[3 * c];
       const Vec2 p = flat(output.point(v[0])), q = flat(output.point(v[1]));
       const Vec2 r = flat(output.point(v[2]));
-      for (Index i = 0; i < output.numberOfPoints(); ++i)
-      {
-        TAUTLINE_CHECK(inCircle(p, q, r, flat(output.point(i))) <= 0);
-      }
+      TAUTLINE_EACH(Index, i, output.numberOfPoints(),
+        TAUTLINE_CHECK(inCircle(p, q, r, flat(output.point(i))) <= 0));
     }
   }
 }
@@ -236,10 +234,7 @@ TAUTLINE_PART(testInvariance)
   const std::vector<double> one = angles(trianglesOf(reconnect(data, swap)));
   const std::vector<double> two = angles(trianglesOf(reconnect(other, swap)));
   TAUTLINE_CHECK_EQUAL(one.size(), two.size());
-  for (std::size_t i = 0; i < one.size(); ++i)
-  {
-    TAUTLINE_CHECK_RELATIVE(one[i], two[i], 1e-9);
-  }
+  TAUTLINE_EACH(std::size_t, i, one.size(), TAUTLINE_CHECK_RELATIVE(one[i], two[i], 1e-9));
   // Reversed throughout: the mirror image.
   MeshData reversed = data;
   for (Index c = 0; c < reversed.numberOfCells(); ++c)
@@ -249,10 +244,8 @@ TAUTLINE_PART(testInvariance)
   Mesh mirrored(reversed.view());
   mirrored.setMirrored(true);
   const ReconnectionResult result = improveTriangles(mirrored, swap);
-  for (Index c = 0; c < static_cast<Index>(result.originalCells.size()); ++c)
-  {
-    TAUTLINE_CHECK(areaVector(trianglesOf(result), c)[2] < 0.0);
-  }
+  TAUTLINE_EACH(Index, c, static_cast<Index>(result.originalCells.size()),
+    TAUTLINE_CHECK(areaVector(trianglesOf(result), c)[2] < 0.0));
   TAUTLINE_CHECK_RELATIVE(
     result.history.back().smallestAngle, reconnect(data, swap).history.back().smallestAngle, 1e-9);
 }
@@ -273,11 +266,8 @@ TAUTLINE_PART(testRegions)
     const ReconnectionResult result = reconnect(data, options);
     const MeshData output = trianglesOf(result);
     checkTriangles(data, result);
-    std::vector<Index> after;
-    for (Index original : result.originalCells)
-    {
-      after.push_back(regions[original]);
-    }
+    auto after =
+      collect<Index>(result.originalCells, [&](Index original) { return regions[original]; });
     for (Index region : { -1, 4, 6, 11 })
     {
       TAUTLINE_CHECK_RELATIVE(areaOf(output, after, region), areaOf(data, regions, region), 1e-13);

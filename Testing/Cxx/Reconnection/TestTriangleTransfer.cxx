@@ -196,19 +196,14 @@ TAUTLINE_PART(testPlanarOverlaps)
         TAUTLINE_CHECK_EQUAL(regions[result.overlaps.cells[k]], regions[result.originalCells[c]]);
       }
     }
-    for (Index c = 0; c < data.numberOfCells(); ++c)
-    {
-      TAUTLINE_CHECK_NEAR(covered[c], norm(areaVector(data, c)), 1e-10);
-    }
+    TAUTLINE_EACH(Index, c, data.numberOfCells(),
+      TAUTLINE_CHECK_NEAR(covered[c], norm(areaVector(data, c)), 1e-10));
     TAUTLINE_CHECK(result.history.back().moves > 0);
     TAUTLINE_CHECK_RELATIVE(totalOf(output, averages(result, field)), totalOf(data, field), 1e-12);
     TAUTLINE_CHECK_RELATIVE(totalOf(output, averages(result, first)), totalOf(data, first), 1e-12);
     // A copy of the cells' values does not keep the total.
-    std::vector<double> copied;
-    for (Index original : result.originalCells)
-    {
-      copied.push_back(field[original]);
-    }
+    auto copied =
+      collect<double>(result.originalCells, [&](Index original) { return field[original]; });
     TAUTLINE_CHECK(std::abs(totalOf(output, copied) / totalOf(data, field) - 1.0) > 1e-6);
     options.threads = 2;
     TAUTLINE_CHECK(reconnect(data, options).overlaps.fractions == result.overlaps.fractions);

@@ -80,11 +80,9 @@ TAUTLINE_PART(testExact)
     paint(120, 120,
       [](double x, double y)
       { return std::abs(x - 60) < 45 && std::abs(y - 60) < 14 ? 1.0 : -1.0; }) };
-  std::vector<OutlineModel> models;
-  for (const Picture& picture : pictures)
-  {
-    models.push_back(prepareOutline(traceSilhouette(picture.view()), options));
-  }
+  auto models = collect<OutlineModel>(pictures,
+    [&](const Picture& picture)
+    { return prepareOutline(traceSilhouette(picture.view()), options); });
   const auto memory = outlineMemory(); // with what earlier matches left in it
   Index withBounds = 0, without = 0;
   for (std::size_t s = 0; s < models.size(); ++s)

@@ -96,10 +96,8 @@ TAUTLINE_PART(testMesher)
       SetSpacing(15), Update());
     auto* same = vtkUnstructuredGrid::SafeDownCast(other->GetOutputDataObject(0));
     TAUTLINE_CHECK_EQUAL(same->GetNumberOfPoints(), n);
-    for (vtkIdType i = 0; i < std::min(n, same->GetNumberOfPoints()); ++i)
-    {
-      TAUTLINE_CHECK_NEAR(same->GetPoint(i)[0], mesh->GetPoint(i)[0], 1e-9);
-    }
+    TAUTLINE_EACH(vtkIdType, i, std::min(n, same->GetNumberOfPoints()),
+      TAUTLINE_CHECK_NEAR(same->GetPoint(i)[0], mesh->GetPoint(i)[0], 1e-9));
   }
 }
 
@@ -118,10 +116,8 @@ TAUTLINE_PART(testCellPixels)
   auto* a = vtkUnstructuredGrid::SafeDownCast(first->GetOutputDataObject(0));
   auto* b = vtkUnstructuredGrid::SafeDownCast(second->GetOutputDataObject(0));
   TAUTLINE_CHECK(a->GetNumberOfPoints() > 3 && a->GetNumberOfPoints() == b->GetNumberOfPoints());
-  for (vtkIdType i = 0; i < std::min(a->GetNumberOfPoints(), b->GetNumberOfPoints()); ++i)
-  {
-    TAUTLINE_CHECK_NEAR(a->GetPoint(i)[1], b->GetPoint(i)[1], 1e-9);
-  }
+  TAUTLINE_EACH(vtkIdType, i, std::min(a->GetNumberOfPoints(), b->GetNumberOfPoints()),
+    TAUTLINE_CHECK_NEAR(a->GetPoint(i)[1], b->GetPoint(i)[1], 1e-9));
 }
 
 std::string errorOf(vtkAlgorithm* algorithm)

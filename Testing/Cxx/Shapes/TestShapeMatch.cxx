@@ -83,11 +83,7 @@ double bruteForce(const ShapeSource& source, const ShapeTarget& target, const Sh
   double best = std::numeric_limits<double>::infinity();
   for (;;)
   {
-    std::vector<Vec2> points;
-    for (std::size_t i : at)
-    {
-      points.push_back(places[i]);
-    }
+    auto points = collect<Vec2>(at, [&](std::size_t i) { return places[i]; });
     best = std::min(best, evaluatePlacement(source, target, energy, points).energy);
     std::size_t v = 0;
     while (v < n && ++at[v] == places.size())

@@ -16,11 +16,8 @@ namespace
 /// The owners that are wanted, per point of the piece.
 std::vector<int> ofPiece(const DistributedMesh& mesh, const std::vector<int>& ofLocal)
 {
-  std::vector<int> owners;
-  for (const Index local : mesh.localOfPiece())
-  {
-    owners.push_back(local < 0 ? 0 : ofLocal[local]);
-  }
+  auto owners = collect<int>(
+    mesh.localOfPiece(), [&](const Index local) { return local < 0 ? 0 : ofLocal[local]; });
   return owners;
 }
 
@@ -97,11 +94,8 @@ void testDivision(RankGroup& group, Communicator communicator, CellType type, Cu
 
   // Few points on the border: no more than a third above those of the boxes, and far fewer than of
   // points that are dealt out.
-  std::vector<int> dealt;
-  for (const Index local : tree.localOfPiece())
-  {
-    dealt.push_back(static_cast<int>(tree.numbers()[local] % group.size()));
-  }
+  auto dealt = collect<int>(tree.localOfPiece(),
+    [&](const Index local) { return static_cast<int>(tree.numbers()[local] % group.size()); });
   piece.owners = dealt.data();
   const DistributedMesh scattered(group, piece);
   TAUTLINE_CHECK(haloOf(graph) > 0);
