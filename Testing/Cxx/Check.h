@@ -113,26 +113,56 @@ void checkThrows(const Statement& statement, const std::string& part, const char
   }
 }
 
-/** f of each number below a count, or of each element of a range. */
-template <class T, class Range, class Function>
-std::vector<T> collect(const Range& range, const Function& f)
+/** Calls f with each number below a count, or with each element of a range. */
+template <class Range, class Function>
+void forEach(const Range& range, const Function& f)
 {
-  std::vector<T> result;
   if constexpr (std::is_arithmetic<Range>::value)
   {
     for (Range i = 0; i < range; ++i)
     {
-      result.push_back(f(i));
+      f(i);
     }
   }
   else
   {
     for (const auto& element : range)
     {
-      result.push_back(f(element));
+      f(element);
     }
   }
+}
+
+/** f of each, as with forEach(). */
+template <class T, class Range, class Function>
+std::vector<T> collect(const Range& range, const Function& f)
+{
+  std::vector<T> result;
+  forEach(range, [&](const auto& x) { result.push_back(f(x)); });
   return result;
+}
+
+/** A start plus f of each. */
+template <class T, class Range, class Function>
+T sumOf(T start, const Range& range, const Function& f)
+{
+  forEach(range, [&](const auto& x) { start += f(x); });
+  return start;
+}
+
+/** The largest of a start and f of each; a NaN does not count. */
+template <class T, class Range, class Function>
+T largestOf(T start, const Range& range, const Function& f)
+{
+  forEach(range, [&](const auto& x) { start = std::max<T>(start, f(x)); });
+  return start;
+}
+
+template <class T, class Range, class Function>
+T smallestOf(T start, const Range& range, const Function& f)
+{
+  forEach(range, [&](const auto& x) { start = std::min<T>(start, f(x)); });
+  return start;
 }
 
 } // namespace tautline

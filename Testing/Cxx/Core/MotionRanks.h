@@ -148,11 +148,8 @@ void testGathered(const char* name, vtkMPIController* controller, const MeshData
   vtkMultiProcessController::SetGlobalController(controller);
   TAUTLINE_CHECK(
     std::string(serial->GetSummary()).find(wording("put-together")) == std::string::npos);
-  double moved = 0;
-  for (std::size_t i = 0; i < expected.size(); ++i)
-  {
-    moved = std::max(moved, std::abs(expected[i] - whole.points[i]));
-  }
+  double moved = largestOf<double>(
+    0, expected.size(), [&](std::size_t i) { return std::abs(expected[i] - whole.points[i]); });
   TAUTLINE_CHECK(moved > 0.01);
   for (const Cut cut : { Cut::Slabs, Cut::Random })
   {

@@ -71,11 +71,7 @@ void testCholesky()
   TAUTLINE_CHECK(Factor::factor(A, shift, 0.0, L));
   Factor::solve(L, b);
   TAUTLINE_EACH(int, r, N, TAUTLINE_CHECK_NEAR(b[r], x[r], 1e-12));
-  double trace = 0;
-  for (int r = 0; r < N; ++r)
-  {
-    trace += A[r][r];
-  }
+  double trace = sumOf<double>(0, N, [&](int r) { return A[r][r]; });
   TAUTLINE_CHECK(!Factor::factor(A, -trace, 0.0, L));
   TAUTLINE_CHECK(!Factor::factor(A, shift, trace + shift, L));
 }
@@ -142,11 +138,7 @@ TAUTLINE_PART(testLimitedMemory)
   }
   memory.clear();
   TAUTLINE_CHECK(memory.empty());
-  std::vector<double> opposite(size);
-  for (std::size_t i = 0; i < size; ++i)
-  {
-    opposite[i] = -step[i];
-  }
+  auto opposite = collect<double>(size, [&](std::size_t i) { return -step[i]; });
   memory.add(1.0, step.data(), std::vector<double>(size, 0.0).data(), opposite.data());
   TAUTLINE_CHECK(memory.empty());
   // Without pairs, the direction is the preconditioned gradient, downwards.

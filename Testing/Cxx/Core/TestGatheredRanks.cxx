@@ -255,11 +255,9 @@ void testSelection()
   auto* result = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
   TAUTLINE_CHECK_EQUAL(result->GetNumberOfPoints(), mesh->GetNumberOfPoints());
   TAUTLINE_CHECK(!result->GetPointData()->GetArray("Tautline selected by input 2"));
-  vtkIdType moved = 0;
-  for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
-  {
-    moved += mesh->GetPoint(i)[0] == 0 && std::abs(result->GetPoint(i)[0] + 0.1) < 1e-12;
-  }
+  vtkIdType moved = sumOf<vtkIdType>(0, mesh->GetNumberOfPoints(),
+    [&](vtkIdType i)
+    { return mesh->GetPoint(i)[0] == 0 && std::abs(result->GetPoint(i)[0] + 0.1) < 1e-12; });
   TAUTLINE_CHECK(rank() != 1 || (chosen > 0 && moved == chosen));
 
   // The preview of what moves is on the first process.

@@ -234,11 +234,9 @@ TAUTLINE_PART(testHorizonNeighbors)
   filter->SetHorizon(side);
   const auto outputs = [&filter]
   {
-    vtkIdType cells = 0;
-    for (int port = 0; port < filter->GetNumberOfOutputPorts(); ++port)
-    {
-      cells += vtkPolyData::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells();
-    }
+    vtkIdType cells = sumOf<vtkIdType>(0, filter->GetNumberOfOutputPorts(),
+      [&](int port)
+      { return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells(); });
     return cells;
   };
   vtkNew<vtkCallbackCommand> abort;

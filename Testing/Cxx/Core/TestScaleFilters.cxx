@@ -59,11 +59,9 @@ std::vector<double> pointsOf(vtkAlgorithm* filter)
 /// The largest distance between points, those of the first divided by a power of two.
 double difference(const std::vector<double>& a, int exponent, const std::vector<double>& b)
 {
-  double most = a.size() == b.size() ? 0.0 : HUGE_VAL;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-  {
-    most = std::max(most, std::abs(std::ldexp(a[i], -exponent) - b[i]));
-  }
+  double most =
+    largestOf<double>(a.size() == b.size() ? 0.0 : HUGE_VAL, std::min(a.size(), b.size()),
+      [&](std::size_t i) { return std::abs(std::ldexp(a[i], -exponent) - b[i]); });
   return most;
 }
 
@@ -94,11 +92,8 @@ void testMoving(const char* name, bool tangled, const std::function<void(Filter*
       auto* displacement = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))
                              ->GetPointData()
                              ->GetArray("Displacement");
-      double most = 0;
-      for (vtkIdType i = 0; i < displacement->GetNumberOfTuples(); ++i)
-      {
-        most = std::max(most, std::abs(displacement->GetComponent(i, 0)));
-      }
+      double most = largestOf<double>(0, displacement->GetNumberOfTuples(),
+        [&](vtkIdType i) { return std::abs(displacement->GetComponent(i, 0)); });
       TAUTLINE_CHECK(std::ldexp(most, -exponent) > 0.05);
       TAUTLINE_CHECK(messages.empty());
       messages.clear();
@@ -164,11 +159,8 @@ TAUTLINE_PART(testOffsets)
     const std::vector<double> values =
       valuesOf(withPointsOf(data, vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))),
         Metric::InverseMeanRatio);
-    double sum = 0;
-    for (double q : values)
-    {
-      sum += q / static_cast<double>(values.size());
-    }
+    double sum =
+      sumOf<double>(0, values, [&](double q) { return q / static_cast<double>(values.size()); });
     TAUTLINE_CHECK_NEAR(sum, statistic(filter->GetStatistics(), "MeanAfter"), 1e-12);
   }
   // Steps of 0.125 at 1e15.

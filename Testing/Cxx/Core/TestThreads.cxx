@@ -138,11 +138,7 @@ double bruteSum(const MeshData& data, const Mesh& mesh, const Gradients& g, doub
 
 double largest(const std::vector<double>& values)
 {
-  double result = 0;
-  for (double v : values)
-  {
-    result = std::max(result, std::abs(v));
-  }
+  double result = largestOf<double>(0, values, [&](double v) { return std::abs(v); });
   return result;
 }
 

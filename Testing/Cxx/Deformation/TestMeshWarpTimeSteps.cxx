@@ -162,18 +162,12 @@ TAUTLINE_PART(testTimeSteps)
           withPointsOf(source->Data, meshOf(fresh)).points);
       }
     }
-    double difference = 0;
-    for (std::size_t i = 0; i < found[0][4].size(); ++i)
-    {
-      difference = std::max(difference, std::abs(found[0][4][i] - found[1][4][i]));
-    }
+    double difference = largestOf<double>(0, found[0][4].size(),
+      [&](std::size_t i) { return std::abs(found[0][4][i] - found[1][4][i]); });
     TAUTLINE_CHECK(difference > 1e-3 && difference < 1);
     TAUTLINE_CHECK(found[0][0] == found[1][0]);
-    double step = 0;
-    for (std::size_t i = 0; i < found[0][1].size(); ++i)
-    {
-      step = std::max(step, std::abs(found[0][1][i] - found[1][1][i]));
-    }
+    double step = largestOf<double>(0, found[0][1].size(),
+      [&](std::size_t i) { return std::abs(found[0][1][i] - found[1][1][i]); });
     TAUTLINE_CHECK(step < 1e-13); // the first step is the same
   }
 }

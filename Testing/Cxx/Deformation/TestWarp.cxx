@@ -335,11 +335,8 @@ TAUTLINE_PART(testPerCell)
     std::vector<char> inside(data.numberOfCells());
     for (Index c = 0; c < data.numberOfCells(); ++c)
     {
-      Vec3 center = { 0, 0, 0 };
-      for (Index k = 0; k < 3; ++k)
-      {
-        center += (1.0 / 3) * data.point(data.connectivity[3 * c + k]);
-      }
+      Vec3 center = sumOf<Vec3>({ 0, 0, 0 }, 3,
+        [&](Index k) { return (1.0 / 3) * data.point(data.connectivity[3 * c + k]); });
       inside[c] = std::abs(center[0] - 0.5) < 0.25 && std::abs(center[1] - 0.5) < 0.25;
       const double value = inside[c] ? stiffness : 1.0;
       const double tensor[6] = { value, value, value, 0, 0, 0 };
@@ -347,11 +344,8 @@ TAUTLINE_PART(testPerCell)
     }
     const WarpResult result = warped(data, motion, each);
     const std::vector<double> q = shapeSimilarity(Mesh(data.view()), result.points.data());
-    double sum = 0;
-    for (Index c = 0; c < data.numberOfCells(); ++c)
-    {
-      sum += inside[c] ? q[c] : 0.0;
-    }
+    double sum =
+      sumOf<double>(0, data.numberOfCells(), [&](Index c) { return inside[c] ? q[c] : 0.0; });
     return sum;
   };
   const double same = distortion(1), stiff = distortion(100);

@@ -62,11 +62,8 @@ TAUTLINE_PART(testRefused)
     wording("displacements-of-9-prescribed-points-are-nan"));
   // Of points that are not prescribed they are not read.
   const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
-  std::vector<double> d(data.points.size(), nan);
-  for (std::size_t i = 0; i < d.size(); ++i)
-  {
-    d[i] = boundary[i / 3] ? (i % 3 == 0 ? 0.25 : 0.0) : nan;
-  }
+  auto d = collect<double>(data.points.size(),
+    [&](std::size_t i) { return boundary[i / 3] ? (i % 3 == 0 ? 0.25 : 0.0) : nan; });
   const Mesh mesh(data.view());
   for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
   {

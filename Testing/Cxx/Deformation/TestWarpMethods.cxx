@@ -316,11 +316,8 @@ TAUTLINE_PART(testElasticity)
         },
         options)
         .points.data());
-    double sum = 0;
-    for (std::size_t i = 0; i < q.size(); ++i)
-    {
-      sum += size[i] < 0.8 * median ? q[i] : 0.0;
-    }
+    double sum = sumOf<double>(
+      0, q.size(), [&](std::size_t i) { return size[i] < 0.8 * median ? q[i] : 0.0; });
     return sum;
   };
   const double without = distortion(0), with = distortion(1), more = distortion(2);
@@ -450,12 +447,9 @@ TAUTLINE_PART(testMirrored)
         Warper(imageMesh, withMethod(WarpMethod(method))).warp(mirrored.data());
       TAUTLINE_CHECK_EQUAL(result.history[0].inverted, straight.history[0].inverted);
       TAUTLINE_CHECK_EQUAL(result.invertedAfter == 0, straight.invertedAfter == 0);
-      double worst = 0;
-      for (std::size_t i = 0; i < d.size(); ++i)
-      {
-        worst = std::max(
-          worst, std::abs(result.points[i] - (i % 3 == 0 ? -1.0 : 1.0) * straight.points[i]));
-      }
+      double worst = largestOf<double>(0, d.size(),
+        [&](std::size_t i)
+        { return std::abs(result.points[i] - (i % 3 == 0 ? -1.0 : 1.0) * straight.points[i]); });
       // Untangling takes vertices in an order of its own.
       const bool untangles =
         method == int(WarpMethod::Hybrid) || method == int(WarpMethod::FemwarpUntangling);

@@ -82,11 +82,8 @@ Problem holeProblem(CellType type, Index n, Index m, double angle)
   {
     const std::vector<Index> nodes(block.connectivity.begin() + block.offsets[c],
       block.connectivity.begin() + block.offsets[c + 1]);
-    Vec3 center = { 0, 0, 0 };
-    for (const Index node : nodes)
-    {
-      center += (1.0 / double(nodes.size())) * block.point(node);
-    }
+    Vec3 center = sumOf<Vec3>({ 0, 0, 0 }, nodes,
+      [&](const Index node) { return (1.0 / double(nodes.size())) * block.point(node); });
     bool inside = true;
     for (std::size_t k = 0; k < (flat ? 2 : 3); ++k)
     {
@@ -148,11 +145,8 @@ void testInvariances(CellType type)
     const auto affineMotion = [&](const Vec3& p) { return affine * p + Vec3{ 5, -7, 1 }; };
     problem.prescribe(affineMotion);
     std::vector<double> moves = problem.run(method.warp);
-    double worst = 0;
-    for (Index i = 0; i < problem.data.numberOfPoints(); ++i)
-    {
-      worst = std::max(worst, norm(at(moves, i) - affineMotion(problem.data.point(i))));
-    }
+    double worst = largestOf<double>(0, problem.data.numberOfPoints(),
+      [&](Index i) { return norm(at(moves, i) - affineMotion(problem.data.point(i))); });
     TAUTLINE_CHECK(worst < 1e-10);
 
     WarpOptions loose; // no error of a solver leads out of the plane
@@ -199,11 +193,8 @@ void testInvariances(CellType type)
       other.data.transform([&](const Vec3& p) { return unit * p; });
       other.prescribe([&](const Vec3& p) { return unit * inPlane((1 / unit) * p); });
       const std::vector<double> scaled = other.run(method.warp);
-      double difference = 0;
-      for (std::size_t i = 0; i < moves.size(); ++i)
-      {
-        difference = std::max(difference, std::abs(scaled[i] / unit - moves[i]));
-      }
+      double difference = largestOf<double>(
+        0, moves.size(), [&](std::size_t i) { return std::abs(scaled[i] / unit - moves[i]); });
       TAUTLINE_CHECK(difference < 1e-8 * size);
     }
   }
@@ -231,11 +222,8 @@ TAUTLINE_PART(testTies)
     d *= 1 + random.uniform(-1e-15, 1e-15);
   }
   const std::vector<double> rounded = problem.run(warpByRadialBasis);
-  double difference = 0;
-  for (std::size_t i = 0; i < moves.size(); ++i)
-  {
-    difference = std::max(difference, std::abs(rounded[i] - moves[i]));
-  }
+  double difference = largestOf<double>(
+    0, moves.size(), [&](std::size_t i) { return std::abs(rounded[i] - moves[i]); });
   TAUTLINE_CHECK(difference < 1e-9 * n);
 }
 
@@ -267,11 +255,8 @@ TAUTLINE_PART(testInverseDistance)
     TAUTLINE_LET(WarpOptions, options, distancePower = power);
     const std::vector<double> exact = motion.displacements(rest),
                               moves = problem.run(warpByInverseDistance, options);
-    double worst = 0;
-    for (std::size_t i = 0; i < moves.size(); ++i)
-    {
-      worst = std::max(worst, std::abs(moves[i] - exact[i]));
-    }
+    double worst = largestOf<double>(
+      0, moves.size(), [&](std::size_t i) { return std::abs(moves[i] - exact[i]); });
     TAUTLINE_CHECK(worst < 1e-4 * motion.largest());
   }
 }
@@ -328,11 +313,8 @@ TAUTLINE_PART(testRadialBasis)
   {
     options.fitTolerance = tolerance;
     const std::vector<double> moves = problem.run(warpByRadialBasis, options);
-    double worst = 0;
-    for (std::size_t i = 0; i < moves.size(); ++i)
-    {
-      worst = std::max(worst, std::abs(moves[i] - exact[i]));
-    }
+    double worst = largestOf<double>(
+      0, moves.size(), [&](std::size_t i) { return std::abs(moves[i] - exact[i]); });
     return worst / motion.largest();
   };
   TAUTLINE_CHECK(difference(0) < 1e-11);

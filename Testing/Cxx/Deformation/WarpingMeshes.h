@@ -102,11 +102,8 @@ inline double value(vtkTable* table, const char* column, Index row = 0)
 /// The largest distance between two sets of points.
 inline double distance(const MeshData& a, const MeshData& b)
 {
-  double largest = 0;
-  for (Index i = 0; i < a.numberOfPoints(); ++i)
-  {
-    largest = std::max(largest, norm(a.point(i) - b.point(i)));
-  }
+  double largest = largestOf<double>(
+    0, a.numberOfPoints(), [&](Index i) { return norm(a.point(i) - b.point(i)); });
   return largest;
 }
 }

@@ -15,11 +15,8 @@ vtkDataSet* meshOf(vtkConditionEstimator* filter)
 
 double sumOf(vtkDataSet* mesh, const char* name)
 {
-  double sum = 0;
-  for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
-  {
-    sum += component(mesh->GetCellData(), name, i);
-  }
+  double sum = sumOf<double>(0, mesh->GetNumberOfCells(),
+    [&](vtkIdType i) { return component(mesh->GetCellData(), name, i); });
   return sum;
 }
 

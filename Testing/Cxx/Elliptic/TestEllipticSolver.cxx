@@ -55,11 +55,8 @@ std::vector<double> values(vtkDataSet* data, const char* name = "Solution", bool
 
 double distance(const std::vector<double>& a, const std::vector<double>& b)
 {
-  double largest = a.size() == b.size() && !a.empty() ? 0.0 : 1e300;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-  {
-    largest = std::max(largest, std::abs(a[i] - b[i]));
-  }
+  double largest = largestOf<double>(a.size() == b.size() && !a.empty() ? 0.0 : 1e300,
+    std::min(a.size(), b.size()), [&](std::size_t i) { return std::abs(a[i] - b[i]); });
   return largest;
 }
 

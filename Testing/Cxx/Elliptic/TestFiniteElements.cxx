@@ -20,21 +20,13 @@ std::vector<double> times(const SparseMatrix& a, const std::vector<double>& x)
 
 double largest(const std::vector<double>& values)
 {
-  double most = 0;
-  for (double v : values)
-  {
-    most = std::max(most, std::abs(v));
-  }
+  double most = largestOf<double>(0, values, [&](double v) { return std::abs(v); });
   return most;
 }
 
 double totalSize(const MeshData& data)
 {
-  double sum = 0;
-  for (double v : valuesOf(data, Metric::Size))
-  {
-    sum += v;
-  }
+  double sum = sumOf<double>(0, valuesOf(data, Metric::Size), [&](double v) { return v; });
   return sum;
 }
 
@@ -48,11 +40,8 @@ void checkMatrix(const SparseMatrix& a, const std::vector<double>& expected, dou
 void checkSameMatrix(const SparseMatrix& a, const SparseMatrix& b, double scale, double tolerance)
 {
   TAUTLINE_CHECK(a.columns == b.columns && a.offsets == b.offsets);
-  double worst = 0;
-  for (std::size_t k = 0; k < a.values.size(); ++k)
-  {
-    worst = std::max(worst, std::abs(scale * a.values[k] - b.values[k]));
-  }
+  double worst = largestOf<double>(
+    0, a.values.size(), [&](std::size_t k) { return std::abs(scale * a.values[k] - b.values[k]); });
   TAUTLINE_CHECK(worst <= tolerance * largest(b.values));
 }
 
@@ -164,11 +153,7 @@ TAUTLINE_PART(testLinearFields)
       // Constants are in the null space; linear functions satisfy the equations of inner points
       // (patch test).
       TAUTLINE_CHECK(largest(times(a, std::vector<double>(a.size, 1.0))) < 1e-12);
-      std::vector<double> u(a.size);
-      for (Index i = 0; i < a.size; ++i)
-      {
-        u[i] = dot(slope, data.point(i));
-      }
+      auto u = collect<double>(a.size, [&](Index i) { return dot(slope, data.point(i)); });
       const std::vector<double> au = times(a, u);
       double energy = 0;
       Index inner = 0;

@@ -101,11 +101,8 @@ constexpr std::array<TimeScheme, 4> Schemes = { TimeScheme::BackwardEuler, TimeS
 /// The largest difference to a multiple of a vector.
 double difference(const std::vector<double>& x, const std::vector<double>& y, double multiple)
 {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i)
-  {
-    largest = std::max(largest, std::abs(x[i] - multiple * y[i]));
-  }
+  double largest = largestOf<double>(
+    0.0, x.size(), [&](std::size_t i) { return std::abs(x[i] - multiple * y[i]); });
   return largest;
 }
 

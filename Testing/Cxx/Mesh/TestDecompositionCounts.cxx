@@ -47,11 +47,7 @@ DecompositionCounts measured(
       }
       mesh.either(wanted.data());
       const std::vector<int> sets = mesh.independentSets(wanted);
-      Index highest = -1;
-      for (const int set : sets)
-      {
-        highest = std::max<Index>(highest, set);
-      }
+      Index highest = largestOf<Index>(-1, sets, [&](const int set) { return set; });
       highest = group.maximum(highest);
       TAUTLINE_LET(PartCounts, own, cells = part.data.numberOfCells(),
         haloPoints = mesh.haloPoints(), neighbours = mesh.neighbours());

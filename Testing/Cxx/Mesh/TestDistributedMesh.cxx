@@ -111,11 +111,7 @@ Layout layoutOf(const MeshData& whole, Cut cut, int ranks, bool ids, bool ghosts
   Layout layout;
   layout.numbers.assign(whole.numberOfPoints(), -1);
   layout.sets.assign(whole.numberOfPoints(), -2);
-  std::vector<unsigned char> free(whole.numberOfPoints(), 0);
-  for (Index p = 0; p < whole.numberOfPoints(); ++p)
-  {
-    free[p] = p % 7 != 0;
-  }
+  auto free = collect<unsigned char>(whole.numberOfPoints(), [&](Index p) { return p % 7 != 0; });
   std::mutex mutex;
   Index owned = 0;
   onRanks(ranks,
@@ -218,11 +214,8 @@ TAUTLINE_PART(testDivision)
           TAUTLINE_CHECK_EQUAL(mesh.globalCells(), whole.numberOfCells());
           // What the owner sets arrives at all that have the point, also at pieces without cells
           // of their own.
-          std::vector<double> values(mesh.localPoints(), -1);
-          for (Index p = 0; p < mesh.localPoints(); ++p)
-          {
-            values[p] = mesh.owned(p) ? static_cast<double>(mesh.numbers()[p]) : -1.0;
-          }
+          auto values = collect<double>(mesh.localPoints(),
+            [&](Index p) { return mesh.owned(p) ? static_cast<double>(mesh.numbers()[p]) : -1.0; });
           mesh.exchange(values.data(), 1);
           const std::lock_guard<std::mutex> lock(mutex);
           for (Index p = 0; p < mesh.localPoints(); ++p)

@@ -213,11 +213,7 @@ std::vector<std::vector<int>> cubeRotations()
   {
     for (const auto& turn : { turnZ, turnX })
     {
-      std::vector<int> next(8);
-      for (int k = 0; k < 8; ++k)
-      {
-        next[k] = all[i][turn[k]];
-      }
+      auto next = collect<int>(8, [&](int k) { return all[i][turn[k]]; });
       if (std::find(all.begin(), all.end(), next) == all.end())
       {
         all.push_back(next);
@@ -238,11 +234,7 @@ void testNumberings()
     const double minimum = valueOf(CellType::Hexahedron, cell, Metric::MinimumJacobian);
     for (const std::vector<int>& rotation : rotations)
     {
-      std::vector<Vec3> turned(8);
-      for (int k = 0; k < 8; ++k)
-      {
-        turned[k] = cell[rotation[k]];
-      }
+      auto turned = collect<Vec3>(8, [&](int k) { return cell[rotation[k]]; });
       TAUTLINE_CHECK_EQUAL(
         int(verdictOn(CellType::Hexahedron, turned)), int(verdictOn(CellType::Hexahedron, cell)));
       TAUTLINE_CHECK_NEAR(

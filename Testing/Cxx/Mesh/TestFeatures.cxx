@@ -49,11 +49,7 @@ TAUTLINE_PART(testSurfaces)
     TAUTLINE_CHECK_EQUAL(found.curvePoints, Index(12 * 3));
     for (Index p = 0; p < cube.numberOfPoints(); ++p)
     {
-      int ends = 0;
-      for (double x : cube.point(p))
-      {
-        ends += x == 0 || x == 1;
-      }
+      int ends = sumOf<int>(0, cube.point(p), [&](double x) { return x == 0 || x == 1; });
       TAUTLINE_CHECK_EQUAL(int(found.kind[p]), ends - 1);
       TAUTLINE_CHECK_EQUAL(found.curveOf[p] >= 0, ends == 2);
       TAUTLINE_CHECK_EQUAL(found.patchOf[p] >= 0, ends == 1);

@@ -192,11 +192,7 @@ void testBoundary(CellType type)
   const std::vector<signed char> validity = validityOf(mesh);
   TAUTLINE_CHECK(
     std::all_of(validity.begin(), validity.end(), [](signed char v) { return v == Valid; }));
-  double sum = 0;
-  for (double size : valuesOf(mesh, Metric::Size))
-  {
-    sum += size;
-  }
+  double sum = sumOf<double>(0, valuesOf(mesh, Metric::Size), [&](double size) { return size; });
   TAUTLINE_CHECK_NEAR(sum, topology(type).dimension == 2 ? x * y : x * y * z, 1e-12);
 }
 

@@ -60,11 +60,7 @@ void testIncidence(const CellTopology& t)
     return;
   }
   TAUTLINE_CHECK_EQUAL(t.nodes - t.edges + t.faces, 2); // Euler
-  Vec3 middle = { 0, 0, 0 };
-  for (const Vec3& p : ideal)
-  {
-    middle += (1.0 / t.nodes) * p;
-  }
+  Vec3 middle = sumOf<Vec3>({ 0, 0, 0 }, ideal, [&](const Vec3& p) { return (1.0 / t.nodes) * p; });
   std::map<std::set<int>, std::set<int>> facesOfEdge;
   for (int f = 0; f < t.faces; ++f)
   {

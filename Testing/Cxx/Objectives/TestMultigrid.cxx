@@ -256,11 +256,8 @@ TAUTLINE_PART(testThreads)
       TAUTLINE_CHECK(z == expected && norm(z) > 0);
     }
     // The second matrix is twice the first.
-    double difference = 0;
-    for (std::size_t i = 0; i < r.size(); ++i)
-    {
-      difference = std::max(difference, std::abs(2 * first[1][i] - first[0][i]));
-    }
+    double difference = largestOf<double>(
+      0, r.size(), [&](std::size_t i) { return std::abs(2 * first[1][i] - first[0][i]); });
     TAUTLINE_CHECK(difference <= 1e-12 * norm(first[0]));
   }
 }

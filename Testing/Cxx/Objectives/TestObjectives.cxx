@@ -202,11 +202,7 @@ struct ByHand
 
 double largestOf(const std::vector<double>& values)
 {
-  double result = 0;
-  for (double v : values)
-  {
-    result = std::max(result, std::abs(v));
-  }
+  double result = largestOf<double>(0, values, [&](double v) { return std::abs(v); });
   return result;
 }
 

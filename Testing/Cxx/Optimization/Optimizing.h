@@ -54,11 +54,7 @@ inline double sumOfSquares(const MeshData& like, const std::vector<double>& poin
 {
   MeshData moved = like;
   moved.points = points;
-  double sum = 0;
-  for (double q : valuesOf(moved, metric))
-  {
-    sum += q * q;
-  }
+  double sum = sumOf<double>(0, valuesOf(moved, metric), [&](double q) { return q * q; });
   return sum;
 }
 

@@ -85,11 +85,8 @@ inline double distance(const std::vector<Triangle>& from, const std::vector<Tria
       {
         const Vec3 x =
           (1.0 / parts) * ((parts - i - j) * t[0] + double(i) * t[1] + double(j) * t[2]);
-        double least = 1e300;
-        for (const Triangle& other : to)
-        {
-          least = std::min(least, distanceTo(other, x));
-        }
+        double least = smallestOf<double>(
+          1e300, to, [&](const Triangle& other) { return distanceTo(other, x); });
         largest = std::max(largest, least);
       }
     }

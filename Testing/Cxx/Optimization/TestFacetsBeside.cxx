@@ -151,11 +151,8 @@ void checkSame(const MeshData& data, const std::vector<double>& points,
   }
   if (TAUTLINE_CHECK_EQUAL(points.size(), expected.size()))
   {
-    double most = 0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-    {
-      most = std::max(most, std::abs(points[i] - expected[i]));
-    }
+    double most = largestOf<double>(
+      0, points.size(), [&](std::size_t i) { return std::abs(points[i] - expected[i]); });
     TAUTLINE_CHECK(most <= rounding);
   }
 }

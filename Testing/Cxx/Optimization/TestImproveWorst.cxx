@@ -55,11 +55,8 @@ public:
         return rounds.size() - 1 != most;
       });
     problem.store();
-    double off = 0;
-    for (std::size_t i = 0; i < points.size(); ++i)
-    {
-      off = std::max(off, std::abs(points[i] - rounds.back().points[i]));
-    }
+    double off = largestOf<double>(0, points.size(),
+      [&](std::size_t i) { return std::abs(points[i] - rounds.back().points[i]); });
     TAUTLINE_CHECK(off < 1e-12);
     return rounds;
   }

@@ -210,11 +210,7 @@ void report(const char* what, Optimizer method, const MinimizeResult& m)
 
 double distance(const Vector& a, const Vector& b)
 {
-  double d = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-  {
-    d = std::max(d, std::abs(a[i] - b[i]));
-  }
+  double d = largestOf<double>(0, a.size(), [&](std::size_t i) { return std::abs(a[i] - b[i]); });
   return d;
 }
 

@@ -314,11 +314,8 @@ TAUTLINE_PART(testTargetsAndWeights)
     TAUTLINE_SET(options, objectives[0].evaluation.targets = &targets,
       stopping.maximumIterations = 200, stopping.relativeChange = 1e-14);
     const OptimizeResult result = optimize(mesh, options);
-    double most = 0;
-    for (std::size_t i = 0; i < moved.points.size(); ++i)
-    {
-      most = std::max(most, std::abs(result.points[i] - reference.points[i]));
-    }
+    double most = largestOf<double>(0, moved.points.size(),
+      [&](std::size_t i) { return std::abs(result.points[i] - reference.points[i]); });
     TAUTLINE_CHECK_NEAR(most, 0.0, 1e-4);
     TAUTLINE_CHECK_NEAR(result.history.back().worst[0], 1.0, 1e-6);
   }

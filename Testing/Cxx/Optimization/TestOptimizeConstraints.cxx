@@ -17,11 +17,7 @@ TAUTLINE_PART(testConstraints)
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 5, 0.1);
   const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
   const Index n = data.numberOfPoints();
-  std::vector<unsigned char> fixed(n, 0);
-  for (Index i = 0; i < n; ++i)
-  {
-    fixed[i] = boundary[i] || i % 3 == 0;
-  }
+  auto fixed = collect<unsigned char>(n, [&](Index i) { return boundary[i] || i % 3 == 0; });
   TAUTLINE_LET(OptimizeOptions, options, fixed = fixed.data());
   OptimizeResult result = run(data, options);
   for (Index i = 0; i < n; ++i)

@@ -68,11 +68,7 @@ TAUTLINE_PART(testCube)
       double slid = 0;
       for (Index p = 0; p < cube.numberOfPoints(); ++p)
       {
-        int ends = 0;
-        for (double x : cube.point(p))
-        {
-          ends += x == 0 || x == size;
-        }
+        int ends = sumOf<int>(0, cube.point(p), [&](double x) { return x == 0 || x == size; });
         const double way = norm(at(result.points, p) - cube.point(p)) / size;
         TAUTLINE_CHECK(ends < 3 || way == 0);
         slid = ends == 2 ? std::max(slid, way) : slid;
@@ -149,11 +145,8 @@ TAUTLINE_PART(testSphere)
       {
         const OptimizeResult result = runOnFeatures(data);
         data.points = result.points;
-        double off = 0;
-        for (Index p = 0; p < data.numberOfPoints(); ++p)
-        {
-          off = std::max(off, std::abs(norm(data.point(p)) - 1));
-        }
+        double off = largestOf<double>(
+          0, data.numberOfPoints(), [&](Index p) { return std::abs(norm(data.point(p)) - 1); });
         first = repeat == 0 ? off : first;
         TAUTLINE_CHECK(off < (n == 4 ? 6e-4 : 1e-4));
         TAUTLINE_CHECK(off < 1.05 * first);
@@ -345,11 +338,8 @@ TAUTLINE_PART(testGeometry)
   TAUTLINE_LET(OptimizeOptions, options, model = &onSphere.model, parts = onSphere.parts.data(),
     onGeometry = true);
   const OptimizeResult result = run(placed, options);
-  double off = 0;
-  for (Index p = 0; p < sphere.numberOfPoints(); ++p)
-  {
-    off = std::max(off, std::abs(norm(at(result.points, p)) - 1));
-  }
+  double off = largestOf<double>(
+    0, sphere.numberOfPoints(), [&](Index p) { return std::abs(norm(at(result.points, p)) - 1); });
   TAUTLINE_CHECK(off < 7e-4); // the sagitta of the finer sphere
   TAUTLINE_CHECK(result.surfaceError > 0 && result.surfaceError < 0.05);
   TAUTLINE_CHECK(

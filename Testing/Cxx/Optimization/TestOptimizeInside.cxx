@@ -35,11 +35,8 @@ Index lost(const MeshData& data, const std::vector<double>& points)
   MeshData moved = data;
   moved.points = points;
   const std::vector<signed char> before = validityOf(data), after = validityOf(moved);
-  Index count = 0;
-  for (std::size_t i = 0; i < before.size(); ++i)
-  {
-    count += before[i] == Valid && after[i] != Valid;
-  }
+  Index count = sumOf<Index>(
+    0, before.size(), [&](std::size_t i) { return before[i] == Valid && after[i] != Valid; });
   return count;
 }
 

@@ -74,11 +74,8 @@ double offSurface(const MeshData& data, const std::vector<double>& points, const
 {
   MeshData moved = data;
   moved.points = points;
-  double off = 0;
-  for (Index p = 0; p < moved.numberOfPoints(); ++p)
-  {
-    off = std::max(off, surface.distance(moved.point(p)));
-  }
+  double off = largestOf<double>(
+    0, moved.numberOfPoints(), [&](Index p) { return surface.distance(moved.point(p)); });
   Index turned = 0;
   for (Index c = 0; c < moved.numberOfCells(); ++c)
   {

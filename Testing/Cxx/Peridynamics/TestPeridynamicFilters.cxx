@@ -100,11 +100,8 @@ TAUTLINE_PART(testStiffness)
   TAUTLINE_CHECK(highest > 0.13 && highest < 0.25);
   auto* picture = vtkImageData::SafeDownCast(filter->GetOutputDataObject(2));
   TAUTLINE_CHECK_EQUAL(picture->GetNumberOfPoints(), 1600);
-  double pixels = 0.0;
-  for (vtkIdType i = 0; i < picture->GetNumberOfPoints(); ++i)
-  {
-    pixels += picture->GetPointData()->GetScalars()->GetTuple1(i);
-  }
+  double pixels = sumOf<double>(0.0, picture->GetNumberOfPoints(),
+    [&](vtkIdType i) { return picture->GetPointData()->GetScalars()->GetTuple1(i); });
   TAUTLINE_CHECK_EQUAL(pixels, entries);
 
   // Constants and discontinuous functions are on cells; the elastic model has vectors in space.

@@ -17,11 +17,7 @@ constexpr NonlocalPreconditioner others[] = { NonlocalPreconditioner::LocalMulti
 
 double product(const std::vector<double>& x, const std::vector<double>& y)
 {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i)
-  {
-    sum += x[i] * y[i];
-  }
+  double sum = sumOf<double>(0.0, x.size(), [&](std::size_t i) { return x[i] * y[i]; });
   return sum;
 }
 
@@ -251,11 +247,8 @@ TAUTLINE_PART_SLOW(testSolutions)
         for (const NonlocalPreconditioner kind : others)
         {
           TAUTLINE_CHECK(solve(kind, found).converged);
-          double difference = 0.0;
-          for (std::size_t i = 0; i < found.size(); ++i)
-          {
-            difference += (found[i] - expected[i]) * (found[i] - expected[i]);
-          }
+          double difference = sumOf<double>(0.0, found.size(),
+            [&](std::size_t i) { return (found[i] - expected[i]) * (found[i] - expected[i]); });
           TAUTLINE_CHECK(std::sqrt(difference) < 1e-8 * size);
           options.threads = 3;
           std::vector<double> again;

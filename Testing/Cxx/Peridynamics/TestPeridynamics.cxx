@@ -48,11 +48,7 @@ std::vector<double> sampled(const HorizonMesh& mesh, PeridynamicBasis basis, con
 
 double largestOf(const std::vector<double>& values)
 {
-  double largest = 0.0;
-  for (const double v : values)
-  {
-    largest = std::max(largest, std::abs(v));
-  }
+  double largest = largestOf<double>(0.0, values, [&](const double v) { return std::abs(v); });
   return largest;
 }
 
@@ -185,11 +181,8 @@ double solutionError(int n, double delta, double p, bool quadratic)
   }
   std::vector<double> solution;
   TAUTLINE_CHECK(solveConjugateGradients(system.matrix, load, solution).converged);
-  double worst = 0.0;
-  for (std::size_t i = 0; i < solution.size(); ++i)
-  {
-    worst = std::max(worst, std::abs(solution[i] - given[system.functionOf[i]]));
-  }
+  double worst = largestOf<double>(0.0, solution.size(),
+    [&](std::size_t i) { return std::abs(solution[i] - given[system.functionOf[i]]); });
   return worst;
 }
 

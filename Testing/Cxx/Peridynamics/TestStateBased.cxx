@@ -37,11 +37,7 @@ std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>&
 
 double product(const std::vector<double>& x, const std::vector<double>& y)
 {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i)
-  {
-    sum += x[i] * y[i];
-  }
+  double sum = sumOf<double>(0.0, x.size(), [&](std::size_t i) { return x[i] * y[i]; });
   return sum;
 }
 
@@ -124,11 +120,8 @@ TAUTLINE_PART_SLOW(testPatch)
       const std::vector<double> u = linearMotion(mesh, g);
       const PeridynamicSystem system = assemblePeridynamics(mesh, options, &u);
       const std::vector<double> force = times(system.matrix, unknownValues(system, u));
-      double scale = 0.0;
-      for (Index row = 0; row < system.matrix.size; ++row)
-      {
-        scale = std::max(scale, system.matrix.at(row, row));
-      }
+      double scale = largestOf<double>(
+        0.0, system.matrix.size, [&](Index row) { return system.matrix.at(row, row); });
       TAUTLINE_EACH(std::size_t, i, force.size(),
         TAUTLINE_CHECK_NEAR(force[i] + system.constraintLoad[i], 0.0, RuleError * scale));
     }
@@ -261,11 +254,7 @@ TAUTLINE_PART(testEnergy)
     const double sum = energyOfPoints(mesh, options, u, parts);
     std::printf("nu %.2f: energy %.6f, of points %.6f\n", nu, energy, sum);
     TAUTLINE_CHECK_RELATIVE(energy, sum, 0.015); // of the sum over points
-    double largest = 0.0;
-    for (const double f : force)
-    {
-      largest = std::max(largest, std::abs(f));
-    }
+    double largest = largestOf<double>(0.0, force, [&](const double f) { return std::abs(f); });
     for (const std::size_t i :
       { std::size_t(0), std::size_t(13), std::size_t(24), force.size() - 1 })
     {

@@ -49,11 +49,7 @@ inline Matrix operator*(const Matrix& a, const Matrix& b)
   return makeMatrix(a.n,
     [&](int r, int c)
     {
-      double sum = 0;
-      for (int k = 0; k < a.n; ++k)
-      {
-        sum += a(r, k) * b(k, c);
-      }
+      double sum = sumOf<double>(0, a.n, [&](int k) { return a(r, k) * b(k, c); });
       return sum;
     });
 }

@@ -62,11 +62,8 @@ double sizeOf(CellType type, const Corners& p)
 double longestEdge(CellType type, const Corners& p)
 {
   const CellTopology& t = topology(type);
-  double longest = 0;
-  for (int e = 0; e < t.edges; ++e)
-  {
-    longest = std::max(longest, norm(p[t.edgeNodes[e][1]] - p[t.edgeNodes[e][0]]));
-  }
+  double longest = largestOf<double>(
+    0, t.edges, [&](int e) { return norm(p[t.edgeNodes[e][1]] - p[t.edgeNodes[e][0]]); });
   return longest;
 }
 
@@ -78,11 +75,8 @@ double circumradius(int n, const Corners& p)
   double sum = 0;
   for (int r = 0; r < n; ++r)
   {
-    double c = 0;
-    for (int k = 0; k < n; ++k)
-    {
-      c += inverseEdges(r, k) * dot(p[k + 1] - p[0], p[k + 1] - p[0]);
-    }
+    double c = sumOf<double>(
+      0, n, [&](int k) { return inverseEdges(r, k) * dot(p[k + 1] - p[0], p[k + 1] - p[0]); });
     sum += c * c;
   }
   return std::sqrt(sum);
@@ -229,11 +223,8 @@ double axisRatioOf(CellType type, const Corners& p)
   std::vector<double> lengths;
   for (const auto& pair : sides)
   {
-    Vec3 axis = { 0, 0, 0 };
-    for (std::size_t k = 0; k < pair[0].size(); ++k)
-    {
-      axis += p[pair[0][k]] - p[pair[1][k]];
-    }
+    Vec3 axis = sumOf<Vec3>(
+      { 0, 0, 0 }, pair[0].size(), [&](std::size_t k) { return p[pair[0][k]] - p[pair[1][k]]; });
     lengths.push_back(norm(axis));
   }
   const auto ends = std::minmax_element(lengths.begin(), lengths.end());

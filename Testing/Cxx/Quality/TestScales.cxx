@@ -62,11 +62,8 @@ void compare(const MetricInfo& info, const MeshData& data, int exponent)
     }
   };
   Index beyond = 0;
-  double steepest = 0;
-  for (double slope : expected.gradients)
-  {
-    steepest = std::max(steepest, std::abs(slope));
-  }
+  double steepest =
+    largestOf<double>(0, expected.gradients, [&](double slope) { return std::abs(slope); });
   for (std::size_t i = 0; i < values.size(); ++i)
   {
     check(values[i], ordinary[i], unit, 1 + std::abs(ordinary[i]));

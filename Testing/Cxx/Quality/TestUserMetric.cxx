@@ -193,11 +193,7 @@ std::vector<Twin> registerCopies()
 
 double largest(const std::vector<double>& values)
 {
-  double result = 0;
-  for (const double v : values)
-  {
-    result = std::max(result, std::abs(v));
-  }
+  double result = largestOf<double>(0, values, [&](const double v) { return std::abs(v); });
   return result;
 }
 

@@ -247,11 +247,8 @@ std::vector<double> sweep(
 
 double distance(const std::vector<double>& a, const std::vector<double>& b)
 {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i)
-  {
-    largest = std::max(largest, std::abs(a[i] - b[i]));
-  }
+  double largest =
+    largestOf<double>(0, a.size(), [&](std::size_t i) { return std::abs(a[i] - b[i]); });
   return largest;
 }
 

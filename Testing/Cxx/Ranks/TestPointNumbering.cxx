@@ -170,11 +170,8 @@ void testBoundary(MPI_Comm comm)
     std::vector<unsigned char> skip(part.types.size(), 0);
     for (std::size_t cell = 0; cell < skip.size(); ++cell)
     {
-      double x = 0.0;
-      for (int k = 0; k < 4; ++k)
-      {
-        x += part.points[3 * part.connectivity[4 * cell + k]] / 4.0;
-      }
+      double x = sumOf<double>(
+        0.0, 4, [&](int k) { return part.points[3 * part.connectivity[4 * cell + k]] / 4.0; });
       skip[cell] = kind == 2 &&
         (x < columns * rank / ranks || x > columns * (rank + 1) / ranks); // NOLINT: whole columns
     }
@@ -306,11 +303,8 @@ std::vector<double> solvedOver(
   MPI_Comm comm, bool scattered, int block, double scale, const SolverOptions& options)
 {
   const Part part(rankOf(comm), ranksOf(comm), scattered);
-  std::vector<unsigned char> used(part.ids.size());
-  for (std::size_t p = 0; p < used.size(); ++p)
-  {
-    used[p] = !part.onBoundary(static_cast<Index>(p));
-  }
+  auto used = collect<unsigned char>(
+    part.ids.size(), [&](std::size_t p) { return !part.onBoundary(static_cast<Index>(p)); });
   const PointNumbering numbering(&comm, part.numberOfPoints(), part.ids.data(), used.data());
   const Springs springs(part, numbering, block, scale);
   TAUTLINE_LET(LinearSystem, system, matrix = &springs.matrix, blockSize = block,
@@ -382,11 +376,7 @@ void testConditions(MPI_Comm comm)
                                all = elementContributions(system, true);
     TAUTLINE_CHECK_RELATIVE(all.bound, one.bound, 1e-12);
     TAUTLINE_CHECK_RELATIVE(all.lowerBound, one.lowerBound, 1e-12);
-    double sum = 0.0;
-    for (const double share : all.share)
-    {
-      sum += share;
-    }
+    double sum = sumOf<double>(0.0, all.share, [&](const double share) { return share; });
     TAUTLINE_CHECK_NEAR(system.numbering().sum(sum), 1.0, 1e-12);
   }
 }
@@ -408,11 +398,8 @@ void testTogether(MPI_Comm comm)
     TAUTLINE_CHECK_THROWS(
       PointNumbering(&comm, part.numberOfPoints(), nullptr), wording("generate-global-ids"));
   }
-  std::vector<unsigned char> used(part.ids.size());
-  for (std::size_t p = 0; p < used.size(); ++p)
-  {
-    used[p] = !part.onBoundary(static_cast<Index>(p));
-  }
+  auto used = collect<unsigned char>(
+    part.ids.size(), [&](std::size_t p) { return !part.onBoundary(static_cast<Index>(p)); });
   const PointNumbering numbering(&comm, part.numberOfPoints(), part.ids.data(), used.data());
   Springs springs(part, numbering, 1, 1.0);
   TAUTLINE_LET(LinearSystem, system, matrix = &springs.matrix, numbering = &numbering);

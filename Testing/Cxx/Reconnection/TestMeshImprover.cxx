@@ -158,11 +158,8 @@ TAUTLINE_PART(testData)
   // The kernel's result states which point is which.
   ReconnectionOptions options = optionsOf(ReconnectionPreset::Aggressive);
   options.targetAngle = 40;
-  std::vector<Index> regions(data.numberOfCells());
-  for (Index i = 0; i < data.numberOfCells(); ++i)
-  {
-    regions[i] = i < data.numberOfCells() / 2 ? 7 : -2;
-  }
+  auto regions = collect<Index>(
+    data.numberOfCells(), [&](Index i) { return i < data.numberOfCells() / 2 ? 7 : -2; });
   options.regions = regions.data();
   const ReconnectionResult expected = reconnect(data, options);
   TAUTLINE_CHECK(after.points == expected.points);

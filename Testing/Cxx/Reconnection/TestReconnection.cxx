@@ -44,11 +44,8 @@ void checkOrigins(const MeshData& input, const ReconnectionResult& result)
   const MeshData output = outputOf(result);
   for (Index c = 0; c < output.numberOfCells(); ++c)
   {
-    Vec3 centroid = { 0, 0, 0 };
-    for (int k = 0; k < 4; ++k)
-    {
-      centroid += 0.25 * output.point(output.connectivity[4 * c + k]);
-    }
+    Vec3 centroid = sumOf<Vec3>(
+      { 0, 0, 0 }, 4, [&](int k) { return 0.25 * output.point(output.connectivity[4 * c + k]); });
     const auto w = weightsOf(input, result.originalCells[c], centroid);
     TAUTLINE_CHECK(*std::min_element(w.begin(), w.end()) > -1e-9);
   }
@@ -123,12 +120,12 @@ TAUTLINE_PART(testTargets)
   TAUTLINE_CHECK(slivers.history.back().largestAngle <= 165.0);
   TAUTLINE_CHECK_EQUAL(static_cast<int>(slivers.reason), static_cast<int>(StopReason::Reduction));
   const MeshData output = outputOf(slivers);
-  Index same = 0;
-  for (Index c = 0; c < output.numberOfCells(); ++c)
-  {
-    same += std::equal(&output.connectivity[4 * c], &output.connectivity[4 * c] + 4,
-      &data.connectivity[4 * slivers.originalCells[c]]);
-  }
+  Index same = sumOf<Index>(0, output.numberOfCells(),
+    [&](Index c)
+    {
+      return std::equal(&output.connectivity[4 * c], &output.connectivity[4 * c] + 4,
+        &data.connectivity[4 * slivers.originalCells[c]]);
+    });
   const ReconnectionResult all = reconnect(data, optionsOf(Kind::Aggressive));
   TAUTLINE_CHECK(same > output.numberOfCells() / 3);
   TAUTLINE_CHECK(all.history.back().moves > 2 * slivers.history.back().moves);

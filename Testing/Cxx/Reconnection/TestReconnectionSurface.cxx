@@ -29,11 +29,8 @@ double distanceTo(const Facet& f, const Vec3& x)
 
 double distanceTo(const std::set<Facet>& facets, const Vec3& x)
 {
-  double least = 1e300;
-  for (const Facet& f : facets)
-  {
-    least = std::min(least, distanceTo(f, x));
-  }
+  double least =
+    smallestOf<double>(1e300, facets, [&](const Facet& f) { return distanceTo(f, x); });
   return least;
 }
 
@@ -189,11 +186,8 @@ TAUTLINE_PART(testKept)
   const MeshData block = blockMesh(CellType::Tetrahedron, Cubes, Cubes, Cubes);
   for (Index c = 0; c < block.numberOfCells(); ++c)
   {
-    double x = 0.0;
-    for (int k = 0; k < 4; ++k)
-    {
-      x += 0.25 * block.point(block.connectivity[4 * c + k])[0];
-    }
+    double x = sumOf<double>(
+      0.0, 4, [&](int k) { return 0.25 * block.point(block.connectivity[4 * c + k])[0]; });
     regions.push_back(x < 0.5 * Cubes);
   }
   for (Index i = 0; i < ball.numberOfPoints(); i += 5)

@@ -142,11 +142,8 @@ TAUTLINE_PART(testQuality)
     const Vec3 p = random.vector(-1, 1), a = random.vector(-1, 1), b = random.vector(-1, 1),
                c = random.vector(-1, 1);
     const TetrahedronMeasures m = measure(p, a, b, c);
-    double sine = 1.0;
-    for (double angle : dihedralAngles(p, a, b, c))
-    {
-      sine = std::min(sine, std::sin(angle * Pi / 180.0));
-    }
+    double sine = smallestOf<double>(
+      1.0, dihedralAngles(p, a, b, c), [&](double angle) { return std::sin(angle * Pi / 180.0); });
     TAUTLINE_CHECK_NEAR(std::abs(m.sine), sine, 1e-12);
     TAUTLINE_CHECK_EQUAL(m.determinant > 0.0, m.sine > 0.0);
     if (m.determinant > 0.0)
@@ -313,13 +310,12 @@ TAUTLINE_PART(testFaceRemoval)
         done = operations.removeFaces(t, i);
       }
     }
-    double round = 1.0;
-    for (int i = 0; i < n; ++i)
-    {
-      round = std::min(round,
-        roundedQuality(
-          data.point(0), data.point(1), data.point(2 + i), data.point(2 + (i + 1) % n)));
-    }
+    double round = smallestOf<double>(1.0, n,
+      [&](int i)
+      {
+        return roundedQuality(
+          data.point(0), data.point(1), data.point(2 + i), data.point(2 + (i + 1) % n));
+      });
     TAUTLINE_CHECK_EQUAL(done, round > before);
     if (done)
     {

@@ -164,11 +164,9 @@ TAUTLINE_PART(testPresets)
     }
     for (const PointInterpolation& place : result.interpolations)
     {
-      Vec3 x = { 0, 0, 0 };
-      for (int k = 0; k < 3; ++k)
-      {
-        x += place.weights[k] * data.point(data.connectivity[3 * place.cell + k]);
-      }
+      Vec3 x = sumOf<Vec3>({ 0, 0, 0 }, 3,
+        [&](int k)
+        { return place.weights[k] * data.point(data.connectivity[3 * place.cell + k]); });
       TAUTLINE_CHECK(norm(x - output.point(place.point)) < 1e-12);
       TAUTLINE_CHECK_EQUAL(result.originalPoints[place.point], -1);
     }
@@ -254,11 +252,8 @@ TAUTLINE_PART(testInvariance)
 TAUTLINE_PART(testRegions)
 {
   const MeshData data = sliverSheet(14, 7);
-  std::vector<Index> regions(data.numberOfCells());
-  for (Index c = 0; c < data.numberOfCells(); ++c)
-  {
-    regions[c] = (c / 2 % 14 < 6 ? 4 : -1) + (c / 28 < 5 ? 7 : 0);
-  }
+  auto regions = collect<Index>(data.numberOfCells(),
+    [&](Index c) { return (c / 2 % 14 < 6 ? 4 : -1) + (c / 28 < 5 ? 7 : 0); });
   for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
   {
     TriangleOptions options = triangleOptions(Preset::Aggressive);

@@ -163,19 +163,13 @@ TAUTLINE_PART(testMean)
   const MeshData output = trianglesOf(result);
   checkTriangles(data, result);
   TAUTLINE_CHECK(isClosed(output));
-  double farthest = 0.0;
-  for (Index i = 0; i < output.numberOfPoints(); ++i)
-  {
-    farthest = std::max(farthest, distanceFrom(data, output.point(i)));
-  }
+  double farthest = largestOf<double>(
+    0.0, output.numberOfPoints(), [&](Index i) { return distanceFrom(data, output.point(i)); });
   TAUTLINE_CHECK(farthest < 1e-12);
   const auto excess = [](const ReconnectionResult& r)
   {
-    double sum = 0.0;
-    for (double imr : valuesOf(trianglesOf(r), Metric::InverseMeanRatio))
-    {
-      sum += imr - 1.0;
-    }
+    double sum = sumOf<double>(0.0, valuesOf(trianglesOf(r), Metric::InverseMeanRatio),
+      [&](double imr) { return imr - 1.0; });
     return sum;
   };
   TAUTLINE_CHECK(excess(result) < 0.9 * excess(plain));
@@ -291,11 +285,8 @@ TAUTLINE_PART(testNonManifold)
     const MeshData output = trianglesOf(result);
     checkTriangles(sheets, result);
     TAUTLINE_CHECK_RELATIVE(areaOf(output), areaOf(sheets), 1e-12);
-    int triple = 0;
-    for (const auto& use : edgesOf(output))
-    {
-      triple += use.second.size() == 3;
-    }
+    int triple =
+      sumOf<int>(0, edgesOf(output), [&](const auto& use) { return use.second.size() == 3; });
     TAUTLINE_CHECK_EQUAL(triple, 6);
   }
 

@@ -142,11 +142,8 @@ void checkRows(const ReconnectionResult& result)
 
 double totalOf(const MeshData& data, const std::vector<double>& values)
 {
-  double sum = 0.0;
-  for (Index c = 0; c < data.numberOfCells(); ++c)
-  {
-    sum += norm(areaVector(data, c)) * values[c];
-  }
+  double sum = sumOf<double>(
+    0.0, data.numberOfCells(), [&](Index c) { return norm(areaVector(data, c)) * values[c]; });
   return sum;
 }
 

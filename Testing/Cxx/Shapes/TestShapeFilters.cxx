@@ -179,11 +179,8 @@ TAUTLINE_PART(testMatcher)
     const vtkIdType id = before->FindPoint(old);
     TAUTLINE_CHECK(id >= 0 && std::abs(before->GetPoint(id)[0] - old[0]) < 1e-9);
   }
-  double sum = 0.0;
-  for (vtkIdType t = 0; t < mesh->GetNumberOfCells(); ++t)
-  {
-    sum += mesh->GetCellData()->GetArray("Energy")->GetTuple1(t);
-  }
+  double sum = sumOf<double>(0.0, mesh->GetNumberOfCells(),
+    [&](vtkIdType t) { return mesh->GetCellData()->GetArray("Energy")->GetTuple1(t); });
   TAUTLINE_CHECK_RELATIVE(sum, fromMesh->GetEnergy(), 1e-9);
   const auto value = [&](const char* name) { return table->GetValueByName(0, name).ToDouble(); };
   TAUTLINE_CHECK_RELATIVE(
@@ -257,11 +254,8 @@ void checkSheet(vtkShapeRetrieval* retrieval)
   const vtkIdType frame = count[grey] / queries;
   TAUTLINE_CHECK(frame > 0 && count[grey] % queries == 0);
   auto* ranking = vtkTable::SafeDownCast(retrieval->GetOutputDataObject(1));
-  vtkIdType right = 0;
-  for (vtkIdType row = 0; row < ranking->GetNumberOfRows(); ++row)
-  {
-    right += ranking->GetValueByName(row, "Correct").ToInt();
-  }
+  vtkIdType right = sumOf<vtkIdType>(0, ranking->GetNumberOfRows(),
+    [&](vtkIdType row) { return ranking->GetValueByName(row, "Correct").ToInt(); });
   TAUTLINE_CHECK(right > 0 && right < 3 * queries);
   const std::array<int, 3> green = { 0, 150, 60 }, red = { 215, 25, 30 };
   TAUTLINE_CHECK_EQUAL(count[green], right * frame);

@@ -81,11 +81,7 @@ TAUTLINE_PART(testPolarityAndComponents)
   TAUTLINE_CHECK_EQUAL(shape.components, 2);
   TAUTLINE_CHECK_EQUAL(shape.holes, 1);
   TAUTLINE_CHECK_RELATIVE(shape.area, area, 1e-9);
-  double filled = 0.0;
-  for (float value : shape.mask)
-  {
-    filled += value;
-  }
+  double filled = sumOf<double>(0.0, shape.mask, [&](float value) { return value; });
   TAUTLINE_CHECK_NEAR(filled, area, 80.0); // half a pixel along the outline
   // Pixels that touch at a corner are one component, with a simple outline.
   Picture corner = paint(12, 12, [](double, double) { return -1.0; });

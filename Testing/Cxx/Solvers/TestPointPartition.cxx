@@ -57,11 +57,8 @@ double haloOf(const DistributedMesh& mesh)
 void checkBalance(const DistributedMesh& mesh)
 {
   const VertexCells cells = Mesh(mesh.view()).vertexCells();
-  Index own = 0;
-  for (Index p = 0; p < mesh.localPoints(); ++p)
-  {
-    own += mesh.owned(p) ? cells.offsets[p + 1] - cells.offsets[p] : 0;
-  }
+  Index own = sumOf<Index>(0, mesh.localPoints(),
+    [&](Index p) { return mesh.owned(p) ? cells.offsets[p + 1] - cells.offsets[p] : 0; });
   const double mean =
     static_cast<double>(mesh.group().sum(own)) / static_cast<double>(mesh.group().size());
   TAUTLINE_CHECK(static_cast<double>(mesh.group().maximum(own)) < 1.1 * mean);

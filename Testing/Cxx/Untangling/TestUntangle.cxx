@@ -92,11 +92,8 @@ MeshData turnedHole(CellType type, Index n, double degrees)
   {
     const std::vector<Index> nodes(full.connectivity.begin() + full.offsets[cell],
       full.connectivity.begin() + full.offsets[cell + 1]);
-    Vec3 center = { 0, 0, 0 };
-    for (Index node : nodes)
-    {
-      center += (1.0 / static_cast<double>(nodes.size())) * full.point(node);
-    }
+    Vec3 center = sumOf<Vec3>({ 0, 0, 0 }, nodes,
+      [&](Index node) { return (1.0 / static_cast<double>(nodes.size())) * full.point(node); });
     bool inHole = true;
     for (int c = 0; c < dimension; ++c)
     {
@@ -255,11 +252,8 @@ void testNewlyInvalid()
     MeshData moved = data;
     moved.points = result.points;
     const std::vector<signed char> before = validityOf(data), after = validityOf(moved);
-    Index newly = 0;
-    for (std::size_t cell = 0; cell < before.size(); ++cell)
-    {
-      newly += before[cell] == Valid && after[cell] != Valid;
-    }
+    Index newly = sumOf<Index>(0, before.size(),
+      [&](std::size_t cell) { return before[cell] == Valid && after[cell] != Valid; });
     TAUTLINE_CHECK_EQUAL(result.newlyInvalid, newly);
     TAUTLINE_CHECK(result.newlyInvalid <= result.invertedAfter);
     all += newly;
@@ -286,11 +280,8 @@ void testFiles(const std::string& directory)
     vtkDataArray* flags = grid->GetPointData()->GetArray("fixed");
     if (TAUTLINE_CHECK(flags))
     {
-      std::vector<unsigned char> fixed(data.numberOfPoints());
-      for (Index i = 0; i < data.numberOfPoints(); ++i)
-      {
-        fixed[i] = flags->GetTuple1(i) != 0;
-      }
+      auto fixed = collect<unsigned char>(
+        data.numberOfPoints(), [&](Index i) { return flags->GetTuple1(i) != 0; });
       TAUTLINE_LET(UntangleOptions, options, fixed = fixed.data());
       checkUntangles(data, std::string(name) + ", its own flags", options);
     }
@@ -318,11 +309,8 @@ void testFrames()
     const double scale = 0x1p20;
     other.transform([=](const Vec3& p) { return scale * p; });
     const UntangleResult scaled = checkUntangles(other, "scaled by a power of two");
-    Index different = 0;
-    for (std::size_t i = 0; i < plain.points.size(); ++i)
-    {
-      different += scaled.points[i] != scale * plain.points[i];
-    }
+    Index different = sumOf<Index>(0, plain.points.size(),
+      [&](std::size_t i) { return scaled.points[i] != scale * plain.points[i]; });
     TAUTLINE_CHECK_EQUAL(different, 0);
     const Columns turn = rotation({ 1, 2, -0.5 }, 1.1);
     other = data;
