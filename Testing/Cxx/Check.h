@@ -8,6 +8,7 @@
 #define tautline_Check_h
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <exception>
@@ -30,6 +31,13 @@ const char* wording(const char* id);
 inline int& failures()
 {
   static int count = 0;
+  return count;
+}
+
+/** The number of checks of this program so far, with those of its threads. */
+inline std::atomic<long>& checks()
+{
+  static std::atomic<long> count{ 0 };
   return count;
 }
 
@@ -66,6 +74,7 @@ inline std::ostream& fail(const char* file, int line)
 
 inline bool check(bool holds, const char* expression, const char* file, int line)
 {
+  ++checks();
   if (!holds)
   {
     fail(file, line) << "not true: " << expression << "\n";
@@ -76,6 +85,7 @@ inline bool check(bool holds, const char* expression, const char* file, int line
 template <class A, class B>
 bool checkEqual(const A& actual, const B& expected, const char* what, const char* file, int line)
 {
+  ++checks();
   const bool holds = actual == expected;
   if (!holds)
   {
@@ -87,6 +97,7 @@ bool checkEqual(const A& actual, const B& expected, const char* what, const char
 inline bool checkNear(
   double actual, double expected, double tolerance, const char* what, const char* file, int line)
 {
+  ++checks();
   const bool holds = actual == expected || std::abs(actual - expected) <= tolerance;
   if (!holds)
   {
@@ -99,6 +110,7 @@ inline bool checkNear(
 template <class Statement>
 void checkThrows(const Statement& statement, const std::string& part, const char* file, int line)
 {
+  ++checks();
   try
   {
     statement();

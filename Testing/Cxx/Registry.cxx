@@ -142,11 +142,13 @@ namespace
 {
 void printUsage()
 {
-  std::cout << "usage: TautlineTests [--slow] [--list] [--times] TEST[/PART]... [-- ARGUMENT...]\n"
+  std::cout << "usage: TautlineTests [--slow] [--list] [--times] [--count] TEST[/PART]... [-- "
+               "ARGUMENT...]\n"
                "Runs tests; of TEST/PART the parts whose call contains the text PART.\n"
                "  --slow   also the slow parts; TAUTLINE_SLOW_TESTS=1 does the same\n"
                "  --list   print the tests, or the parts of the tests that are named\n"
-               "  --times  print how long each part takes\n";
+               "  --times  print how long each part takes\n"
+               "  --count  print how many checks each test makes\n";
 }
 
 int runTest(const RegisteredTest& test, std::vector<char*> arguments)
@@ -155,6 +157,7 @@ int runTest(const RegisteredTest& test, std::vector<char*> arguments)
   PartChoice& choice = partChoice();
   choice.run = choice.skipped = 0;
   const int before = failures();
+  const long checked = checks();
   try
   {
     if (test.run)
@@ -188,6 +191,10 @@ int runTest(const RegisteredTest& test, std::vector<char*> arguments)
   {
     std::cout << test.name << ": " << choice.skipped << " slow parts left out, --slow runs them\n";
   }
+  if (choice.count)
+  {
+    std::cout << test.name << ": " << checks() - checked << " checks\n";
+  }
   return failures() == before ? Passed : Failed;
 }
 }
@@ -214,6 +221,7 @@ int main(int argc, char* argv[])
     bool* const flag = word == "--slow" ? &choice.slow
       : word == "--list"                ? &choice.list
       : word == "--times"               ? &choice.times
+      : word == "--count"               ? &choice.count
                                         : nullptr;
     if (flag)
     {

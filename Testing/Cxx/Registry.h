@@ -81,6 +81,7 @@ struct PartChoice
   bool slow = false;  ///< whether slow parts run, too
   bool list = false;  ///< print the parts instead of running them
   bool times = false; ///< print how long each part takes
+  bool count = false; ///< print how many checks each test makes
   int run = 0, skipped = 0;
 };
 
