@@ -41,6 +41,14 @@ T& setIn(T& object, long)
 #define TAUTLINE_NEW(type, name, ...) \
   vtkNew<type> name;                  \
   TAUTLINE_SET(name, __VA_ARGS__)
+/** A function that makes a filter, or any VTK object, on which functions are called as by TAUTLINE_SET. */
+#define TAUTLINE_MAKER(type, ...)                   \
+  [=]                                               \
+  {                                                 \
+    const auto made = vtkSmartPointer<type>::New(); \
+    TAUTLINE_SET(made, __VA_ARGS__);                \
+    return made;                                    \
+  }
 
 #define TAUTLINE_FOURTEENTH(a, b, c, d, e, f, g, h, i, j, k, l, m, n, it, ...) it
 #define TAUTLINE_SET1(object, a) void(tautline::setIn(object, 0).a)

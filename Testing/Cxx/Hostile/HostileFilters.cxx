@@ -186,316 +186,105 @@ Data polygon()
 }
 
 //------------------------------------------------------------------------------
-template <class T>
-vtkSmartPointer<T> made()
+vtkSmartPointer<vtkTransform> turn()
 {
-  return vtkSmartPointer<T>::New();
+  auto transform = vtkSmartPointer<vtkTransform>::New();
+  transform->RotateZ(5);
+  return transform;
 }
 
-vtkSmartPointer<vtkAlgorithm> optimizer()
-{
-  auto filter = made<vtkMeshOptimizer>();
-  filter->SetTimeLimit(Seconds);
-  return filter;
-}
-
-/// Slides on the boundary, with all arrays and inputs of features.
-vtkSmartPointer<vtkAlgorithm> slidingOptimizer()
-{
-  auto filter = made<vtkMeshOptimizer>();
-  TAUTLINE_SET(
-    filter, SetTimeLimit(Seconds), SetBoundary(vtkMeshOptimizer::ON_SURFACE), ShowFeaturesOn());
-  return filter;
-}
-
-/// The input is the geometry that a tetrahedral mesh slides on.
-vtkSmartPointer<vtkAlgorithm> geometryOptimizer()
-{
-  auto filter = slidingOptimizer();
-  filter->SetInputDataObject(0, tetrahedra());
-  return filter;
-}
-
-vtkSmartPointer<vtkMeshImprover> improver()
-{
-  auto filter = made<vtkMeshImprover>();
-  filter->SetTimeLimit(Seconds);
-  return filter;
-}
-
-vtkSmartPointer<vtkAlgorithm> untangler()
-{
-  auto filter = made<vtkMeshUntangler>();
-  filter->SetTimeLimit(Seconds);
-  return filter;
-}
-
-vtkSmartPointer<vtkMeshWarp> warp()
-{
-  auto filter = made<vtkMeshWarp>();
-  filter->SetTimeLimit(Seconds);
-  TAUTLINE_NEW(vtkTransform, transform, RotateZ(5));
-  filter->SetTransform(transform);
-  return filter;
-}
-
-template <class T>
-vtkSmartPointer<T> elliptic()
-{
-  auto filter = made<T>();
-  filter->SetTimeLimit(Seconds);
-  return filter;
-}
-
-vtkSmartPointer<vtkPeridynamicStiffness> peridynamics()
-{
-  auto filter = made<vtkPeridynamicStiffness>();
-  TAUTLINE_SET(filter, SetTimeLimit(Seconds), SetHorizon(1.0), SetConstrained(false));
-  return filter;
-}
-
-template <class T>
-vtkSmartPointer<T> shapes()
-{
-  auto filter = made<T>();
-  TAUTLINE_SET(filter, SetTimeLimit(Seconds), SetSpacing(5), SetGridSize(8, 8));
-  return filter;
-}
+/// The name of a class and a function that makes its object, for the list below.
+#define MADE(type, ...) #type, TAUTLINE_MAKER(type, __VA_ARGS__)
+#define TIMED(type, ...) MADE(type, SetTimeLimit(Seconds), __VA_ARGS__)
+#define PLAIN(type) #type, [] { return vtkSmartPointer<type>::New(); }
+#define WARP(...) TIMED(vtkMeshWarp, SetTransform(turn()), __VA_ARGS__)
+#define SOLVED(...)                                                                              \
+  TIMED(vtkPeridynamicStiffness, SetHorizon(1.0), SetConstrained(true), SetAllowThinLayer(true), \
+    SetSolve(true), __VA_ARGS__)
+#define SHAPES(type, ...) TIMED(type, SetSpacing(5), SetGridSize(8, 8), __VA_ARGS__)
 
 void addFilters(std::vector<HostileFilter>& list)
 {
   using Maker = std::function<vtkSmartPointer<vtkAlgorithm>()>;
   using Source = std::function<Data()>;
-  const auto add = [&list](const char* module, const char* name, const char* variant,
-                     const Maker& make, const Source& suitable, int port = 0, bool keeps = true,
-                     int selectionPort = -1) {
+  constexpr int points = vtkDataObject::FIELD_ASSOCIATION_POINTS,
+                cells = vtkDataObject::FIELD_ASSOCIATION_CELLS;
+  const char* module = "Quality";
+  const auto add = [&](const char* variant, const Source& suitable, const char* name,
+                     const Maker& make, int port = 0, bool keeps = true, int selectionPort = -1) {
     list.push_back({ module, name, variant, make, suitable, port, keeps, selectionPort });
   };
+  using Quality = vtkElementQuality;
+  add("", triangles, PLAIN(vtkElementQuality));
+  add("solid", tetrahedra, PLAIN(vtkElementQuality));
+  add("flip", triangles, MADE(vtkElementQuality, SetReversedMesh(Quality::FLIP_OUTPUT)));
+  add("reference", triangles,
+    MADE(vtkElementQuality, SetTargetType(Quality::REFERENCE), SetInputDataObject(0, triangles())),
+    1, false);
+  add("size", triangles,
+    MADE(vtkElementQuality, SetTargetType(Quality::SIZE),
+      SetInputArrayToProcess(0, 0, 0, points, "T")));
+  add("before", triangles, MADE(vtkMeshComparison, SetInputDataObject(1, triangles())), 0, false);
+  add("after", triangles, MADE(vtkMeshComparison, SetInputDataObject(0, triangles())), 1);
+  module = "Perturbation";
+  add("", triangles, PLAIN(vtkMeshPerturbation));
+  add("solid", tetrahedra, PLAIN(vtkMeshPerturbation));
+  module = "Optimization";
+  add("", triangles, MADE(vtkMeshOptimizer, SetTimeLimit(Seconds)), 0, true, 2);
+  add("solid", tetrahedra, MADE(vtkMeshOptimizer, SetTimeLimit(Seconds)));
+  // Slides on the boundary, with all arrays and inputs of features.
+  add("sliding", tetrahedra,
+    TIMED(vtkMeshOptimizer, SetBoundary(vtkMeshOptimizer::ON_SURFACE), ShowFeaturesOn()));
+  // The input is the geometry that a tetrahedral mesh slides on.
+  add("geometry", triangles,
+    TIMED(vtkMeshOptimizer, SetBoundary(vtkMeshOptimizer::ON_SURFACE), ShowFeaturesOn(),
+      SetInputDataObject(0, tetrahedra())),
+    3, false);
+  module = "Untangling";
+  add("", triangles, MADE(vtkMeshUntangler, SetTimeLimit(Seconds)), 0, true, 1);
+  add("solid", tetrahedra, MADE(vtkMeshUntangler, SetTimeLimit(Seconds)));
+  module = "Reconnection";
+  add("", tetrahedra, MADE(vtkMeshImprover, SetTimeLimit(Seconds)), 0, false, 1);
+  add("flat", tetrahedra,
+    TIMED(vtkMeshImprover, SetPreset(vtkMeshImprover::AGGRESSIVE),
+      SetBoundary(vtkMeshImprover::SLIDING), SetInputArrayToProcess(1, 0, 0, cells, "Material")),
+    0, false);
+  module = "Deformation";
+  add("", triangles, TIMED(vtkMeshWarp, SetTransform(turn())), 0, true, 2);
+  add("solid", tetrahedra, TIMED(vtkMeshWarp, SetTransform(turn())));
+  add("displacement", triangles,
+    WARP(SetMotion(vtkMeshWarp::DISPLACEMENT), SetInputArrayToProcess(0, 0, 0, points, "V")));
+  add("target", triangles, WARP(SetMotion(vtkMeshWarp::TARGET), SetInputDataObject(0, triangles())),
+    1, false);
+  add("", triangles, PLAIN(vtkMovingBoundary), 0, false);
+  module = "Elliptic";
+  add("", triangles, MADE(vtkEllipticSolver, SetTimeLimit(Seconds)), 0, true, 1);
   add(
-    "Quality", "vtkElementQuality", "", [] { return made<vtkElementQuality>(); }, triangles);
-  add(
-    "Quality", "vtkElementQuality", "solid", [] { return made<vtkElementQuality>(); }, tetrahedra);
-  add(
-    "Quality", "vtkElementQuality", "flip",
-    []
-    {
-      auto filter = made<vtkElementQuality>();
-      filter->SetReversedMesh(vtkElementQuality::FLIP_OUTPUT);
-      return filter;
-    },
-    triangles);
-  add(
-    "Quality", "vtkElementQuality", "reference",
-    []
-    {
-      auto filter = made<vtkElementQuality>();
-      filter->SetTargetType(vtkElementQuality::REFERENCE);
-      filter->SetInputDataObject(0, triangles());
-      return filter;
-    },
-    triangles, 1, false);
-  add(
-    "Quality", "vtkElementQuality", "size",
-    []
-    {
-      auto filter = made<vtkElementQuality>();
-      filter->SetTargetType(vtkElementQuality::SIZE);
-      filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "T");
-      return filter;
-    },
-    triangles);
-  add(
-    "Quality", "vtkMeshComparison", "before",
-    []
-    {
-      auto filter = made<vtkMeshComparison>();
-      filter->SetInputDataObject(1, triangles());
-      return filter;
-    },
-    triangles, 0, false);
-  add(
-    "Quality", "vtkMeshComparison", "after",
-    []
-    {
-      auto filter = made<vtkMeshComparison>();
-      filter->SetInputDataObject(0, triangles());
-      return filter;
-    },
-    triangles, 1);
-  add(
-    "Perturbation", "vtkMeshPerturbation", "", [] { return made<vtkMeshPerturbation>(); },
-    triangles);
-  add(
-    "Perturbation", "vtkMeshPerturbation", "solid", [] { return made<vtkMeshPerturbation>(); },
-    tetrahedra);
-  add("Optimization", "vtkMeshOptimizer", "", optimizer, triangles, 0, true, 2);
-  add("Optimization", "vtkMeshOptimizer", "solid", optimizer, tetrahedra);
-  add("Optimization", "vtkMeshOptimizer", "sliding", slidingOptimizer, tetrahedra);
-  add("Optimization", "vtkMeshOptimizer", "geometry", geometryOptimizer, triangles, 3, false);
-  add("Untangling", "vtkMeshUntangler", "", untangler, triangles, 0, true, 1);
-  add("Untangling", "vtkMeshUntangler", "solid", untangler, tetrahedra);
-  add("Reconnection", "vtkMeshImprover", "", improver, tetrahedra, 0, false, 1);
-  add(
-    "Reconnection", "vtkMeshImprover", "flat",
-    []
-    {
-      auto filter = improver();
-      filter->SetPreset(vtkMeshImprover::AGGRESSIVE);
-      filter->SetBoundary(vtkMeshImprover::SLIDING);
-      filter->SetInputArrayToProcess(1, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Material");
-      return filter;
-    },
-    tetrahedra, 0, false);
-  add(
-    "Deformation", "vtkMeshWarp", "", [] { return warp(); }, triangles, 0, true, 2);
-  add(
-    "Deformation", "vtkMeshWarp", "solid", [] { return warp(); }, tetrahedra);
-  add(
-    "Deformation", "vtkMeshWarp", "displacement",
-    []
-    {
-      auto filter = warp();
-      filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
-      filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "V");
-      return filter;
-    },
-    triangles);
-  add(
-    "Deformation", "vtkMeshWarp", "target",
-    []
-    {
-      auto filter = warp();
-      TAUTLINE_SET(filter, SetMotion(vtkMeshWarp::TARGET), SetInputDataObject(0, triangles()));
-      return filter;
-    },
-    triangles, 1, false);
-  add(
-    "Deformation", "vtkMovingBoundary", "", [] { return made<vtkMovingBoundary>(); }, triangles, 0,
-    false);
-  add(
-    "Elliptic", "vtkEllipticSolver", "", [] { return elliptic<vtkEllipticSolver>(); }, triangles, 0,
-    true, 1);
-  add(
-    "Elliptic", "vtkEllipticSolver", "elasticity",
-    []
-    {
-      auto filter = elliptic<vtkEllipticSolver>();
-      filter->SetEquation(vtkEllipticSolver::ELASTICITY);
-      return filter;
-    },
-    tetrahedra);
-  add(
-    "Elliptic", "vtkConditionEstimator", "", [] { return elliptic<vtkConditionEstimator>(); },
-    triangles);
-  add(
-    "Elliptic", "vtkSolverStudy", "", [] { return elliptic<vtkSolverStudy>(); }, triangles);
-  add(
-    "Peridynamics", "vtkPeridynamicStiffness", "", [] { return peridynamics(); }, triangles);
-  add(
-    "Peridynamics", "vtkPeridynamicStiffness", "solve",
-    []
-    {
-      auto filter = peridynamics();
-      TAUTLINE_SET(filter, SetConstrained(true), SetAllowThinLayer(true), SetSolve(true),
-        SetBasis(vtkPeridynamicStiffness::PIECEWISE_LINEAR));
-      return filter;
-    },
-    triangles);
-  add(
-    "Peridynamics", "vtkPeridynamicStiffness", "state-based",
-    []
-    {
-      auto filter = peridynamics();
-      TAUTLINE_SET(filter, SetConstrained(true), SetAllowThinLayer(true),
-        SetDiscretization(vtkPeridynamicStiffness::EXACT), SetElastic(true), SetStateBased(true),
-        SetSolve(true));
-      return filter;
-    },
-    triangles);
-  const auto preconditioned = [](int preconditioner)
-  {
-    auto filter = peridynamics();
-    TAUTLINE_SET(filter, SetConstrained(true), SetAllowThinLayer(true), SetSolve(true),
-      SetPreconditioner(preconditioner));
-    return filter;
-  };
-  add(
-    "Peridynamics", "vtkPeridynamicStiffness", "local AMG",
-    [=] { return preconditioned(vtkPeridynamicStiffness::LOCAL_AMG); }, triangles);
-  add(
-    "Peridynamics", "vtkPeridynamicStiffness", "two-level",
-    [=] { return preconditioned(vtkPeridynamicStiffness::TWO_LEVEL); }, triangles);
-  add(
-    "Peridynamics", "vtkInteractionLayer", "",
-    []
-    {
-      auto filter = made<vtkInteractionLayer>();
-      TAUTLINE_SET(filter, SetWidth(1.0), SetElementSize(1.0));
-      return filter;
-    },
-    triangles, 0, false);
-  add(
-    "Peridynamics", "vtkHorizonNeighbors", "",
-    []
-    {
-      auto filter = made<vtkHorizonNeighbors>();
-      TAUTLINE_SET(filter, SetCenter(2, 2, 0), SetHorizon(1.0));
-      return filter;
-    },
-    triangles, 0, false);
-  add(
-    "Shapes", "vtkSilhouetteMesher", "",
-    []
-    {
-      auto filter = made<vtkSilhouetteMesher>();
-      filter->SetSpacing(5);
-      return filter;
-    },
-    image, 0, false);
-  add(
-    "Shapes", "vtkShapeMatcher", "source",
-    []
-    {
-      auto filter = shapes<vtkShapeMatcher>();
-      filter->SetInputDataObject(1, silhouette());
-      return filter;
-    },
-    polygon, 0, false);
-  add(
-    "Shapes", "vtkShapeMatcher", "target",
-    []
-    {
-      auto filter = shapes<vtkShapeMatcher>();
-      filter->SetInputDataObject(0, polygon());
-      return filter;
-    },
-    image, 1, false);
-  add(
-    "Shapes", "vtkShapeRetrieval", "", [] { return shapes<vtkShapeRetrieval>(); }, images, 0,
-    false);
+    "elasticity", tetrahedra, TIMED(vtkEllipticSolver, SetEquation(vtkEllipticSolver::ELASTICITY)));
+  add("", triangles, MADE(vtkConditionEstimator, SetTimeLimit(Seconds)));
+  add("", triangles, MADE(vtkSolverStudy, SetTimeLimit(Seconds)));
+  module = "Peridynamics";
+  using Stiffness = vtkPeridynamicStiffness;
+  add("", triangles, TIMED(vtkPeridynamicStiffness, SetHorizon(1.0), SetConstrained(false)));
+  add("solve", triangles, SOLVED(SetBasis(Stiffness::PIECEWISE_LINEAR)));
+  add("state-based", triangles,
+    SOLVED(SetDiscretization(Stiffness::EXACT), SetElastic(true), SetStateBased(true)));
+  add("local AMG", triangles, SOLVED(SetPreconditioner(Stiffness::LOCAL_AMG)));
+  add("two-level", triangles, SOLVED(SetPreconditioner(Stiffness::TWO_LEVEL)));
+  add("", triangles, MADE(vtkInteractionLayer, SetWidth(1.0), SetElementSize(1.0)), 0, false);
+  add("", triangles, MADE(vtkHorizonNeighbors, SetCenter(2, 2, 0), SetHorizon(1.0)), 0, false);
+  module = "Shapes";
+  add("", image, MADE(vtkSilhouetteMesher, SetSpacing(5)), 0, false);
+  add("source", polygon, SHAPES(vtkShapeMatcher, SetInputDataObject(1, silhouette())), 0, false);
+  add("target", image, SHAPES(vtkShapeMatcher, SetInputDataObject(0, polygon())), 1, false);
+  add("", images, TIMED(vtkShapeRetrieval, SetSpacing(5), SetGridSize(8, 8)), 0, false);
 #ifdef TAUTLINE_MESHING
-  add(
-    "Meshing", "vtkTetGenMesher", "",
-    []
-    {
-      auto filter = made<vtkTetGenMesher>();
-      filter->SetTimeLimit(Seconds);
-      return filter;
-    },
-    closedSurface, 0, false);
-  add(
-    "Meshing", "vtkTriangleMesher", "", [] { return made<vtkTriangleMesher>(); }, outlines, 0,
+  module = "Meshing";
+  add("", closedSurface, MADE(vtkTetGenMesher, SetTimeLimit(Seconds)), 0, false);
+  add("", outlines, PLAIN(vtkTriangleMesher), 0, false);
+  add("sizes", outlines,
+    MADE(vtkTriangleMesher, SetUseSizeArray(true), SetInputArrayToProcess(0, 0, 0, points, "T")), 0,
     false);
-  add(
-    "Meshing", "vtkTriangleMesher", "sizes",
-    []
-    {
-      auto filter = made<vtkTriangleMesher>();
-      filter->SetUseSizeArray(true);
-      filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "T");
-      return filter;
-    },
-    outlines, 0, false);
 #endif
 }
 
@@ -506,7 +295,7 @@ void addWriter(std::vector<HostileFilter>& list, const char* name, const std::st
   TAUTLINE_LET(HostileFilter, entry, module = "Readers", name = name);
   entry.make = [file]
   {
-    auto writer = made<Writer>();
+    auto writer = vtkSmartPointer<Writer>::New();
     writer->SetFileName(file.c_str());
     return writer;
   };
