@@ -14,7 +14,7 @@ namespace tautline
 {
 /** What a pointer points to. */
 template <class T>
-auto setIn(T& pointer, int) -> decltype(*pointer)
+auto setIn(T&& pointer, int) -> decltype(*pointer)
 {
   return *pointer;
 }

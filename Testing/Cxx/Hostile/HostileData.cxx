@@ -168,12 +168,6 @@ Data collection(vtkDataObject* suitable, bool withTable)
   return result;
 }
 
-/** Points on a line of the plane: cells without area. */
-Data flat(vtkDataObject* suitable)
-{
-  return withPoints(suitable, [](vtkIdType, Vec3 p) { return Vec3{ p[0], 0, 0 }; });
-}
-
 Data scaled(vtkDataObject* suitable, double factor, double offset = 0)
 {
   return withPoints(suitable,
@@ -322,76 +316,59 @@ Data mutated(vtkDataObject* suitable, unsigned seed)
   return data == suitable ? nullptr : data;
 }
 
+/// A function that makes hostile data of suitable `data`, and one that changes a point p of number i.
+#define MAKES(...) [=](vtkDataObject* data) -> Data { return __VA_ARGS__; }
+#define POINTS(...) \
+  MAKES(withPoints( \
+    data, []([[maybe_unused]] vtkIdType i, [[maybe_unused]] Vec3 p) { return __VA_ARGS__; }))
+
 void addVariants(std::vector<HostileData>& list)
 {
   const auto add = [&list](const char* name, const std::function<Data(vtkDataObject*)>& make,
-                     Expected expected = Expected::Anything) {
-    list.push_back({ name, make, expected });
+                     Expected expected = Expected::Anything, bool extreme = false,
+                     bool nonFinite = false) {
+    list.push_back({ name, make, expected, extreme, nonFinite });
   };
-  const auto addExtreme = [&list](const char* name, double factor)
-  {
-    list.push_back({ name, [=](vtkDataObject* suitable) { return scaled(suitable, factor); },
-      Expected::Anything, true });
-  };
-  add(
-    "suitable", [](vtkDataObject* data) { return Data(data); }, Expected::Result);
+  constexpr auto anything = Expected::Anything;
+  add("suitable", MAKES(data), Expected::Result);
   add("suitable, in floats", inFloats);
   add("suitable, 32-bit ids", inNarrowIds, Expected::Result);
-  add("no area", flat);
-  add("all points equal",
-    [](vtkDataObject* data) {
-      return withPoints(data, [](vtkIdType, Vec3) { return Vec3{ 1, 1, 0 }; });
-    });
-  add("duplicate cells", [](vtkDataObject* data) { return doubledMesh(data, 0, false); });
-  add("doubled points", [](vtkDataObject* data) { return doubledMesh(data, 0, true); });
-  add("overlapping parts", [](vtkDataObject* data) { return doubledMesh(data, 0.3, true); });
-  add("disconnected parts", [](vtkDataObject* data) { return doubledMesh(data, 100, true); });
-  list.push_back({ "NaN",
-    [](vtkDataObject* data)
-    {
-      return withPoints(data,
-        [](vtkIdType i, Vec3 p) {
-          return i == 6 ? Vec3{ NaN, p[1], p[2] } : p;
-        });
-    },
-    Expected::Anything, false, true });
-  list.push_back({ "infinite",
-    [](vtkDataObject* data)
-    {
-      return withPoints(data,
-        [](vtkIdType i, Vec3 p) {
-          return i == 6 ? Vec3{ p[0], -Infinity, p[2] } : p;
-        });
-    },
-    Expected::Anything, false, true });
-  list.push_back({ "all NaN",
-    [](vtkDataObject* data) {
-      return withPoints(data, [](vtkIdType, Vec3) { return Vec3{ NaN, NaN, NaN }; });
-    },
-    Expected::Anything, false, true });
-  list.push_back({ "unused points", withUnusedPoints, Expected::Anything, false, true });
-  add("offset 1e8", [](vtkDataObject* data) { return scaled(data, 1, 1e8); });
-  add("scale 1e-12", [](vtkDataObject* data) { return scaled(data, 1e-12); });
-  add("scale 1e12", [](vtkDataObject* data) { return scaled(data, 1e12); });
-  addExtreme("scale 1e-200", 1e-200);
-  addExtreme("scale 1e160", 1e160);
-  addExtreme("scale 1e300", 1e300);
+  add("no area", POINTS(Vec3{ p[0], 0, 0 }));
+  add("all points equal", POINTS(Vec3{ 1, 1, 0 }));
+  add("duplicate cells", MAKES(doubledMesh(data, 0, false)));
+  add("doubled points", MAKES(doubledMesh(data, 0, true)));
+  add("overlapping parts", MAKES(doubledMesh(data, 0.3, true)));
+  add("disconnected parts", MAKES(doubledMesh(data, 100, true)));
+  add("NaN", POINTS(i == 6 ? Vec3{ NaN, p[1], p[2] } : p), anything, false, true);
+  add("infinite", POINTS(i == 6 ? Vec3{ p[0], -Infinity, p[2] } : p), anything, false, true);
+  add("all NaN", POINTS(Vec3{ NaN, NaN, NaN }), anything, false, true);
+  add("unused points", withUnusedPoints, anything, false, true);
+  add("offset 1e8", MAKES(scaled(data, 1, 1e8)));
+  add("scale 1e-12", MAKES(scaled(data, 1e-12)));
+  add("scale 1e12", MAKES(scaled(data, 1e12)));
+  add("scale 1e-200", MAKES(scaled(data, 1e-200)), anything, true);
+  add("scale 1e160", MAKES(scaled(data, 1e160)), anything, true);
+  add("scale 1e300", MAKES(scaled(data, 1e300)), anything, true);
   add("ghost cells", withGhosts);
-  add("blocks with null", [](vtkDataObject* data) { return blocks(data, {}); });
-  add("blocks with a table", [](vtkDataObject* data) { return blocks(data, { makeTable() }); });
+  add("blocks with null", MAKES(blocks(data, {})));
+  add("blocks with a table", MAKES(blocks(data, { makeTable() })));
   add("blocks with an empty mesh",
-    [](vtkDataObject* data)
-    { return blocks(data, { vtkSmartPointer<vtkUnstructuredGrid>::New() }); });
-  add("blocks in blocks",
-    [](vtkDataObject* data) {
-      return blocks(data, { makeBlocks({ data, nullptr, makeTable() }) });
-    });
-  add("partitioned collection", [](vtkDataObject* data) { return collection(data, false); });
-  add("partitioned collection with a table",
-    [](vtkDataObject* data) { return collection(data, true); });
-  add("text arrays",
-    [](vtkDataObject* data) { return withArray<vtkStringArray>(data, "Names", true, 0); });
-  add("unnamed array", [](vtkDataObject* data) { return withArray(data, nullptr, false, 0); });
+    MAKES(blocks(data, { vtkSmartPointer<vtkUnstructuredGrid>::New() })));
+  add("blocks in blocks", MAKES(blocks(data, { makeBlocks({ data, nullptr, makeTable() }) })));
+  add("partitioned collection", MAKES(collection(data, false)));
+  add("partitioned collection with a table", MAKES(collection(data, true)));
+  add("text arrays", MAKES(withArray<vtkStringArray>(data, "Names", true, 0)));
+  add("unnamed array", MAKES(withArray(data, nullptr, false, 0)));
+}
+
+Data withFewPoints(vtkDataObject* data)
+{
+  auto copy = movable(data);
+  if (copy)
+  {
+    TAUTLINE_SET(copy, GetPoints()->SetNumberOfPoints(2), GetPointData()->Initialize());
+  }
+  return copy;
 }
 
 void addCorrupt(std::vector<HostileData>& list)
@@ -399,76 +376,30 @@ void addCorrupt(std::vector<HostileData>& list)
   const auto add = [&list](const char* name, const std::function<Data(vtkDataObject*)>& make) {
     list.push_back({ name, make, Expected::Error });
   };
-  add("short point array", [](vtkDataObject* data) { return withArray(data, "short", false, -3); });
-  add("short cell array", [](vtkDataObject* data) { return withArray(data, "short", true, -1); });
-  add("long point array", [](vtkDataObject* data) { return withArray(data, "long", false, 1); });
-  add("short text array",
-    [](vtkDataObject* data) { return withArray<vtkStringArray>(data, "Names", false, -1); });
-  add("ghost array of integers",
-    [](vtkDataObject* data)
-    { return withArray<vtkIntArray>(data, vtkDataSetAttributes::GhostArrayName(), true, 0); });
-  add("ghost array too short",
-    [](vtkDataObject* data)
-    {
-      return withArray<vtkUnsignedCharArray>(
-        data, vtkDataSetAttributes::GhostArrayName(), true, -1);
-    });
+  const char* ghosts = vtkDataSetAttributes::GhostArrayName();
+  add("short point array", MAKES(withArray(data, "short", false, -3)));
+  add("short cell array", MAKES(withArray(data, "short", true, -1)));
+  add("long point array", MAKES(withArray(data, "long", false, 1)));
+  add("short text array", MAKES(withArray<vtkStringArray>(data, "Names", false, -1)));
+  add("ghost array of integers", MAKES(withArray<vtkIntArray>(data, ghosts, true, 0)));
+  add("ghost array too short", MAKES(withArray<vtkUnsignedCharArray>(data, ghosts, true, -1)));
   add("ghost array of points with two components",
-    [](vtkDataObject* data)
-    {
-      return withArray<vtkUnsignedCharArray>(
-        data, vtkDataSetAttributes::GhostArrayName(), false, 0, 2);
-    });
-  const auto id = [&add](const char* name, vtkTypeInt64 value)
-  {
-    add(name,
-      [value](vtkDataObject* data)
-      { return withCells(data, [value](Ids&, Ids& ids) { ids[1] = value; }); });
-  };
-  id("negative id", -1);
-  id("id too large", 1000000000);
-  id("huge id", std::numeric_limits<vtkTypeInt64>::max());
-  add("descending offsets",
-    [](vtkDataObject* data)
-    { return withCells(data, [](Ids& offsets, Ids&) { offsets[1] = 1000000; }); });
-  add("negative offset",
-    [](vtkDataObject* data)
-    { return withCells(data, [](Ids& offsets, Ids&) { offsets[0] = -3; }); });
-  add("offsets beyond the connectivity",
-    [](vtkDataObject* data)
-    { return withCells(data, [](Ids& offsets, Ids&) { offsets.back() += 1; }); });
-  add("short connectivity",
-    [](vtkDataObject* data) { return withCells(data, [](Ids&, Ids& ids) { ids.pop_back(); }); });
-  add("too few types",
-    [](vtkDataObject* data)
-    {
-      return withTypes(data,
-        [](vtkUnsignedCharArray* types)
-        { types->SetNumberOfValues(types->GetNumberOfValues() - 1); });
-    });
-  const auto type = [&add](const char* name, int value)
-  {
-    add(name,
-      [value](vtkDataObject* data)
-      {
-        return withTypes(data,
-          [value](vtkUnsignedCharArray* types)
-          { types->SetValue(0, static_cast<unsigned char>(value)); });
-      });
-  };
-  type("hexahedron of too few points", VTK_HEXAHEDRON);
-  type("polyhedron without faces", VTK_POLYHEDRON);
-  type("unknown type", 200);
-  add("fewer points than ids",
-    [](vtkDataObject* data)
-    {
-      auto copy = movable(data);
-      if (copy)
-      {
-        TAUTLINE_SET(copy, GetPoints()->SetNumberOfPoints(2), GetPointData()->Initialize());
-      }
-      return Data(copy);
-    });
+    MAKES(withArray<vtkUnsignedCharArray>(data, ghosts, false, 0, 2)));
+#define CELLS(change) \
+  MAKES(withCells(data, []([[maybe_unused]] Ids& offsets, [[maybe_unused]] Ids& ids) { change; }))
+  add("negative id", CELLS(ids[1] = -1));
+  add("id too large", CELLS(ids[1] = 1000000000));
+  add("huge id", CELLS(ids[1] = std::numeric_limits<vtkTypeInt64>::max()));
+  add("descending offsets", CELLS(offsets[1] = 1000000));
+  add("negative offset", CELLS(offsets[0] = -3));
+  add("offsets beyond the connectivity", CELLS(offsets.back() += 1));
+  add("short connectivity", CELLS(ids.pop_back()));
+#define TYPES(...) MAKES(withTypes(data, [](vtkUnsignedCharArray* types) { types->__VA_ARGS__; }))
+  add("too few types", TYPES(SetNumberOfValues(types->GetNumberOfValues() - 1)));
+  add("hexahedron of too few points", TYPES(SetValue(0, VTK_HEXAHEDRON)));
+  add("polyhedron without faces", TYPES(SetValue(0, VTK_POLYHEDRON)));
+  add("unknown type", TYPES(SetValue(0, 200)));
+  add("fewer points than ids", withFewPoints);
   add("blocks with a corrupt one",
     [](vtkDataObject* data)
     {

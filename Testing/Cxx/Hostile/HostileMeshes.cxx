@@ -178,39 +178,31 @@ Data makeBlocks(const std::vector<Data>& leaves)
   return result;
 }
 
+#define MESH(...) [=]() -> Data { return __VA_ARGS__; }
+
 //------------------------------------------------------------------------------
 void addHostileMeshes(std::vector<HostileData>& list)
 {
   const auto add = [&list](const char* name, const std::function<Data()>& make,
                      Expected expected = Expected::Anything)
   { list.push_back(fixed(name, make, expected)); };
-  add("empty grid", [] { return Data(vtkSmartPointer<vtkUnstructuredGrid>::New()); });
-  add("empty surface", [] { return Data(vtkSmartPointer<vtkPolyData>::New()); });
-  add("points only",
-    [] {
-      return cells(VTK_VERTEX, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, {});
-    });
+  add("empty grid", MESH((vtkSmartPointer<vtkUnstructuredGrid>::New())));
+  add("empty surface", MESH((vtkSmartPointer<vtkPolyData>::New())));
+  add("points only", MESH(cells(VTK_VERTEX, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, {})));
   add("one triangle",
-    [] {
-      return cells(VTK_TRIANGLE, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 } });
-    });
+    MESH(cells(VTK_TRIANGLE, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 0, 1, 2 } })));
   add("one tetrahedron",
-    []
-    {
-      return cells(
-        VTK_TETRA, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { { 0, 1, 2, 3 } });
-    });
+    MESH(cells(
+      VTK_TETRA, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } }, { { 0, 1, 2, 3 } })));
   add("a triangle in a point",
-    [] {
-      return cells(VTK_TRIANGLE, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 1, 1, 1 } });
-    });
-  add("vertices", [] { return cells(VTK_VERTEX, { { 0, 0, 0 }, { 1, 0, 0 } }, { { 0 }, { 1 } }); });
-  add("lines", [] { return cells(VTK_LINE, { { 0, 0, 0 }, { 1, 0, 0 } }, { { 0, 1 } }); });
-  add("tetrahedra", [] { return grid(blockMesh(CellType::Tetrahedron, 2, 2, 2)); });
-  add("hexahedra", [] { return grid(blockMesh(CellType::Hexahedron, 2, 2, 2)); });
-  add("wedges", [] { return grid(blockMesh(CellType::Wedge, 2, 2, 2)); });
-  add("pyramids", [] { return grid(blockMesh(CellType::Pyramid, 1, 1, 1)); });
-  add("quadrilaterals", [] { return grid(blockMesh(CellType::Quadrilateral, 3, 3, 0)); });
+    MESH(cells(VTK_TRIANGLE, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }, { { 1, 1, 1 } })));
+  add("vertices", MESH(cells(VTK_VERTEX, { { 0, 0, 0 }, { 1, 0, 0 } }, { { 0 }, { 1 } })));
+  add("lines", MESH(cells(VTK_LINE, { { 0, 0, 0 }, { 1, 0, 0 } }, { { 0, 1 } })));
+  add("tetrahedra", MESH(grid(blockMesh(CellType::Tetrahedron, 2, 2, 2))));
+  add("hexahedra", MESH(grid(blockMesh(CellType::Hexahedron, 2, 2, 2))));
+  add("wedges", MESH(grid(blockMesh(CellType::Wedge, 2, 2, 2))));
+  add("pyramids", MESH(grid(blockMesh(CellType::Pyramid, 1, 1, 1))));
+  add("quadrilaterals", MESH(grid(blockMesh(CellType::Quadrilateral, 3, 3, 0))));
   add("mixed dimensions",
     []
     {
@@ -221,12 +213,8 @@ void addHostileMeshes(std::vector<HostileData>& list)
       return grid(mesh);
     });
   add("non-manifold edge",
-    []
-    {
-      return cells(VTK_TRIANGLE,
-        { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 } },
-        { { 0, 1, 2 }, { 1, 0, 3 }, { 0, 1, 4 } });
-    });
+    MESH(cells(VTK_TRIANGLE, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, -1, 0 }, { 0, 0, 1 } },
+      { { 0, 1, 2 }, { 1, 0, 3 }, { 0, 1, 4 } })));
   add("surface in space",
     []
     {
@@ -235,49 +223,33 @@ void addHostileMeshes(std::vector<HostileData>& list)
       return grid(mesh);
     });
   add("triangle strip",
-    []
-    {
-      return cells(VTK_TRIANGLE_STRIP, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 } },
-        { { 0, 1, 2, 3 } });
-    });
+    MESH(cells(VTK_TRIANGLE_STRIP, { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 1, 1, 0 } },
+      { { 0, 1, 2, 3 } })));
   add("pentagon",
-    []
-    {
-      return cells(VTK_POLYGON,
-        { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0.5, 1.5, 0 }, { 0, 1, 0 } },
-        { { 0, 1, 2, 3, 4 } });
-    });
+    MESH(cells(VTK_POLYGON, { { 0, 0, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0.5, 1.5, 0 }, { 0, 1, 0 } },
+      { { 0, 1, 2, 3, 4 } })));
   const std::vector<Vec3> six = { { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0.5, 0, 0 },
     { 0.5, 0.5, 0 }, { 0, 0.5, 0 } };
-  add("quadratic triangle",
-    [six] {
-      return cells(VTK_QUADRATIC_TRIANGLE, six, { { 0, 1, 2, 3, 4, 5 } });
-    });
-  add("Lagrange triangle",
-    [six] {
-      return cells(VTK_LAGRANGE_TRIANGLE, six, { { 0, 1, 2, 3, 4, 5 } });
-    });
+  add("quadratic triangle", MESH(cells(VTK_QUADRATIC_TRIANGLE, six, { { 0, 1, 2, 3, 4, 5 } })));
+  add("Lagrange triangle", MESH(cells(VTK_LAGRANGE_TRIANGLE, six, { { 0, 1, 2, 3, 4, 5 } })));
   add("polyhedron", cubePolyhedron);
-  add("image", [] { return image(5, 4, 1); });
-  add("image of a volume", [] { return image(4, 3, 3); });
-  add("image of one pixel", [] { return image(1, 1, 1); });
+  add("image", MESH(image(5, 4, 1)));
+  add("image of a volume", MESH(image(4, 3, 3)));
+  add("image of one pixel", MESH(image(1, 1, 1)));
   add("rectilinear grid", rectilinear);
-  add("structured grid", [] { return Data(structured(12)); });
-  add("explicit structured grid", [] { return explicitStructured(0); });
+  add("structured grid", MESH((structured(12))));
+  add("explicit structured grid", MESH(explicitStructured(0)));
   add("adaptive grid", amr);
   add("hyper tree grid", hyperTreeGrid, Expected::Error);
   add("table", makeTable, Expected::Error);
   add("graph", graph, Expected::Error);
   add("molecule", molecule, Expected::Error);
-  add("blocks without meshes", [] { return makeBlocks({ makeTable(), nullptr }); });
-  add("blocks of nothing", [] { return makeBlocks({ nullptr, nullptr }); });
-  add("no blocks", [] { return makeBlocks({}); });
+  add("blocks without meshes", MESH(makeBlocks({ makeTable(), nullptr })));
+  add("blocks of nothing", MESH(makeBlocks({ nullptr, nullptr })));
+  add("no blocks", MESH(makeBlocks({})));
   // Corrupt ones.
-  add(
-    "structured grid with too few points", [] { return Data(structured(11)); }, Expected::Error);
-  add(
-    "explicit structured grid, wrong id", [] { return explicitStructured(1000000); },
-    Expected::Error);
+  add("structured grid with too few points", MESH((structured(11))), Expected::Error);
+  add("explicit structured grid, wrong id", MESH(explicitStructured(1000000)), Expected::Error);
 }
 
 } // namespace tautline

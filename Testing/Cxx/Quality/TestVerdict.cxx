@@ -34,14 +34,15 @@ struct Comparison
   CellType type;
   VerdictFunction verdict;
   Metric metric;
-  Combination combination;
-  double power;
-  Relation relation;
+  Combination combination = Combination::Mean;
+  double power = 1;
+  Relation relation = Relation::Equal;
 };
 
 constexpr auto Mean = Combination::Mean;
 constexpr auto Worst = Combination::Worst;
 using Q = VerdictFunctions;
+using M = Metric;
 
 constexpr auto tri = CellType::Triangle;
 constexpr auto quad = CellType::Quadrilateral;
@@ -51,82 +52,64 @@ constexpr auto wedge = CellType::Wedge;
 constexpr auto pyramid = CellType::Pyramid;
 
 const Comparison comparisons[] = {
-  { "area", tri, Q::TriangleArea, Metric::Size, Mean, one, Relation::Equal },
-  { "edge ratio", tri, Q::TriangleEdgeRatio, Metric::EdgeRatio, Mean, one, Relation::Equal },
-  { "aspect ratio", tri, Q::TriangleAspectRatio, Metric::AspectRatio, Mean, one, Relation::Equal },
-  { "radius ratio", tri, Q::TriangleRadiusRatio, Metric::NormalizedRadiusRatio, Mean, one,
-    Relation::Equal },
-  { "aspect Frobenius", tri, Q::TriangleAspectFrobenius, Metric::InverseMeanRatio, Mean, one,
-    Relation::Equal },
-  { "minimum angle", tri, Q::TriangleMinAngle, Metric::MinimumAngle, Mean, one, Relation::Equal },
-  { "maximum angle", tri, Q::TriangleMaxAngle, Metric::MaximumAngle, Mean, one, Relation::Equal },
-  { "condition", tri, Q::TriangleCondition, Metric::ConditionNumber, Mean, one, Relation::Equal },
-  { "scaled Jacobian", tri, Q::TriangleScaledJacobian, Metric::ScaledJacobian, Mean, one,
-    Relation::Equal },
-  { "shape", tri, Q::TriangleShape, Metric::MeanRatio, Mean, one, Relation::Equal },
-  { "equiangle skew", tri, Q::TriangleEquiangleSkew, Metric::EquiangleSkew, Mean, one,
-    Relation::Equal },
-  { "normalized inradius", tri, Q::TriangleNormalizedInradius, Metric::NormalizedRadiusRatio, Mean,
-    -one, Relation::Equal },
+  { "area", tri, Q::TriangleArea, M::Size },
+  { "edge ratio", tri, Q::TriangleEdgeRatio, M::EdgeRatio },
+  { "aspect ratio", tri, Q::TriangleAspectRatio, M::AspectRatio },
+  { "radius ratio", tri, Q::TriangleRadiusRatio, M::NormalizedRadiusRatio },
+  { "aspect Frobenius", tri, Q::TriangleAspectFrobenius, M::InverseMeanRatio },
+  { "minimum angle", tri, Q::TriangleMinAngle, M::MinimumAngle },
+  { "maximum angle", tri, Q::TriangleMaxAngle, M::MaximumAngle },
+  { "condition", tri, Q::TriangleCondition, M::ConditionNumber },
+  { "scaled Jacobian", tri, Q::TriangleScaledJacobian, M::ScaledJacobian },
+  { "shape", tri, Q::TriangleShape, M::MeanRatio },
+  { "equiangle skew", tri, Q::TriangleEquiangleSkew, M::EquiangleSkew },
+  { "normalized inradius", tri, Q::TriangleNormalizedInradius, M::NormalizedRadiusRatio, Mean,
+    -one },
 
-  { "area", quad, Q::QuadArea, Metric::Size, Mean, one, Relation::Equal },
-  { "edge ratio", quad, Q::QuadEdgeRatio, Metric::EdgeRatio, Mean, one, Relation::Equal },
-  { "max edge ratio", quad, Q::QuadMaxEdgeRatio, Metric::AspectRatio, Mean, one, Relation::Equal },
-  { "mean aspect Frobenius", quad, Q::QuadMedAspectFrobenius, Metric::InverseMeanRatio, Mean, one,
-    Relation::Equal },
-  { "max aspect Frobenius", quad, Q::QuadMaxAspectFrobenius, Metric::InverseMeanRatio, Worst, one,
-    Relation::Equal },
-  { "condition", quad, Q::QuadCondition, Metric::ConditionNumber, Worst, one, Relation::Equal },
-  { "minimum angle", quad, Q::QuadMinAngle, Metric::MinimumAngle, Mean, one, Relation::Equal },
-  { "maximum angle", quad, Q::QuadMaxAngle, Metric::MaximumAngle, Mean, one, Relation::Equal },
-  { "scaled Jacobian", quad, Q::QuadScaledJacobian, Metric::ScaledJacobian, Mean, one,
-    Relation::Equal },
-  { "shape", quad, Q::QuadShape, Metric::MeanRatio, Worst, one, Relation::Equal },
-  { "equiangle skew", quad, Q::QuadEquiangleSkew, Metric::EquiangleSkew, Mean, one,
-    Relation::Equal },
+  { "area", quad, Q::QuadArea, M::Size },
+  { "edge ratio", quad, Q::QuadEdgeRatio, M::EdgeRatio },
+  { "max edge ratio", quad, Q::QuadMaxEdgeRatio, M::AspectRatio },
+  { "mean aspect Frobenius", quad, Q::QuadMedAspectFrobenius, M::InverseMeanRatio },
+  { "max aspect Frobenius", quad, Q::QuadMaxAspectFrobenius, M::InverseMeanRatio, Worst },
+  { "condition", quad, Q::QuadCondition, M::ConditionNumber, Worst },
+  { "minimum angle", quad, Q::QuadMinAngle, M::MinimumAngle },
+  { "maximum angle", quad, Q::QuadMaxAngle, M::MaximumAngle },
+  { "scaled Jacobian", quad, Q::QuadScaledJacobian, M::ScaledJacobian },
+  { "shape", quad, Q::QuadShape, M::MeanRatio, Worst },
+  { "equiangle skew", quad, Q::QuadEquiangleSkew, M::EquiangleSkew },
 
-  { "volume", tet, Q::TetVolume, Metric::Size, Mean, one, Relation::Equal },
-  { "edge ratio", tet, Q::TetEdgeRatio, Metric::EdgeRatio, Mean, one, Relation::Equal },
-  { "aspect ratio", tet, Q::TetAspectRatio, Metric::AspectRatio, Mean, one, Relation::Equal },
-  { "radius ratio", tet, Q::TetRadiusRatio, Metric::NormalizedRadiusRatio, Mean, one,
-    Relation::Equal },
-  { "aspect Frobenius", tet, Q::TetAspectFrobenius, Metric::InverseMeanRatio, Mean, one,
-    Relation::Equal },
-  { "aspect gamma", tet, Q::TetAspectGamma, Metric::InverseMeanRatio, Mean, 1.5, Relation::Equal },
+  { "volume", tet, Q::TetVolume, M::Size },
+  { "edge ratio", tet, Q::TetEdgeRatio, M::EdgeRatio },
+  { "aspect ratio", tet, Q::TetAspectRatio, M::AspectRatio },
+  { "radius ratio", tet, Q::TetRadiusRatio, M::NormalizedRadiusRatio },
+  { "aspect Frobenius", tet, Q::TetAspectFrobenius, M::InverseMeanRatio },
+  { "aspect gamma", tet, Q::TetAspectGamma, M::InverseMeanRatio, Mean, 1.5 },
   // Verdict leaves out the edges 0-2 and 1-3.
-  { "minimum angle", tet, Q::TetMinAngle, Metric::MinimumAngle, Mean, one, Relation::AtLeast },
-  { "condition", tet, Q::TetCondition, Metric::ConditionNumber, Mean, one, Relation::Equal },
-  { "scaled Jacobian", tet, Q::TetScaledJacobian, Metric::ScaledJacobian, Mean, one,
-    Relation::Equal },
-  { "shape", tet, Q::TetShape, Metric::MeanRatio, Mean, one, Relation::Equal },
-  { "mean ratio", tet, Q::TetMeanRatio, Metric::MeanRatio, Mean, Q::tetMeanRatioPower,
-    Relation::Equal },
+  { "minimum angle", tet, Q::TetMinAngle, M::MinimumAngle, Mean, one, Relation::AtLeast },
+  { "condition", tet, Q::TetCondition, M::ConditionNumber },
+  { "scaled Jacobian", tet, Q::TetScaledJacobian, M::ScaledJacobian },
+  { "shape", tet, Q::TetShape, M::MeanRatio },
+  { "mean ratio", tet, Q::TetMeanRatio, M::MeanRatio, Mean, Q::tetMeanRatioPower },
   // Verdict adds the dihedral angles to those of the faces.
-  { "equiangle skew", tet, Q::TetEquiangleSkew, Metric::EquiangleSkew, Mean, one,
-    Relation::AtLeast },
+  { "equiangle skew", tet, Q::TetEquiangleSkew, M::EquiangleSkew, Mean, one, Relation::AtLeast },
 
-  { "volume", hex, Q::HexVolume, Metric::Size, Mean, one, Relation::Equal },
+  { "volume", hex, Q::HexVolume, M::Size },
   // Verdict does not use all pairs of edges.
-  { "edge ratio", hex, Q::HexEdgeRatio, Metric::EdgeRatio, Mean, one, Relation::AtMost },
-  { "max edge ratio", hex, Q::HexMaxEdgeRatio, Metric::AspectRatio, Mean, one, Relation::Equal },
-  { "condition", hex, Q::HexCondition, Metric::ConditionNumber, Worst, one, Relation::Equal },
-  { "mean aspect Frobenius", hex, Q::HexMedAspectFrobenius, Metric::ConditionNumber, Mean, one,
-    Relation::Equal },
+  { "edge ratio", hex, Q::HexEdgeRatio, M::EdgeRatio, Mean, one, Relation::AtMost },
+  { "max edge ratio", hex, Q::HexMaxEdgeRatio, M::AspectRatio },
+  { "condition", hex, Q::HexCondition, M::ConditionNumber, Worst },
+  { "mean aspect Frobenius", hex, Q::HexMedAspectFrobenius, M::ConditionNumber },
   // Verdict adds the Jacobian of the centre to those of the corners.
-  { "scaled Jacobian", hex, Q::HexScaledJacobian, Metric::ScaledJacobian, Mean, one,
-    Relation::AtMost },
-  { "shape", hex, Q::HexShape, Metric::MeanRatio, Worst, one, Relation::AtMost },
+  { "scaled Jacobian", hex, Q::HexScaledJacobian, M::ScaledJacobian, Mean, one, Relation::AtMost },
+  { "shape", hex, Q::HexShape, M::MeanRatio, Worst, one, Relation::AtMost },
 
-  { "volume", wedge, Q::WedgeVolume, Metric::Size, Mean, one, Relation::Equal },
-  { "edge ratio", wedge, Q::WedgeEdgeRatio, Metric::EdgeRatio, Mean, one, Relation::Equal },
-  { "scaled Jacobian", wedge, Q::WedgeScaledJacobian, Metric::ScaledJacobian, Mean, one,
-    Relation::Equal },
-  { "equiangle skew", wedge, Q::WedgeEquiangleSkew, Metric::EquiangleSkew, Mean, one,
-    Relation::Equal },
+  { "volume", wedge, Q::WedgeVolume, M::Size },
+  { "edge ratio", wedge, Q::WedgeEdgeRatio, M::EdgeRatio },
+  { "scaled Jacobian", wedge, Q::WedgeScaledJacobian, M::ScaledJacobian },
+  { "equiangle skew", wedge, Q::WedgeEquiangleSkew, M::EquiangleSkew },
 
-  { "volume", pyramid, Q::PyramidVolume, Metric::Size, Mean, one, Relation::Equal },
-  { "equiangle skew", pyramid, Q::PyramidEquiangleSkew, Metric::EquiangleSkew, Mean, one,
-    Relation::Equal },
+  { "volume", pyramid, Q::PyramidVolume, M::Size },
+  { "equiangle skew", pyramid, Q::PyramidEquiangleSkew, M::EquiangleSkew },
 };
 
 /// The same cells for VTK; wedges in Verdict's order.
