@@ -34,6 +34,11 @@ inline int& failures()
   return count;
 }
 
+inline bool contains(const std::string& text, const std::string& part)
+{
+  return text.find(part) != std::string::npos;
+}
+
 /** The number of checks of this program so far, with those of its threads. */
 inline std::atomic<long>& checks()
 {
@@ -118,7 +123,7 @@ void checkThrows(const Statement& statement, const std::string& part, const char
   }
   catch (const std::exception& error)
   {
-    if (std::string(error.what()).find(part) == std::string::npos)
+    if (!contains(error.what(), part))
     {
       fail(file, line) << "thrown \"" << error.what() << "\", expected \"" << part << "\"\n";
     }

@@ -9,6 +9,7 @@
 #define tautline_VtkMeshes_h
 
 #include "Blocks.h"
+#include "Check.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkCallbackCommand.h"
@@ -122,6 +123,26 @@ inline double component(vtkDataSetAttributes* data, const char* array, Index tup
   return data->GetArray(array)->GetComponent(tuple, which);
 }
 
+/** Calls f(caller) at each event of an object. @return the tag of the observer */
+template <class Function>
+unsigned long observe(vtkObject* object, unsigned long event, const Function& f)
+{
+  vtkNew<vtkCallbackCommand> command;
+  command->SetClientData(new Function(f));
+  command->SetClientDataDeleteCallback([](void* data) { delete static_cast<Function*>(data); });
+  command->SetCallback([](vtkObject* caller, unsigned long, void* data, void*)
+    { (*static_cast<Function*>(data))(static_cast<vtkAlgorithm*>(caller)); });
+  return object->AddObserver(event, command);
+}
+
+/** Asks a filter to stop at each event at which its progress is above a number. @return the tag */
+inline unsigned long stopAt(vtkAlgorithm* filter, unsigned long event, double progress = -1)
+{
+  return observe(filter, event,
+    [progress](vtkAlgorithm* caller)
+    { caller->SetAbortExecute(caller->GetProgress() > progress ? 1 : 0); });
+}
+
 /** Collects the errors and warnings of an algorithm instead of printing them. */
 class Messages
 {
@@ -130,8 +151,14 @@ public:
     : Sources{ algorithm, algorithm->GetExecutive() }
   {
     this->Command->SetClientData(this);
-    this->Command->SetCallback([](vtkObject*, unsigned long, void* self, void* text)
-      { static_cast<Messages*>(self)->Text += static_cast<const char*>(text); });
+    this->Command->SetCallback(
+      [](vtkObject* caller, unsigned long event, void* data, void* text)
+      {
+        auto* self = static_cast<Messages*>(data);
+        self->Text += static_cast<const char*>(text);
+        const bool own = caller == self->Sources[0] && event == vtkCommand::ErrorEvent;
+        self->Errors += own ? static_cast<const char*>(text) : "";
+      });
     for (vtkObject* source : this->Sources)
     {
       source->AddObserver(vtkCommand::ErrorEvent, this->Command);
@@ -147,15 +174,29 @@ public:
   }
   Messages(const Messages&) = delete;
   Messages& operator=(const Messages&) = delete;
-  bool has(const std::string& part) const { return this->Text.find(part) != std::string::npos; }
+  bool has(const std::string& part) const { return contains(this->Text, part); }
   bool empty() const { return this->Text.empty(); }
-  void clear() { this->Text.clear(); }
+  /** The errors of the algorithm itself. */
+  const std::string& errors() const { return this->Errors; }
+  void clear()
+  {
+    this->Text.clear();
+    this->Errors.clear();
+  }
 
 private:
   vtkSmartPointer<vtkObject> Sources[2]; ///< outlive this
   vtkNew<vtkCallbackCommand> Command;
-  std::string Text;
+  std::string Text, Errors;
 };
+
+/** Executes an algorithm. @return its errors */
+inline std::string errorOf(vtkAlgorithm* algorithm)
+{
+  const Messages messages(algorithm);
+  TAUTLINE_SET(algorithm, Modified(), Update());
+  return messages.errors();
+}
 
 } // namespace tautline
 

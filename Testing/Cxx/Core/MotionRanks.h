@@ -146,8 +146,7 @@ void testGathered(const char* name, vtkMPIController* controller, const MeshData
   vtkMultiProcessController::SetGlobalController(nullptr);
   const std::vector<double> expected = pointsOf(whole, all, setFor(all), serial.Get(), true);
   vtkMultiProcessController::SetGlobalController(controller);
-  TAUTLINE_CHECK(
-    std::string(serial->GetSummary()).find(wording("put-together")) == std::string::npos);
+  TAUTLINE_CHECK(!contains(serial->GetSummary(), wording("put-together")));
   double moved = largestOf<double>(
     0, expected.size(), [&](std::size_t i) { return std::abs(expected[i] - whole.points[i]); });
   TAUTLINE_CHECK(moved > 0.01);

@@ -15,11 +15,6 @@
 
 namespace tautline
 {
-inline bool contains(const std::string& text, const std::string& part)
-{
-  return text.find(part) != std::string::npos;
-}
-
 /// A mesh in pieces, and the same as a whole: its points are those that come first.
 struct Case
 {

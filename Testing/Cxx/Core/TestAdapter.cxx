@@ -16,11 +16,6 @@ std::vector<double> sizes(const MeshAdapter& adapter)
   return valuesOf(adapter.mesh(), Metric::Size);
 }
 
-bool contains(const std::string& text, const char* part)
-{
-  return text.find(part) != std::string::npos;
-}
-
 //------------------------------------------------------------------------------
 TAUTLINE_PART(testUnstructuredGrid)
 {

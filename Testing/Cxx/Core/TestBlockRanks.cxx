@@ -360,8 +360,7 @@ void compareBlocks(const char* name, const std::vector<MeshData>& meshes, bool j
   update(serial, [](int, Index) { return true; });
   vtkMultiProcessController::SetGlobalController(controller);
   const auto expected = solutionOf(serial);
-  const bool one =
-    std::string(serial->GetSummary()).find(wording("are-one-mesh")) != std::string::npos;
+  const bool one = contains(serial->GetSummary(), wording("are-one-mesh"));
   TAUTLINE_CHECK_EQUAL(one, joined);
   double largest = 0;
   for (const auto& [place, value] : expected)
@@ -389,7 +388,7 @@ void compareBlocks(const char* name, const std::vector<MeshData>& meshes, bool j
         TAUTLINE_CHECK_NEAR(value, expected.at(place), 1e-8 * largest);
       }
       const std::string summary = filter->GetSummary();
-      TAUTLINE_CHECK_EQUAL(summary.find(wording("are-one-mesh")) != std::string::npos, joined);
+      TAUTLINE_CHECK_EQUAL(contains(summary, wording("are-one-mesh")), joined);
     }
   }
 }

@@ -160,7 +160,7 @@ void testStated(const char* text, vtkMPIController* controller, const Change& ch
       "\nThe mesh was put together on the first process: its pieces could not be joined. ";
     const std::size_t at = outcome.summary.find(sentence);
     TAUTLINE_CHECK(at != std::string::npos && outcome.summary.find(text, at) != std::string::npos);
-    TAUTLINE_CHECK(outcome.summary.find("..") == std::string::npos);
+    TAUTLINE_CHECK(!contains(outcome.summary, ".."));
     TAUTLINE_CHECK(isShared(controller, outcome.summary));
   }
 }
@@ -188,8 +188,7 @@ void testNotFinite(vtkMPIController* controller)
   const auto pointsOf = [&](const RankPart& part)
   {
     TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputDataObject(0, change(part)), Update());
-    TAUTLINE_CHECK(
-      std::string(filter->GetSummary()).find(wording("1-points-have-a-nan")) != std::string::npos);
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("1-points-have-a-nan")));
     TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 26); // of 3 x 3 x 3
     std::vector<double> points(whole.points.size(), HUGE_VAL);
     auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));

@@ -189,8 +189,7 @@ void testNumbers()
   TAUTLINE_NEW(
     vtkMeshPerturbation, filter, SetInputData(part(square(), rank(), ranks())), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 25);
-  TAUTLINE_CHECK(
-    std::string(filter->GetSummary()).find(wording("of-25-movable")) != std::string::npos);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("of-25-movable")));
   TAUTLINE_NEW(vtkMeshImprover, improver, SetInputData(part(cube(), rank(), ranks())), Update());
   TAUTLINE_CHECK(improver->GetWorstBefore() > 1);
   TAUTLINE_CHECK_EQUAL(improver->GetHistory()->GetNumberOfRows() > 0, rank() == 0);

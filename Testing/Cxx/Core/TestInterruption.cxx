@@ -202,10 +202,7 @@ TAUTLINE_PART(testAbort)
       vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
   }
   filter->SetTimeLimit(0);
-  vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
-    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
-  const auto tag = filter->AddObserver(vtkInterruption::PollEvent, abort);
+  const auto tag = stopAt(filter, vtkInterruption::PollEvent);
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
   TAUTLINE_CHECK_EQUAL(
@@ -214,9 +211,8 @@ TAUTLINE_PART(testAbort)
   TAUTLINE_CHECK(vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells() > 0);
 
   // Cancelled from a callback, as Python does; the next execution is not.
-  vtkNew<vtkCallbackCommand> cancel;
-  cancel->SetCallback([](vtkObject*, unsigned long, void*, void*) { vtkInterruption::Cancel(); });
-  const auto cancelling = filter->AddObserver(vtkInterruption::PollEvent, cancel);
+  const auto cancelling =
+    observe(filter, vtkInterruption::PollEvent, [](vtkAlgorithm*) { vtkInterruption::Cancel(); });
   vtkInterruption::Begin(true);
   TAUTLINE_SET(filter, Modified(), Update());
   TAUTLINE_CHECK(vtkInterruption::IsInterrupted() && filter->GetAbortExecute());
@@ -239,10 +235,7 @@ TAUTLINE_PART(testHorizonNeighbors)
       { return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells(); });
     return cells;
   };
-  vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
-    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
-  const auto tag = filter->AddObserver(vtkInterruption::PollEvent, abort);
+  const auto tag = stopAt(filter, vtkInterruption::PollEvent);
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
   TAUTLINE_CHECK_EQUAL(outputs(), 0);

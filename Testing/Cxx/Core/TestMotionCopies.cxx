@@ -70,7 +70,7 @@ std::vector<double> alone(
 
 bool remarked(const char* summary)
 {
-  return std::string(summary).find(remark) != std::string::npos;
+  return contains(summary, remark);
 }
 
 /// On processes, against one process with the mesh of the joined copies.
@@ -114,7 +114,7 @@ void testOwnNumbers(vtkMPIController* controller)
   checkSame(moved(whole, part, grid, set, filter.Get()), expected);
   TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), serial->GetFreePoints());
   TAUTLINE_CHECK(!remarked(filter->GetSummary()));
-  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(wording("global-id")) == std::string::npos);
+  TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("global-id")));
 }
 
 /// Copies that are too far apart stay so, and the summary says it on all processes.
@@ -137,8 +137,7 @@ void testApart(vtkMPIController* controller)
     whole, part, numberedGridOf(part),
     [](vtkMeshOptimizer* optimizer) { optimizer->ReproducibleOrderOn(); }, filter.Get());
   TAUTLINE_CHECK(!remarked(filter->GetSummary()));
-  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(wording("1-global-id-is-at-places-that")) !=
-    std::string::npos);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("1-global-id-is-at-places-that")));
 }
 
 /// A mesh of several pieces as one data set on one process: the seam moves as the rest.

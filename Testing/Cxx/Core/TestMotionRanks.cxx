@@ -55,7 +55,7 @@ void testFilter(const char* name, vtkMPIController* controller, const MeshData& 
     checkSame(pointsOf(whole, part, set, filter.Get()), expected);
     check(serial.Get(), filter.Get(), rank);
     const std::string summary = filter->GetSummary();
-    TAUTLINE_CHECK(summary.find(divided(size, how)) != std::string::npos);
+    TAUTLINE_CHECK(contains(summary, divided(size, how)));
   }
 }
 
@@ -142,7 +142,7 @@ void testGuard(vtkMPIController* controller)
       for (vtkMeshOptimizer* filter : { serial, ranks })
       {
         const std::string summary = filter->GetSummary();
-        TAUTLINE_CHECK(summary.find(wording("put-back")) == std::string::npos);
+        TAUTLINE_CHECK(!contains(summary, wording("put-back")));
       }
       const MeshData after =
         toMesh(vtkUnstructuredGrid::SafeDownCast(serial->GetOutputDataObject(0)));
@@ -407,7 +407,7 @@ void testMostlyInverted(vtkMPIController* controller)
                               "flipped.";
     for (vtkMeshUntangler* filter : { serial.Get(), ranks.Get() })
     {
-      const bool remarked = std::string(filter->GetSummary()).find(remark) != std::string::npos;
+      const bool remarked = contains(filter->GetSummary(), remark);
       TAUTLINE_CHECK_EQUAL(remarked, whole == &reversed);
     }
   }
@@ -527,8 +527,7 @@ void testBlocks(vtkMPIController* controller)
   optimizer->Update();
   TAUTLINE_CHECK(!messages.has("ERROR: "));
   TAUTLINE_CHECK(
-    std::string(optimizer->GetSummary()).find(wording("put-together-on-the-first-process-it")) !=
-    std::string::npos);
+    contains(optimizer->GetSummary(), wording("put-together-on-the-first-process-it")));
   TAUTLINE_CHECK_EQUAL(optimizer->GetFreePoints(), serial->GetFreePoints());
   TAUTLINE_CHECK_EQUAL(optimizer->GetIterations(), serial->GetIterations());
   const auto block = [](vtkMeshOptimizer* filter, unsigned int i)
@@ -661,7 +660,7 @@ void testUntanglerFailures(vtkMPIController* controller)
     TAUTLINE_CHECK(!others.has("ERROR: "));
     const std::string why = "its pieces could not be joined. In process " + std::to_string(wrong) +
       ": Point 2 has a coordinate that is not finite";
-    TAUTLINE_CHECK(std::string(gathered->GetSummary()).find(why) != std::string::npos);
+    TAUTLINE_CHECK(contains(gathered->GetSummary(), why));
     TAUTLINE_CHECK(gathered->GetInvertedAfter() > 0);
     TAUTLINE_CHECK(gathered->GetInvertedAfter() < gathered->GetInvertedBefore());
     TAUTLINE_CHECK_EQUAL(gathered->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL),

@@ -174,9 +174,7 @@ TAUTLINE_PART(testOffsets)
     vtkElementQuality, quality, SetInputData(toGrid(moved(data, 1e5), VTK_FLOAT)), Update());
   TAUTLINE_CHECK(quality->GetNotice() == std::string());
   TAUTLINE_SET(quality, SetInputData(toGrid(moved(data, 1e6), VTK_FLOAT)), Update());
-  TAUTLINE_CHECK(
-    std::string(quality->GetNotice()).find(wording("single-precision-have-steps-of-0-062")) !=
-    std::string::npos);
+  TAUTLINE_CHECK(contains(quality->GetNotice(), wording("single-precision-have-steps-of-0-062")));
 }
 
 //------------------------------------------------------------------------------

@@ -21,7 +21,7 @@ const double NaN = std::numeric_limits<double>::quiet_NaN();
 void expect(vtkDataObject* data, const std::string& text, const InputRules& rules = {})
 {
   const std::string problem = inputProblem(data, rules);
-  if (text.empty() ? !problem.empty() : problem.find(text) == std::string::npos)
+  if (text.empty() ? !problem.empty() : !contains(problem, text))
   {
     fail(__FILE__, __LINE__) << "found \"" << problem << "\", expected \"" << text << "\"\n";
   }

@@ -4,5 +4,5 @@
 
 TAUTLINE_TEST(TestVersion)
 {
-  TAUTLINE_CHECK(std::string(tautline::version()).find('.') != std::string::npos);
+  TAUTLINE_CHECK(contains(tautline::version(), '.'));
 }

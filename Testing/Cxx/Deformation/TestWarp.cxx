@@ -386,8 +386,7 @@ TAUTLINE_PART(testDecoupled)
     {
       TAUTLINE_CHECK_NEAR(
         worst, 0, 1e-8); // Propositions 1 and 3, where there are prescribed points
-      TAUTLINE_CHECK(result.message.find(wording("no-prescribed-point-determines-35-points")) !=
-        std::string::npos);
+      TAUTLINE_CHECK(contains(result.message, wording("no-prescribed-point-determines-35-points")));
     }
     TAUTLINE_CHECK(most < 0.4);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);

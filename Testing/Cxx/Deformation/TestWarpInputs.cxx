@@ -161,8 +161,7 @@ TAUTLINE_PART(testParts)
     const WarpResult result = warped(square, stretch, withMethod(WarpMethod(method)));
     TAUTLINE_CHECK_EQUAL(result.points[3], 2.0);
     TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
-    TAUTLINE_CHECK(
-      result.message.find(wording("no-points-between-the-prescribed-ones")) != std::string::npos);
+    TAUTLINE_CHECK(contains(result.message, wording("no-points-between-the-prescribed-ones")));
   }
 
   // Three parts and a point of no cell: one moves, one is held, one has no prescribed point.
@@ -202,8 +201,7 @@ TAUTLINE_PART(testParts)
     TAUTLINE_CHECK(std::equal(
       result.points.begin() + Index(own), result.points.end(), three.points.begin() + Index(own)));
     TAUTLINE_CHECK(distance(result.points, three.points) > 0.2);
-    TAUTLINE_CHECK(
-      result.message.find(wording("without-a-prescribed-point-1-part-of")) != std::string::npos);
+    TAUTLINE_CHECK(contains(result.message, wording("without-a-prescribed-point-1-part-of")));
     // The part that moves does not depend on the others.
     const WarpResult alone = warped(one, motion, withMethod(WarpMethod(method)));
     double worst = 0;
@@ -233,8 +231,7 @@ TAUTLINE_PART(testImpossible)
     {
       const WarpResult result = warped(data, through, withMethod(method));
       TAUTLINE_CHECK(result.crossings > 0);
-      TAUTLINE_CHECK(
-        result.message.find(wording("the-moved-boundary-intersects-itself")) != std::string::npos);
+      TAUTLINE_CHECK(contains(result.message, wording("the-moved-boundary-intersects-itself")));
       TAUTLINE_CHECK(result.invertedAfter > 0);
       TAUTLINE_CHECK_EQUAL(result.invertedAfter, invalid(data, result.points));
       TAUTLINE_CHECK_EQUAL(result.amount, 1.0);
@@ -260,8 +257,7 @@ TAUTLINE_PART(testImpossible)
     WarpOptions());
   TAUTLINE_CHECK_EQUAL(flipped.impossible, flipped.invertedAfter);
   TAUTLINE_CHECK(flipped.impossible > 0);
-  TAUTLINE_CHECK(
-    flipped.message.find(wording("all-of-whose-points-are-prescribed-the")) != std::string::npos);
+  TAUTLINE_CHECK(contains(flipped.message, wording("all-of-whose-points-are-prescribed-the")));
   TAUTLINE_CHECK_EQUAL(flipped.points.size(), square.points.size());
 
   // Valid elements, but two arms that overlap: a ring, cut open and bent into itself.
@@ -307,7 +303,7 @@ TAUTLINE_PART(testStopping)
         result.points.begin(), result.points.end(), [](double x) { return std::isfinite(x); }));
       TAUTLINE_CHECK_EQUAL(result.aborted, calls > after);
       TAUTLINE_CHECK_EQUAL(
-        result.aborted, result.message.find(wording("stopped-on-request-2")) != std::string::npos);
+        result.aborted, contains(result.message, wording("stopped-on-request-2")));
     }
     WarpOptions options = withMethod(WarpMethod(method));
     options.maximumSeconds = 1e-9;

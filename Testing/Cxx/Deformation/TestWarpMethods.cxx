@@ -258,7 +258,7 @@ TAUTLINE_PART(testElasticity)
   options.maximumStiffenings = 0;
   const WarpResult uniform = warped(data, turn, options);
   TAUTLINE_CHECK(uniform.invertedAfter > 0);
-  TAUTLINE_CHECK(uniform.message.find(wording("after-0-rounds")) != std::string::npos);
+  TAUTLINE_CHECK(contains(uniform.message, wording("after-0-rounds")));
   options.maximumStiffenings = 100;
   const WarpResult stiffened = warped(data, turn, options);
   checkValid(data, turn, stiffened);
@@ -336,8 +336,8 @@ TAUTLINE_PART(testSteps)
   TAUTLINE_CHECK_EQUAL(small.invertedAfter, 0);
   TAUTLINE_CHECK_EQUAL(invalid(data, small.points), 0);
   TAUTLINE_CHECK(small.amount > 0.4 && small.amount <= 1);
-  TAUTLINE_CHECK_EQUAL(small.amount < 1,
-    small.message.find(wording("could-follow-only-a-part-of-the")) != std::string::npos);
+  TAUTLINE_CHECK_EQUAL(
+    small.amount < 1, contains(small.message, wording("could-follow-only-a-part-of-the")));
   WarpOptions few = withMethod(WarpMethod::SmallStepFemwarp);
   few.maximumSteps = 2;
   const WarpResult stopped = warped(data, motion, few);

@@ -89,11 +89,6 @@ inline Vec3 pointOf(vtkDataSet* data, Index i)
   return p;
 }
 
-inline bool contains(const std::string& text, const std::string& part)
-{
-  return text.find(part) != std::string::npos;
-}
-
 inline double value(vtkTable* table, const char* column, Index row = 0)
 {
   return table->GetValueByName(row, column).ToDouble();

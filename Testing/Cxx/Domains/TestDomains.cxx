@@ -175,7 +175,7 @@ void checkSquare()
   }
   catch (const tautline::Error& error)
   {
-    thrown = std::string(error.what()).find(wording("whole-numbers")) != std::string::npos;
+    thrown = contains(error.what(), wording("whole-numbers"));
   }
   TAUTLINE_CHECK(thrown);
   const tautline::StructuredMesh rectangle = tautline::structuredRectangle(800);
@@ -189,8 +189,8 @@ void checkNames()
   TAUTLINE_SET(source, AddObserver(vtkCommand::ErrorEvent, errors), SetDomainByName("gate"));
   TAUTLINE_CHECK(!std::strcmp(vtkDomainSource::GetDomainName(source->GetDomain()), "gate"));
   source->SetDomainByName("nonsense");
-  TAUTLINE_CHECK(errors->GetErrorMessage().find(wording("there-is-no-domain-nonsense-there-are")) !=
-    std::string::npos);
+  TAUTLINE_CHECK(
+    contains(errors->GetErrorMessage(), wording("there-is-no-domain-nonsense-there-are")));
   TAUTLINE_CHECK(vtkDomainSource::GetDomainName(-1) == nullptr);
 }
 
@@ -205,11 +205,10 @@ void checkXml(const std::string& data)
   {
     const std::string entry =
       std::string("<Entry text=\"") + info.label + "\" value=\"" + std::to_string(value++) + "\"/>";
-    TAUTLINE_CHECK(text.str().find(entry) != std::string::npos);
-    TAUTLINE_CHECK(
-      text.str().find(std::string("**") + info.label + "**: " + info.source) != std::string::npos);
+    TAUTLINE_CHECK(contains(text.str(), entry));
+    TAUTLINE_CHECK(contains(text.str(), std::string("**") + info.label + "**: " + info.source));
   }
-  TAUTLINE_CHECK(text.str().find("value=\"" + std::to_string(value) + "\"/>") == std::string::npos);
+  TAUTLINE_CHECK(!contains(text.str(), "value=\"" + std::to_string(value) + "\"/>"));
 }
 
 /// Table 2.4: vertices of wrench and hinge for the numbers of elements given there.
@@ -258,8 +257,7 @@ void checkMissingMeshers()
     GetExecutive()->AddObserver(vtkCommand::ErrorEvent, errors), SetDomainByName("disk2d"),
     Update());
   TAUTLINE_CHECK(source->GetOutput()->GetNumberOfCells() == 0);
-  TAUTLINE_CHECK(
-    errors->GetErrorMessage().find(wording("without-the-module-meshing")) != std::string::npos);
+  TAUTLINE_CHECK(contains(errors->GetErrorMessage(), wording("without-the-module-meshing")));
 }
 
 /// Sizes that no memory holds are refused before anything is allocated.
@@ -283,7 +281,7 @@ void checkSizes()
     {
       message = error.what();
     }
-    TAUTLINE_CHECK(message.find(wording("of-memory")) != std::string::npos);
+    TAUTLINE_CHECK(contains(message, wording("of-memory")));
   }
   tautline::checkDomainSize(1e5, tautline::DomainKind::Solid);
 }
@@ -298,8 +296,8 @@ void checkExtremes()
   {
     errors->Clear();
     set();
-    TAUTLINE_CHECK(errors->GetErrorMessage().find(name) != std::string::npos);
-    TAUTLINE_CHECK(errors->GetErrorMessage().find(wording("is-kept")) != std::string::npos);
+    TAUTLINE_CHECK(contains(errors->GetErrorMessage(), name));
+    TAUTLINE_CHECK(contains(errors->GetErrorMessage(), wording("is-kept")));
   };
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double extreme : { 1e-150, 1e150, 0.0, -1.0, std::nan(""), infinity })

@@ -190,8 +190,8 @@ void testRefusals(MPI_Comm comm)
     catch (const Error& error)
     {
       const std::string message = error.what();
-      named = message.find(text) != std::string::npos;
-      TAUTLINE_CHECK(named || message.find(wording("another-rank")) != std::string::npos);
+      named = contains(message, text);
+      TAUTLINE_CHECK(named || contains(message, wording("another-rank")));
     }
     MPI_Allreduce(MPI_IN_PLACE, &named, 1, MPI_INT, MPI_SUM, comm);
     TAUTLINE_CHECK(named > 0);

@@ -287,8 +287,7 @@ TAUTLINE_PART(testSolvers)
   Messages messages(filter);
   TAUTLINE_SET(filter, SetInputData(grid), SetSolver(vtkEllipticSolver::DIRECT));
   const std::vector<double> expected = values(solved(filter));
-  TAUTLINE_CHECK(
-    std::string(filter->GetSummary()).find(wording("a-direct-solve")) != std::string::npos);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("a-direct-solve")));
   for (int solver = vtkEllipticSolver::CG; solver < vtkEllipticSolver::DIRECT; ++solver)
   {
     for (int p = vtkEllipticSolver::JACOBI; p <= vtkEllipticSolver::NONE; ++p)
@@ -371,8 +370,7 @@ TAUTLINE_PART(testBlocks)
       TAUTLINE_CHECK_NEAR(
         distance(values(vtkDataSet::SafeDownCast(solvedBlocks->GetBlock(0))), expected), 0, 1e-10);
       output = solvedBlocks->GetBlock(2);
-      TAUTLINE_CHECK(
-        std::string(filter->GetSummary()).find(wording("in-block-3")) != std::string::npos);
+      TAUTLINE_CHECK(contains(filter->GetSummary(), wording("in-block-3")));
       TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(), 50);
       TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");
     }
@@ -548,8 +546,8 @@ TAUTLINE_PART(testNotices)
   found.pop_back();
   TAUTLINE_CHECK_NEAR(distance(found, expected), 0, 1e-12);
   const std::string summary = filter->GetSummary();
-  TAUTLINE_CHECK(summary.find("reversed") != std::string::npos);
-  TAUTLINE_CHECK(summary.find(wording("1-points-are-in-no-element")) != std::string::npos);
+  TAUTLINE_CHECK(contains(summary, "reversed"));
+  TAUTLINE_CHECK(contains(summary, wording("1-points-are-in-no-element")));
   TAUTLINE_CHECK(messages.empty());
 
   // Stopping early keeps what there is, with a warning.
@@ -560,15 +558,7 @@ TAUTLINE_PART(testNotices)
   filter->SetTimeLimit(0);
   messages.clear();
   filter->SetInputData(toGrid(block(CellType::Triangle, 250))); // longer than between two reports
-  vtkNew<vtkCallbackCommand> stop;
-  stop->SetCallback(
-    [](vtkObject* caller, unsigned long, void*, void*)
-    {
-      auto* algorithm = vtkAlgorithm::SafeDownCast(caller);
-      constexpr double solving = 0.6; // assembly and set-up end at 0.55
-      algorithm->SetAbortExecute(algorithm->GetProgress() > solving ? 1 : 0);
-    });
-  const unsigned long tag = filter->AddObserver(vtkCommand::ProgressEvent, stop);
+  const unsigned long tag = stopAt(filter, vtkCommand::ProgressEvent, 0.6);
   vtkDataSet* mesh = solved(filter);
   TAUTLINE_CHECK(messages.has(wording("topped-by-the-user")));
   TAUTLINE_CHECK(filter->GetIterations() > 0 && !filter->GetConverged());

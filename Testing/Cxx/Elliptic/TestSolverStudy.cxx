@@ -9,11 +9,6 @@ using namespace tautline;
 
 namespace
 {
-bool contains(const std::string& text, const std::string& part)
-{
-  return text.find(part) != std::string::npos;
-}
-
 //------------------------------------------------------------------------------
 TAUTLINE_PART(testCombinations)
 {

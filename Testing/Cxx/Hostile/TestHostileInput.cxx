@@ -335,7 +335,7 @@ Verdict execute(const HostileFilter& entry, const HostileData& datum, vtkDataObj
   }
 
   // Types that a port does not take are refused by VTK before the filter is asked.
-  const bool refusedType = errors.ofPipeline().find(wording("is-of-type")) != std::string::npos;
+  const bool refusedType = contains(errors.ofPipeline(), wording("is-of-type"));
   const std::string& own = errors.ofFilter();
   const bool failed = !own.empty() || refusedType;
   if (writer && failed == succeeded)

@@ -137,7 +137,7 @@ TAUTLINE_PART(testErrors)
     }
     catch (const Error& error)
     {
-      TAUTLINE_CHECK(std::string(error.what()).find(text) != std::string::npos);
+      TAUTLINE_CHECK(contains(error.what(), text));
     }
   };
   std::vector<int> parts(whole.numberOfCells(), 0);

@@ -286,7 +286,7 @@ TAUTLINE_PART(testErrors)
   {
     for (const std::string& message : messages)
     {
-      TAUTLINE_CHECK(message.find(text) != std::string::npos);
+      TAUTLINE_CHECK(contains(message, text));
     }
   };
   all(messagesOf(3,
@@ -381,7 +381,7 @@ TAUTLINE_PART(testMemoryOfMessages)
       catch (const Error& error)
       {
         const std::lock_guard<std::mutex> lock(mutex);
-        number += std::string(error.what()).find(wording("not-enough-memory")) != std::string::npos;
+        number += contains(error.what(), wording("not-enough-memory"));
       }
     };
     onRanks<AbsurdRank>(ranks,

@@ -94,21 +94,10 @@ vtkSmartPointer<vtkPolyData> outline(const std::vector<std::array<double, 2>>& c
 
 std::string failure(vtkAlgorithm* mesher, vtkDataObject* input)
 {
-  vtkNew<vtkTest::ErrorObserver> errors, quiet;
-  TAUTLINE_SET(mesher, SetInputDataObject(input), AddObserver(vtkCommand::ErrorEvent, errors),
-    GetExecutive()->AddObserver(vtkCommand::ErrorEvent, quiet), Update());
+  mesher->SetInputDataObject(input);
+  const std::string error = errorOf(mesher);
   TAUTLINE_CHECK(vtkDataSet::SafeDownCast(mesher->GetOutputDataObject(0))->GetNumberOfCells() == 0);
-  return errors->GetErrorMessage();
-}
-
-bool contains(const std::string& text, const char* part)
-{
-  const bool found = text.find(part) != std::string::npos;
-  if (!found)
-  {
-    std::cerr << "'" << text << "' has no '" << part << "'\n";
-  }
-  return found;
+  return error;
 }
 
 void testTriangles()
@@ -239,10 +228,7 @@ void testTriangleFailures()
 
   // abort, as a user interface would ask for it
   TAUTLINE_NEW(vtkTriangleMesher, aborted, SetSize(0.002));
-  vtkNew<vtkCallbackCommand> stop;
-  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
-    { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
-  aborted->AddObserver(vtkCommand::ProgressEvent, stop);
+  stopAt(aborted, vtkCommand::ProgressEvent);
   TAUTLINE_CHECK_EQUAL(
     failure(aborted, outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } })), std::string());
   TAUTLINE_CHECK(aborted->GetAbortExecute() != 0);
@@ -418,10 +404,7 @@ void testTetrahedraFailures()
 
   // abort ends TetGen in the midst of a million tetrahedra
   TAUTLINE_NEW(vtkTetGenMesher, aborted, SetVolume(1e-6));
-  vtkNew<vtkCallbackCommand> stop;
-  stop->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
-    { vtkAlgorithm::SafeDownCast(caller)->SetAbortExecute(1); });
-  aborted->AddObserver(vtkCommand::ProgressEvent, stop);
+  stopAt(aborted, vtkCommand::ProgressEvent);
   TAUTLINE_CHECK_EQUAL(failure(aborted, read("cube.smesh")), std::string());
   TAUTLINE_CHECK(aborted->GetAbortExecute() != 0);
 

@@ -243,10 +243,7 @@ TAUTLINE_PART(testTolerance)
     const TwoRegions mesh = ballInBall(CellType::Hexahedron, 4, 2);
     const double diagonal = norm({ 2, 2, 2 });
     const auto states = [](const Run& run)
-    {
-      return run.summary.find(wording("of-interfaces-their-last-steps-went-too")) !=
-        std::string::npos;
-    };
+    { return contains(run.summary, wording("of-interfaces-their-last-steps-went-too")); };
     const Run unlimited = optimized(mesh, boundary, 0);
     TAUTLINE_CHECK(offOf(mesh, unlimited) > 2e-3 * diagonal);
     TAUTLINE_CHECK(!states(unlimited));
@@ -319,8 +316,7 @@ TAUTLINE_PART(testConverged)
     if (kept)
     {
       TAUTLINE_CHECK_EQUAL(run.summary.find("Converged: "), std::size_t(0));
-      TAUTLINE_CHECK(
-        run.summary.find(wording("the-little-that-the-objective-can-still")) != std::string::npos);
+      TAUTLINE_CHECK(contains(run.summary, wording("the-little-that-the-objective-can-still")));
     }
     mesh.data.points = run.points;
   }

@@ -128,7 +128,7 @@ TAUTLINE_PART(testWorstMetric)
       const std::string label = metricInfo(Metric::ScaledJacobian).label;
       const std::string name = metricInfo(Metric::ScaledJacobian).name;
       vtkCellData* arrays = vtkDataSet::SafeDownCast(filter->GetOutput())->GetCellData();
-      TAUTLINE_CHECK_EQUAL(summary.find("\n" + label + ": mean ") != std::string::npos, stated);
+      TAUTLINE_CHECK_EQUAL(contains(summary, "\n" + label + ": mean "), stated);
       TAUTLINE_CHECK_EQUAL(arrays->HasArray(name.c_str()) == 1, stated);
       TAUTLINE_CHECK_EQUAL(arrays->HasArray((name + "_before").c_str()) == 1, stated);
       TAUTLINE_CHECK_EQUAL(filter->GetStatistics()->GetNumberOfRows(), stated ? 2 : 1);
@@ -186,7 +186,7 @@ TAUTLINE_PART(testCustom)
   std::ostringstream objectives;
   objectives << "Objectives: " << first.objectives[0] << " to " << last.objectives[0] << ", "
              << first.objectives[1] << " to " << last.objectives[1] << ".";
-  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(objectives.str()) != std::string::npos);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), objectives.str()));
 
   // The slots of the panel are the same rows.
   TAUTLINE_NEW(vtkMeshOptimizer, slots, SetInputData(grid), SetPreset(vtkMeshOptimizer::CUSTOM),
@@ -336,8 +336,7 @@ TAUTLINE_PART(testArrays)
     TAUTLINE_CHECK_RELATIVE(
       cell(filter->GetHistory(), filter->GetHistory()->GetNumberOfRows() - 1, "Objective"),
       sumOfSquares(after), 1e-10);
-    TAUTLINE_CHECK(std::string(filter->GetSummary()).find(wording("inverse-mean-ratio-mean")) !=
-      std::string::npos);
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("inverse-mean-ratio-mean")));
   }
 }
 

@@ -41,11 +41,6 @@ double objective(vtkMeshOptimizer* filter, vtkIdType row)
   return filter->GetHistory()->GetValueByName(row, "Objective").ToDouble();
 }
 
-bool contains(const std::string& text, const std::string& part)
-{
-  return text.find(part) != std::string::npos;
-}
-
 /// Each is refused with a message that names what is wrong and what to do; the output is empty.
 TAUTLINE_PART(testRefused)
 {
@@ -360,8 +355,6 @@ TAUTLINE_PART(testAnimation)
 
   vtkNew<vtkMeshOptimizer> filter;
   int runs = 0;
-  TAUTLINE_NEW(vtkCallbackCommand, count, SetClientData(&runs));
-  count->SetCallback([](vtkObject*, unsigned long, void* n, void*) { ++*static_cast<int*>(n); });
   const auto input = toGrid(data);
   TAUTLINE_SET(filter, SetInputData(input), SetAnimation(true), UpdateInformation());
   vtkInformation* info = filter->GetOutputInformation(0);
@@ -369,7 +362,7 @@ TAUTLINE_PART(testAnimation)
   filter->Update();
   TAUTLINE_CHECK_EQUAL(info->Length(Pipeline::TIME_STEPS()), int(seen.size()));
   TAUTLINE_CHECK(withPointsOf(data, meshOf(filter)).points == expected.points);
-  filter->AddObserver(vtkCommand::ProgressEvent, count);
+  observe(filter, vtkCommand::ProgressEvent, [&runs](vtkAlgorithm*) { ++runs; });
   for (std::size_t i = 0; i < seen.size(); ++i)
   {
     const Context context("iteration " + std::to_string(i));
@@ -422,14 +415,7 @@ TAUTLINE_PART(testStops)
 {
   const MeshData data = perturbed(CellType::Tetrahedron, 6);
   TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)));
-  vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback(
-    [](vtkObject* caller, unsigned long, void*, void*)
-    {
-      auto* self = static_cast<vtkMeshOptimizer*>(caller);
-      self->SetAbortExecute(self->GetProgress() > 0.005 ? 1 : 0);
-    });
-  const auto tag = filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  const auto tag = stopAt(filter, vtkCommand::ProgressEvent, 0.005);
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), int(StopReason::Aborted));
   TAUTLINE_CHECK(filter->GetIterations() > 0 && filter->GetIterations() < 5);

@@ -79,7 +79,7 @@ void testOne(int number, Totals& totals)
     // Presets that depend on size would shrink a mesh whose boundary moves freely.
     const bool sized = preset == Preset::UniformSize || preset == Preset::LowInterpolationError;
     TAUTLINE_CHECK(sized && motion != Motion::Fixed);
-    TAUTLINE_CHECK(std::string(error.what()).find("shrink") != std::string::npos);
+    TAUTLINE_CHECK(contains(error.what(), "shrink"));
     ++totals.refused;
     return;
   }

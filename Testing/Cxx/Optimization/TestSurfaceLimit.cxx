@@ -107,7 +107,7 @@ TAUTLINE_PART(testFilter)
       TAUTLINE_SET(filter, SetSurfaceTolerance(limited ? 0.001 : 0.0), Update());
       errors[limited] = filter->GetSurfaceError() / diagonal;
       const std::string summary = filter->GetSummary();
-      const bool says = summary.find(wording("surface-tolerance-holds")) != std::string::npos;
+      const bool says = contains(summary, wording("surface-tolerance-holds"));
       TAUTLINE_CHECK_EQUAL(says, limited == 1);
     }
     TAUTLINE_CHECK(errors[0] > 0.005);
@@ -188,7 +188,7 @@ TAUTLINE_PART_SLOW(testLeaving)
   const Leaving kept = leave(data, [](vtkMeshOptimizer* f) { f->SetLeaveSurface(false); });
   TAUTLINE_CHECK(kept.worst <= bound + 1e-9);
   TAUTLINE_CHECK_EQUAL(kept.left, Index(0));
-  TAUTLINE_CHECK(kept.summary.find(wording("left-the-surface")) == std::string::npos);
+  TAUTLINE_CHECK(!contains(kept.summary, wording("left-the-surface")));
   double last = bound;
   for (double tolerance : { 0.001, 0.003, 0.009 })
   {
@@ -199,7 +199,7 @@ TAUTLINE_PART_SLOW(testLeaving)
     TAUTLINE_CHECK(result.off <= tolerance * diagonal);
     TAUTLINE_CHECK(result.left > 0);
     const std::string says = std::to_string(result.left) + " points of the boundary near";
-    TAUTLINE_CHECK(result.summary.find(says) != std::string::npos);
+    TAUTLINE_CHECK(contains(result.summary, says));
     last = result.worst;
     const Leaving again = leave(data,
       [&](vtkMeshOptimizer* f)
@@ -309,7 +309,7 @@ TAUTLINE_PART(testOtherMeshes)
           std::accumulate(imr.begin(), imr.end(), 0.0) / static_cast<double>(imr.size());
         TAUTLINE_CHECK(filter->GetSurfaceError() <= tolerance * diagonal);
         const std::string summary = filter->GetSummary();
-        const bool left = summary.find(wording("left-the-surface")) != std::string::npos;
+        const bool left = contains(summary, wording("left-the-surface"));
         TAUTLINE_CHECK(withRegions ? !left || leave == 1 : left == (leave == 1));
         for (Index p = 0; withRegions && p < data.numberOfPoints(); ++p)
         {
@@ -331,8 +331,7 @@ TAUTLINE_PART(testOtherMeshes)
           return unit * side * Vec3{ p[0] + p[1] / tangent, p[1], p[2] };
         });
       TAUTLINE_SET(filter, SetInputDataObject(3, toGrid(geometry)), Update());
-      TAUTLINE_CHECK(
-        std::string(filter->GetSummary()).find(wording("left-the-surface")) == std::string::npos);
+      TAUTLINE_CHECK(!contains(filter->GetSummary(), wording("left-the-surface")));
     }
   }
 }

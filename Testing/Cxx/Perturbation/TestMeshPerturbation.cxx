@@ -462,21 +462,12 @@ TAUTLINE_PART(testAbortAndProgress)
 {
   const MeshData data = blockMesh(CellType::Triangle, 100, 100, 0);
   TAUTLINE_NEW(vtkMeshPerturbation, filter, SetInputData(toGrid(data)), SetPercentage(100));
-  vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback(
-    [](vtkObject* caller, unsigned long, void*, void* progress)
-    {
-      if (*static_cast<double*>(progress) > 0.4)
-      {
-        static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1);
-      }
-    });
-  TAUTLINE_SET(filter, AddObserver(vtkCommand::ProgressEvent, abort), Update());
+  stopAt(filter, vtkCommand::ProgressEvent, 0.4);
+  filter->Update();
   TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() > 3000);
   TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() < 6000);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
-  TAUTLINE_CHECK(
-    std::string(filter->GetSummary()).find(wording("stopped-early")) != std::string::npos);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("stopped-early")));
 }
 
 TAUTLINE_PART(testRefusedOptions)

@@ -20,8 +20,8 @@ TAUTLINE_PART(testVersionCheck)
   for (const auto& running : others)
   {
     const std::string message = tautline::versionMismatch(built, running);
-    TAUTLINE_CHECK(message.find(wording("built-for-paraview-5-11-0")) != std::string::npos);
-    TAUTLINE_CHECK(message.find(wording("build-it-again")) != std::string::npos);
+    TAUTLINE_CHECK(contains(message, wording("built-for-paraview-5-11-0")));
+    TAUTLINE_CHECK(contains(message, wording("build-it-again")));
   }
 }
 
@@ -30,7 +30,7 @@ TAUTLINE_PART(testColorMapSettings)
   const double infinity = std::numeric_limits<double>::infinity();
   const std::string json = tautline::colorMapSettings(
     { { "mean ratio", 1.0, 0.2, 0.0, false }, { "imr", 1.0, 4.0, infinity, true } });
-  const auto has = [&json](const char* text) { return json.find(text) != std::string::npos; };
+  const auto has = [&json](const char* text) { return contains(json, text); };
   TAUTLINE_CHECK(has("\"meanratio\""));
   TAUTLINE_CHECK(has("[0, 0.30, 0.00, 0.05, "));  // worse than acceptable
   TAUTLINE_CHECK(has("0.2, 0.72, 0.06, 0.11, ")); // red at the low end

@@ -81,11 +81,11 @@ TAUTLINE_PART(testFacts)
   const std::string criteria = R"({"name": "c", "criteria": [{"metric": "mirrored", "limits":
     {"all": {"ideal": 0, "good": 1, "warn": 2, "fail": 3, "worst": 4}}}]})";
   TAUTLINE_CHECK(parseCriteria(criteria).criteria[0].metric == info->metric);
-  TAUTLINE_CHECK(listUserMetrics().find("mirrored") == std::string::npos);
+  TAUTLINE_CHECK(!contains(listUserMetrics(), "mirrored"));
   TAUTLINE_CHECK_THROWS(unregisterMetric("mirrored"), wording("no-metric-mirrored"));
   const std::string missing = missingMetric(static_cast<int>(info->metric));
-  TAUTLINE_CHECK(missing.find("'" + d.label + "' of a user is not registered in this process") !=
-    std::string::npos);
+  TAUTLINE_CHECK(
+    contains(missing, "'" + d.label + "' of a user is not registered in this process"));
   const MeshData data = movedBlock(CellType::Tetrahedron, 2, 0.1);
   std::vector<double> values(data.numberOfCells());
   TAUTLINE_CHECK_THROWS(

@@ -461,8 +461,7 @@ void testRegistry(const std::vector<Twin>& pairs)
   TAUTLINE_CHECK(info && info->metric == pairs[0].user && info->user);
   TAUTLINE_CHECK(findMetric("user's inverse mean ratio") == info);
   TAUTLINE_CHECK(&metricInfo(pairs[0].user) == info);
-  TAUTLINE_CHECK(
-    describeMetric(*info).find(wording("user-imr-user-s-inverse-mean-ratio")) != std::string::npos);
+  TAUTLINE_CHECK(contains(describeMetric(*info), wording("user-imr-user-s-inverse-mean-ratio")));
   // FNV-1a of the name: state files store it.
   TAUTLINE_CHECK_EQUAL(static_cast<int>(pairs[0].user), 648310309);
 
@@ -525,7 +524,7 @@ void testRefused()
   MetricDescription taken = good;
   taken.name = "imr";
   const MetricRegistration registration([&]() { registerJacobianMetric(taken, Ratio()); });
-  TAUTLINE_CHECK(metricLoadErrors().find(wording("there-is-a-metric-imr")) != std::string::npos);
+  TAUTLINE_CHECK(contains(metricLoadErrors(), wording("there-is-a-metric-imr")));
   TAUTLINE_CHECK(!findMetric(good.name));
 }
 

@@ -37,8 +37,7 @@ void testSource(int vtkType, bool higher)
   const Mesh& mesh = adapter.mesh();
   TAUTLINE_CHECK_EQUAL(grid->GetCellType(0), vtkType);
   TAUTLINE_CHECK_EQUAL(mesh.higherOrderCells(), higher ? grid->GetNumberOfCells() : 0);
-  TAUTLINE_CHECK_EQUAL(
-    adapter.notice().find(wording("measured-on-their-corners")) != std::string::npos, higher);
+  TAUTLINE_CHECK_EQUAL(contains(adapter.notice(), wording("measured-on-their-corners")), higher);
   const std::vector<signed char> validity = validityOf(mesh);
   const auto valid = std::count(validity.begin(), validity.end(), Valid);
   TAUTLINE_CHECK_EQUAL(valid, grid->GetNumberOfCells());

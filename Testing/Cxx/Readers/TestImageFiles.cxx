@@ -15,7 +15,6 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkSilhouetteSetReader.h"
-#include "vtkTestErrorObserver.h"
 
 #include <filesystem>
 #include <map>
@@ -30,14 +29,6 @@ fs::path corpus; ///< images of 4 x 3 pixels, and a BMP file with a palette of 3
 fs::path folder; ///< to write to
 
 /// What a reader reports; its executive reports that it failed.
-std::string errorOf(vtkAlgorithm* reader)
-{
-  vtkNew<vtkTest::ErrorObserver> errors, executive;
-  TAUTLINE_SET(reader, AddObserver(vtkCommand::ErrorEvent, errors),
-    GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executive), Update());
-  return errors->GetErrorMessage();
-}
-
 /// The error message of reading an image of these bytes.
 std::string complaintOf(const std::string& bytes)
 {
@@ -78,7 +69,7 @@ void testPixels()
     const int* size = reader->GetOutput()->GetDimensions();
     TAUTLINE_CHECK(size[0] == 4 && size[1] == 3 && size[2] == 1);
     vtkDataArray* values = reader->GetOutput()->GetPointData()->GetScalars();
-    const bool lossy = std::string(name).find(".jpg") != std::string::npos;
+    const bool lossy = contains(name, ".jpg");
     for (vtkIdType i = 0; values && !lossy && i < 12 * values->GetNumberOfComponents(); ++i)
     {
       const int components = values->GetNumberOfComponents();
@@ -207,17 +198,17 @@ void testFolder()
   {
     writeText((set / "list.csv").string(), "file,class\nb1.png,b\n" + std::string(name) + ",c\n");
     TAUTLINE_NEW(vtkSilhouetteSetReader, listed, SetFileName((set / "list.csv").string().c_str()));
-    TAUTLINE_CHECK(errorOf(listed).find(name) != std::string::npos);
+    TAUTLINE_CHECK(contains(errorOf(listed), name));
   }
   const std::string whole = readText((set / "b1.png").string());
   writeText((set / "b1.png").string(), whole.substr(0, whole.size() / 2));
   TAUTLINE_NEW(vtkSilhouetteSetReader, damaged, SetFileName(set.string().c_str()));
   const std::string message = errorOf(damaged);
-  TAUTLINE_CHECK(message.find(wording("b1-png-the-image-cannot-be-read")) != std::string::npos);
+  TAUTLINE_CHECK(contains(message, wording("b1-png-the-image-cannot-be-read")));
   fs::remove(set / "b1.png");
   fs::remove(set / "a1.txt");
   TAUTLINE_NEW(vtkSilhouetteSetReader, none, SetFileName(set.string().c_str()));
-  TAUTLINE_CHECK(errorOf(none).find(wording("no-images-png")) != std::string::npos);
+  TAUTLINE_CHECK(contains(errorOf(none), wording("no-images-png")));
   for (const char* name : { "", "nowhere.png", "pipe.png" })
   {
     vtkNew<vtkImageFileReader> single;

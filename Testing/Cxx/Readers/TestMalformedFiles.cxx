@@ -18,7 +18,7 @@ void expect(const std::string& extension, const std::string& text, const std::st
   const std::string name = output + "/bad." + extension;
   writeText(name, text);
   const std::string said = complaint(name);
-  if (said.find(problem) == std::string::npos || said.find(output) != 0)
+  if (!contains(said, problem) || said.find(output) != 0)
   {
     std::cerr << "of\n"
               << text.substr(0, 200) << "\nmessage: " << said << "\nnot: " << problem << "\n";
@@ -69,8 +69,7 @@ void testTetGenMessages()
     "poly", good + "1 0\n1 0\n99999999 1 2\n", wording("number-of-corners-is-99999999-more-than"));
   std::remove((output + "/bad.node").c_str());
   expect("poly", "0 3 0 0\n1 0\n1\n3 1 2 3\n0\n", wording("bad-node-cannot-be-opened"));
-  TAUTLINE_CHECK(
-    complaint(output).find(wording("is-expected-as-the-file-s-ending")) != std::string::npos);
+  TAUTLINE_CHECK(contains(complaint(output), wording("is-expected-as-the-file-s-ending")));
 }
 
 void testOtherMessages()
@@ -182,7 +181,7 @@ void testMixedSets()
       const std::string whole = readText(output + "/older." + ending);
       writeText(mixed + ending, whole);
       const std::string message = complaint(mixed + endings[0]);
-      TAUTLINE_CHECK(message.find("does not belong to " + mixed) != std::string::npos);
+      TAUTLINE_CHECK(contains(message, "does not belong to " + mixed));
       // Without its mark, as other programs write it, the file is taken.
       writeText(mixed + ending, whole.substr(0, whole.rfind(wording("tautline-set"))));
       TAUTLINE_CHECK_EQUAL(complaint(mixed + endings[0]), std::string());

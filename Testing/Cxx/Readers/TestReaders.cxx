@@ -388,8 +388,7 @@ void testReaderClasses()
   TAUTLINE_SET(reader, SetFileName((data + "/none.ele").c_str()), Update());
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfPoints() == 0);
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 0);
-  TAUTLINE_CHECK(
-    errors->GetErrorMessage().find(wording("none-node-cannot-be-opened")) != std::string::npos);
+  TAUTLINE_CHECK(contains(errors->GetErrorMessage(), wording("none-node-cannot-be-opened")));
   TAUTLINE_SET(reader, SetFileName((data + "/cube.1.ele").c_str()), Update());
   TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == 171);
 

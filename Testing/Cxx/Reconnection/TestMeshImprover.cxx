@@ -18,11 +18,6 @@ vtkUnstructuredGrid* meshOf(vtkMeshImprover* filter)
   return vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
 }
 
-bool contains(const std::string& text, const std::string& part)
-{
-  return text.find(part) != std::string::npos;
-}
-
 MeshData dataOf(vtkUnstructuredGrid* grid)
 {
   MeshData data;
@@ -436,10 +431,7 @@ TAUTLINE_PART(testStops)
   vtkNew<vtkMeshImprover> filter;
   Messages messages(filter);
   TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetPreset(vtkMeshImprover::AGGRESSIVE));
-  vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
-    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
-  const auto observer = filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  const auto observer = stopAt(filter, vtkCommand::ProgressEvent);
   const auto check = [&]()
   {
     const MeshData after = dataOf(meshOf(filter));

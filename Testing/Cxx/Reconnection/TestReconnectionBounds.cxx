@@ -171,8 +171,8 @@ TAUTLINE_PART(testMemory)
     catch (const MemoryError& error)
     {
       const std::string text = error.what();
-      code = text.find(wording("reconnection-of-this-mesh-takes-about")) != std::string::npos &&
-          text.find(wording("take-a-smaller-mesh")) != std::string::npos
+      code = contains(text, wording("reconnection-of-this-mesh-takes-about")) &&
+          contains(text, wording("take-a-smaller-mesh"))
         ? 0
         : 2;
     }

@@ -26,7 +26,6 @@
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
-#include "vtkTestErrorObserver.h"
 #include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -88,7 +87,7 @@ TAUTLINE_PART(testMesher)
   TAUTLINE_CHECK_NEAR(mesh->GetPoint(0)[2], 3.0, 1e-12);
   auto* outline = vtkPolyData::SafeDownCast(mesher->GetOutputDataObject(1));
   TAUTLINE_CHECK_EQUAL(outline->GetNumberOfPoints(), static_cast<vtkIdType>(shape.outline.size()));
-  TAUTLINE_CHECK(mesher->GetSummary().find("triangles") != std::string::npos);
+  TAUTLINE_CHECK(contains(mesher->GetSummary(), "triangles"));
   // Grey, grey with alpha, colour, colour with alpha: the same mesh.
   for (int components : { 2, 3, 4 })
   {
@@ -120,20 +119,12 @@ TAUTLINE_PART(testCellPixels)
     TAUTLINE_CHECK_NEAR(a->GetPoint(i)[1], b->GetPoint(i)[1], 1e-9));
 }
 
-std::string errorOf(vtkAlgorithm* algorithm)
-{
-  vtkNew<vtkTest::ErrorObserver> errors, executive;
-  TAUTLINE_SET(algorithm, AddObserver(vtkCommand::ErrorEvent, errors),
-    GetExecutive()->AddObserver(vtkCommand::ErrorEvent, executive), Update());
-  return errors->GetErrorMessage();
-}
-
 TAUTLINE_PART(testMesherErrors)
 {
   const auto with = [](vtkImageData* image, const char* part)
   {
     TAUTLINE_NEW(vtkSilhouetteMesher, mesher, SetInputData(image));
-    TAUTLINE_CHECK(errorOf(mesher).find(part) != std::string::npos);
+    TAUTLINE_CHECK(contains(errorOf(mesher), part));
     TAUTLINE_CHECK_EQUAL(
       vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0))->GetNumberOfPoints(), 0);
   };
@@ -204,19 +195,18 @@ TAUTLINE_PART(testMatcher)
     fromMesh->SetTimeLimit(limit);
   }
   TAUTLINE_CHECK(!fromMesh->GetExact() && mesh->GetNumberOfCells() == before->GetNumberOfCells());
-  TAUTLINE_CHECK(
-    std::string(fromMesh->GetSummary()).find(wording("best-so-far")) != std::string::npos);
+  TAUTLINE_CHECK(contains(fromMesh->GetSummary(), wording("best-so-far")));
   // Wrong input is named.
   TAUTLINE_NEW(vtkShapeMatcher, wrong, SetInputDataObject(0, source), SetTargetData(target),
     SetGridSize(1, 1));
-  TAUTLINE_CHECK(errorOf(wrong).find(wording("too-small")) != std::string::npos);
+  TAUTLINE_CHECK(contains(errorOf(wrong), wording("too-small")));
   TAUTLINE_NEW(vtkShapeMatcher, weights, SetInputDataObject(0, source), SetTargetData(target),
     SetDistortionWeight(std::nan("")));
-  TAUTLINE_CHECK(errorOf(weights).find(wording("distortion-weight")) != std::string::npos);
+  TAUTLINE_CHECK(contains(errorOf(weights), wording("distortion-weight")));
   TAUTLINE_NEW(vtkUnstructuredGrid, loose, DeepCopy(before), GetPoints()->InsertNextPoint(0, 0, 3));
   loose->GetPointData()->Initialize(); // its arrays have no value for that point
   TAUTLINE_NEW(vtkShapeMatcher, stray, SetInputDataObject(0, loose), SetTargetData(target));
-  TAUTLINE_CHECK(errorOf(stray).find(wording("points-inside")) != std::string::npos);
+  TAUTLINE_CHECK(contains(errorOf(stray), wording("points-inside")));
 }
 
 void writeImage(const std::filesystem::path& file, const Picture& picture)
@@ -331,7 +321,7 @@ void testRetrieval(const std::string& output)
   {
     std::ofstream(folder / "bad.csv") << text;
     TAUTLINE_NEW(vtkSilhouetteSetReader, bad, SetFileName((folder / "bad.csv").string().c_str()));
-    TAUTLINE_CHECK(errorOf(bad).find(part) != std::string::npos);
+    TAUTLINE_CHECK(contains(errorOf(bad), part));
   };
   refused("", "empty");
   refused("name,class\na,b\n", wording("bad-csv-1-no-column-file"));
@@ -340,7 +330,7 @@ void testRetrieval(const std::string& output)
   std::ofstream(folder / "images" / "text.png") << "no picture";
   refused("file,class\ntext.png,b\n", "text.png");
   TAUTLINE_NEW(vtkSilhouetteSetReader, missing, SetFileName("nowhere.csv"));
-  TAUTLINE_CHECK(errorOf(missing).find(wording("no-such-file")) != std::string::npos);
+  TAUTLINE_CHECK(contains(errorOf(missing), wording("no-such-file")));
 }
 }
 

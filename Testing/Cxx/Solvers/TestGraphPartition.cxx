@@ -71,8 +71,7 @@ TAUTLINE_TEST(TestGraphPartition)
     }
     catch (const Error& error)
     {
-      TAUTLINE_CHECK(
-        std::string(error.what()).find(wording("a-mesh-of-4-cells")) != std::string::npos);
+      TAUTLINE_CHECK(contains(error.what(), wording("a-mesh-of-4-cells")));
     }
   }
 }

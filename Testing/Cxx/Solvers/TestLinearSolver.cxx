@@ -196,7 +196,7 @@ TAUTLINE_PART(testSingular)
   TAUTLINE_LET(SolverOptions, options, preconditioner = Preconditioner::ILU);
   const LinearSolution pivot = solved(systemOf(empty), options, b).solution;
   TAUTLINE_CHECK(pivot.reason == SolveReason::PreconditionerFailed);
-  TAUTLINE_CHECK(pivot.message.find("pivot") != std::string::npos);
+  TAUTLINE_CHECK(contains(pivot.message, "pivot"));
 }
 
 //------------------------------------------------------------------------------

@@ -47,11 +47,6 @@ std::string errorOf(const std::string& text, const SparseMatrix& matrix)
   return "";
 }
 
-bool contains(const std::string& text, const std::string& part)
-{
-  return text.find(part) != std::string::npos;
-}
-
 //------------------------------------------------------------------------------
 void testRefused()
 {

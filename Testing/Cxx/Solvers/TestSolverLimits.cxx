@@ -217,7 +217,7 @@ void testGivenUp(const SolverOptions& options, SolveReason reason, double longes
   const LinearSolution solution = solver.solve(b.data(), x.data());
   TAUTLINE_CHECK(solution.reason == reason);
   TAUTLINE_CHECK(time.seconds() < longest);
-  TAUTLINE_CHECK(solution.message.find(part) != std::string::npos);
+  TAUTLINE_CHECK(contains(solution.message, part));
   TAUTLINE_CHECK_EQUAL(x[0], 0.0);
   TAUTLINE_CHECK_EQUAL(solution.trueResidual, 1.0);
   std::fill(x.begin(), x.end(), 1.0);
@@ -257,8 +257,7 @@ void testSetUps()
     }
     catch (const Error& error)
     {
-      TAUTLINE_CHECK(
-        std::string(error.what()).find(wording("still-occupies")) != std::string::npos);
+      TAUTLINE_CHECK(contains(error.what(), wording("still-occupies")));
     }
     TAUTLINE_CHECK(time.seconds() < 3.0);
   }
@@ -280,14 +279,14 @@ void testCondition()
   const ConditionEstimate estimate = estimateCondition(systemOf(a), options);
   TAUTLINE_CHECK(!estimate.converged);
   TAUTLINE_CHECK(time.seconds() < 3.0);
-  TAUTLINE_CHECK(estimate.message.find(wording("time-limit")) != std::string::npos);
+  TAUTLINE_CHECK(contains(estimate.message, wording("time-limit")));
   checkSolves();
   int calls = 0;
   options.maximumSeconds = 0.0;
   options.cancelled = [&]() { return ++calls > 0; };
   const ConditionEstimate cancelled = estimateCondition(systemOf(a), options);
   TAUTLINE_CHECK(!cancelled.converged);
-  TAUTLINE_CHECK(cancelled.message.find("user") != std::string::npos);
+  TAUTLINE_CHECK(contains(cancelled.message, "user"));
   checkSolves();
 }
 

@@ -32,11 +32,6 @@ vtkPointSet* meshOf(vtkMeshUntangler* filter)
   return vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
 }
 
-bool contains(const std::string& text, const std::string& part)
-{
-  return text.find(part) != std::string::npos;
-}
-
 TAUTLINE_PART(testValid)
 {
   for (CellType type : allTypes)
@@ -231,21 +226,12 @@ TAUTLINE_PART(testStops)
   vtkNew<vtkMeshUntangler> filter;
   Messages messages(filter);
   filter->SetInputData(toGrid(data));
-  vtkNew<vtkCallbackCommand> abort;
-  abort->SetCallback(
-    [](vtkObject* caller, unsigned long, void*, void*)
-    {
-      auto* algorithm = static_cast<vtkAlgorithm*>(caller);
-      algorithm->SetAbortExecute(algorithm->GetProgress() > 0);
-    });
-  const auto aborting = filter->AddObserver(vtkCommand::ProgressEvent, abort);
+  const auto aborting = stopAt(filter, vtkCommand::ProgressEvent, 0);
   filter->Update();
   TAUTLINE_CHECK(invalidOf(withPointsOf(data, meshOf(filter))) <= invalidOf(data));
   TAUTLINE_SET(filter, RemoveObserver(aborting), SetAbortExecute(0));
   // Before the first iteration there is nothing: no output, or an error that names the limit.
-  abort->SetCallback([](vtkObject* caller, unsigned long, void*, void*)
-    { static_cast<vtkAlgorithm*>(caller)->SetAbortExecute(1); });
-  const auto early = filter->AddObserver(vtkInterruption::PollEvent, abort);
+  const auto early = stopAt(filter, vtkInterruption::PollEvent);
   TAUTLINE_SET(filter, Modified(), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
   TAUTLINE_CHECK_EQUAL(
