@@ -118,6 +118,18 @@ inline MeshData withPointsOf(MeshData data, vtkDataSet* points)
   return data;
 }
 
+/** The first output of a filter, null if it is not of that type. */
+template <class T = vtkDataSet>
+T* outputOf(vtkAlgorithm* filter)
+{
+  return T::SafeDownCast(filter->GetOutputDataObject(0));
+}
+
+inline vtkPointSet* meshOf(vtkAlgorithm* filter)
+{
+  return outputOf<vtkPointSet>(filter);
+}
+
 inline double component(vtkDataSetAttributes* data, const char* array, Index tuple, int which = 0)
 {
   return data->GetArray(array)->GetComponent(tuple, which);

@@ -90,7 +90,7 @@ std::vector<double> moved(const MeshData& whole, const RankPart& part, vtkUnstru
   filter->Update();
   TAUTLINE_CHECK(!messages.has("ERROR: "));
   std::vector<double> points(whole.points.size(), HUGE_VAL);
-  auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkUnstructuredGrid>(filter);
   TAUTLINE_CHECK_EQUAL(output->GetNumberOfPoints(), grid->GetNumberOfPoints());
   TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), grid->GetNumberOfCells());
   for (vtkIdType p = 0; p < output->GetNumberOfPoints(); ++p)
@@ -107,7 +107,7 @@ std::vector<double> pointsOf(const MeshData& whole, const RankPart& part, const 
 {
   const auto grid = numbered ? numberedGridOf(part) : gridOf(part);
   std::vector<double> points = moved(whole, part, grid.Get(), set, filter);
-  auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkUnstructuredGrid>(filter);
   for (vtkIdType p = 0; p < output->GetNumberOfPoints(); ++p)
   {
     double way[3];

@@ -61,7 +61,7 @@ inline Case quarters(CellType type, Index n, double amplitude = 0.25)
 
 inline vtkPointSet* pointsOf(vtkAlgorithm* filter)
 {
-  return vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+  return outputOf<vtkPointSet>(filter);
 }
 
 /// The largest distance between the points of the pieces and those of the whole.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The small tools of Core: disjoint sets, Cholesky factors, sums of vectors, the memory of L-BFGS,
-// the stopwatch.
+// Core: disjoint sets, Cholesky factors, sums of vectors, the memory of L-BFGS, the stopwatch.
 #include "Registry.h"
 #include "Meshes.h"
 #include "tautline/Core/LimitedMemory.h"

@@ -132,8 +132,7 @@ void compareQuality(
   whole->Update();
   part->Update();
   TAUTLINE_CHECK(whole->GetStatistics()->GetValueByName(0, "Inverted").ToInt() >= inverted);
-  compareCells(vtkDataSet::SafeDownCast(part->GetOutputDataObject(0)),
-    vtkDataSet::SafeDownCast(whole->GetOutputDataObject(0)));
+  compareCells(outputOf(part), outputOf(whole));
   TAUTLINE_CHECK_EQUAL(std::string(part->GetVerdict()), std::string(whole->GetVerdict()));
   TAUTLINE_CHECK_RELATIVE(part->GetQualityIndex(), whole->GetQualityIndex(), Rounding);
   if (rank == 0)
@@ -159,7 +158,7 @@ void testQuality(int rank, int ranks)
   vtkNew<vtkElementQuality> measured;
   setUp(measured);
   TAUTLINE_SET(measured, SetController(nullptr), SetInputData(grid), Update());
-  auto* of = vtkDataSet::SafeDownCast(measured->GetOutputDataObject(0));
+  auto* of = outputOf(measured);
   compareQuality(
     "inverted apart", tangled,
     [of](Index cell, int takers)
@@ -252,7 +251,7 @@ void testSpoiled(const char* name, int rank, int ranks, const std::vector<Spoil>
     }
     messages.clear();
     TAUTLINE_SET(filter, SetInputDataObject(0, blocks), Update());
-    auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    auto* output = outputOf<vtkMultiBlockDataSet>(filter);
     return output->GetNumberOfCells();
   };
   TAUTLINE_CHECK(update({}) > 0);
@@ -329,7 +328,7 @@ vtkSmartPointer<vtkMultiBlockDataSet> blocksOf(
 std::map<std::pair<int, Vec3>, double> solutionOf(vtkEllipticSolver* filter)
 {
   std::map<std::pair<int, Vec3>, double> values;
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   for (unsigned int i = 0; i < output->GetNumberOfBlocks(); ++i)
   {
     auto* block = vtkDataSet::SafeDownCast(output->GetBlock(i));

@@ -110,7 +110,7 @@ Outcome outcomeOf(const char* text, const RankPart& part, const Change& change, 
   Messages messages(filter);
   filter->Update();
   TAUTLINE_LET(Outcome, outcome, refused = messages.has("ERROR: "), named = messages.has(text),
-    image = vtkImageData::SafeDownCast(filter->GetOutputDataObject(0)),
+    image = outputOf<vtkImageData>(filter),
     cells = filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL),
     summary = filter->GetSummary() ? filter->GetSummary() : "");
   return outcome;
@@ -191,7 +191,7 @@ void testNotFinite(vtkMPIController* controller)
     TAUTLINE_CHECK(contains(filter->GetSummary(), wording("1-points-have-a-nan")));
     TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), 26); // of 3 x 3 x 3
     std::vector<double> points(whole.points.size(), HUGE_VAL);
-    auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+    auto* output = outputOf<vtkUnstructuredGrid>(filter);
     for (std::size_t p = 0; p < part.pointOf.size(); ++p)
     {
       double* x = &points[3 * part.pointOf[p]];

@@ -219,7 +219,7 @@ void testBlocks()
   TAUTLINE_SET(filter, SetInputData(blocks), Update());
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 50);
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   TAUTLINE_CHECK_EQUAL(sum(output->GetBlock(0)->GetNumberOfElements(vtkDataObject::CELL)), 72);
   TAUTLINE_CHECK_EQUAL(output->GetNumberOfBlocks(), rank() == 1 ? 3U : 1U);
   TAUTLINE_CHECK(rank() != 1 ||
@@ -251,7 +251,7 @@ void testSelection()
     SetTranslation(-0.1, 0, 0), Update());
   TAUTLINE_CHECK(messages.empty());
   // Exactly the points chosen on process 1 are moved as far, wherever they are.
-  auto* result = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* result = outputOf<vtkUnstructuredGrid>(filter);
   TAUTLINE_CHECK_EQUAL(result->GetNumberOfPoints(), mesh->GetNumberOfPoints());
   TAUTLINE_CHECK(!result->GetPointData()->GetArray("Tautline selected by input 2"));
   vtkIdType moved = sumOf<vtkIdType>(0, mesh->GetNumberOfPoints(),
@@ -265,14 +265,14 @@ void testSelection()
   TAUTLINE_SET(preview, SetInputData(mesh), SetInputDataObject(2, selection),
     SetMovedPart(vtkMeshWarp::SELECTION), Update());
   TAUTLINE_CHECK(said.empty());
-  auto* seen = vtkPolyData::SafeDownCast(preview->GetOutputDataObject(0));
+  auto* seen = outputOf<vtkPolyData>(preview);
   const auto all = sum(chosen);
   TAUTLINE_CHECK_EQUAL(seen->GetNumberOfPoints(), rank() == 0 ? all : 0);
 
   // A new mesh has nothing of what the selection was gathered by.
   TAUTLINE_NEW(
     vtkMeshImprover, improver, SetInputData(mesh), SetInputDataObject(1, selection), Update());
-  auto* improved = vtkDataSet::SafeDownCast(improver->GetOutputDataObject(0));
+  auto* improved = outputOf(improver);
   TAUTLINE_CHECK(improved->GetNumberOfCells() > 0);
   TAUTLINE_CHECK(!improved->GetPointData()->GetArray("Tautline selected by input 1"));
   TAUTLINE_CHECK(!improved->GetCellData()->GetArray("Tautline selected by input 1"));
@@ -446,7 +446,7 @@ void testRetrieval()
     TAUTLINE_SET(filter, Modified(), Update());
     TAUTLINE_CHECK_EQUAL(filter->GetRecognitionRate(), 100.0); // all are of one class
     TAUTLINE_CHECK(std::string(filter->GetSummary()).find("5 shapes of 1 classes") == 0);
-    auto* distances = vtkTable::SafeDownCast(filter->GetOutputDataObject(0));
+    auto* distances = outputOf<vtkTable>(filter);
     for (unsigned int s = 0; rank() == 0 && s < count; ++s)
     {
       for (unsigned int t = 0; t < count; ++t)

@@ -198,17 +198,15 @@ TAUTLINE_PART(testAbort)
     const Messages messages(filter);
     filter->Update();
     TAUTLINE_CHECK(messages.has(wording("the-time-limit-of-1e-09-s")));
-    TAUTLINE_CHECK_EQUAL(
-      vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+    TAUTLINE_CHECK_EQUAL(outputOf(filter)->GetNumberOfCells(), 0);
   }
   filter->SetTimeLimit(0);
   const auto tag = stopAt(filter, vtkInterruption::PollEvent);
   filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
-  TAUTLINE_CHECK_EQUAL(
-    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  TAUTLINE_CHECK_EQUAL(outputOf(filter)->GetNumberOfCells(), 0);
   TAUTLINE_SET(filter, RemoveObserver(tag), SetAbortExecute(0), Modified(), Update());
-  TAUTLINE_CHECK(vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells() > 0);
+  TAUTLINE_CHECK(outputOf(filter)->GetNumberOfCells() > 0);
 
   // Cancelled from a callback, as Python does; the next execution is not.
   const auto cancelling =

@@ -167,7 +167,7 @@ void testOneProcess(vtkMPIController* controller)
   const std::vector<double> points = moved(whole, both, grid, set, optimizer.Get());
   TAUTLINE_CHECK(remarked(optimizer->GetSummary()));
   TAUTLINE_CHECK_EQUAL(optimizer->GetFreePoints(), serial->GetFreePoints());
-  auto* output = vtkUnstructuredGrid::SafeDownCast(optimizer->GetOutputDataObject(0));
+  auto* output = outputOf<vtkUnstructuredGrid>(optimizer);
   for (vtkIdType p = 0; p < output->GetNumberOfPoints(); ++p)
   {
     // Copies stay together.
@@ -179,7 +179,7 @@ void testOneProcess(vtkMPIController* controller)
   TAUTLINE_NEW(vtkMeshImprover, improver, SetInputData(grid), Update());
   TAUTLINE_CHECK(remarked(improver->GetSummary()));
   const auto pointsOf = [](vtkMeshImprover* filter)
-  { return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfPoints(); };
+  { return outputOf(filter)->GetNumberOfPoints(); };
   const vtkIdType joined = pointsOf(improver);
   TAUTLINE_CHECK(joined < grid->GetNumberOfPoints());
   // Also beside triangles, which the output does not have.
@@ -204,7 +204,7 @@ void testOneProcess(vtkMPIController* controller)
 /// Cells of all processes, and a number that their places give, but for their order.
 std::pair<vtkIdType, double> contentOf(vtkMPIController* controller, vtkMeshImprover* filter)
 {
-  auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkUnstructuredGrid>(filter);
   vtkIdType own = output->GetNumberOfCells(), cells = 0;
   double here = 0, sum = 0;
   vtkNew<vtkIdList> ids;

@@ -120,8 +120,7 @@ void testOptimizer(vtkMPIController* controller)
     checkOptimizer);
 }
 
-/// Equal sizes at the cost of the shape of single elements: these are improved, and no points are
-/// put back.
+/// Equal sizes at the cost of the shape of single elements: these are improved, no points put back.
 void testGuard(vtkMPIController* controller)
 {
   const MeshData whole = jittered(CellType::Tetrahedron, 5, 0.25);
@@ -144,8 +143,7 @@ void testGuard(vtkMPIController* controller)
         const std::string summary = filter->GetSummary();
         TAUTLINE_CHECK(!contains(summary, wording("put-back")));
       }
-      const MeshData after =
-        toMesh(vtkUnstructuredGrid::SafeDownCast(serial->GetOutputDataObject(0)));
+      const MeshData after = toMesh(outputOf<vtkUnstructuredGrid>(serial));
       TAUTLINE_CHECK(worstOf(after) >= worstOf(whole) - 1e-9);
       checkOptimizer(serial, ranks, rank);
     });
@@ -189,8 +187,7 @@ void improveInSingle(MeshData& data)
 }
 
 /// Far from the origin single precision has few digits, and a mesh that is as good as it gets with
-/// these is better than what is best, rounded to them: what is written is never worse, in single
-/// precision where that does.
+/// these is better than the best one, rounded: what is written is never worse.
 void testSingle(vtkMPIController* controller)
 {
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
@@ -224,11 +221,7 @@ void testSingle(vtkMPIController* controller)
           whole, part, grid.Get(), [](vtkMeshOptimizer*) {}, filter);
       };
       const auto typeOf = [](vtkMeshOptimizer* filter)
-      {
-        return vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0))
-          ->GetPoints()
-          ->GetDataType();
-      };
+      { return outputOf<vtkUnstructuredGrid>(filter)->GetPoints()->GetDataType(); };
       const auto note = [](vtkMeshOptimizer* filter)
       {
         const std::string summary = filter->GetSummary();
@@ -530,10 +523,8 @@ void testBlocks(vtkMPIController* controller)
     contains(optimizer->GetSummary(), wording("put-together-on-the-first-process-it")));
   TAUTLINE_CHECK_EQUAL(optimizer->GetFreePoints(), serial->GetFreePoints());
   TAUTLINE_CHECK_EQUAL(optimizer->GetIterations(), serial->GetIterations());
-  const auto block = [](vtkMeshOptimizer* filter, unsigned int i)
-  {
-    return vtkUnstructuredGrid::SafeDownCast(
-      vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetBlock(i));
+  const auto block = [](vtkMeshOptimizer* filter, unsigned int i) {
+    return vtkUnstructuredGrid::SafeDownCast(outputOf<vtkMultiBlockDataSet>(filter)->GetBlock(i));
   };
   std::vector<Vec3> expected(whole.numberOfPoints());
   for (std::size_t p = 0; p < all.pointOf.size(); ++p)
@@ -577,14 +568,13 @@ void testAnimation(vtkMPIController* controller)
     std::vector<Vec3> expected(whole.numberOfPoints());
     for (std::size_t p = 0; p < all.pointOf.size(); ++p)
     {
-      vtkPointSet::SafeDownCast(serial->GetOutputDataObject(0))
-        ->GetPoint(static_cast<vtkIdType>(p), expected[all.pointOf[p]].data());
+      outputOf<vtkPointSet>(serial)->GetPoint(
+        static_cast<vtkIdType>(p), expected[all.pointOf[p]].data());
     }
     for (std::size_t p = 0; p < part.pointOf.size(); ++p)
     {
       Vec3 found;
-      vtkPointSet::SafeDownCast(optimizer->GetOutputDataObject(0))
-        ->GetPoint(static_cast<vtkIdType>(p), found.data());
+      outputOf<vtkPointSet>(optimizer)->GetPoint(static_cast<vtkIdType>(p), found.data());
       TAUTLINE_CHECK(norm(found - expected[part.pointOf[p]]) <= 1e-10);
     }
     TAUTLINE_CHECK(expected != before);

@@ -128,7 +128,7 @@ void testFilter(const char* name, const MeshData& mesh, const std::function<void
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(farthestOf(parts->GetOutputDataObject(0), pointsOf(whole)), 0.0);
   TAUTLINE_CHECK(!contains(parts->GetSummary(), "block"));
-  auto* output = vtkPartitionedDataSet::SafeDownCast(parts->GetOutputDataObject(0));
+  auto* output = outputOf<vtkPartitionedDataSet>(parts);
   TAUTLINE_CHECK(output && output->GetNumberOfPartitions() == Parts);
   // As a block among others, in pieces.
   vtkNew<vtkMultiBlockDataSet> blocks;
@@ -137,7 +137,7 @@ void testFilter(const char* name, const MeshData& mesh, const std::function<void
   blocks->SetBlock(0, toGrid(far));
   blocks->SetBlock(1, partitioned<vtkMultiPieceDataSet>(mesh));
   TAUTLINE_SET(pieces, SetInputDataObject(0, blocks), Update());
-  auto* two = vtkMultiBlockDataSet::SafeDownCast(pieces->GetOutputDataObject(0));
+  auto* two = outputOf<vtkMultiBlockDataSet>(pieces);
   if (TAUTLINE_CHECK(two && two->GetNumberOfBlocks() == 2))
   {
     TAUTLINE_CHECK_EQUAL(farthestOf(two->GetBlock(1), pointsOf(whole)), 0.0);

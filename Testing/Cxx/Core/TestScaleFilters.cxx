@@ -47,7 +47,7 @@ MeshData perturbed(CellType type, bool tangled = false)
 
 std::vector<double> pointsOf(vtkAlgorithm* filter)
 {
-  auto* set = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* set = outputOf<vtkPointSet>(filter);
   std::vector<double> points(3 * set->GetNumberOfPoints());
   for (vtkIdType i = 0; i < set->GetNumberOfPoints(); ++i)
   {
@@ -89,9 +89,7 @@ void testMoving(const char* name, bool tangled, const std::function<void(Filter*
       const Context context(std::string(name) + ", 2^" + std::to_string(exponent));
       TAUTLINE_SET(filter, SetInputData(toGrid(scaled(data, exponent))), Update());
       TAUTLINE_CHECK_NEAR(difference(pointsOf(filter), exponent, expected), 0, 1e-9);
-      auto* displacement = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))
-                             ->GetPointData()
-                             ->GetArray("Displacement");
+      auto* displacement = outputOf<vtkPointSet>(filter)->GetPointData()->GetArray("Displacement");
       double most = largestOf<double>(0, displacement->GetNumberOfTuples(),
         [&](vtkIdType i) { return std::abs(displacement->GetComponent(i, 0)); });
       TAUTLINE_CHECK(std::ldexp(most, -exponent) > 0.05);
@@ -157,8 +155,7 @@ TAUTLINE_PART(testOffsets)
     // Coordinates of 1e12 have steps of 1.2e-4.
     TAUTLINE_CHECK_NEAR(statistic(filter->GetStatistics(), "MeanAfter"), after, 1e-4);
     const std::vector<double> values =
-      valuesOf(withPointsOf(data, vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))),
-        Metric::InverseMeanRatio);
+      valuesOf(withPointsOf(data, outputOf(filter)), Metric::InverseMeanRatio);
     double sum =
       sumOf<double>(0, values, [&](double q) { return q / static_cast<double>(values.size()); });
     TAUTLINE_CHECK_NEAR(sum, statistic(filter->GetStatistics(), "MeanAfter"), 1e-12);

@@ -153,7 +153,7 @@ TAUTLINE_PART(testBlocks)
   }
   TAUTLINE_CHECK(messages.empty());
   TAUTLINE_CHECK_EQUAL(solver->GetUnknowns(), whole->GetUnknowns());
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(solver->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(solver);
   double largest = 0;
   for (unsigned int q = 0; q < 4; ++q)
   {
@@ -178,9 +178,8 @@ TAUTLINE_PART(testBlocks)
       " points of a block coincide with those of another one"));
     TAUTLINE_CHECK(said.has(wording("merge-blocks")));
     TAUTLINE_CHECK(contains(filter->GetSummary(), wording("merge-blocks")));
-    TAUTLINE_CHECK(vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0))
-                     ->GetBlock(3)
-                     ->GetNumberOfElements(vtkDataObject::POINT) == grids[3]->GetNumberOfPoints());
+    TAUTLINE_CHECK(outputOf<vtkMultiBlockDataSet>(filter)->GetBlock(3)->GetNumberOfElements(
+                     vtkDataObject::POINT) == grids[3]->GetNumberOfPoints());
     said.clear();
     TAUTLINE_SET(filter, SetMergeCoincidentPoints(false), Update());
     TAUTLINE_CHECK(said.empty());

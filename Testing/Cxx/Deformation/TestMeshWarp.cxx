@@ -183,8 +183,7 @@ TAUTLINE_PART(testOutputs)
   }
 }
 
-/// Matrices are kept as long as mesh, given points and options are the same, whatever object holds
-/// them.
+/// Matrices are kept as long as mesh, given points and options are the same in any object.
 TAUTLINE_PART(testReuse)
 {
   const MeshData data = holedBlock(CellType::Tetrahedron, 7);
@@ -327,7 +326,7 @@ TAUTLINE_PART(testBlocks)
   TAUTLINE_SET(single, SetInputData(toGrid(data)), Update());
   filter->Update();
   TAUTLINE_CHECK(messages.empty());
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   const MeshData expected = withPointsOf(data, meshOf(single));
   const auto at = [&](unsigned int i) { return vtkPointSet::SafeDownCast(output->GetBlock(i)); };
   TAUTLINE_CHECK(withPointsOf(data, at(0)).points == expected.points);

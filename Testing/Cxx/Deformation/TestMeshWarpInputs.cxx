@@ -24,7 +24,7 @@ TAUTLINE_PART(testRefusals)
     messages.clear();
     TAUTLINE_SET(filter, SetInputData(input), Update());
     TAUTLINE_CHECK(messages.has(text));
-    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    auto* output = outputOf(filter);
     TAUTLINE_CHECK(!output || output->GetNumberOfPoints() == 0);
     TAUTLINE_CHECK(std::string(filter->GetSummary()).empty());
   };

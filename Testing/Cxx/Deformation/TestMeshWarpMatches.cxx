@@ -15,8 +15,7 @@ namespace
 {
 constexpr auto OnPoints = vtkDataObject::FIELD_ASSOCIATION_POINTS;
 
-/// The boundary turned and shifted, given in every possible way: the same result, and the summary
-/// names the way.
+/// The boundary turned and shifted, given in every way: the same result; the summary names the way.
 TAUTLINE_PART(testTargets)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })

@@ -57,8 +57,7 @@ TAUTLINE_PART(testPaths)
         return Vec3{ 2.5 + (1 + 0.5 * amount) * (p[0] - 2.5),
           2.5 + (1 - 0.25 * amount) * (p[1] - 2.5), 0 };
       });
-    // The same turn about a point outside by a matrix: the way is an arc about that point, not a
-    // chord.
+    // The same turn about a point outside by a matrix: the way is an arc, not a chord.
     filter->SetTransformKind(vtkMeshWarp::MATRIX);
     TAUTLINE_NEW(vtkTransform, transform, Translate(2, 3, 0), RotateZ(30), Translate(-2, -3, 0));
     filter->SetTransform(transform);
@@ -129,8 +128,7 @@ TAUTLINE_PART(testBending)
       TAUTLINE_CHECK(amount > 1e-3 || norm(q - p) < 1e-4);
     }
   }
-  // Held at a point on the way, what is before does not move; a full turn and more is an ordinary
-  // motion.
+  // Held at a point on the way, what is before stays; a full turn and more is ordinary.
   TAUTLINE_LET(PointMotion, motion, kind = MotionKind::Bending, angle = 720, ownCenter = false);
   motion.center = { 8, 0, 0 };
   const std::vector<unsigned char> all(data.numberOfPoints(), 1);
@@ -177,8 +175,7 @@ TAUTLINE_PART(testSteps)
   TAUTLINE_CHECK(boundary < 1e-12 && inside > 0.1);
   filter->SetAngle(180);
 
-  // As many steps as it takes, and no further than it goes: a warning, and by how much in the
-  // tables.
+  // As many steps as it takes, and no further than it goes: a warning, and numbers in the tables.
   filter->SetSteps(0);
   messages.clear();
   filter->Update();
@@ -344,8 +341,7 @@ TAUTLINE_PART(testBoundaryParts)
   }
 }
 
-/// The time steps of an animation are fractions of the way; without a request for a time it is gone
-/// to the end.
+/// The time steps of an animation are fractions of the way, of which all is gone without a request.
 TAUTLINE_PART(testAnimation)
 {
   using Pipeline = vtkStreamingDemandDrivenPipeline;

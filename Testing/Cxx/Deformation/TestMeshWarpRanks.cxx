@@ -88,7 +88,7 @@ void testRanks(int rank, int ranks)
   TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(rank, toGrid(data)));
   TAUTLINE_SET(filter, SetInputData(blocks), Update());
   TAUTLINE_CHECK(messages.empty());
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   auto* own = vtkPointSet::SafeDownCast(output->GetBlock(rank));
   TAUTLINE_CHECK_EQUAL(own->GetNumberOfCells(), data.numberOfCells());
   TAUTLINE_CHECK(distance(withPointsOf(data, own), data) > 0.1);

@@ -310,7 +310,7 @@ void testTimes(vtkMPIController* controller, const MeshData& whole, double middl
       for (const double time : { 2.0, 3.0, 0.0 })
       {
         after->UpdateTimeStep(time);
-        auto* output = vtkDataSet::SafeDownCast(after->GetOutputDataObject(0));
+        auto* output = outputOf(after);
         TAUTLINE_CHECK(farthest(spreadOf(whole, part, output), expected[time]) <= Same);
       }
       TAUTLINE_CHECK(messages.empty());

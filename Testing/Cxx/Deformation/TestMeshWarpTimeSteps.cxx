@@ -90,8 +90,7 @@ vtkSmartPointer<MovingMesh> movingMesh()
   return source;
 }
 
-/// Any order of times gives the same meshes, from the first or from the one before; the latter
-/// differ from the former.
+/// Any order of times gives the same meshes, from the first or, other ones, from the one before.
 TAUTLINE_PART(testTimeSteps)
 {
   for (int motion : { vtkMeshWarp::TIME_STEPS, vtkMeshWarp::DISPLACEMENT, vtkMeshWarp::TARGET })
@@ -172,8 +171,7 @@ TAUTLINE_PART(testTimeSteps)
   }
 }
 
-/// Matrices are kept over time; times in between are read once; a mesh that changes its cells is
-/// refused.
+/// Matrices are kept over time; each time is read once; other cells are refused.
 TAUTLINE_PART(testTimeCosts)
 {
   auto source = movingMesh();

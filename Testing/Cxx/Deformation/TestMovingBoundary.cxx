@@ -15,7 +15,7 @@ constexpr Index N = 7; // cubes in each direction, of which the middle one is mi
 vtkPolyData* boundaryOf(vtkMovingBoundary* filter)
 {
   filter->Update();
-  return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(0));
+  return outputOf<vtkPolyData>(filter);
 }
 
 void checkBounds(vtkPolyData* data, double low, double high, double lowZ, double highZ)

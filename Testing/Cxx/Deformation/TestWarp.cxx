@@ -128,8 +128,7 @@ TAUTLINE_PART(testPropositions)
 }
 
 //------------------------------------------------------------------------------
-/// Proposition 4 for every cell type, method and choice of coefficients, whatever tolerance and
-/// scale.
+/// Proposition 4 for every cell type, method and choice of coefficients, for all scales.
 TAUTLINE_PART(testAffine)
 {
   const Columns linear = { Vec3{ 0.1, -0.3, 0.2 }, Vec3{ 0.4, 0.2, -0.1 }, Vec3{ -0.2, 0.3, 0.3 } };

@@ -48,8 +48,7 @@ TAUTLINE_PART_SLOW(testTurnedBox)
     const MeshData data = boxInBox(type, flat ? 20 : 11, flat ? 8 : 3, simplex ? 0.2 : 0.1);
     for (const double degrees : { 30.0, 90.0, 120.0, 180.0 })
     {
-      // A hexahedron or quadrilateral that winds round a corner of the box cannot be valid for
-      // long.
+      // A hexahedron or quadrilateral that winds round a corner of the box is not valid for long.
       if (!simplex && degrees > 30)
       {
         continue;
@@ -118,8 +117,7 @@ TAUTLINE_PART(testSimilarity)
 }
 
 //------------------------------------------------------------------------------
-/// (4.24) as it stands, and what replaces it: both end valid, and the shape is better than
-/// untangling leaves it.
+/// (4.24) as it stands, and what replaces it: both end valid, in better shape than untangled only.
 TAUTLINE_PART(testSecondStep)
 {
   const MeshData data = boxInBox(CellType::Triangle, 20, 8);
@@ -148,8 +146,7 @@ TAUTLINE_PART(testSecondStep)
   const WarpResult unit = warped(data, motion, withMethod(WarpMethod::Hybrid));
   for (const double scale : { 0x1p-27, 0x1p27, 1e-8, 1e8 })
   {
-    // Powers of two round alike; others lead the optimizer to another place where it hardly changes
-    // any more.
+    // Powers of two round alike; others lead the optimizer elsewhere.
     const double close = scale == 0x1p-27 || scale == 0x1p27 ? 1e-12 : 0.02;
     MeshData scaled = data;
     scaled.transform([scale](const Vec3& p) { return scale * p; });

@@ -17,8 +17,7 @@ const struct
 } methods[] = { { "inverse distance", warpByInverseDistance },
   { "radial basis", warpByRadialBasis }, { "weighted Laplacian", warpByWeightedLaplacian } };
 
-/// A mesh, its prescribed points and what is prescribed; other displacements are NaN and must not
-/// be read.
+/// A mesh, its prescribed points and what is prescribed; other displacements are NaN.
 struct Problem
 {
   MeshData data;
@@ -227,8 +226,7 @@ TAUTLINE_PART(testTies)
   TAUTLINE_CHECK(difference < 1e-9 * n);
 }
 
-/// The groups of the tree against the sum over all points, for powers with a formula of their own
-/// and without.
+/// The groups of the tree against the sum over all points, for all kinds of powers.
 TAUTLINE_PART(testInverseDistance)
 {
   Problem problem = boundaryProblem(blockMesh(CellType::Tetrahedron, 14, 14, 14));
@@ -426,8 +424,7 @@ TAUTLINE_PART(testWeights)
 /// Square and cube that turn in a larger one: how many elements each method inverts.
 TAUTLINE_PART(testTurning)
 {
-  // weighted Laplacian and inverse distances fail early, as the dissertation states for methods of
-  // this kind
+  // weighted Laplacian and inverse distances fail early, as the dissertation states
   const Problem disk = holeProblem(CellType::Triangle, 24, 8, 0.4);
   const Problem box = holeProblem(CellType::Tetrahedron, 12, 4, 0.25);
   for (const auto& method : methods)

@@ -77,11 +77,6 @@ vtkSmartPointer<vtkDoubleArray> arrayOf(const char* name, Index size, int compon
   return array;
 }
 
-inline vtkPointSet* meshOf(vtkMeshWarp* filter)
-{
-  return vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
-}
-
 inline Vec3 pointOf(vtkDataSet* data, Index i)
 {
   Vec3 p;

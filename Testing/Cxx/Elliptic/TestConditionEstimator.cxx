@@ -10,7 +10,7 @@ namespace
 {
 vtkDataSet* meshOf(vtkConditionEstimator* filter)
 {
-  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  return outputOf(filter);
 }
 
 double sumOf(vtkDataSet* mesh, const char* name)
@@ -20,8 +20,7 @@ double sumOf(vtkDataSet* mesh, const char* name)
   return sum;
 }
 
-/// The five-point matrix has eigenvalues 4 sin^2(i pi / 2n) + 4 sin^2(j pi / 2n); its diagonal
-/// is 4.
+/// The five-point matrix has eigenvalues 4 sin^2(i pi / 2n) + 4 sin^2(j pi / 2n), diagonal 4.
 TAUTLINE_PART(testKnown)
 {
   constexpr Index n = 12;

@@ -73,7 +73,7 @@ using Set = std::function<void(Filter*, const RankPart&)>;
 std::vector<double> arrayOf(
   vtkAlgorithm* filter, const RankPart& part, const char* name, bool ofCells, Index count)
 {
-  auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf(filter);
   const std::vector<Index>& of = ofCells ? part.cellOf : part.pointOf;
   std::vector<double> values;
   vtkDataArray* array =
@@ -376,8 +376,7 @@ void testRefusals()
       messages.clear();
       TAUTLINE_SET(filter, SetInputData(gridOf(piece)), Update());
       TAUTLINE_CHECK(messages.has(text));
-      TAUTLINE_CHECK_EQUAL(
-        vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+      TAUTLINE_CHECK_EQUAL(outputOf(filter)->GetNumberOfCells(), 0);
     };
     refused(part, wording("in-process-0-2-elements-the-first"));
     filter->SetSourceType(vtkEllipticSolver::EXPRESSION);
@@ -390,8 +389,7 @@ void testRefusals()
     TAUTLINE_SET(filter, SetInputData(gridOf(good)), Update());
     TAUTLINE_CHECK(messages.empty());
     TAUTLINE_CHECK_EQUAL(
-      vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(),
-      static_cast<vtkIdType>(good.cellOf.size()));
+      outputOf(filter)->GetNumberOfCells(), static_cast<vtkIdType>(good.cellOf.size()));
   }
 }
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Solve PDE: known solutions by every way a problem can be described, blocks and partitions,
-// rejected input.
+// Solve PDE: known solutions of problems described in every way, blocks, partitions, refusals.
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "vtkEllipticSolver.h"
@@ -35,7 +34,7 @@ MeshData scaled(MeshData data, double factor)
 vtkDataSet* solved(vtkEllipticSolver* filter)
 {
   TAUTLINE_SET(filter, SetRelativeTolerance(Tight), Update());
-  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  return outputOf(filter);
 }
 
 std::vector<double> values(vtkDataSet* data, const char* name = "Solution", bool ofCells = false)
@@ -73,8 +72,7 @@ vtkSmartPointer<vtkDoubleArray> arrayOf(
 }
 
 //------------------------------------------------------------------------------
-/// A linear function is its own solution, whatever the cells, the precision and the size of the
-/// mesh.
+/// A linear function is its own solution, for all cells, precisions and sizes.
 TAUTLINE_PART(testLinear)
 {
   for (CellType type : allTypes)
@@ -405,8 +403,7 @@ TAUTLINE_PART(testBlocks)
   withGhost->GetCellData()->AddArray(ghosts);
   TAUTLINE_SET(parts, SetPartition(1, withGhost), Modified());
   TAUTLINE_SET(filter, SetInputDataObject(parts), Update());
-  const auto upper =
-    values(vtkPartitionedDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPartition(1));
+  const auto upper = values(outputOf<vtkPartitionedDataSet>(filter)->GetPartition(1));
   TAUTLINE_CHECK_EQUAL(filter->GetUnknowns(), 25);
   TAUTLINE_EACH(Index, i, halves[1].numberOfPoints(),
     TAUTLINE_CHECK_NEAR(upper[i], expected[shift + i], 1e-10));
@@ -437,7 +434,7 @@ void refuses(vtkEllipticSolver* filter, const std::string& text)
   Messages messages(filter);
   filter->Update();
   TAUTLINE_CHECK(messages.has(text));
-  auto* mesh = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* mesh = outputOf(filter);
   TAUTLINE_CHECK_EQUAL(mesh->GetNumberOfPoints(), 0);
 }
 

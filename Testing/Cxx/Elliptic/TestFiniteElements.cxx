@@ -150,8 +150,7 @@ TAUTLINE_PART(testLinearFields)
       pde.tensor = tensor;
       const SparseMatrix a = stiffnessMatrix(mesh, pde);
       TAUTLINE_CHECK(exactlySymmetric(a));
-      // Constants are in the null space; linear functions satisfy the equations of inner points
-      // (patch test).
+      // Constants are in the null space; linear functions pass the patch test.
       TAUTLINE_CHECK(largest(times(a, std::vector<double>(a.size, 1.0))) < 1e-12);
       auto u = collect<double>(a.size, [&](Index i) { return dot(slope, data.point(i)); });
       const std::vector<double> au = times(a, u);
@@ -334,8 +333,7 @@ TAUTLINE_PART(testInvariance)
 //------------------------------------------------------------------------------
 TAUTLINE_PART(testSurface)
 {
-  // A cylinder of triangles or quadrilaterals: it can be unrolled, so its matrix is that of the
-  // plane.
+  // A cylinder of triangles or quadrilaterals: its matrix is that of the plane.
   for (CellType type : { CellType::Triangle, CellType::Quadrilateral })
   {
     MeshData flat = blockMesh(type, 6, 3, 0), bent = flat;

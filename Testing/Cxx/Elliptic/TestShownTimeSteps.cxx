@@ -22,7 +22,7 @@ TAUTLINE_PART(testTimeSteps)
   const auto at = [](vtkEllipticSolver* filter, double time)
   {
     filter->UpdateTimeStep(time);
-    auto* data = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    auto* data = outputOf<vtkMultiBlockDataSet>(filter);
     std::vector<double> both;
     for (unsigned int i = 0; i < 2; ++i)
     {

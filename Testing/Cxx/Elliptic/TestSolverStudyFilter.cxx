@@ -68,8 +68,7 @@ TAUTLINE_PART(testTable)
     0);
   TAUTLINE_CHECK(contains(filter->GetWhy(), fastest));
   TAUTLINE_CHECK(contains(filter->GetWhy(), wording("times-as-long")));
-  TAUTLINE_CHECK_EQUAL(
-    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 512);
+  TAUTLINE_CHECK_EQUAL(outputOf(filter)->GetNumberOfCells(), 512);
   TAUTLINE_CHECK(messages.empty());
 }
 

@@ -41,8 +41,7 @@ std::vector<double> mode(const EllipticSystem& system)
   return unknownsOf(system, values);
 }
 
-/// Its eigenvalue lambda, A u = lambda M u: of triangles with lumped mass, or of squares with
-/// consistent mass.
+/// Its eigenvalue lambda, A u = lambda M u: triangles with lumped or squares with consistent mass.
 double eigenvalue(bool lumped, Index n)
 {
   const double h = 1.0 / static_cast<double>(n);

@@ -80,8 +80,7 @@ TAUTLINE_PART(testFlat)
   }
 }
 
-/// A disk of a square: its rim is smooth at 30 degrees but for the square's corners, at 60 all of
-/// it.
+/// A disk of a square: its rim is smooth at 30 degrees but for the corners, at 60 everywhere.
 TAUTLINE_PART(testSmooth)
 {
   MeshData disk = blockMesh(CellType::Triangle, 16, 16, 0);
@@ -198,8 +197,7 @@ TAUTLINE_PART(testBentSide)
   TAUTLINE_CHECK_EQUAL(shape.onLines, n - 1 + straight - 1);
 }
 
-/// Three cells at one edge, a sheet without thickness, an edge without length: nothing slides
-/// there.
+/// Three cells at one edge, a sheet without thickness, an edge without length: nothing slides.
 TAUTLINE_PART(testFaulty)
 {
   MeshData fan;

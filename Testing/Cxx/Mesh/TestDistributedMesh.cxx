@@ -212,8 +212,7 @@ TAUTLINE_PART(testDivision)
           const DistributedMesh undivided(group, { piece.view, nullptr, piece.ghosts });
           TAUTLINE_CHECK_EQUAL(mesh.globalPoints(), whole.numberOfPoints());
           TAUTLINE_CHECK_EQUAL(mesh.globalCells(), whole.numberOfCells());
-          // What the owner sets arrives at all that have the point, also at pieces without cells
-          // of their own.
+          // What the owner sets arrives at all that have the point, also without own cells.
           auto values = collect<double>(mesh.localPoints(),
             [&](Index p) { return mesh.owned(p) ? static_cast<double>(mesh.numbers()[p]) : -1.0; });
           mesh.exchange(values.data(), 1);

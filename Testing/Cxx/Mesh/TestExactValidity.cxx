@@ -31,8 +31,7 @@ Vec3 mapAt(CellType type, const std::vector<Vec3>& p, const Vec3& x)
   return low + w * (high - low);
 }
 
-/// The determinant, by differences of the map, which are exact where it is linear; of a pyramid at
-/// its base.
+/// The determinant, by differences of the map, exact where it is linear; of a pyramid at its base.
 double determinantAt(CellType type, const std::vector<Vec3>& p, const Vec3& at)
 {
   Vec3 d[3];

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Which way round the cells are listed: consistently, all reversed, or mixed; and tangled is not
-// mixed.
+// Which way round the cells are listed: consistently, all reversed, or mixed, which tangled is not.
 #include "Registry.h"
 #include "Blocks.h"
 #include "tautline/Mesh/CellOrder.h"
@@ -134,8 +133,7 @@ void testOrientation(CellType type)
 }
 
 //------------------------------------------------------------------------------
-/// Inner points mirrored: most cells are inverted, yet the boundary determines which side is
-/// inside.
+/// Inner points mirrored: most cells are inverted, yet the boundary tells what is inside.
 TAUTLINE_PART(testMostlyInverted)
 {
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The meshers: bounds kept, sizes exact, markers and regions, failures that are errors and not
-// exits.
+// The meshers: bounds kept, sizes exact, markers and regions, failures as errors.
 
 #include "Registry.h"
 #include "vtkCallbackCommand.h"
@@ -71,7 +70,7 @@ Facts measure(vtkUnstructuredGrid* mesh)
 vtkSmartPointer<vtkUnstructuredGrid> read(const char* name)
 {
   TAUTLINE_NEW(vtkTetGenReader, reader, SetFileName((data + "/" + name).c_str()), Update());
-  return vtkUnstructuredGrid::SafeDownCast(reader->GetOutputDataObject(0));
+  return outputOf<vtkUnstructuredGrid>(reader);
 }
 
 /// A closed polygon as lines.
@@ -96,7 +95,7 @@ std::string failure(vtkAlgorithm* mesher, vtkDataObject* input)
 {
   mesher->SetInputDataObject(input);
   const std::string error = errorOf(mesher);
-  TAUTLINE_CHECK(vtkDataSet::SafeDownCast(mesher->GetOutputDataObject(0))->GetNumberOfCells() == 0);
+  TAUTLINE_CHECK(outputOf(mesher)->GetNumberOfCells() == 0);
   return error;
 }
 
@@ -120,8 +119,7 @@ void testTriangles()
   TAUTLINE_CHECK(
     boundary->GetNumberOfLines() > 16 / 0.2 && boundary->GetCellData()->GetArray("BoundaryMarker"));
 
-  // without the field Holes the inner square is a hole by parity; the line to it (marker 0) does
-  // not matter
+  // without the field Holes the inner square is a hole by parity; whatever the line to it
   vtkSmartPointer<vtkUnstructuredGrid> plate = read("plate.poly");
   plate->GetFieldData()->Initialize();
   TAUTLINE_SET(mesher, SetInputData(plate), Update());

@@ -414,8 +414,7 @@ struct Smoothing : SmoothFunction
   }
 };
 
-/// Newton and preconditioned L-BFGS reach the same mesh, the one in few iterations, the other in
-/// few evaluations.
+/// Newton and preconditioned L-BFGS reach the same mesh, in few iterations or few evaluations.
 TAUTLINE_PART(testNewton)
 {
   // Inner points only: the boundary stays a cube.

@@ -266,8 +266,7 @@ void testByHand(const MeshData& data, bool tangled, int& infinite)
     });
 }
 
-/// Gradients along a random direction against differences; the points of the view move under the
-/// sum.
+/// Gradients along a random direction against differences, where points of the view move.
 void testDifferences(MeshData data, double scale, int& compared, int& skipped)
 {
   data.transform([=](const Vec3& p) { return scale * p; });

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Boundary facets, edges and vertices listed beside the elements of a mesh, in any order, as the
-// files of most programs have them: every preset and optimizer moves the points as if they were not
-// there.
+// Boundary facets, edges and vertices listed beside the elements of a mesh, in any order, as in
+// most files: every preset and optimizer moves points as without them.
 #include "Optimizing.h"
 #include "Registry.h"
 #include "VtkMeshes.h"

@@ -235,8 +235,7 @@ vtkSmartPointer<vtkUnstructuredGrid> runOne(
     ++totals.refused;
     return nullptr;
   }
-  vtkSmartPointer<vtkUnstructuredGrid> output =
-    vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  vtkSmartPointer<vtkUnstructuredGrid> output = outputOf<vtkUnstructuredGrid>(filter);
   checkKept(grid, output);
   const MeshData after = withPointsOf(data, output);
   const Mesh now(after.view());

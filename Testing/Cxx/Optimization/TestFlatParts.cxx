@@ -221,8 +221,7 @@ TAUTLINE_PART_SLOW(testSurface)
   }
 }
 
-/// Objectives of the size, which shrink a mesh whose boundary is free, are minimized where points
-/// slide on the surface.
+/// Objectives of the size, which shrink a mesh whose boundary is free, are minimized by sliding.
 TAUTLINE_PART(testSizes)
 {
   const MeshData data = shearedBlock(CellType::Hexahedron, 0);

@@ -32,7 +32,7 @@ std::vector<double> placed(const MeshData& data)
   TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)),
     SetInputDataObject(3, toGrid(geometry)), SetBoundary(vtkMeshOptimizer::ON_SURFACE),
     SetMaximumIterations(0), Update());
-  auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkUnstructuredGrid>(filter);
   return toMesh(output).points;
 }
 

@@ -116,8 +116,7 @@ Run optimized(
     SetSurfaceTolerance(tolerance),
     SetInputArrayToProcess(6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Regions"),
     SetThreads(threads), SetHoldWorst(holdWorst), Update());
-  TAUTLINE_LET(Run, run,
-    points = toMesh(vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0))).points,
+  TAUTLINE_LET(Run, run, points = toMesh(outputOf<vtkUnstructuredGrid>(filter)).points,
     summary = filter->GetSummary(), error = filter->GetSurfaceError());
   TAUTLINE_CHECK_EQUAL(invalid(mesh.data, run.points), Index(0));
   return run;

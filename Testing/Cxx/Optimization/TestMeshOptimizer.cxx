@@ -45,11 +45,6 @@ std::vector<double> pointsOf(vtkMeshOptimizer* filter)
   return pointsOf(filter->GetOutputDataObject(0));
 }
 
-vtkDataSet* meshOf(vtkMeshOptimizer* filter)
-{
-  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
-}
-
 double largestStep(const MeshData& before, const std::vector<double>& after, Index point)
 {
   return norm(

@@ -25,11 +25,6 @@ MeshData perturbed(CellType type, Index n, double fraction = 0.8)
   return data;
 }
 
-vtkPointSet* meshOf(vtkMeshOptimizer* filter)
-{
-  return vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
-}
-
 double sumOfSquares(const MeshData& data)
 {
   const std::vector<double> q = valuesOf(data, Metric::InverseMeanRatio);
@@ -56,7 +51,7 @@ TAUTLINE_PART(testRefused)
     change(filter);
     filter->Update();
     TAUTLINE_CHECK(messages.has(text));
-    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    auto* output = outputOf(filter);
     TAUTLINE_CHECK(!output || output->GetNumberOfCells() == 0);
     TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), -1);
   };
@@ -305,7 +300,7 @@ TAUTLINE_PART(testBlocks)
     blocks, SetBlock(0, toGrid(flat)), SetBlock(2, toPolyData(flat)), SetBlock(3, toGrid(solid)));
   vtkNew<vtkMeshOptimizer> filter, single;
   TAUTLINE_SET(filter, SetInputData(blocks), Update());
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   TAUTLINE_CHECK_EQUAL(output->GetNumberOfBlocks(), 4u);
   double rows = 0, free = 0;
   const std::array inputs = { std::make_pair(0u, &flat), std::make_pair(2u, &flat),

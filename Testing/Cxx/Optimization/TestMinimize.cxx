@@ -57,8 +57,7 @@ struct Rosenbrock : SmoothFunction
   }
 };
 
-/// (x - a)^t H (x - a) / 2 with H = Q D Q, Q a reflection, D from 1 to `condition`; may provide H
-/// and D.
+/// (x - a)^t H (x - a) / 2 with H = Q D Q, Q a reflection, D from 1 to `condition`.
 struct Quadratic : SmoothFunction
 {
   Vector d, a, u;
@@ -382,8 +381,7 @@ struct LateHessian : Quadratic
   }
 };
 
-/// Newton's method takes one other step then, and its own ones from there: steepest descent would
-/// take thousands.
+/// Newton's method takes one other step then, then its own: steepest descent takes thousands.
 TAUTLINE_PART(testLateHessian)
 {
   LateHessian f;

@@ -157,8 +157,7 @@ TAUTLINE_PART(testThreads)
   }
 }
 
-/// Several objectives under each scalarization: the scalarized value falls, and no objective is
-/// forgotten.
+/// Several objectives under each scalarization: the value falls, and no objective is forgotten.
 TAUTLINE_PART(testScalarizations)
 {
   const MeshData data = perturbedBlock(CellType::Triangle, 8, 0.25);

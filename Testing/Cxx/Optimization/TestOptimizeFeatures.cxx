@@ -169,9 +169,8 @@ double offEllipsoid(const Vec3& p, const Vec3& axes)
   return std::abs(f) / norm(gradient);
 }
 
-/// An ellipsoid: runs in a row, each of which makes its model anew from the points of the
-/// last. Twice the resolution divides the distance by eight or so; it does not grow from run to
-/// run.
+/// An ellipsoid: runs in a row, each with a model of the last points. Twice the resolution divides
+/// the distance by about eight.
 TAUTLINE_PART_SLOW(testEllipsoid)
 {
   const Vec3 axes = { 1, 0.7, 0.5 };

@@ -151,7 +151,7 @@ Leaving leave(const MeshData& data, const std::function<void(vtkMeshOptimizer*)>
   set(filter);
   filter->Update();
   TAUTLINE_LET(Leaving, result, summary = filter->GetSummary());
-  vtkPoints* points = vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPoints();
+  vtkPoints* points = outputOf<vtkPointSet>(filter)->GetPoints();
   for (vtkIdType p = 0; p < points->GetNumberOfPoints(); ++p)
   {
     const double* x = points->GetPoint(p);
@@ -252,8 +252,7 @@ TAUTLINE_PART_SLOW(testLeaving)
   TAUTLINE_CHECK_EQUAL(limited.left, Index(0));
 }
 
-/// Planar meshes and simplices, too; points on interfaces stay on them; with a Geometry, none
-/// leaves.
+/// Planar meshes and simplices, too; points stay on interfaces; with a Geometry, none leaves.
 TAUTLINE_PART(testOtherMeshes)
 {
   constexpr double tolerance = 0.005;
@@ -296,8 +295,7 @@ TAUTLINE_PART(testOtherMeshes)
             6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, withRegions ? "Regions" : ""),
           Update());
         MeshData moved = data;
-        moved.points =
-          toMesh(vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0))).points;
+        moved.points = toMesh(outputOf<vtkUnstructuredGrid>(filter)).points;
         std::vector<double> q(data.numberOfCells()), imr(q.size());
         const Mesh mesh(moved.view());
         evaluateMetric(

@@ -128,14 +128,12 @@ TAUTLINE_PART(testFilter)
     const MeshData expected = at(data, run(data, options).points);
     TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)),
       SetPreset(vtkMeshOptimizer::WORST_ELEMENT), SetWorstMetricByName("min_angle"), Update());
-    const MeshData after =
-      withPointsOf(data, vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0)));
+    const MeshData after = withPointsOf(data, outputOf(filter));
     TAUTLINE_CHECK(after.points == expected.points);
     TAUTLINE_CHECK(smallestAngle(after, true) > 1.5 * smallestAngle(data, true));
     // Another choice is another result.
     TAUTLINE_SET(filter, SetWorstMetric(-1), Update());
-    const MeshData byRatio =
-      withPointsOf(data, vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0)));
+    const MeshData byRatio = withPointsOf(data, outputOf(filter));
     TAUTLINE_CHECK(smallestAngle(byRatio, true) < smallestAngle(after, true));
   }
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filters of nonlocal models: arrays, tables and pictures they make, input of every kind,
-// errors in words.
+// The filters of nonlocal models: arrays, tables, pictures, input of every kind, errors.
 #include "Registry.h"
 #include "HorizonMeshes.h"
 #include "VtkMeshes.h"
@@ -17,7 +16,7 @@ vtkSmartPointer<vtkUnstructuredGrid> squareWithLayer(double h = 0.1, double laye
 {
   TAUTLINE_NEW(vtkDomainSource, source, SetDomainByName("square"), SetElementSize(h),
     SetLayerWidth(layer), Update());
-  return vtkUnstructuredGrid::SafeDownCast(source->GetOutputDataObject(0));
+  return outputOf<vtkUnstructuredGrid>(source);
 }
 
 vtkSmartPointer<vtkUnstructuredGrid> bareSquare(int n, bool slanted, int precision = VTK_DOUBLE)
@@ -74,8 +73,7 @@ TAUTLINE_PART(testStiffness)
   }
   TAUTLINE_CHECK_EQUAL(entries, column(filter, "Nonzeros"));
   TAUTLINE_CHECK_NEAR(square, 1.0, 1e-9);
-  // About that of the Laplacian with factor pi / 6: 0.0737 / (pi / 6) = 0.141, and more with a
-  // horizon.
+  // About that of the Laplacian with factor pi / 6: 0.0737 / (pi / 6) = 0.141, or more.
   TAUTLINE_CHECK(highest > 0.13 && highest < 0.25);
   auto* picture = vtkImageData::SafeDownCast(filter->GetOutputDataObject(2));
   TAUTLINE_CHECK_EQUAL(picture->GetNumberOfPoints(), 1600);
@@ -201,8 +199,7 @@ TAUTLINE_PART(testErrors)
     {
       std::cerr << "  the error is: " << error << ", expected: " << text << "\n";
     }
-    TAUTLINE_CHECK_EQUAL(
-      vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+    TAUTLINE_CHECK_EQUAL(outputOf(filter)->GetNumberOfCells(), 0);
   };
   TAUTLINE_NEW(vtkPeridynamicStiffness, filter, SetInputData(bareSquare(4, false)));
   check(filter, "add it with Interaction Layer");

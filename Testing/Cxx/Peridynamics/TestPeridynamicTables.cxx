@@ -41,8 +41,7 @@ TAUTLINE_PART_SLOW(testExact)
     const Context context("exact 4." + std::to_string(cell.table) + " AR " +
       std::to_string(cell.aspectRatio) + " n " + std::to_string(cell.n) + " delta " +
       std::to_string(cell.delta));
-    // The one grid whose lines miss the square's sides needs a further layer for an interaction
-    // layer that is wide enough.
+    // The one grid whose lines miss the square's sides needs one more layer to be wide enough.
     const bool off = cell.aspectRatio == 4 && cell.n == 10 && cell.delta == 0.3;
     const HorizonMesh mesh = horizonSquare(1.0 / cell.n, cell.aspectRatio, cell.delta, off ? 1 : 0);
     PeridynamicOptions options = optionsOf(cell, Discretization::Exact);
@@ -52,8 +51,7 @@ TAUTLINE_PART_SLOW(testExact)
   }
 }
 
-/// One outer and three inner points, as in the text: column A of the notes; indefinite for p
-/// = 2.5.
+/// One outer and three inner points, as in the text: column A; indefinite for p = 2.5.
 TAUTLINE_PART(testLiteral)
 {
   struct Case
@@ -76,8 +74,7 @@ TAUTLINE_PART(testLiteral)
   }
 }
 
-/// The errors of the matrix that PeridynamicOptions::tolerance states, in parts of its largest
-/// entry.
+/// The errors of the matrix that PeridynamicOptions::tolerance states.
 TAUTLINE_PART_SLOW(testTolerance)
 {
   constexpr int n = 6;
@@ -142,8 +139,7 @@ TAUTLINE_PART(testConvergence)
     {
       const HorizonMesh mesh = shakenSquare(n, n / 4, regular ? 0.0 : 0.2);
       const PeridynamicSystem system = assemblePeridynamics(mesh, options);
-      // Over the mass of a vertex of the regular mesh: the lowest eigenvalue of the operator, up to
-      // O(h^2).
+      // Over the mass of a vertex of the regular mesh: the operator's lowest eigenvalue + O(h^2).
       smallest[level][regular] = extremeEigenvalues(system.matrix).smallest * n * n;
     }
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nonlocal matrices: formulas, symmetry, definiteness, null spaces, the local limit, kernels,
-// threads, whatever is refused; the interaction layer, the disc, the eigenvalues and the solver
-// they need.
+// threads, refusals; their interaction layer, disc, eigenvalues and solver.
 #include "Registry.h"
 #include "HorizonMeshes.h"
 #include "tautline/Peridynamics/InteractionLayer.h"
@@ -89,8 +88,7 @@ TAUTLINE_PART(testStructure)
           }
         }
         TAUTLINE_CHECK(symmetric);
-        // On an irregular mesh the discretizations differ: the dissertation's matrix is not
-        // symmetric.
+        // On an irregular mesh the discretizations differ: the dissertation's is not symmetric.
         TAUTLINE_CHECK_EQUAL(held.asymmetry > 1e-6, !exact);
 
         options.constrained = false;
@@ -398,8 +396,7 @@ TAUTLINE_PART(testInteractionLayer)
   }
   const double least = 4 * 0.1 + M_PI * 0.01 + 1.0 / 9.0 - std::pow(1.0 / 3.0 - 0.2, 2);
   TAUTLINE_CHECK(area > least && area < 2.0 * least);
-  // In the bay of a concave domain nothing is bridged: no triangle of the interaction layer is
-  // long.
+  // In the bay of a concave domain nothing is bridged: no triangle of the layer is long.
   HorizonMesh bay = ring;
   bay.triangles.clear();
   for (Index t = 0; t < ring.numberOfTriangles(); ++t)

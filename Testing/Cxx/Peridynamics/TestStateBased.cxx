@@ -349,8 +349,7 @@ TAUTLINE_PART(testMatrix)
       TAUTLINE_CHECK(scaled.matrix.columns == system.matrix.columns);
       for (std::size_t k = 0; k < scaled.matrix.values.size(); ++k)
       {
-        // Moduli do not change; forces are per depth: no factor for continuous functions in the
-        // plane.
+        // Moduli do not change; forces are per depth: no factor for continuous functions.
         TAUTLINE_CHECK_NEAR(scaled.matrix.values[k], system.matrix.values[k], 1e-12);
       }
     }

@@ -417,7 +417,7 @@ TAUTLINE_PART(testKindsOfInput)
   blocks->SetBlock(0, toGrid(blockMesh(CellType::Hexahedron, 4, 4, 4)));
   blocks->SetBlock(1, toPolyData(blockMesh(CellType::Triangle, 4, 4, 0), VTK_FLOAT));
   TAUTLINE_SET(filter, SetInputData(blocks), Update());
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   TAUTLINE_CHECK(messages.empty());
   for (unsigned block = 0; output && block < 2; ++block)
   {
@@ -432,7 +432,7 @@ TAUTLINE_PART(testKindsOfInput)
     SetPoints(toPoints(blockMesh(CellType::Hexahedron, 3, 3, 3))));
   TAUTLINE_SET(filter, SetInputData(structured), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovablePoints(), 8);
-  TAUTLINE_CHECK(vtkStructuredGrid::SafeDownCast(filter->GetOutputDataObject(0)));
+  TAUTLINE_CHECK(outputOf<vtkStructuredGrid>(filter));
   TAUTLINE_CHECK(messages.empty());
 
   TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));

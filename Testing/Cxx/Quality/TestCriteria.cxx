@@ -155,7 +155,7 @@ MeshData triangles(const std::vector<double>& heights)
 
 double cellValue(vtkElementQuality* filter, const char* array, vtkIdType cell)
 {
-  auto* cells = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetCellData();
+  auto* cells = outputOf(filter)->GetCellData();
   return cells->GetArray(array)->GetComponent(cell, 0);
 }
 

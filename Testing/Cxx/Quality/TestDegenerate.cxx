@@ -147,8 +147,7 @@ void testMagnitudes(CellType type)
   }
 }
 
-/// Flatter and flatter: valid and ever worse until the tolerance, then degenerate; never anything
-/// else.
+/// Flatter and flatter: valid and ever worse until the tolerance, then degenerate.
 void testSlivers(CellType type)
 {
   const Context context(topology(type).name + std::string(", sliver"));

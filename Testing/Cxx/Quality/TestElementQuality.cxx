@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filter: its arrays, tables and notices, on every kind of data set, in numbers known
-// beforehand.
+// The filter: its arrays, tables and notices, on every kind of data set, in known numbers.
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "vtkElementQuality.h"
@@ -36,7 +35,7 @@ double imrOf(double h)
 
 vtkCellData* cellsOf(vtkElementQuality* filter)
 {
-  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetCellData();
+  return outputOf(filter)->GetCellData();
 }
 
 double statistic(vtkElementQuality* filter, const char* column, vtkIdType row = 0)
@@ -195,7 +194,7 @@ TAUTLINE_PART(testDataSets)
       filter->AddMetricByName(name);
     }
     filter->Update();
-    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    auto* output = outputOf(filter);
     TAUTLINE_CHECK(output->IsA(c.data->GetClassName()));
     TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), c.cells);
     TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), c.cells);
@@ -215,7 +214,7 @@ TAUTLINE_PART(testBlocks)
   TAUTLINE_NEW(vtkMultiBlockDataSet, blocks, SetBlock(0, toGrid(triangles({ height, 0.2 }))),
     SetBlock(2, toPolyData(triangles({ 0.1, height }))));
   TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(blocks), Update());
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 4);
   TAUTLINE_CHECK_NEAR(statistic(filter, "Maximum"), imrOf(0.1), 1e-14);
   auto* worst =
@@ -388,7 +387,7 @@ TAUTLINE_PART(testErrors)
     messages.clear();
     TAUTLINE_SET(filter, Modified(), Update());
     TAUTLINE_CHECK(messages.has(part));
-    auto* output = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+    auto* output = outputOf(filter);
     TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), 0);
   };
   filter->SetTargetType(vtkElementQuality::REFERENCE);
@@ -494,7 +493,7 @@ TAUTLINE_PART(testStrayFaces)
   const vtkIdType stream[] = { 3, 0, 1, 3, 3, 0, 1, 9, 3, 1, 3, 9, 3, 0, 3, 9 };
   solid->InsertNextCell(VTK_POLYHEDRON, 4, stream);
   TAUTLINE_NEW(vtkElementQuality, filter, SetInputData(solid), Update());
-  auto* kept = vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* kept = outputOf<vtkUnstructuredGrid>(filter);
   TAUTLINE_CHECK(kept->GetFaces() && kept->GetFaces()->GetNumberOfValues() == 17);
 }
 #endif

@@ -36,7 +36,7 @@ double cellOf(vtkMeshComparison* filter, const char* column, vtkIdType row = 0)
 
 vtkCellData* cellsOf(vtkMeshComparison* filter)
 {
-  return vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetCellData();
+  return outputOf(filter)->GetCellData();
 }
 
 TAUTLINE_PART(testKnownChanges)
@@ -87,7 +87,7 @@ TAUTLINE_PART(testKnownChanges)
   TAUTLINE_CHECK_NEAR(cellOf(filter, "MaximumAfter"), was[0], 1e-15);
   TAUTLINE_CHECK_NEAR(cellOf(filter, "MeanAfter"), meanOf(is), 1e-15);
   TAUTLINE_CHECK_NEAR(cellOf(filter, "MaximumBefore", 3), 0.15, 1e-15);
-  vtkPointData* points = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetPointData();
+  vtkPointData* points = outputOf(filter)->GetPointData();
   TAUTLINE_CHECK_EQUAL(component(points, "Displacement", 8, 1), 0.6);
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("2-better-2-worse-2-equal")));
 }
@@ -147,8 +147,7 @@ TAUTLINE_PART(testReversed)
 
 TAUTLINE_PART(testEveryCellAndMetric)
 {
-  // Nothing moved: everything is equal, for every cell and metric; and in a chain with a
-  // perturbation.
+  // Nothing moved: everything is equal, for every cell and metric, perturbed or not.
   for (CellType type : allTypes)
   {
     const Context context(topology(type).name);
@@ -203,7 +202,7 @@ TAUTLINE_PART(testKindsOfInput)
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Better"), 1);
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Worse"), 1);
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 1);
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   TAUTLINE_CHECK(vtkPolyData::SafeDownCast(output->GetBlock(2)));
   TAUTLINE_CHECK_EQUAL(
     component(vtkDataSet::SafeDownCast(output->GetBlock(2))->GetCellData(), "Change", 0), -1);
@@ -211,7 +210,7 @@ TAUTLINE_PART(testKindsOfInput)
   TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
   TAUTLINE_SET(filter, SetInputData(0, image), SetInputData(1, image), Update());
   TAUTLINE_CHECK_EQUAL(cellOf(filter, "Equal"), 8);
-  TAUTLINE_CHECK(vtkImageData::SafeDownCast(filter->GetOutputDataObject(0)));
+  TAUTLINE_CHECK(outputOf<vtkImageData>(filter));
 
   // Ghost cells are not counted.
   auto grid = toGrid(triangles({ flat, ideal }));

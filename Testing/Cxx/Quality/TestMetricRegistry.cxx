@@ -175,8 +175,7 @@ void testBarrier(const MetricInfo& info, CellType type)
 }
 
 /// At the ideal cell the metrics called kinked have one: the slopes to either side differ. Right
-/// angles have the largest sine, so the scaled Jacobian is tried at a sheared ideal cell where it
-/// has such.
+/// angles have the largest sine, so the scaled Jacobian is tried at a sheared one.
 void testKink(const MetricInfo& info, CellType type)
 {
   Random random(12);

@@ -132,8 +132,7 @@ TAUTLINE_PART(testFilters)
   TAUTLINE_SET(quality, SetInputData(grid), AddMetricByName("imr"), AddMetric(elsewhere), Update());
   TAUTLINE_CHECK(messages.has(wording("the-metric-1234567890-of-a-user-is-2")));
   TAUTLINE_CHECK(messages.has("TAUTLINE_METRICS"));
-  TAUTLINE_CHECK_EQUAL(
-    vtkDataSet::SafeDownCast(quality->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  TAUTLINE_CHECK_EQUAL(outputOf(quality)->GetNumberOfCells(), 0);
   vtkNew<vtkMeshOptimizer> optimizer;
   Messages others(optimizer);
   optimizer->SetInputData(grid);
@@ -142,8 +141,7 @@ TAUTLINE_PART(testFilters)
     others.clear();
     optimizer->Update();
     TAUTLINE_CHECK(others.has(wording("the-metric-1234567890-of-a-user-is")));
-    TAUTLINE_CHECK_EQUAL(
-      vtkDataSet::SafeDownCast(optimizer->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+    TAUTLINE_CHECK_EQUAL(outputOf(optimizer)->GetNumberOfCells(), 0);
   };
   optimizer->SetWorstMetric(elsewhere);
   refuses();
@@ -154,8 +152,6 @@ TAUTLINE_PART(testFilters)
   others.clear();
   optimizer->Update();
   TAUTLINE_CHECK(!others.has(wording("of-a-user")));
-  TAUTLINE_CHECK_EQUAL(
-    vtkDataSet::SafeDownCast(optimizer->GetOutputDataObject(0))->GetNumberOfCells(),
-    grid->GetNumberOfCells());
+  TAUTLINE_CHECK_EQUAL(outputOf(optimizer)->GetNumberOfCells(), grid->GetNumberOfCells());
 }
 }

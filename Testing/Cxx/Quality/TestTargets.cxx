@@ -175,8 +175,7 @@ Columns stretch(const Columns& axes, const Vec3& lengths)
   return result;
 }
 
-/// Where the ideal cell, in any rotation, has the size that M prescribes, its edges have length 1
-/// in M.
+/// Where the ideal cell, in any rotation, has the size that M prescribes, edges have length 1 in M.
 void testTensor(CellType type, bool surface)
 {
   Random random(8);

@@ -150,8 +150,7 @@ void compare(const Comparison& c)
   }
 }
 
-/// Where Verdict uses the centre besides the corners, the two agree if all Jacobians are the
-/// same.
+/// Where Verdict uses the centre besides the corners, they agree if all Jacobians are the same.
 TAUTLINE_PART(testAffineHexahedra)
 {
   Random random(14);

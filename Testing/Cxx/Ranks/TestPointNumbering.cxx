@@ -18,8 +18,7 @@ namespace
 {
 constexpr int columns = 24, rows = 18; // of squares, in the whole mesh
 
-/// A rank's part of a grid of squares: a band of columns, or, if `scattered`, every so-many-th
-/// square.
+/// A rank's part of a grid of squares: a band of columns, or, `scattered`, every so-many-th square.
 struct Part
 {
   std::vector<double> points;
@@ -103,8 +102,7 @@ void testNumbering(MPI_Comm comm, bool scattered)
   TAUTLINE_CHECK_EQUAL(numbering.globalSize(), whole);
   TAUTLINE_CHECK_EQUAL(numbering.sum(numbering.ownedRows()), whole);
 
-  // Rows: one per point on all ranks, contiguous where owned, owned once, by the lowest rank that
-  // has the point.
+  // Rows: one per point on all ranks, contiguous where owned, owned once, by the lowest rank.
   std::vector<Index> rowOfNode((columns + 1) * (rows + 1), -1), most(rowOfNode), least(rowOfNode);
   std::vector<int> lowest(rowOfNode.size(), ranks), lowestOfAll(lowest);
   Index next = numbering.firstRow(), largest = -1;
@@ -468,8 +466,7 @@ TAUTLINE_TEST(TestPointNumbering)
 {
   MPI_Init(nullptr, nullptr);
   MPI_Comm comm = MPI_COMM_WORLD;
-  // A single rank solves a system while the others do not: nothing is collective, not even
-  // the initialization.
+  // A single rank solves a system while the others do not: nothing is collective.
   if (rankOf(comm) == 0)
   {
     const SparseMatrix a = laplacian(20);

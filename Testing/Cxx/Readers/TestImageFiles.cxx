@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Image files: every format is read with the pixels that were written; a file that is cut anywhere,
-// damaged, of another kind or no file at all is an error that names it, for one image and for a
-// folder.
+// damaged, of another kind or no file at all is an error that names it, also in a folder.
 
 #include "Registry.h"
+#include "VtkMeshes.h"
 #include "MeshFileChecks.h"
 #include "vtkAlgorithm.h"
 #include "vtkCommand.h"
@@ -191,7 +191,7 @@ void testFolder()
   TAUTLINE_CHECK(mkfifo((set / "pipe.png").string().c_str(), 0600) == 0);
   TAUTLINE_NEW(vtkSilhouetteSetReader, reader, SetFileName(set.string().c_str()));
   TAUTLINE_CHECK_EQUAL(errorOf(reader), std::string());
-  auto* blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  auto* blocks = outputOf<vtkMultiBlockDataSet>(reader);
   TAUTLINE_CHECK_EQUAL(blocks->GetNumberOfBlocks(), 2u); // by content, in the order of the names
   // A list that names what is no image, and a damaged image of a folder.
   for (const char* name : { "short.tga", "notes.png", "pipe.png" })

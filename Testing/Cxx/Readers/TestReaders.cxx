@@ -355,7 +355,7 @@ void testFreeFemAndOff()
 void testOrderOfMiddleNodes(vtkMeshFileReader* reader, const char* name, int points)
 {
   TAUTLINE_SET(reader, SetFileName((data + name).c_str()), SetLowerCells(true), Update());
-  auto* grid = vtkUnstructuredGrid::SafeDownCast(reader->GetOutputDataObject(0));
+  auto* grid = outputOf<vtkUnstructuredGrid>(reader);
   TAUTLINE_CHECK(grid && grid->GetNumberOfPoints() == points);
   int middles = 0;
   for (vtkIdType i = 0; grid && i < grid->GetNumberOfCells(); ++i)

@@ -15,7 +15,7 @@ constexpr Index Cubes = 5;
 
 vtkUnstructuredGrid* meshOf(vtkMeshImprover* filter)
 {
-  return vtkUnstructuredGrid::SafeDownCast(filter->GetOutputDataObject(0));
+  return outputOf<vtkUnstructuredGrid>(filter);
 }
 
 MeshData dataOf(vtkUnstructuredGrid* grid)
@@ -396,7 +396,7 @@ TAUTLINE_PART(testInputs)
     SetBlock(1, empty), SetBlock(2, toGrid(apart)));
   TAUTLINE_SET(filter, SetInputData(blocks), Update());
   TAUTLINE_CHECK(messages.empty());
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   auto* first = vtkUnstructuredGrid::SafeDownCast(output->GetBlock(0));
   auto* third = vtkUnstructuredGrid::SafeDownCast(output->GetBlock(2));
   TAUTLINE_CHECK_EQUAL(first->GetPoints()->GetDataType(), VTK_FLOAT);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The filters of the module Shapes: the documented arrays and tables, images of all kinds, errors,
-// the reader.
+// The filters of the module Shapes: the documented arrays and tables, images of all kinds, errors.
 
 #include "Registry.h"
+#include "VtkMeshes.h"
 #include "Shapes.h"
 #include "vtkCellData.h"
 #include "vtkCommand.h"
@@ -65,7 +65,7 @@ TAUTLINE_PART(testMesher)
   const Picture picture = blob(100, 50, 50, 25);
   TAUTLINE_NEW(vtkSilhouetteMesher, mesher, SetInputData(makeImage(picture, 1, 0.5)),
     SetSpacing(15), Update());
-  auto* mesh = vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0));
+  auto* mesh = outputOf<vtkUnstructuredGrid>(mesher);
   const vtkIdType n = mesh->GetNumberOfPoints();
   TAUTLINE_CHECK(n > 6 && mesh->GetNumberOfCells() == n - 2);
   for (const char* name : { "BoundaryOrder", "EliminationOrder" })
@@ -93,7 +93,7 @@ TAUTLINE_PART(testMesher)
   {
     TAUTLINE_NEW(vtkSilhouetteMesher, other, SetInputData(makeImage(picture, components, 0.5)),
       SetSpacing(15), Update());
-    auto* same = vtkUnstructuredGrid::SafeDownCast(other->GetOutputDataObject(0));
+    auto* same = outputOf<vtkUnstructuredGrid>(other);
     TAUTLINE_CHECK_EQUAL(same->GetNumberOfPoints(), n);
     TAUTLINE_EACH(vtkIdType, i, std::min(n, same->GetNumberOfPoints()),
       TAUTLINE_CHECK_NEAR(same->GetPoint(i)[0], mesh->GetPoint(i)[0], 1e-9));
@@ -112,8 +112,8 @@ TAUTLINE_PART(testCellPixels)
   second->SetInputData(cells);
   first->Update();
   second->Update();
-  auto* a = vtkUnstructuredGrid::SafeDownCast(first->GetOutputDataObject(0));
-  auto* b = vtkUnstructuredGrid::SafeDownCast(second->GetOutputDataObject(0));
+  auto* a = outputOf<vtkUnstructuredGrid>(first);
+  auto* b = outputOf<vtkUnstructuredGrid>(second);
   TAUTLINE_CHECK(a->GetNumberOfPoints() > 3 && a->GetNumberOfPoints() == b->GetNumberOfPoints());
   TAUTLINE_EACH(vtkIdType, i, std::min(a->GetNumberOfPoints(), b->GetNumberOfPoints()),
     TAUTLINE_CHECK_NEAR(a->GetPoint(i)[1], b->GetPoint(i)[1], 1e-9));
@@ -125,8 +125,7 @@ TAUTLINE_PART(testMesherErrors)
   {
     TAUTLINE_NEW(vtkSilhouetteMesher, mesher, SetInputData(image));
     TAUTLINE_CHECK(contains(errorOf(mesher), part));
-    TAUTLINE_CHECK_EQUAL(
-      vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0))->GetNumberOfPoints(), 0);
+    TAUTLINE_CHECK_EQUAL(outputOf<vtkUnstructuredGrid>(mesher)->GetNumberOfPoints(), 0);
   };
   with(makeImage(paint(9, 9, [](double, double) { return 1.0; })), "one value");
   auto oblong = makeImage(disc(30, 15, 15, 9));
@@ -155,9 +154,9 @@ TAUTLINE_PART(testMatcher)
   }
   TAUTLINE_CHECK(fromImage->GetExact());
   TAUTLINE_CHECK_RELATIVE(fromMesh->GetEnergy(), fromImage->GetEnergy(), 1e-5);
-  auto* mesh = vtkUnstructuredGrid::SafeDownCast(fromMesh->GetOutputDataObject(0));
+  auto* mesh = outputOf<vtkUnstructuredGrid>(fromMesh);
   auto* table = vtkTable::SafeDownCast(fromMesh->GetOutputDataObject(1));
-  auto* before = vtkUnstructuredGrid::SafeDownCast(mesher->GetOutputDataObject(0));
+  auto* before = outputOf<vtkUnstructuredGrid>(mesher);
   TAUTLINE_CHECK_EQUAL(mesh->GetNumberOfCells(), before->GetNumberOfCells());
   vtkDataArray* displacement = mesh->GetPointData()->GetArray("Displacement");
   for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
@@ -278,13 +277,13 @@ void testRetrieval(const std::string& output)
   TAUTLINE_NEW(vtkShapeRetrieval, retrieval, SetInputConnection(reader->GetOutputPort()),
     SetBestMatches(2), Update());
   TAUTLINE_CHECK_NEAR(retrieval->GetRecognitionRate(), 100.0, 1e-12);
-  auto* blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  auto* blocks = outputOf<vtkMultiBlockDataSet>(reader);
   TAUTLINE_CHECK_EQUAL(blocks->GetNumberOfBlocks(), 6u);
   TAUTLINE_CHECK(std::string(blocks->GetMetaData(1u)->Get(vtkCompositeDataSet::NAME())) == "disc0");
   auto* label = vtkStringArray::SafeDownCast(
     vtkDataSet::SafeDownCast(blocks->GetBlock(1))->GetFieldData()->GetAbstractArray("Label"));
   TAUTLINE_CHECK(label && label->GetValue(0) == "round");
-  auto* distances = vtkTable::SafeDownCast(retrieval->GetOutputDataObject(0));
+  auto* distances = outputOf<vtkTable>(retrieval);
   TAUTLINE_CHECK_EQUAL(distances->GetNumberOfRows(), 6);
   TAUTLINE_CHECK_EQUAL(distances->GetNumberOfColumns(), 8);
   TAUTLINE_CHECK_EQUAL(distances->GetValueByName(0, "blob0").ToDouble(), 0.0);
@@ -306,9 +305,9 @@ void testRetrieval(const std::string& output)
   const double beside = distances->GetValueByName(0, "disc1").ToDouble();
   reader->SideBySideOff();
   retrieval->Update();
-  blocks = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  blocks = outputOf<vtkMultiBlockDataSet>(reader);
   TAUTLINE_CHECK_EQUAL(vtkImageData::SafeDownCast(blocks->GetBlock(5))->GetOrigin()[0], 0.0);
-  distances = vtkTable::SafeDownCast(retrieval->GetOutputDataObject(0));
+  distances = outputOf<vtkTable>(retrieval);
   TAUTLINE_CHECK(beside > 0);
   TAUTLINE_CHECK_EQUAL(distances->GetValueByName(0, "disc1").ToDouble(), beside);
   reader->SideBySideOn();

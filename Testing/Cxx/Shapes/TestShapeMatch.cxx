@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The energy's terms, the exact search against brute force and against the plain loop, invariances,
-// reliability.
+// The energy's terms, the exact search against brute force and the plain loop, invariances.
 
 #include "Registry.h"
 #include "Shapes.h"
@@ -33,8 +32,7 @@ TAUTLINE_PART(testTerms)
   TAUTLINE_CHECK_NEAR(e.deformation, std::log(3.0) * std::log(3.0), 1e-12);
   const double grown = (4.0 + std::sqrt(10.0)) / (2.0 + std::sqrt(2.0));
   TAUTLINE_CHECK_NEAR(e.distortion, std::log(grown), 1e-12);
-  // gamma and delta are ratios of the larger to the smaller: shrinking where the shape grows is
-  // free.
+  // gamma and delta are ratios of the larger to the smaller: shrinking elsewhere is free.
   const std::array<Vec2, 3> half = { Vec2{ 0, 0 }, Vec2{ 0.5, 0 }, Vec2{ 0, 0.5 } };
   TAUTLINE_CHECK_NEAR(triangleEnergy(s, half, 0.5, plain()).distortion, 0.0, 1e-12);
   ShapeEnergy strict = plain();
@@ -197,8 +195,7 @@ TAUTLINE_PART(testPlainLoop)
   }
 }
 
-/// Moved by grid steps, scaled, mirrored and turned shapes are found with the energy they should
-/// have.
+/// Moved by grid steps, scaled, mirrored and turned shapes are found with their energy.
 TAUTLINE_PART(testInvariance)
 {
   MatchOptions options;
@@ -359,8 +356,7 @@ TAUTLINE_PART(testRefused)
   TAUTLINE_CHECK_THROWS(ShapeTarget(shape, huge), "4 GiB");
 }
 
-/// A target without the shape, a 3-vertex source, a source larger than the target: an answer, and
-/// finite.
+/// A target without the shape, a 3-vertex source, a source larger than the target: a finite answer.
 TAUTLINE_PART(testOddTargets)
 {
   const ShapeSource source = makeShapeSource(traceSilhouette(blob(200, 100, 100, 60).view()), 25.0);

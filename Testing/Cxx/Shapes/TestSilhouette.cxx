@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// From images to outlines and polygons: known areas, sub-pixel places, what is ignored and what is
-// refused.
+// From images to outlines and polygons: known areas, sub-pixel places, what is ignored or refused.
 
 #include "Registry.h"
 #include "Shapes.h"

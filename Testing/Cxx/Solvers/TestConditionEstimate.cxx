@@ -336,8 +336,7 @@ void testEquations()
     }
   }
 
-  // A unit right triangle: eigenvalues of its Poisson matrix are 0, 1/2 and 3/2. A needle
-  // dominates.
+  // A unit right triangle: its Poisson matrix has eigenvalues 0, 1/2 and 3/2. A needle dominates.
   BoxMesh box(CellType::Triangle, 6);
   for (std::size_t i = 0; i < box.points.size(); ++i)
   {

@@ -27,11 +27,6 @@ Index invalidOf(const MeshData& data)
   return Index(validity.size()) - std::count(validity.begin(), validity.end(), Valid);
 }
 
-vtkPointSet* meshOf(vtkMeshUntangler* filter)
-{
-  return vtkPointSet::SafeDownCast(filter->GetOutputDataObject(0));
-}
-
 TAUTLINE_PART(testValid)
 {
   for (CellType type : allTypes)
@@ -178,7 +173,7 @@ TAUTLINE_PART(testInputs)
   TAUTLINE_NEW(
     vtkMultiBlockDataSet, blocks, SetBlock(0, toGrid(data, VTK_FLOAT)), SetBlock(1, toGrid(data)));
   TAUTLINE_SET(filter, SetInputData(blocks), Update());
-  auto* output = vtkMultiBlockDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  auto* output = outputOf<vtkMultiBlockDataSet>(filter);
   for (unsigned int i : { 0u, 1u })
   {
     auto* block = vtkPointSet::SafeDownCast(output->GetBlock(i));
@@ -234,8 +229,7 @@ TAUTLINE_PART(testStops)
   const auto early = stopAt(filter, vtkInterruption::PollEvent);
   TAUTLINE_SET(filter, Modified(), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetAbortExecute(), 1);
-  TAUTLINE_CHECK_EQUAL(
-    vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0))->GetNumberOfCells(), 0);
+  TAUTLINE_CHECK_EQUAL(outputOf(filter)->GetNumberOfCells(), 0);
   TAUTLINE_SET(filter, RemoveObserver(early), SetAbortExecute(0));
   messages.clear();
   TAUTLINE_SET(filter, SetTimeLimit(1e-9), Update());
