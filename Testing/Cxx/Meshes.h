@@ -8,11 +8,11 @@
 #ifndef tautline_Meshes_h
 #define tautline_Meshes_h
 
+#include "Loops.h"
 #include "Set.h"
 #include "tautline/Quality/Metrics.h"
 #include "tautline/Quality/Targets.h"
 
-#include <algorithm>
 #include <functional>
 #include <limits>
 #include <map>
@@ -20,7 +20,6 @@
 #include <random>
 #include <set>
 #include <string>
-#include <vector>
 
 namespace tautline
 {
@@ -44,6 +43,27 @@ struct MeshData
   {
     this->points.insert(this->points.end(), p.begin(), p.end());
     return this->numberOfPoints() - 1;
+  }
+  void addPoints(const std::vector<Vec3>& places)
+  {
+    for (const Vec3& p : places)
+    {
+      this->addPoint(p);
+    }
+  }
+  std::vector<Index> nodes(Index cell) const
+  {
+    const auto begin = this->connectivity.begin();
+    return { begin + this->offsets[cell], begin + this->offsets[cell + 1] };
+  }
+  /** Exchanges two nodes of each cell, or of every step-th from one on. */
+  void swapNodes(Index a, Index b, Index first = 0, Index step = 1)
+  {
+    for (Index cell = first; cell < this->numberOfCells(); cell += step)
+    {
+      Index* const of = &this->connectivity[this->offsets[cell]];
+      std::swap(of[a], of[b]);
+    }
   }
   void addCell(int vtkType, const std::vector<Index>& nodes)
   {

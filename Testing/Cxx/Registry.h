@@ -28,6 +28,7 @@
 #define tautline_Registry_h
 
 #include "Check.h"
+#include "Loops.h"
 #include "Set.h"
 
 #include <chrono>

@@ -118,6 +118,17 @@ inline MeshData withPointsOf(MeshData data, vtkDataSet* points)
   return data;
 }
 
+/** An array of f of each number below a count, or of each element of a range. */
+template <class Array, class Range, class Function>
+vtkSmartPointer<Array> arrayOf(const char* name, const Range& range, const Function& f)
+{
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  forEach(range,
+    [&](const auto& x) { array->InsertNextValue(static_cast<typename Array::ValueType>(f(x))); });
+  return array;
+}
+
 /** The first output of a filter, null if it is not of that type. */
 template <class T = vtkDataSet>
 T* outputOf(vtkAlgorithm* filter)

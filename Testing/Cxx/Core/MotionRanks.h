@@ -6,7 +6,6 @@
 #ifndef tautline_MotionRanks_h
 #define tautline_MotionRanks_h
 
-#include "Check.h"
 #include "ThreadRanks.h"
 #include "VtkMeshes.h"
 
@@ -18,11 +17,9 @@ namespace tautline
 inline vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
 {
   auto grid = toGrid(part.data);
-  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
-  for (const unsigned char ghost : part.ghosts)
-  {
-    ghosts->InsertNextValue(ghost ? vtkDataSetAttributes::DUPLICATECELL : 0);
-  }
+  const auto ghosts =
+    arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(), part.ghosts,
+      [&](const unsigned char ghost) { return ghost ? vtkDataSetAttributes::DUPLICATECELL : 0; });
   grid->GetCellData()->AddArray(ghosts);
   // Fixed points, limits and kinds of features, by the points of the whole mesh.
   vtkNew<vtkDoubleArray> fixed, limits, kinds;

@@ -226,11 +226,8 @@ TAUTLINE_PART(testNotices)
   TAUTLINE_CHECK(contains(MeshAdapter(broken).notice(), wording("1-points-have-a-nan")));
 
   const auto grid = toGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0));
-  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
-  for (unsigned char flag : { 0, 1, 0, 0 })
-  {
-    ghosts->InsertNextValue(flag);
-  }
+  const auto ghosts = arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),
+    std::vector<unsigned char>{ 0, 1, 0, 0 }, [&](unsigned char flag) { return flag; });
   grid->GetCellData()->AddArray(ghosts);
   const MeshAdapter adapter(grid);
   TAUTLINE_CHECK(
@@ -251,10 +248,7 @@ TAUTLINE_PART(testDescription)
   std::swap(data.connectivity[1], data.connectivity[3]);
   TAUTLINE_CHECK(contains(description(data), "mixed"));
   TAUTLINE_CHECK(contains(description(data), "2 edges"));
-  for (Index i = 1; i < data.numberOfCells(); ++i)
-  {
-    std::swap(data.connectivity[4 * i + 1], data.connectivity[4 * i + 3]);
-  }
+  data.swapNodes(1, 3, 1);
   TAUTLINE_CHECK(contains(description(data), "reversed"));
   TAUTLINE_CHECK(contains(description(data), "9 of 9"));
 }

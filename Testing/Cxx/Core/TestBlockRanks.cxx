@@ -38,9 +38,7 @@ vtkSmartPointer<vtkUnstructuredGrid> pieceOf(
   {
     if (owner(cell, takers) == rank)
     {
-      data.addCell(static_cast<int>(whole.types[cell]),
-        std::vector<Index>(whole.connectivity.begin() + whole.offsets[cell],
-          whole.connectivity.begin() + whole.offsets[cell + 1]));
+      data.addCell(static_cast<int>(whole.types[cell]), whole.nodes(cell));
       ids->InsertNextValue(cell);
     }
   }
@@ -166,11 +164,7 @@ void testQuality(int rank, int ranks)
     10, rank, ranks);
   // All reversed on all ranks: the mesh is treated as if flipped.
   MeshData reversed = moved;
-  for (Index cell = 0; cell < reversed.numberOfCells(); ++cell)
-  {
-    std::swap(reversed.connectivity[reversed.offsets[cell]],
-      reversed.connectivity[reversed.offsets[cell] + 1]);
-  }
+  reversed.swapNodes(0, 1);
   compareQuality("reversed", reversed, scattered, 0, rank, ranks);
 }
 
@@ -310,11 +304,8 @@ vtkSmartPointer<vtkMultiBlockDataSet> blocksOf(
       continue;
     }
     auto grid = toGrid(part.data);
-    TAUTLINE_NEW(vtkIdTypeArray, numbers, SetName("numbers"));
-    for (const Index p : part.pointOf)
-    {
-      numbers->InsertNextValue(ids ? known[meshes[i].point(p)] : p);
-    }
+    const auto numbers = arrayOf<vtkIdTypeArray>(
+      "numbers", part.pointOf, [&](const Index p) { return ids ? known[meshes[i].point(p)] : p; });
     if (ids)
     {
       grid->GetPointData()->SetGlobalIds(numbers);

@@ -404,11 +404,8 @@ void testNotJoined()
   data.points = { x, 0, 0, x + 1, 0, 0, x, 1, 0 };
   data.addCell(CellType::Triangle, { 0, 1, 2 });
   auto grid = toGrid(data);
-  TAUTLINE_NEW(vtkIdTypeArray, ids, SetName("ids"));
-  for (vtkIdType id : { 0, 1, 2 })
-  {
-    ids->InsertNextValue(id);
-  }
+  const auto ids = arrayOf<vtkIdTypeArray>(
+    "ids", std::vector<vtkIdType>{ 0, 1, 2 }, [&](vtkIdType id) { return id; });
   grid->GetPointData()->SetGlobalIds(ids);
   vtkNew<vtkPeridynamicStiffness> filter;
   Messages messages(filter);

@@ -15,7 +15,6 @@
 #include "vtkInterruption.h"
 #include "vtkMeshOptimizer.h"
 
-#include <atomic>
 #include <thread>
 #include <csignal>
 #include <ctime>

@@ -4,7 +4,6 @@
 #include "Registry.h"
 #include "Sanitized.h"
 #include "tautline/Core/Memory.h"
-#include "tautline/Core/Types.h"
 
 #include <functional>
 #include <limits>

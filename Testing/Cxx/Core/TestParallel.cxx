@@ -8,7 +8,6 @@
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
 
-#include <atomic>
 #include <csignal>
 #include <functional>
 #include <numeric>

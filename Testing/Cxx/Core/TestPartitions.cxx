@@ -24,11 +24,7 @@ constexpr Index Parts = 3;
 
 void addIds(vtkDataSetAttributes* data, const std::vector<Index>& values)
 {
-  TAUTLINE_NEW(vtkIdTypeArray, ids, SetName("ids"));
-  for (const Index value : values)
-  {
-    ids->InsertNextValue(value);
-  }
+  const auto ids = arrayOf<vtkIdTypeArray>("ids", values, [&](const Index value) { return value; });
   data->SetGlobalIds(ids);
 }
 
@@ -214,10 +210,7 @@ TAUTLINE_PART(testOthers)
 TAUTLINE_PART(testQuality)
 {
   MeshData mesh = rough(CellType::Tetrahedron, 4);
-  for (Index cell = 0; cell < mesh.numberOfCells(); cell += Parts)
-  {
-    std::swap(mesh.connectivity[mesh.offsets[cell]], mesh.connectivity[mesh.offsets[cell] + 1]);
-  }
+  mesh.swapNodes(0, 1, 0, Parts);
   vtkNew<vtkElementQuality> whole, parts;
   whole->AddMetricByName("imr");
   parts->AddMetricByName("imr");

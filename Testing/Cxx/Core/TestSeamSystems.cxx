@@ -69,11 +69,8 @@ TAUTLINE_PART(testElliptic)
 
   // Values that differ between points that are one are no secret.
   const auto grid = toGrid(both.pieces.mesh);
-  TAUTLINE_NEW(vtkDoubleArray, ids, SetName("ids"));
-  for (Index p = 0; p < both.pieces.mesh.numberOfPoints(); ++p)
-  {
-    ids->InsertNextValue(static_cast<double>(p));
-  }
+  const auto ids = arrayOf<vtkDoubleArray>(
+    "ids", both.pieces.mesh.numberOfPoints(), [&](Index p) { return static_cast<double>(p); });
   grid->GetPointData()->AddArray(ids);
   TAUTLINE_SET(pieces, SetInputDataObject(0, grid), Update());
   TAUTLINE_CHECK(contains(pieces->GetSummary(), wording("values-differ-in-the-point-array-ids")));

@@ -45,8 +45,7 @@ MeshData mixedBlocks()
     }
     for (Index cell = 0; cell < part.numberOfCells(); ++cell)
     {
-      std::vector<Index> nodes(part.connectivity.begin() + part.offsets[cell],
-        part.connectivity.begin() + part.offsets[cell + 1]);
+      std::vector<Index> nodes = part.nodes(cell);
       std::for_each(nodes.begin(), nodes.end(), [&](Index& node) { node += shift; });
       all.addCell(type, nodes);
     }

@@ -23,11 +23,7 @@ struct Cut
 Grid piece(const MeshData& whole, const Owner& ownerOf, int owner, const Cut& cut)
 {
   std::vector<char> touched(whole.points.size() / 3, 0);
-  const auto nodesOf = [&whole](Index cell)
-  {
-    return std::vector<Index>(whole.connectivity.begin() + whole.offsets[cell],
-      whole.connectivity.begin() + whole.offsets[cell + 1]);
-  };
+  const auto nodesOf = [&whole](Index cell) { return whole.nodes(cell); };
   for (Index cell = 0; cell < whole.numberOfCells(); ++cell)
   {
     for (const Index node : nodesOf(cell))

@@ -161,11 +161,9 @@ TAUTLINE_PART(testOtherCells)
   data.addCell(VTK_VERTEX, { 24 });
   const Index lonely = data.addPoint({ 9, 9, 0 });
   auto grid = toGrid(data);
-  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
-  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
-  {
-    ghosts->InsertNextValue(cell >= 60 && cell < 72 ? vtkDataSetAttributes::DUPLICATECELL : 0);
-  }
+  const auto ghosts = arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),
+    data.numberOfCells(),
+    [&](Index cell) { return cell >= 60 && cell < 72 ? vtkDataSetAttributes::DUPLICATECELL : 0; });
   grid->GetCellData()->AddArray(ghosts);
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);

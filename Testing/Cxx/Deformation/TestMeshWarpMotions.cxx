@@ -316,8 +316,7 @@ TAUTLINE_PART(testBoundaryParts)
     }
     for (Index cell = 0; cell < large.numberOfCells(); ++cell)
     {
-      std::vector<Index> nodes(large.connectivity.begin() + large.offsets[cell],
-        large.connectivity.begin() + large.offsets[cell + 1]);
+      std::vector<Index> nodes = large.nodes(cell);
       for (Index& node : nodes)
       {
         node += shift;

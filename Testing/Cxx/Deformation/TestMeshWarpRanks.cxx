@@ -21,9 +21,7 @@ vtkSmartPointer<vtkUnstructuredGrid> piece(const MeshData& whole, Index number, 
   TAUTLINE_LET(MeshData, data, points = whole.points);
   for (Index cell = number; cell < whole.numberOfCells(); cell += count)
   {
-    data.addCell(static_cast<int>(whole.types[cell]),
-      std::vector<Index>(whole.connectivity.begin() + whole.offsets[cell],
-        whole.connectivity.begin() + whole.offsets[cell + 1]));
+    data.addCell(static_cast<int>(whole.types[cell]), whole.nodes(cell));
   }
   return toGrid(data);
 }

@@ -79,8 +79,7 @@ Problem holeProblem(CellType type, Index n, Index m, double angle)
   const double low = 0.5 * double(n - m), high = 0.5 * double(n + m), middle = 0.5 * double(n);
   for (Index c = 0; c < block.numberOfCells(); ++c)
   {
-    const std::vector<Index> nodes(block.connectivity.begin() + block.offsets[c],
-      block.connectivity.begin() + block.offsets[c + 1]);
+    const std::vector<Index> nodes = block.nodes(c);
     Vec3 center = sumOf<Vec3>({ 0, 0, 0 }, nodes,
       [&](const Index node) { return (1.0 / double(nodes.size())) * block.point(node); });
     bool inside = true;
@@ -364,11 +363,7 @@ TAUTLINE_PART(testManyCenters)
 void testFourNeighbors(double a, double b, double c, double d)
 {
   MeshData data;
-  for (const Vec3& p :
-    { Vec3{ 0, 0, 0 }, Vec3{ a, 0, 0 }, Vec3{ 0, c, 0 }, Vec3{ -b, 0, 0 }, Vec3{ 0, -d, 0 } })
-  {
-    data.addPoint(p);
-  }
+  data.addPoints({ { 0, 0, 0 }, { a, 0, 0 }, { 0, c, 0 }, { -b, 0, 0 }, { 0, -d, 0 } });
   for (Index i = 0; i < 4; ++i)
   {
     data.addCell(CellType::Triangle, { 0, 1 + i, 1 + (i + 1) % 4 });

@@ -6,7 +6,6 @@
 #ifndef tautline_WarpingMeshes_h
 #define tautline_WarpingMeshes_h
 
-#include "Check.h"
 #include "VtkMeshes.h"
 
 #include "vtkMeshWarp.h"

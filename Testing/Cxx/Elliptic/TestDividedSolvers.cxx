@@ -57,11 +57,9 @@ vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
     [](Index cell, int k)
     { return k < 3 ? 1.0 + static_cast<double>((cell + k) % 3) : 0.1 * (k - 3); });
   add(grid->GetCellData(), "held", 1, part.cellOf, [](Index cell, int) { return cell == 5; });
-  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
-  for (const unsigned char ghost : part.ghosts)
-  {
-    ghosts->InsertNextValue(ghost ? vtkDataSetAttributes::DUPLICATECELL : 0);
-  }
+  const auto ghosts =
+    arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(), part.ghosts,
+      [&](const unsigned char ghost) { return ghost ? vtkDataSetAttributes::DUPLICATECELL : 0; });
   grid->GetCellData()->AddArray(ghosts);
   return grid;
 }

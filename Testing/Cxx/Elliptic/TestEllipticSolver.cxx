@@ -395,11 +395,8 @@ TAUTLINE_PART(testBlocks)
   const std::array<Index, 2> corners = { more.addPoint({ 0, 2, 0 }), more.addPoint({ 1, 2, 0 }) };
   more.addCell(CellType::Quadrilateral, { corners[0], corners[1], 1, 0 });
   auto withGhost = toGrid(more);
-  TAUTLINE_NEW(vtkUnsignedCharArray, ghosts, SetName(vtkDataSetAttributes::GhostArrayName()));
-  for (Index cell = 0; cell < more.numberOfCells(); ++cell)
-  {
-    ghosts->InsertNextValue(cell + 1 == more.numberOfCells() ? 1 : 0);
-  }
+  const auto ghosts = arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),
+    more.numberOfCells(), [&](Index cell) { return cell + 1 == more.numberOfCells() ? 1 : 0; });
   withGhost->GetCellData()->AddArray(ghosts);
   TAUTLINE_SET(parts, SetPartition(1, withGhost), Modified());
   TAUTLINE_SET(filter, SetInputDataObject(parts), Update());
@@ -532,10 +529,7 @@ TAUTLINE_PART(testNotices)
   Messages messages(filter);
   filter->SetInputData(toGrid(data));
   const std::vector<double> expected = values(solved(filter));
-  for (Index cell = 0; cell < data.numberOfCells(); ++cell)
-  {
-    std::swap(data.connectivity[3 * cell], data.connectivity[3 * cell + 1]);
-  }
+  data.swapNodes(0, 1);
   data.addPoint({ 9, 9, 0 }); // in no element
   filter->SetInputData(toGrid(data));
   std::vector<double> found = values(solved(filter));

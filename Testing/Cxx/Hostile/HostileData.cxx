@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HostileParts.h"
-#include "Check.h"
 #include "VtkCompatibility.h"
 #include "VtkMeshes.h"
 #include "vtkPartitionedDataSet.h"

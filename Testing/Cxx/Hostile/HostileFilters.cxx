@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HostileFilters.h"
-#include "Check.h"
 #include "VtkMeshes.h"
 #include "vtkConditionEstimator.h"
 #include "vtkElementQuality.h"

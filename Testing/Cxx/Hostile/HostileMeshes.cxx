@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HostileParts.h"
-#include "Check.h"
 #include "VtkCompatibility.h"
 #include "VtkMeshes.h"
 #include "vtkExplicitStructuredGrid.h"
@@ -32,10 +31,7 @@ Data grid(const MeshData& mesh)
 Data cells(int type, const std::vector<Vec3>& points, const std::vector<std::vector<Index>>& nodes)
 {
   MeshData mesh;
-  for (const Vec3& p : points)
-  {
-    mesh.addPoint(p);
-  }
+  mesh.addPoints(points);
   for (const auto& cell : nodes)
   {
     mesh.addCell(type, cell);

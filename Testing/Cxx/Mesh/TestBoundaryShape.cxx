@@ -201,11 +201,7 @@ TAUTLINE_PART(testBentSide)
 TAUTLINE_PART(testFaulty)
 {
   MeshData fan;
-  for (const Vec3& p :
-    { Vec3{ 0, 0, 0 }, Vec3{ 1, 0, 0 }, Vec3{ 0.5, 1, 0 }, Vec3{ 0.5, -1, 0 }, Vec3{ 0.5, 0, 1 } })
-  {
-    fan.addPoint(p);
-  }
+  fan.addPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { 0.5, 1, 0 }, { 0.5, -1, 0 }, { 0.5, 0, 1 } });
   fan.addCell(CellType::Triangle, { 0, 1, 2 });
   fan.addCell(CellType::Triangle, { 1, 0, 3 });
   fan.addCell(CellType::Triangle, { 0, 1, 4 });

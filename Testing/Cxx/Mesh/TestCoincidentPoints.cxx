@@ -45,8 +45,7 @@ void append(MeshData& data, const MeshData& more)
   data.points.insert(data.points.end(), more.points.begin(), more.points.end());
   for (Index cell = 0; cell < more.numberOfCells(); ++cell)
   {
-    std::vector<Index> nodes(more.connectivity.begin() + more.offsets[cell],
-      more.connectivity.begin() + more.offsets[cell + 1]);
+    std::vector<Index> nodes = more.nodes(cell);
     for (Index& node : nodes)
     {
       node += shift;
@@ -271,8 +270,7 @@ std::vector<char> expectedBoundary(const MeshData& data)
   std::set<std::set<Index>> seen;
   for (Index cell = 0; cell < data.numberOfCells(); ++cell)
   {
-    const std::vector<Index> nodes(data.connectivity.begin() + data.offsets[cell],
-      data.connectivity.begin() + data.offsets[cell + 1]);
+    const std::vector<Index> nodes = data.nodes(cell);
     if (seen.insert({ nodes.begin(), nodes.end() }).second)
     {
       distinct.addCell(static_cast<int>(data.types[cell]), nodes);

@@ -70,10 +70,7 @@ TAUTLINE_PART(testSurfaces)
       [=](Vec3 p) {
         return scale * Vec3{ 0.6 * p[0] + 0.8 * p[2], p[1], 0.6 * p[2] - 0.8 * p[0] };
       });
-    for (Index c = 0; c < data.numberOfCells(); c += 3)
-    {
-      std::swap(data.connectivity[data.offsets[c]], data.connectivity[data.offsets[c] + 1]);
-    }
+    data.swapNodes(0, 1, 0, 3);
     checkCounts(featuresOf(data), 0, 2, 3);
   }
 }

@@ -253,10 +253,7 @@ TAUTLINE_PART(testMixed)
 TAUTLINE_PART(testNonManifold)
 {
   MeshData fans; // three triangles at an edge, as the pages of a book
-  for (const Vec3& p : { Vec3{ 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { -1, 1, 0 }, { -1, -1, 0 } })
-  {
-    fans.addPoint(p);
-  }
+  fans.addPoints({ { 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { -1, 1, 0 }, { -1, -1, 0 } });
   fans.addCell(CellType::Triangle, { 0, 1, 2 });
   fans.addCell(CellType::Triangle, { 0, 1, 3 });
   fans.addCell(CellType::Triangle, { 0, 1, 4 });
@@ -267,11 +264,8 @@ TAUTLINE_PART(testNonManifold)
     std::count(boundary.isBoundaryPoint.begin(), boundary.isBoundaryPoint.end(), 1), 5);
 
   MeshData shells; // the surfaces of two tetrahedra that share the edge 0 1, and nothing open
-  for (const Vec3& p :
-    { Vec3{ 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { 1, 1, 0 }, { -1, 0, 0 }, { -1, -1, 0 } })
-  {
-    shells.addPoint(p);
-  }
+  shells.addPoints(
+    { { 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { 1, 1, 0 }, { -1, 0, 0 }, { -1, -1, 0 } });
   for (Index a : { 2, 4 })
   {
     shells.addCell(CellType::Triangle, { 0, 1, a });

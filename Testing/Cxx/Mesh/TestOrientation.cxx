@@ -76,8 +76,7 @@ void testOrientation(CellType type)
   }
   for (Index i = 0; i < cells; ++i)
   {
-    std::vector<Index> nodes(
-      data.connectivity.begin() + data.offsets[i], data.connectivity.begin() + data.offsets[i + 1]);
+    std::vector<Index> nodes = data.nodes(i);
     std::for_each(nodes.begin(), nodes.end(), [&](Index& n) { n += shift; });
     parts.addCell(type, nodes);
     flip(parts, cells + i);

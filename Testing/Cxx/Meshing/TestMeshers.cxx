@@ -20,7 +20,6 @@
 #include "vtkTransformFilter.h"
 #include "vtkTriangleMesher.h"
 #include "vtkUnstructuredGrid.h"
-#include "tautline/Core/Types.h"
 
 #include <filesystem>
 
@@ -127,11 +126,8 @@ void testTriangles()
 
   // sizes from an array: small at one corner; z is kept
   vtkSmartPointer<vtkPolyData> square = outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } });
-  TAUTLINE_NEW(vtkDoubleArray, sizes, SetName("size"));
-  for (const double size : { 0.01, 0.5, 0.5, 0.5 })
-  {
-    sizes->InsertNextValue(size);
-  }
+  const auto sizes = arrayOf<vtkDoubleArray>(
+    "size", std::vector<double>{ 0.01, 0.5, 0.5, 0.5 }, [&](const double size) { return size; });
   square->GetPointData()->AddArray(sizes);
   TAUTLINE_SET(mesher, SetInputData(square), SetSize(0.0), UseSizeArrayOn(),
     SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "size"), Update());
@@ -161,11 +157,8 @@ void testTriangleScales()
       points->InsertNextPoint(x, y, 0);
     }
     square->SetPoints(points);
-    TAUTLINE_NEW(vtkDoubleArray, array, SetName("size"));
-    for (const double size : { 0.1, 1.0, 1.0, 1.0 })
-    {
-      array->InsertNextValue(size * scale);
-    }
+    const auto array = arrayOf<vtkDoubleArray>("size", std::vector<double>{ 0.1, 1.0, 1.0, 1.0 },
+      [&](const double size) { return size * scale; });
     square->GetPointData()->AddArray(array);
     TAUTLINE_NEW(vtkTriangleMesher, mesher, SetInputData(square),
       SetSize(sizes ? 0.0 : 0.3 * scale), SetUseSizeArray(sizes),

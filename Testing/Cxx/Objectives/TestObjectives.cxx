@@ -30,8 +30,7 @@ void append(MeshData& all, const MeshData& part)
   all.points.insert(all.points.end(), part.points.begin(), part.points.end());
   for (Index cell = 0; cell < part.numberOfCells(); ++cell)
   {
-    std::vector<Index> nodes(part.connectivity.begin() + part.offsets[cell],
-      part.connectivity.begin() + part.offsets[cell + 1]);
+    std::vector<Index> nodes = part.nodes(cell);
     std::for_each(nodes.begin(), nodes.end(), [=](Index& node) { node += shift; });
     all.addCell(static_cast<int>(part.types[cell]), nodes);
   }

@@ -77,9 +77,7 @@ MeshData withFacets(const MeshData& data, Order order, int uses = 1)
   addFacets(order == Order::Before ? facets.list.size() : 0);
   for (Index c = 0; c < data.numberOfCells(); ++c)
   {
-    mixed.addCell(data.types[c],
-      std::vector<Index>(data.connectivity.begin() + data.offsets[c],
-        data.connectivity.begin() + data.offsets[c + 1]));
+    mixed.addCell(data.types[c], data.nodes(c));
     addFacets(order == Order::Between ? next + 2 : 0);
   }
   addFacets(facets.list.size());

@@ -26,8 +26,7 @@ MeshData twoRows(CellType type, Index cells, Index& firstApart)
   }
   for (Index cell = 0; cell < other.numberOfCells(); ++cell)
   {
-    std::vector<Index> nodes(other.connectivity.begin() + other.offsets[cell],
-      other.connectivity.begin() + other.offsets[cell + 1]);
+    std::vector<Index> nodes = other.nodes(cell);
     for (Index& node : nodes)
     {
       node += firstApart;

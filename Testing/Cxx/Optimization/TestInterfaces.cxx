@@ -105,11 +105,8 @@ struct Run
 Run optimized(
   const TwoRegions& mesh, int boundary, double tolerance, int threads = 1, bool holdWorst = true)
 {
-  TAUTLINE_NEW(vtkDoubleArray, regions, SetName("Regions"));
-  for (double region : mesh.regions)
-  {
-    regions->InsertNextValue(region);
-  }
+  const auto regions =
+    arrayOf<vtkDoubleArray>("Regions", mesh.regions, [&](double region) { return region; });
   const auto grid = toGrid(mesh.data);
   grid->GetCellData()->AddArray(regions);
   TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(grid), SetBoundary(boundary),

@@ -7,8 +7,6 @@
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Patches/SimplexMesh.h"
 
-#include <atomic>
-
 using namespace tautline;
 
 namespace
@@ -168,8 +166,7 @@ TAUTLINE_PART(testDuplicates)
     const Index cells = data.numberOfCells();
     for (const Index cell : { cells / 2, Index(0) })
     {
-      const std::vector<Index> nodes(data.connectivity.begin() + data.offsets[cell],
-        data.connectivity.begin() + data.offsets[cell + 1]);
+      const std::vector<Index> nodes = data.nodes(cell);
       data.addCell(type, nodes);
     }
     const std::vector<DuplicateCell> found = findSkin(Mesh(data.view())).duplicates;

@@ -232,11 +232,8 @@ TAUTLINE_PART_SLOW(testLeaving)
   for (int index : { 2, 5 })
   {
     const auto grid = toGrid(data);
-    TAUTLINE_NEW(vtkDoubleArray, array, SetName("Flags"));
-    for (double value : index == 2 ? fixed : kinds)
-    {
-      array->InsertNextValue(value);
-    }
+    const auto array = arrayOf<vtkDoubleArray>(
+      "Flags", index == 2 ? fixed : kinds, [&](double value) { return value; });
     grid->GetPointData()->AddArray(array);
     const Leaving result = leave(data,
       [&](vtkMeshOptimizer* f)

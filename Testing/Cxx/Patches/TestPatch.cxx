@@ -31,9 +31,7 @@ TAUTLINE_PART(testBoundary)
     MeshData doubled = data;
     for (Index c = 0; c < data.numberOfCells(); ++c)
     {
-      doubled.addCell(type,
-        std::vector<Index>(data.connectivity.begin() + data.offsets[c],
-          data.connectivity.begin() + data.offsets[c + 1]));
+      doubled.addCell(type, data.nodes(c));
     }
     const Mesh twice(doubled.view());
     const std::vector<char> all = boundaryPoints(twice);

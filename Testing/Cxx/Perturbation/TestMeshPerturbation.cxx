@@ -33,8 +33,7 @@ MeshData mixedMesh(bool flat, Index n)
     const Index apex = flat ? -1 : mixed.addPoint(cut.point(whole.numberOfPoints() + i));
     for (Index c = parts * i; c < parts * (i + 1); ++c)
     {
-      std::vector<Index> nodes(
-        cut.connectivity.begin() + cut.offsets[c], cut.connectivity.begin() + cut.offsets[c + 1]);
+      std::vector<Index> nodes = cut.nodes(c);
       if (!flat)
       {
         nodes[4] = apex;
@@ -441,11 +440,8 @@ TAUTLINE_PART(testKindsOfInput)
 
   messages.clear();
   MeshData quadratic;
-  for (const Vec3& p : { Vec3{ 0, 0, 0 }, Vec3{ 2, 0, 0 }, Vec3{ 0, 2, 0 }, Vec3{ 1, 0, 0 },
-         Vec3{ 1, 1, 0 }, Vec3{ 0, 1, 0 } })
-  {
-    quadratic.addPoint(p);
-  }
+  quadratic.addPoints(
+    { { 0, 0, 0 }, { 2, 0, 0 }, { 0, 2, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } });
   quadratic.addCell(VTK_QUADRATIC_TRIANGLE, { 0, 1, 2, 3, 4, 5 });
   TAUTLINE_SET(filter, SetInputData(toGrid(quadratic)), Update());
   TAUTLINE_CHECK(messages.has(wording("run-tessellate")));

@@ -7,8 +7,6 @@
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Quality/UserMetric.h"
 
-#include <atomic>
-
 using namespace tautline;
 
 namespace

@@ -5,19 +5,11 @@
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "MeshFileChecks.h"
-#include "vtkAlgorithm.h"
 #include "vtkCommand.h"
-#include "vtkDataArray.h"
-#include "vtkExecutive.h"
-#include "vtkImageData.h"
 #include "vtkImageFileReader.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkNew.h"
-#include "vtkPointData.h"
 #include "vtkSilhouetteSetReader.h"
 
 #include <filesystem>
-#include <map>
 #include <sys/stat.h>
 
 using namespace tautline;

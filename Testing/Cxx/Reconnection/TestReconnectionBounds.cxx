@@ -70,10 +70,7 @@ MeshData bipyramid()
   MeshData data;
   const Vec3 points[] = { { 1, 0, 0 }, { -0.5, 0.9, 0 }, { -0.6, -0.8, 0.1 }, { 0.1, 0, 3 },
     { 0, 0.1, -1 }, { 0.1, 0.1, 0.2 } };
-  for (const Vec3& p : points)
-  {
-    data.addPoint(p);
-  }
+  data.addPoints(points);
   for (Index i = 0; i < 3; ++i)
   {
     const Index j = (i + 1) % 3;

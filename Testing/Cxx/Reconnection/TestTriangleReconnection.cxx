@@ -235,10 +235,7 @@ TAUTLINE_PART(testInvariance)
   TAUTLINE_EACH(std::size_t, i, one.size(), TAUTLINE_CHECK_RELATIVE(one[i], two[i], 1e-9));
   // Reversed throughout: the mirror image.
   MeshData reversed = data;
-  for (Index c = 0; c < reversed.numberOfCells(); ++c)
-  {
-    std::swap(reversed.connectivity[3 * c], reversed.connectivity[3 * c + 1]);
-  }
+  reversed.swapNodes(0, 1);
   Mesh mirrored(reversed.view());
   mirrored.setMirrored(true);
   const ReconnectionResult result = improveTriangles(mirrored, swap);

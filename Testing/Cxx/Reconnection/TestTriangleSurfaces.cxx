@@ -342,10 +342,7 @@ TAUTLINE_PART(testSmall)
   TAUTLINE_CHECK(single.triangles == one.connectivity && single.points == one.points);
   // Of a tetrahedron's surface no edge can be flipped or contracted.
   MeshData tetrahedron;
-  for (const Vec3& p : { Vec3{ 0, 0, 0 }, Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 0.1 } })
-  {
-    tetrahedron.addPoint(p);
-  }
+  tetrahedron.addPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 0.1 } });
   for (const std::vector<Index>& v :
     { std::vector<Index>{ 0, 2, 1 }, { 0, 1, 3 }, { 1, 2, 3 }, { 0, 3, 2 } })
   {

@@ -4,34 +4,18 @@
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "Shapes.h"
-#include "vtkCellData.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"
-#include "vtkDataArray.h"
-#include "vtkExecutive.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
-#include "vtkImageData.h"
-#include "vtkInformation.h"
-#include "vtkMultiBlockDataSet.h"
-#include "vtkNew.h"
 #include "vtkPNGWriter.h"
-#include "vtkPointData.h"
-#include "vtkPoints.h"
-#include "vtkPolyData.h"
 #include "vtkShapeMatcher.h"
 #include "vtkShapeRetrieval.h"
 #include "vtkSilhouetteMesher.h"
 #include "vtkSilhouetteSetReader.h"
-#include "vtkSmartPointer.h"
-#include "vtkStringArray.h"
-#include "vtkTable.h"
-#include "vtkUnsignedCharArray.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <filesystem>
 #include <fstream>
-#include <map>
 
 using namespace tautline;
 

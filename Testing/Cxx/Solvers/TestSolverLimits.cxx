@@ -8,7 +8,6 @@
 #include "tautline/Solvers/LinearSolver.h"
 #include "tautline/Solvers/Watchdog.h"
 
-#include <atomic>
 #include <memory>
 #include <stdexcept>
 #include <thread>

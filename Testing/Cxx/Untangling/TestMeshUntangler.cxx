@@ -80,11 +80,8 @@ TAUTLINE_PART(testImpossible)
   MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
   data.setPoint(6, { 2.5, 2.6, 0 }); // a point of the second row beyond its neighbours
   auto grid = toGrid(data);
-  TAUTLINE_NEW(vtkDoubleArray, all, SetName("all"));
-  for (Index i = 0; i < data.numberOfPoints(); ++i)
-  {
-    all->InsertNextValue(1);
-  }
+  const auto all =
+    arrayOf<vtkDoubleArray>("all", data.numberOfPoints(), [](Index) { return 1; });
   grid->GetPointData()->AddArray(all);
   vtkNew<vtkMeshUntangler> filter;
   Messages messages(filter);

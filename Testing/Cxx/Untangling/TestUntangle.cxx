@@ -90,8 +90,7 @@ MeshData turnedHole(CellType type, Index n, double degrees)
   TAUTLINE_LET(MeshData, data, points = full.points);
   for (Index cell = 0; cell < full.numberOfCells(); ++cell)
   {
-    const std::vector<Index> nodes(full.connectivity.begin() + full.offsets[cell],
-      full.connectivity.begin() + full.offsets[cell + 1]);
+    const std::vector<Index> nodes = full.nodes(cell);
     Vec3 center = sumOf<Vec3>({ 0, 0, 0 }, nodes,
       [&](Index node) { return (1.0 / static_cast<double>(nodes.size())) * full.point(node); });
     bool inHole = true;
@@ -349,11 +348,7 @@ MeshData star(const Vec3& center)
 {
   MeshData data = block(CellType::Tetrahedron, 1);
   data = MeshData();
-  for (const Vec3& p :
-    { Vec3{ 0, 0, 0 }, Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 }, center })
-  {
-    data.addPoint(p);
-  }
+  data.addPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, center });
   data.addCell(CellType::Tetrahedron, std::vector<Index>{ 4, 1, 2, 3 });
   data.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 4, 2, 3 });
   data.addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 4, 3 });
@@ -400,11 +395,7 @@ void testObstacles()
     // A square whose fixed corner is pulled through the opposite side: no place for the middle.
     const Context context("a star without a place");
     MeshData data;
-    for (const Vec3& p :
-      { Vec3{ 0, 0, 0 }, Vec3{ 1, 0, 0 }, Vec3{ -1, -1, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0.4, 0.4, 0 } })
-    {
-      data.addPoint(p);
-    }
+    data.addPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { -1, -1, 0 }, { 0, 1, 0 }, { 0.4, 0.4, 0 } });
     for (Index k = 0; k < 4; ++k)
     {
       data.addCell(CellType::Triangle, std::vector<Index>{ k, (k + 1) % 4, 4 });
