@@ -120,7 +120,7 @@ inline MeshData withPointsOf(MeshData data, vtkDataSet* points)
 
 /** An array of f of each number below a count, or of each element of a range. */
 template <class Array, class Range, class Function>
-vtkSmartPointer<Array> arrayOf(const char* name, const Range& range, const Function& f)
+vtkSmartPointer<Array> filledArray(const char* name, const Range& range, const Function& f)
 {
   auto array = vtkSmartPointer<Array>::New();
   array->SetName(name);

@@ -18,7 +18,7 @@ inline vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
 {
   auto grid = toGrid(part.data);
   const auto ghosts =
-    arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(), part.ghosts,
+    filledArray<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(), part.ghosts,
       [&](const unsigned char ghost) { return ghost ? vtkDataSetAttributes::DUPLICATECELL : 0; });
   grid->GetCellData()->AddArray(ghosts);
   // Fixed points, limits and kinds of features, by the points of the whole mesh.

@@ -226,7 +226,7 @@ TAUTLINE_PART(testNotices)
   TAUTLINE_CHECK(contains(MeshAdapter(broken).notice(), wording("1-points-have-a-nan")));
 
   const auto grid = toGrid(blockMesh(CellType::Quadrilateral, 2, 2, 0));
-  const auto ghosts = arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),
+  const auto ghosts = filledArray<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),
     std::vector<unsigned char>{ 0, 1, 0, 0 }, [&](unsigned char flag) { return flag; });
   grid->GetCellData()->AddArray(ghosts);
   const MeshAdapter adapter(grid);

@@ -304,7 +304,7 @@ vtkSmartPointer<vtkMultiBlockDataSet> blocksOf(
       continue;
     }
     auto grid = toGrid(part.data);
-    const auto numbers = arrayOf<vtkIdTypeArray>(
+    const auto numbers = filledArray<vtkIdTypeArray>(
       "numbers", part.pointOf, [&](const Index p) { return ids ? known[meshes[i].point(p)] : p; });
     if (ids)
     {

@@ -404,7 +404,7 @@ void testNotJoined()
   data.points = { x, 0, 0, x + 1, 0, 0, x, 1, 0 };
   data.addCell(CellType::Triangle, { 0, 1, 2 });
   auto grid = toGrid(data);
-  const auto ids = arrayOf<vtkIdTypeArray>(
+  const auto ids = filledArray<vtkIdTypeArray>(
     "ids", std::vector<vtkIdType>{ 0, 1, 2 }, [&](vtkIdType id) { return id; });
   grid->GetPointData()->SetGlobalIds(ids);
   vtkNew<vtkPeridynamicStiffness> filter;

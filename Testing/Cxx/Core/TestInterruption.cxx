@@ -227,10 +227,9 @@ TAUTLINE_PART(testHorizonNeighbors)
   filter->SetHorizon(side);
   const auto outputs = [&filter]
   {
-    vtkIdType cells = sumOf<vtkIdType>(0, filter->GetNumberOfOutputPorts(),
+    return sumOf<vtkIdType>(0, filter->GetNumberOfOutputPorts(),
       [&](int port)
       { return vtkPolyData::SafeDownCast(filter->GetOutputDataObject(port))->GetNumberOfCells(); });
-    return cells;
   };
   const auto tag = stopAt(filter, vtkInterruption::PollEvent);
   filter->Update();

@@ -24,7 +24,8 @@ constexpr Index Parts = 3;
 
 void addIds(vtkDataSetAttributes* data, const std::vector<Index>& values)
 {
-  const auto ids = arrayOf<vtkIdTypeArray>("ids", values, [&](const Index value) { return value; });
+  const auto ids =
+    filledArray<vtkIdTypeArray>("ids", values, [&](const Index value) { return value; });
   data->SetGlobalIds(ids);
 }
 

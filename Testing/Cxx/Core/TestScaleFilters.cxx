@@ -59,10 +59,8 @@ std::vector<double> pointsOf(vtkAlgorithm* filter)
 /// The largest distance between points, those of the first divided by a power of two.
 double difference(const std::vector<double>& a, int exponent, const std::vector<double>& b)
 {
-  double most =
-    largestOf<double>(a.size() == b.size() ? 0.0 : HUGE_VAL, std::min(a.size(), b.size()),
-      [&](std::size_t i) { return std::abs(std::ldexp(a[i], -exponent) - b[i]); });
-  return most;
+  return largestOf<double>(a.size() == b.size() ? 0.0 : HUGE_VAL, std::min(a.size(), b.size()),
+    [&](std::size_t i) { return std::abs(std::ldexp(a[i], -exponent) - b[i]); });
 }
 
 double statistic(vtkTable* table, const char* column)

@@ -69,7 +69,7 @@ TAUTLINE_PART(testElliptic)
 
   // Values that differ between points that are one are no secret.
   const auto grid = toGrid(both.pieces.mesh);
-  const auto ids = arrayOf<vtkDoubleArray>(
+  const auto ids = filledArray<vtkDoubleArray>(
     "ids", both.pieces.mesh.numberOfPoints(), [&](Index p) { return static_cast<double>(p); });
   grid->GetPointData()->AddArray(ids);
   TAUTLINE_SET(pieces, SetInputDataObject(0, grid), Update());

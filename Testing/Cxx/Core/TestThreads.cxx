@@ -137,8 +137,7 @@ double bruteSum(const MeshData& data, const Mesh& mesh, const Gradients& g, doub
 
 double largest(const std::vector<double>& values)
 {
-  double result = largestOf<double>(0, values, [&](double v) { return std::abs(v); });
-  return result;
+  return largestOf<double>(0, values, [&](double v) { return std::abs(v); });
 }
 
 const std::vector<Metric> summedMetrics = { Metric::InverseMeanRatio, Metric::Size,

@@ -161,7 +161,7 @@ TAUTLINE_PART(testOtherCells)
   data.addCell(VTK_VERTEX, { 24 });
   const Index lonely = data.addPoint({ 9, 9, 0 });
   auto grid = toGrid(data);
-  const auto ghosts = arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),
+  const auto ghosts = filledArray<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),
     data.numberOfCells(),
     [&](Index cell) { return cell >= 60 && cell < 72 ? vtkDataSetAttributes::DUPLICATECELL : 0; });
   grid->GetCellData()->AddArray(ghosts);

@@ -343,9 +343,7 @@ TAUTLINE_PART(testPerCell)
     }
     const WarpResult result = warped(data, motion, each);
     const std::vector<double> q = shapeSimilarity(Mesh(data.view()), result.points.data());
-    double sum =
-      sumOf<double>(0, data.numberOfCells(), [&](Index c) { return inside[c] ? q[c] : 0.0; });
-    return sum;
+    return sumOf<double>(0, data.numberOfCells(), [&](Index c) { return inside[c] ? q[c] : 0.0; });
   };
   const double same = distortion(1), stiff = distortion(100);
   TAUTLINE_CHECK(stiff < 0.01 * same);

@@ -313,9 +313,8 @@ TAUTLINE_PART(testElasticity)
         },
         options)
         .points.data());
-    double sum = sumOf<double>(
+    return sumOf<double>(
       0, q.size(), [&](std::size_t i) { return size[i] < 0.8 * median ? q[i] : 0.0; });
-    return sum;
   };
   const double without = distortion(0), with = distortion(1), more = distortion(2);
   TAUTLINE_CHECK(with < 0.8 * without);

@@ -51,9 +51,8 @@ inline WarpOptions manual(double alpha, double beta, double gamma = 0)
 /// The largest distance between points of two meshes.
 inline double distance(const std::vector<double>& a, const std::vector<double>& b)
 {
-  double most = largestOf<double>(a.size() == b.size() ? 0.0 : 1e300, std::min(a.size(), b.size()),
+  return largestOf<double>(a.size() == b.size() ? 0.0 : 1e300, std::min(a.size(), b.size()),
     [&](std::size_t i) { return std::isfinite(a[i]) ? std::abs(a[i] - b[i]) : 1e300; });
-  return most;
 }
 
 /**

@@ -91,9 +91,8 @@ inline double value(vtkTable* table, const char* column, Index row = 0)
 /// The largest distance between two sets of points.
 inline double distance(const MeshData& a, const MeshData& b)
 {
-  double largest = largestOf<double>(
+  return largestOf<double>(
     0, a.numberOfPoints(), [&](Index i) { return norm(a.point(i) - b.point(i)); });
-  return largest;
 }
 }
 #endif

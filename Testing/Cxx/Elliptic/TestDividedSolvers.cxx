@@ -58,7 +58,7 @@ vtkSmartPointer<vtkUnstructuredGrid> gridOf(const RankPart& part)
     { return k < 3 ? 1.0 + static_cast<double>((cell + k) % 3) : 0.1 * (k - 3); });
   add(grid->GetCellData(), "held", 1, part.cellOf, [](Index cell, int) { return cell == 5; });
   const auto ghosts =
-    arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(), part.ghosts,
+    filledArray<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(), part.ghosts,
       [&](const unsigned char ghost) { return ghost ? vtkDataSetAttributes::DUPLICATECELL : 0; });
   grid->GetCellData()->AddArray(ghosts);
   return grid;

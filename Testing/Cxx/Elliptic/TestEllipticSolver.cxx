@@ -54,9 +54,8 @@ std::vector<double> values(vtkDataSet* data, const char* name = "Solution", bool
 
 double distance(const std::vector<double>& a, const std::vector<double>& b)
 {
-  double largest = largestOf<double>(a.size() == b.size() && !a.empty() ? 0.0 : 1e300,
+  return largestOf<double>(a.size() == b.size() && !a.empty() ? 0.0 : 1e300,
     std::min(a.size(), b.size()), [&](std::size_t i) { return std::abs(a[i] - b[i]); });
-  return largest;
 }
 
 vtkSmartPointer<vtkDoubleArray> arrayOf(
@@ -395,7 +394,7 @@ TAUTLINE_PART(testBlocks)
   const std::array<Index, 2> corners = { more.addPoint({ 0, 2, 0 }), more.addPoint({ 1, 2, 0 }) };
   more.addCell(CellType::Quadrilateral, { corners[0], corners[1], 1, 0 });
   auto withGhost = toGrid(more);
-  const auto ghosts = arrayOf<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),
+  const auto ghosts = filledArray<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),
     more.numberOfCells(), [&](Index cell) { return cell + 1 == more.numberOfCells() ? 1 : 0; });
   withGhost->GetCellData()->AddArray(ghosts);
   TAUTLINE_SET(parts, SetPartition(1, withGhost), Modified());

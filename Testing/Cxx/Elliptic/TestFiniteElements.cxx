@@ -20,14 +20,12 @@ std::vector<double> times(const SparseMatrix& a, const std::vector<double>& x)
 
 double largest(const std::vector<double>& values)
 {
-  double most = largestOf<double>(0, values, [&](double v) { return std::abs(v); });
-  return most;
+  return largestOf<double>(0, values, [&](double v) { return std::abs(v); });
 }
 
 double totalSize(const MeshData& data)
 {
-  double sum = sumOf<double>(0, valuesOf(data, Metric::Size), [&](double v) { return v; });
-  return sum;
+  return sumOf<double>(0, valuesOf(data, Metric::Size), [&](double v) { return v; });
 }
 
 void checkMatrix(const SparseMatrix& a, const std::vector<double>& expected, double tolerance)
@@ -117,10 +115,9 @@ TAUTLINE_PART(testSmallMatrices)
 /// Meshes of one type each, of all types.
 std::vector<MeshData> sampleMeshes()
 {
-  auto meshes = collect<MeshData>(allTypes,
+  return collect<MeshData>(allTypes,
     [&](CellType type)
     { return shuffled(movedBlock(type, topology(type).dimension == 2 ? 6 : 4, 0.15), 3); });
-  return meshes;
 }
 
 /// Wedges, hexahedra and tetrahedra need not fit for what is tested of them.

@@ -100,9 +100,8 @@ constexpr std::array<TimeScheme, 4> Schemes = { TimeScheme::BackwardEuler, TimeS
 /// The largest difference to a multiple of a vector.
 double difference(const std::vector<double>& x, const std::vector<double>& y, double multiple)
 {
-  double largest = largestOf<double>(
+  return largestOf<double>(
     0.0, x.size(), [&](std::size_t i) { return std::abs(x[i] - multiple * y[i]); });
-  return largest;
 }
 
 //------------------------------------------------------------------------------

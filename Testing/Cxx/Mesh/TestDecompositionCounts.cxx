@@ -23,8 +23,7 @@ std::vector<unsigned char> inside(const MeshData& whole)
 std::vector<int> partsOf(const MeshData& whole, Cut cut, int ranks)
 {
   const auto rankOf = cutBy(whole, cut, ranks);
-  auto parts = collect<int>(whole.numberOfCells(), [&](Index cell) { return rankOf(cell); });
-  return parts;
+  return collect<int>(whole.numberOfCells(), [&](Index cell) { return rankOf(cell); });
 }
 
 /// The counts of the ranks themselves: as in LocalSweeper, an exchange of each set.

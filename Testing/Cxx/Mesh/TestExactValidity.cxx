@@ -275,10 +275,7 @@ void testKnownValues()
   const double volume = 2 * 3 * 0.7;
   const std::vector<Vec3> cube = idealCell(CellType::Hexahedron);
   const auto sheared = [&](const std::vector<int>& nodes)
-  {
-    auto p = collect<Vec3>(nodes, [&](int n) { return shear * cube[n]; });
-    return p;
-  };
+  { return collect<Vec3>(nodes, [&](int n) { return shear * cube[n]; }); };
   const Metric metric = Metric::MinimumJacobian;
   TAUTLINE_CHECK_RELATIVE(
     valueOf(CellType::Hexahedron, sheared({ 0, 1, 2, 3, 4, 5, 6, 7 }), metric), volume, 1e-14);

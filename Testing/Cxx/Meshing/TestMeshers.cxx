@@ -126,7 +126,7 @@ void testTriangles()
 
   // sizes from an array: small at one corner; z is kept
   vtkSmartPointer<vtkPolyData> square = outline({ { 0, 0 }, { 1, 0 }, { 1, 1 }, { 0, 1 } });
-  const auto sizes = arrayOf<vtkDoubleArray>(
+  const auto sizes = filledArray<vtkDoubleArray>(
     "size", std::vector<double>{ 0.01, 0.5, 0.5, 0.5 }, [&](const double size) { return size; });
   square->GetPointData()->AddArray(sizes);
   TAUTLINE_SET(mesher, SetInputData(square), SetSize(0.0), UseSizeArrayOn(),
@@ -157,8 +157,8 @@ void testTriangleScales()
       points->InsertNextPoint(x, y, 0);
     }
     square->SetPoints(points);
-    const auto array = arrayOf<vtkDoubleArray>("size", std::vector<double>{ 0.1, 1.0, 1.0, 1.0 },
-      [&](const double size) { return size * scale; });
+    const auto array = filledArray<vtkDoubleArray>("size",
+      std::vector<double>{ 0.1, 1.0, 1.0, 1.0 }, [&](const double size) { return size * scale; });
     square->GetPointData()->AddArray(array);
     TAUTLINE_NEW(vtkTriangleMesher, mesher, SetInputData(square),
       SetSize(sizes ? 0.0 : 0.3 * scale), SetUseSizeArray(sizes),

@@ -199,10 +199,9 @@ struct ByHand
   }
 };
 
-double largestOf(const std::vector<double>& values)
+double largestSize(const std::vector<double>& values)
 {
-  double result = largestOf<double>(0, values, [&](double v) { return std::abs(v); });
-  return result;
+  return largestOf<double>(0, values, [&](double v) { return std::abs(v); });
 }
 
 template <class Work>
@@ -255,7 +254,7 @@ void testByHand(const MeshData& data, bool tangled, int& infinite)
           TAUTLINE_CHECK(tangled);
           continue;
         }
-        const double slack = largestOf(expected.gradient);
+        const double slack = largestSize(expected.gradient);
         TAUTLINE_CHECK_NEAR(
           value, expected.value, valueTolerance * (std::abs(expected.value) + slack));
         TAUTLINE_EACH(std::size_t, i, gradient.size(),
@@ -286,7 +285,7 @@ void testDifferences(MeshData data, double scale, int& compared, int& skipped)
       if (objective.objectiveTemplate == ObjectiveTemplate::Maximum)
       {
         objective.power =
-          8 / std::max(1e-300, largestOf(valuesOf(mesh, objective.metric, objective.evaluation)));
+          8 / std::max(1e-300, largestSize(valuesOf(mesh, objective.metric, objective.evaluation)));
       }
       const ObjectiveSum sum(mesh, objective);
       std::vector<double> gradient(start.size(), 0.0);
@@ -457,7 +456,7 @@ void testStability()
     const double mean = ObjectiveSum(mesh, objective).addGradient(1, gradient.data());
     TAUTLINE_CHECK(
       mean <= worst * (1 + 1e-14) && mean >= worst * std::pow(count, -1 / power) * (1 - 1e-14));
-    TAUTLINE_CHECK(std::isfinite(largestOf(gradient)) && largestOf(gradient) > 0);
+    TAUTLINE_CHECK(std::isfinite(largestSize(gradient)) && largestSize(gradient) > 0);
   }
 }
 

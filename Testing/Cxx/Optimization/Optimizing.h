@@ -54,8 +54,7 @@ inline double sumOfSquares(const MeshData& like, const std::vector<double>& poin
 {
   MeshData moved = like;
   moved.points = points;
-  double sum = sumOf<double>(0, valuesOf(moved, metric), [&](double q) { return q * q; });
-  return sum;
+  return sumOf<double>(0, valuesOf(moved, metric), [&](double q) { return q * q; });
 }
 
 /// Of the cells with a vertex that is not on the boundary.

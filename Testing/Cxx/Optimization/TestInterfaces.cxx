@@ -106,7 +106,7 @@ Run optimized(
   const TwoRegions& mesh, int boundary, double tolerance, int threads = 1, bool holdWorst = true)
 {
   const auto regions =
-    arrayOf<vtkDoubleArray>("Regions", mesh.regions, [&](double region) { return region; });
+    filledArray<vtkDoubleArray>("Regions", mesh.regions, [&](double region) { return region; });
   const auto grid = toGrid(mesh.data);
   grid->GetCellData()->AddArray(regions);
   TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(grid), SetBoundary(boundary),

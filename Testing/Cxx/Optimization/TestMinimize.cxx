@@ -209,8 +209,7 @@ void report(const char* what, Optimizer method, const MinimizeResult& m)
 
 double distance(const Vector& a, const Vector& b)
 {
-  double d = largestOf<double>(0, a.size(), [&](std::size_t i) { return std::abs(a[i] - b[i]); });
-  return d;
+  return largestOf<double>(0, a.size(), [&](std::size_t i) { return std::abs(a[i] - b[i]); });
 }
 
 /// Sum of exp(a_i x_i) - x_i with a_i from 1 to 3: convex, and no quadratic.

@@ -35,9 +35,8 @@ Index lost(const MeshData& data, const std::vector<double>& points)
   MeshData moved = data;
   moved.points = points;
   const std::vector<signed char> before = validityOf(data), after = validityOf(moved);
-  Index count = sumOf<Index>(
+  return sumOf<Index>(
     0, before.size(), [&](std::size_t i) { return before[i] == Valid && after[i] != Valid; });
-  return count;
 }
 
 //------------------------------------------------------------------------------

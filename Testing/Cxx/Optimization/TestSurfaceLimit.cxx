@@ -232,7 +232,7 @@ TAUTLINE_PART_SLOW(testLeaving)
   for (int index : { 2, 5 })
   {
     const auto grid = toGrid(data);
-    const auto array = arrayOf<vtkDoubleArray>(
+    const auto array = filledArray<vtkDoubleArray>(
       "Flags", index == 2 ? fixed : kinds, [&](double value) { return value; });
     grid->GetPointData()->AddArray(array);
     const Leaving result = leave(data,

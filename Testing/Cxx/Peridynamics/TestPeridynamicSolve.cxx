@@ -17,8 +17,7 @@ constexpr NonlocalPreconditioner others[] = { NonlocalPreconditioner::LocalMulti
 
 double product(const std::vector<double>& x, const std::vector<double>& y)
 {
-  double sum = sumOf<double>(0.0, x.size(), [&](std::size_t i) { return x[i] * y[i]; });
-  return sum;
+  return sumOf<double>(0.0, x.size(), [&](std::size_t i) { return x[i] * y[i]; });
 }
 
 std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>& x)

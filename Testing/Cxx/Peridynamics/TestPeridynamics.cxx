@@ -45,10 +45,9 @@ std::vector<double> sampled(const HorizonMesh& mesh, PeridynamicBasis basis, con
   return values;
 }
 
-double largestOf(const std::vector<double>& values)
+double largestSize(const std::vector<double>& values)
 {
-  double largest = largestOf<double>(0.0, values, [&](const double v) { return std::abs(v); });
-  return largest;
+  return largestOf<double>(0.0, values, [&](const double v) { return std::abs(v); });
 }
 
 std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>& x)
@@ -100,7 +99,7 @@ TAUTLINE_PART(testStructure)
         }
         std::vector<double> ones(free.matrix.size, 1.0);
         const double size = free.matrix.at(0, 0);
-        TAUTLINE_CHECK(largestOf(times(free.matrix, ones)) < 1e-12 * size);
+        TAUTLINE_CHECK(largestSize(times(free.matrix, ones)) < 1e-12 * size);
         if (elastic && basis != PeridynamicBasis::Constant)
         {
           const auto x = sampled(mesh, basis, [](double px, double) { return px; });
@@ -110,8 +109,9 @@ TAUTLINE_PART(testStructure)
           {
             turn.insert(turn.end(), { -y[i], x[i] });
           }
-          TAUTLINE_CHECK(largestOf(times(free.matrix, turn)) < 1e-4 * size);
-          TAUTLINE_CHECK(largestOf(times(free.matrix, x.size() == turn.size() ? x : ones)) < size);
+          TAUTLINE_CHECK(largestSize(times(free.matrix, turn)) < 1e-4 * size);
+          TAUTLINE_CHECK(
+            largestSize(times(free.matrix, x.size() == turn.size() ? x : ones)) < size);
         }
         TAUTLINE_CHECK(!extremeEigenvalues(free.matrix).definite);
       }
@@ -179,9 +179,8 @@ double solutionError(int n, double delta, double p, bool quadratic)
   }
   std::vector<double> solution;
   TAUTLINE_CHECK(solveConjugateGradients(system.matrix, load, solution).converged);
-  double worst = largestOf<double>(0.0, solution.size(),
+  return largestOf<double>(0.0, solution.size(),
     [&](std::size_t i) { return std::abs(solution[i] - given[system.functionOf[i]]); });
-  return worst;
 }
 
 /// The operator tends to pi / (2 (4-p)) times the Laplacian: with delta^2 for smooth functions; on

@@ -37,8 +37,7 @@ std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>&
 
 double product(const std::vector<double>& x, const std::vector<double>& y)
 {
-  double sum = sumOf<double>(0.0, x.size(), [&](std::size_t i) { return x[i] * y[i]; });
-  return sum;
+  return sumOf<double>(0.0, x.size(), [&](std::size_t i) { return x[i] * y[i]; });
 }
 
 /// u = G x at the points.

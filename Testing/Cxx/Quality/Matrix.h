@@ -47,11 +47,7 @@ inline Matrix identity(int n)
 inline Matrix operator*(const Matrix& a, const Matrix& b)
 {
   return makeMatrix(a.n,
-    [&](int r, int c)
-    {
-      double sum = sumOf<double>(0, a.n, [&](int k) { return a(r, k) * b(k, c); });
-      return sum;
-    });
+    [&](int r, int c) { return sumOf<double>(0, a.n, [&](int k) { return a(r, k) * b(k, c); }); });
 }
 
 inline Matrix operator*(double s, const Matrix& a)

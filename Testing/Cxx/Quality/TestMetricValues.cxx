@@ -62,9 +62,8 @@ double sizeOf(CellType type, const Corners& p)
 double longestEdge(CellType type, const Corners& p)
 {
   const CellTopology& t = topology(type);
-  double longest = largestOf<double>(
+  return largestOf<double>(
     0, t.edges, [&](int e) { return norm(p[t.edgeNodes[e][1]] - p[t.edgeNodes[e][0]]); });
-  return longest;
 }
 
 /// The distance of the circumcentre c: 2 (p_i - p_0) . c = |p_i - p_0|^2.

@@ -272,12 +272,11 @@ TAUTLINE_PART(testWorst)
   cells.add(50, Valid, triangle, true);
   auto ids = [&](const MetricInfo& info)
   {
-    auto result = collect<Index>(worstElements(info, cells.view()),
+    return collect<Index>(worstElements(info, cells.view()),
       [&](const WorstElement& e)
       { return e.cell);
         TAUTLINE_CHECK_EQUAL(e.value, cells.values[e.cell]); TAUTLINE_CHECK_EQUAL(int(e.validity), int(cells.validity[e.cell]);
       });
-    return result;
   };
   TAUTLINE_CHECK((ids(imr) == std::vector<Index>{ 3, 2, 1, 4, 0 }));
   TAUTLINE_CHECK((ids(meanRatio) == std::vector<Index>{ 3, 2, 0, 1, 4 }));

@@ -193,8 +193,7 @@ std::vector<Twin> registerCopies()
 
 double largest(const std::vector<double>& values)
 {
-  double result = largestOf<double>(0, values, [&](const double v) { return std::abs(v); });
-  return result;
+  return largestOf<double>(0, values, [&](const double v) { return std::abs(v); });
 }
 
 /// Values and gradients of a pair on a mesh; false if neither is defined there.

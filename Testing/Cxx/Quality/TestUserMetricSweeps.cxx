@@ -245,9 +245,7 @@ std::vector<double> sweep(
 
 double distance(const std::vector<double>& a, const std::vector<double>& b)
 {
-  double largest =
-    largestOf<double>(0, a.size(), [&](std::size_t i) { return std::abs(a[i] - b[i]); });
-  return largest;
+  return largestOf<double>(0, a.size(), [&](std::size_t i) { return std::abs(a[i] - b[i]); });
 }
 
 /// Sweeps by a copy go where those of the original go; the cheapest derivatives suffice.

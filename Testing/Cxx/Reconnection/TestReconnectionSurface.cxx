@@ -29,9 +29,7 @@ double distanceTo(const Facet& f, const Vec3& x)
 
 double distanceTo(const std::set<Facet>& facets, const Vec3& x)
 {
-  double least =
-    smallestOf<double>(1e300, facets, [&](const Facet& f) { return distanceTo(f, x); });
-  return least;
+  return smallestOf<double>(1e300, facets, [&](const Facet& f) { return distanceTo(f, x); });
 }
 
 /// At the corners, the middles of edges and the centres.

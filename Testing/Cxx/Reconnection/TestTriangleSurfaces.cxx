@@ -168,9 +168,8 @@ TAUTLINE_PART(testMean)
   TAUTLINE_CHECK(farthest < 1e-12);
   const auto excess = [](const ReconnectionResult& r)
   {
-    double sum = sumOf<double>(0.0, valuesOf(trianglesOf(r), Metric::InverseMeanRatio),
+    return sumOf<double>(0.0, valuesOf(trianglesOf(r), Metric::InverseMeanRatio),
       [&](double imr) { return imr - 1.0; });
-    return sum;
   };
   TAUTLINE_CHECK(excess(result) < 0.9 * excess(plain));
   const ReconnectionRecord &last = result.history.back(), &before = plain.history.back();

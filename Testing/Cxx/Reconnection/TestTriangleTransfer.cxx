@@ -142,9 +142,8 @@ void checkRows(const ReconnectionResult& result)
 
 double totalOf(const MeshData& data, const std::vector<double>& values)
 {
-  double sum = sumOf<double>(
+  return sumOf<double>(
     0.0, data.numberOfCells(), [&](Index c) { return norm(areaVector(data, c)) * values[c]; });
-  return sum;
 }
 
 std::vector<double> averages(const ReconnectionResult& result, const std::vector<double>& field)

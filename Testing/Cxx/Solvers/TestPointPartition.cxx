@@ -16,9 +16,8 @@ namespace
 /// The owners that are wanted, per point of the piece.
 std::vector<int> ofPiece(const DistributedMesh& mesh, const std::vector<int>& ofLocal)
 {
-  auto owners = collect<int>(
+  return collect<int>(
     mesh.localOfPiece(), [&](const Index local) { return local < 0 ? 0 : ofLocal[local]; });
-  return owners;
 }
 
 /// The same rank is wanted for a point by all that have it.

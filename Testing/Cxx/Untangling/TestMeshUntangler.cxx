@@ -81,7 +81,7 @@ TAUTLINE_PART(testImpossible)
   data.setPoint(6, { 2.5, 2.6, 0 }); // a point of the second row beyond its neighbours
   auto grid = toGrid(data);
   const auto all =
-    arrayOf<vtkDoubleArray>("all", data.numberOfPoints(), [](Index) { return 1; });
+    filledArray<vtkDoubleArray>("all", data.numberOfPoints(), [](Index) { return 1; });
   grid->GetPointData()->AddArray(all);
   vtkNew<vtkMeshUntangler> filter;
   Messages messages(filter);
