@@ -41,6 +41,15 @@ T& setIn(T& object, long)
 #define TAUTLINE_NEW(type, name, ...) \
   vtkNew<type> name;                  \
   TAUTLINE_SET(name, __VA_ARGS__)
+/** A copy of a value in which members are set as by TAUTLINE_SET. */
+#define TAUTLINE_CHANGED(value, ...)              \
+  (                                               \
+    [&]                                           \
+    {                                             \
+      auto tautlineChanged = value;               \
+      TAUTLINE_SET(tautlineChanged, __VA_ARGS__); \
+      return tautlineChanged;                     \
+    }())
 /** A function that makes a filter, or any VTK object, on which functions are called as by TAUTLINE_SET. */
 #define TAUTLINE_MAKER(type, ...)                   \
   [=]                                               \

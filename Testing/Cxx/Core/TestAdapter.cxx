@@ -37,15 +37,13 @@ TAUTLINE_PART(testUnstructuredGrid)
   TAUTLINE_CHECK_EQUAL(fromFloats.copiedBytes(), data.points.size() * sizeof(double));
   TAUTLINE_CHECK(valuesOf(fromFloats.mesh(), Metric::InverseMeanRatio) == values);
 
-  const auto narrow = toGrid(data);
-  narrow->GetCells()->ConvertTo32BitStorage();
+  const auto narrow = TAUTLINE_CHANGED(toGrid(data), GetCells()->ConvertTo32BitStorage());
   const MeshAdapter fromNarrow(narrow);
   TAUTLINE_CHECK(fromNarrow.copiedBytes() >= data.connectivity.size() * sizeof(Index));
   TAUTLINE_CHECK(valuesOf(fromNarrow.mesh(), Metric::InverseMeanRatio) == values);
 
   // A cell that names a point the grid has not.
-  MeshData bad = data;
-  bad.connectivity[4 * 6] = 10000;
+  MeshData bad = TAUTLINE_CHANGED(data, connectivity[4 * 6] = 10000);
   const auto broken = toGrid(bad);
   TAUTLINE_CHECK_THROWS(MeshAdapter refused(broken), "Cell 6");
   for (int vtkType : { VTK_PIXEL, VTK_VOXEL, VTK_LAGRANGE_WEDGE })

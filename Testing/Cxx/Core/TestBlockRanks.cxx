@@ -46,8 +46,7 @@ vtkSmartPointer<vtkUnstructuredGrid> pieceOf(
   {
     return vtkSmartPointer<vtkUnstructuredGrid>::New();
   }
-  auto grid = toGrid(data);
-  grid->GetCellData()->SetGlobalIds(ids);
+  auto grid = TAUTLINE_CHANGED(toGrid(data), GetCellData()->SetGlobalIds(ids));
   return grid;
 }
 

@@ -262,8 +262,7 @@ void testErrors(vtkMPIController* controller)
       {
         return numberedGridOf(part);
       }
-      auto image = vtkSmartPointer<vtkImageData>::New();
-      image->SetDimensions(3, 3, 3);
+      auto image = TAUTLINE_CHANGED(vtkSmartPointer<vtkImageData>::New(), SetDimensions(3, 3, 3));
       return image;
     },
     true);

@@ -214,8 +214,7 @@ void testSingle(vtkMPIController* controller)
         "type " + std::to_string(type) + ", amplitude " + std::to_string(amplitude));
       const auto run = [&](const RankPart& part, vtkMeshOptimizer* filter)
       {
-        auto grid = gridOf(part);
-        grid->SetPoints(toPoints(part.data, type));
+        auto grid = TAUTLINE_CHANGED(gridOf(part), SetPoints(toPoints(part.data, type)));
         filter->ReproducibleOrderOn();
         return moved(
           whole, part, grid.Get(), [](vtkMeshOptimizer*) {}, filter);
@@ -234,8 +233,7 @@ void testSingle(vtkMPIController* controller)
       const std::vector<double> expected =
         run(partOf(whole, 0, [](Index) { return 0; }), serial.Get());
       vtkMultiProcessController::SetGlobalController(controller);
-      MeshData after = whole;
-      after.points = expected;
+      MeshData after = TAUTLINE_CHANGED(whole, points = expected);
       const auto [worst, sum] = shapeOf(whole);
       const auto [worstNow, sumNow] = shapeOf(after);
       TAUTLINE_CHECK(worstNow <= worst * (1 + rounding));

@@ -199,8 +199,7 @@ vtkSmartPointer<vtkSelection> select(int field, const std::vector<Index>& ids)
   }
   TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
     SetFieldType(field), SetSelectionList(list));
-  auto selection = vtkSmartPointer<vtkSelection>::New();
-  selection->AddNode(node);
+  auto selection = TAUTLINE_CHANGED(vtkSmartPointer<vtkSelection>::New(), AddNode(node));
   return selection;
 }
 

@@ -138,8 +138,7 @@ void testWrongTarget(vtkMPIController* controller, const MeshData& whole, double
   {
     const Context inner("way " + std::to_string(way));
     const RankPart& of = way >= Order ? other : part;
-    const auto grid = numberedGridOf(part);
-    grid->GetPointData()->AddArray(idsOf(part));
+    const auto grid = TAUTLINE_CHANGED(numberedGridOf(part), GetPointData()->AddArray(idsOf(part)));
     const auto target = targetOf(of, middle, 0.3, true);
     const auto ids = idsOf(of);
     if (rank == size - 1)

@@ -175,9 +175,8 @@ TAUTLINE_PART(testAffine)
       {
         const Context context(std::string(topology(type).name) + " coefficients " +
           std::to_string(int(choice)) + " scale " + std::to_string(scale));
-        WarpOptions options = manual(0, 1, 0);
-        TAUTLINE_SET(options, coefficients = choice, tensors = tensors.data(), tolerance = 0.5,
-          automaticSolver = scale != 1);
+        WarpOptions options = TAUTLINE_CHANGED(manual(0, 1, 0), coefficients = choice,
+          tensors = tensors.data(), tolerance = 0.5, automaticSolver = scale != 1);
         check(options);
       }
       for (const WarpMethod method : allMethods)
@@ -209,10 +208,10 @@ TAUTLINE_PART(testEquation)
     };
     for (const bool direct : { true, false })
     {
-      WarpOptions options = manual(2, 0.5, 1);
-      TAUTLINE_SET(options, tensor[3] = 0.4, automaticSolver = false,
-        solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient,
-        tolerance = 1e-12);
+      WarpOptions options =
+        TAUTLINE_CHANGED(manual(2, 0.5, 1), tensor[3] = 0.4, automaticSolver = false,
+          solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient,
+          tolerance = 1e-12);
       const WarpResult result = warped(data, motion, options);
       TAUTLINE_LET(DiffusionOperator, pde, tensor = options.tensor);
       const SparseMatrix matrix = stiffnessMatrix(mesh, pde);
@@ -273,8 +272,7 @@ TAUTLINE_PART(testCoefficients)
   const SymmetricTensor sums = warped(data, axes,
     [&]
     {
-      auto o = options;
-      o.coefficients = WarpCoefficients::DisplacementSums;
+      auto o = TAUTLINE_CHANGED(options, coefficients = WarpCoefficients::DisplacementSums);
       return o;
     }())
                                  .tensor;
@@ -317,8 +315,7 @@ TAUTLINE_PART(testPerCell)
   const Field motion = [](const Vec3& p) {
     return onInnerBox(p, true) ? Vec3{ 0.1, 0.06, 0 } : Vec3{ 0, 0, 0 };
   };
-  WarpOptions one = manual(2, 0.5);
-  one.tensor[3] = 0.3;
+  WarpOptions one = TAUTLINE_CHANGED(manual(2, 0.5), tensor[3] = 0.3);
   std::vector<double> tensors;
   for (Index c = 0; c < data.numberOfCells(); ++c)
   {
@@ -363,8 +360,7 @@ TAUTLINE_PART(testDecoupled)
       const Vec3 p = data.point(i);
       prescribed[i] = (p[1] == 0 || p[1] > 0.999) && p[0] < 0.55;
     }
-    WarpOptions options = manual(0, 1);
-    options.prescribed = prescribed.data();
+    WarpOptions options = TAUTLINE_CHANGED(manual(0, 1), prescribed = prescribed.data());
     const auto motion = [](const Vec3& p) {
       return Vec3{ 0, p[1] > 0.5 ? -0.4 * p[0] * p[0] : 0.0, 0 };
     };
@@ -432,8 +428,7 @@ TAUTLINE_PART(testReuse)
   {
     const MeshData data = boxInBox(CellType::Tetrahedron, 8, 3);
     const Mesh mesh(data.view());
-    WarpOptions options = withMethod(WarpMethod::Femwarp);
-    TAUTLINE_SET(options, automaticSolver = false,
+    WarpOptions options = TAUTLINE_CHANGED(withMethod(WarpMethod::Femwarp), automaticSolver = false,
       solver.method = direct ? KrylovMethod::Direct : KrylovMethod::ConjugateGradient,
       tolerance = 1e-11);
     Warper warper(mesh, options);

@@ -305,8 +305,7 @@ TAUTLINE_PART(testStopping)
       TAUTLINE_CHECK_EQUAL(
         result.aborted, contains(result.message, wording("stopped-on-request-2")));
     }
-    WarpOptions options = withMethod(WarpMethod(method));
-    options.maximumSeconds = 1e-9;
+    WarpOptions options = TAUTLINE_CHANGED(withMethod(WarpMethod(method)), maximumSeconds = 1e-9);
     const WarpResult result = warped(data, turnedBox(90, false), options);
     TAUTLINE_CHECK(result.timeLimit);
     TAUTLINE_CHECK_EQUAL(result.points.size(), data.points.size());

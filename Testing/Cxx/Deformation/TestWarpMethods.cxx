@@ -133,8 +133,7 @@ TAUTLINE_PART(testSecondStep)
     checkValid(data, motion, result);
     TAUTLINE_CHECK(result.history.back().worstShape < untangled);
     TAUTLINE_CHECK_EQUAL(result.history[1].stage, std::string(beta < 0 ? "untangle" : "optimize"));
-    MeshData moved = data;
-    moved.points = result.points;
+    MeshData moved = TAUTLINE_CHANGED(data, points = result.points);
     const std::vector<double> sizes = valuesOf(moved, Metric::Size);
     smallest.push_back(*std::min_element(sizes.begin(), sizes.end()));
   }
@@ -196,9 +195,8 @@ TAUTLINE_PART(testSecondStep)
 TAUTLINE_PART(testNoBarrier)
 {
   const MeshData data = boxInBox(CellType::Tetrahedron, 10, 3);
-  MeshData moved = data;
-  moved.points =
-    warped(data, turnedBox(90, false), withMethod(WarpMethod::FemwarpUntangling)).points;
+  MeshData moved = TAUTLINE_CHANGED(data,
+    points = warped(data, turnedBox(90, false), withMethod(WarpMethod::FemwarpUntangling)).points);
   const Mesh mesh(data.view()), now(moved.view());
   const Targets targets = referenceTargets(now, mesh);
   TAUTLINE_LET(OptimizeOptions, options, threads = 1);
@@ -261,8 +259,7 @@ TAUTLINE_PART(testElasticity)
   checkValid(data, turn, stiffened);
 
   // No power: one material. Its rows applied to the displacements vanish inside.
-  options = withMethod(WarpMethod::JacobianStiffening);
-  options.stiffeningPower = 0;
+  options = TAUTLINE_CHANGED(withMethod(WarpMethod::JacobianStiffening), stiffeningPower = 0);
   const WarpResult same = warped(data, turn, options);
   TAUTLINE_CHECK_NEAR(distance(same.points, uniform.points), 0, 1e-12);
   for (const double nu : { 0.0, 0.4 })
@@ -334,8 +331,7 @@ TAUTLINE_PART(testSteps)
   TAUTLINE_CHECK(small.amount > 0.4 && small.amount <= 1);
   TAUTLINE_CHECK_EQUAL(
     small.amount < 1, contains(small.message, wording("could-follow-only-a-part-of-the")));
-  WarpOptions few = withMethod(WarpMethod::SmallStepFemwarp);
-  few.maximumSteps = 2;
+  WarpOptions few = TAUTLINE_CHANGED(withMethod(WarpMethod::SmallStepFemwarp), maximumSteps = 2);
   const WarpResult stopped = warped(data, motion, few);
   TAUTLINE_CHECK(stopped.amount <= small.amount);
   TAUTLINE_CHECK_EQUAL(stopped.invertedAfter, 0);

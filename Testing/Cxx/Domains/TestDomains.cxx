@@ -2,26 +2,17 @@
 // Every domain: number of cells, valid cells, exact size, markers, motion; structured ones exactly.
 
 #include "Registry.h"
+#include "VtkMeshes.h"
 #include "tautline/Domains/Domains.h"
 #include "tautline/Mesh/Mesh.h"
-#include "vtkCellData.h"
-#include "vtkDataArray.h"
 #include "vtkDomainSource.h"
-#include "vtkExecutive.h"
-#include "vtkNew.h"
-#include "vtkPointData.h"
-#include "vtkPolyData.h"
 #include "vtkTestErrorObserver.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <cstring>
 #include <fstream>
-#include <functional>
-#include <limits>
-#include <map>
 #include <sstream>
 
-using tautline::wording;
+using namespace tautline;
 
 namespace
 {
@@ -31,7 +22,7 @@ double totalSize(vtkUnstructuredGrid* mesh)
   double sum = 0.0;
   for (vtkIdType i = 0; i < mesh->GetNumberOfCells(); ++i)
   {
-    tautline::Vec3 p[4];
+    Vec3 p[4];
     vtkIdType size;
     const vtkIdType* ids;
     mesh->GetCellPoints(i, size, ids);
@@ -39,10 +30,9 @@ double totalSize(vtkUnstructuredGrid* mesh)
     {
       mesh->GetPoint(ids[c], p[c].data());
     }
-    const tautline::Vec3 a = tautline::operator-(p[1], p[0]), b = tautline::operator-(p[2], p[0]);
-    const tautline::Vec3 normal = tautline::cross(a, b);
-    const double cell =
-      size == 3 ? 0.5 * normal[2] : tautline::dot(normal, tautline::operator-(p[3], p[0])) / 6.0;
+    const Vec3 a = p[1] - p[0], b = p[2] - p[0];
+    const Vec3 normal = cross(a, b);
+    const double cell = size == 3 ? 0.5 * normal[2] : dot(normal, p[3] - p[0]) / 6.0;
     TAUTLINE_CHECK(cell > 0.0);
     sum += cell;
   }
@@ -56,7 +46,7 @@ const std::map<std::string, double> ExactSize = { { "barrier2d", 7.72 }, { "barr
 
 void checkDomain(int index)
 {
-  const tautline::DomainInfo& info = tautline::domains()[static_cast<std::size_t>(index)];
+  const DomainInfo& info = domains()[static_cast<std::size_t>(index)];
   TAUTLINE_NEW(vtkDomainSource, source, SetDomain(index), Update());
   vtkUnstructuredGrid* mesh = source->GetOutput();
   const auto cells = static_cast<double>(mesh->GetNumberOfCells());
@@ -70,7 +60,7 @@ void checkDomain(int index)
 
   // the marked points are exactly those of the boundary of the mesh
   std::vector<double> points(static_cast<std::size_t>(3 * mesh->GetNumberOfPoints()));
-  std::vector<tautline::Index> offsets = { 0 }, nodes;
+  std::vector<Index> offsets = { 0 }, nodes;
   std::vector<unsigned char> types;
   for (vtkIdType i = 0; i < mesh->GetNumberOfPoints(); ++i)
   {
@@ -82,12 +72,12 @@ void checkDomain(int index)
     const vtkIdType* ids;
     mesh->GetCellPoints(i, count, ids);
     nodes.insert(nodes.end(), ids, ids + count);
-    offsets.push_back(static_cast<tautline::Index>(nodes.size()));
+    offsets.push_back(static_cast<Index>(nodes.size()));
     types.push_back(static_cast<unsigned char>(mesh->GetCellType(i)));
   }
-  const tautline::Mesh view({ mesh->GetNumberOfPoints(), points.data(), mesh->GetNumberOfCells(),
+  const Mesh view({ mesh->GetNumberOfPoints(), points.data(), mesh->GetNumberOfCells(),
     types.data(), offsets.data(), nodes.data() });
-  const tautline::Boundary boundary = view.boundary();
+  const Boundary boundary = view.boundary();
   TAUTLINE_CHECK(boundary.nonManifold == 0);
   vtkDataArray* markers = mesh->GetPointData()->GetArray("BoundaryMarker");
   vtkDataArray* fixed = mesh->GetPointData()->GetArray("Fixed");
@@ -108,48 +98,45 @@ void checkDomain(int index)
   TAUTLINE_CHECK(!info.moving || (farthest > 0.1 && farthest < 1.0));
 
   auto* deformed = vtkPolyData::SafeDownCast(source->GetOutputDataObject(1));
-  const bool structured = info.kind == tautline::DomainKind::Structured;
+  const bool structured = info.kind == DomainKind::Structured;
   TAUTLINE_CHECK(structured || deformed->GetNumberOfCells() == boundary.facets);
 }
 
 void checkMotion()
 {
   // the centre of the moved cylinder and bar; the ends of the bent bar; the bore's mouths stay
-  const tautline::Vec3 d =
-    tautline::domainDisplacement("cylinder-diagonal", { 0.8, 0.65, 0 }, 2, 0.5);
-  TAUTLINE_CHECK(d == (tautline::Vec3{ 0.3, 0.05, 0 }));
-  TAUTLINE_CHECK(tautline::domainDisplacement("cylinder", { 0, 0, 0 }, 1, 1.0)[0] == 0.0);
-  const tautline::Vec3 clamped =
-    tautline::domainDisplacement("bending-bar", { 0.15, 0.5, 0 }, 2, 1.0);
+  const Vec3 d = domainDisplacement("cylinder-diagonal", { 0.8, 0.65, 0 }, 2, 0.5);
+  TAUTLINE_CHECK(d == (Vec3{ 0.3, 0.05, 0 }));
+  TAUTLINE_CHECK(domainDisplacement("cylinder", { 0, 0, 0 }, 1, 1.0)[0] == 0.0);
+  const Vec3 clamped = domainDisplacement("bending-bar", { 0.15, 0.5, 0 }, 2, 1.0);
   TAUTLINE_CHECK(std::abs(clamped[0]) < 1e-15 && std::abs(clamped[1]) < 1e-15);
-  const tautline::Vec3 tip = tautline::domainDisplacement("bending-bar", { 0.85, 0.5, 0 }, 2, 1.0);
+  const Vec3 tip = domainDisplacement("bending-bar", { 0.85, 0.5, 0 }, 2, 1.0);
   const double phi = std::acos(-1.0) / 3.0, radius = 0.7 / phi;
   TAUTLINE_CHECK(std::abs(tip[0] + 0.7 - radius * std::sin(phi)) < 1e-14);
   TAUTLINE_CHECK(std::abs(tip[1] - radius * (1.0 - std::cos(phi))) < 1e-14);
   // a turn along a circle, not a chord
   for (const double amount : { 1.0 / 6.0, 0.5, 1.0 })
   {
-    const tautline::Vec3 corner = { 0.65, 0.5, 0.35 };
-    const tautline::Vec3 turn = tautline::domainDisplacement("box-in-box", corner, 2, amount);
+    const Vec3 corner = { 0.65, 0.5, 0.35 };
+    const Vec3 turn = domainDisplacement("box-in-box", corner, 2, amount);
     const double angle = std::acos(-1.0) * amount;
     TAUTLINE_CHECK(std::abs(turn[0] + 0.15 - 0.15 * std::cos(angle)) < 1e-15);
     TAUTLINE_CHECK(std::abs(turn[1] - 0.15 * std::sin(angle)) < 1e-15 && turn[2] == 0.0);
   }
-  TAUTLINE_CHECK(tautline::domainDisplacement("gate", { 0.94, 1.0, 0 }, 2, 1.0)[1] == 0.0);
-  TAUTLINE_CHECK(
-    std::abs(tautline::domainDisplacement("gate", { 1, 0.6, 0 }, 2, 1.0)[1] + 0.4) < 1e-15);
+  TAUTLINE_CHECK(domainDisplacement("gate", { 0.94, 1.0, 0 }, 2, 1.0)[1] == 0.0);
+  TAUTLINE_CHECK(std::abs(domainDisplacement("gate", { 1, 0.6, 0 }, 2, 1.0)[1] + 0.4) < 1e-15);
 }
 
 /// h = 0.1, interaction layer 0.2: 14 x 14 squares; aspect ratio 4: 5 x 20 rectangles with 1 and 4
 /// layers around.
 void checkSquare()
 {
-  const tautline::StructuredMesh isotropic = tautline::structuredSquare(0.1, 1.0, 0.2);
+  const StructuredMesh isotropic = structuredSquare(0.1, 1.0, 0.2);
   TAUTLINE_CHECK(
     isotropic.cellReferences.size() == 2 * 14 * 14 && isotropic.points.size() == 3 * 15 * 15);
-  const tautline::StructuredMesh stretched = tautline::structuredSquare(0.1, 4.0, 0.2);
+  const StructuredMesh stretched = structuredSquare(0.1, 4.0, 0.2);
   TAUTLINE_CHECK(stretched.cellReferences.size() == 2 * 7 * 28);
-  for (const tautline::StructuredMesh* mesh : { &isotropic, &stretched })
+  for (const StructuredMesh* mesh : { &isotropic, &stretched })
   {
     const auto inside = std::count(mesh->cellReferences.begin(), mesh->cellReferences.end(), 1);
     TAUTLINE_CHECK(inside == 200); // the same for every aspect ratio
@@ -171,14 +158,14 @@ void checkSquare()
   bool thrown = false;
   try
   {
-    tautline::structuredSquare(0.1, 3.0, 0.2);
+    structuredSquare(0.1, 3.0, 0.2);
   }
-  catch (const tautline::Error& error)
+  catch (const Error& error)
   {
     thrown = contains(error.what(), wording("whole-numbers"));
   }
   TAUTLINE_CHECK(thrown);
-  const tautline::StructuredMesh rectangle = tautline::structuredRectangle(800);
+  const StructuredMesh rectangle = structuredRectangle(800);
   TAUTLINE_CHECK(rectangle.cellReferences.size() == 784 || rectangle.cellReferences.size() == 900);
 }
 
@@ -201,7 +188,7 @@ void checkXml(const std::string& data)
   std::ostringstream text;
   text << file.rdbuf();
   int value = 0;
-  for (const tautline::DomainInfo& info : tautline::domains())
+  for (const DomainInfo& info : domains())
   {
     const std::string entry =
       std::string("<Entry text=\"") + info.label + "\" value=\"" + std::to_string(value++) + "\"/>";
@@ -263,13 +250,13 @@ void checkMissingMeshers()
 /// Sizes that no memory holds are refused before anything is allocated.
 void checkSizes()
 {
-  constexpr tautline::Index Cells = tautline::Index{ 1 } << 50;
+  constexpr Index Cells = Index{ 1 } << 50;
   for (const auto& make :
     std::vector<std::function<void()>>{
-      [] { tautline::structuredRectangle(Cells); },
-      [] { tautline::structuredSquare(1e-4, 1.0, 10.0); },
-      [] { tautline::checkDomainSize(1e15, tautline::DomainKind::Planar); },
-      [] { tautline::checkDomainSize(std::nan(""), tautline::DomainKind::Solid); },
+      [] { structuredRectangle(Cells); },
+      [] { structuredSquare(1e-4, 1.0, 10.0); },
+      [] { checkDomainSize(1e15, DomainKind::Planar); },
+      [] { checkDomainSize(std::nan(""), DomainKind::Solid); },
     })
   {
     std::string message;
@@ -277,13 +264,13 @@ void checkSizes()
     {
       make();
     }
-    catch (const tautline::Error& error)
+    catch (const Error& error)
     {
       message = error.what();
     }
     TAUTLINE_CHECK(contains(message, wording("of-memory")));
   }
-  tautline::checkDomainSize(1e5, tautline::DomainKind::Solid);
+  checkDomainSize(1e5, DomainKind::Solid);
 }
 
 /// Numbers of extreme size are refused by name, by the source and by the kernel; nothing changes.
@@ -302,7 +289,7 @@ void checkExtremes()
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double extreme : { 1e-150, 1e150, 0.0, -1.0, std::nan(""), infinity })
   {
-    const tautline::Context context(std::to_string(extreme));
+    const Context context(std::to_string(extreme));
     refuses(wording("elementsize-is"), [&] { source->SetElementSize(extreme); });
     refuses(wording("aspectratio-is"), [&] { source->SetAspectRatio(extreme); });
     const bool tiny = extreme >= 0.0 && extreme < 1.0;
@@ -314,13 +301,13 @@ void checkExtremes()
     {
       refuses(wording("amount-is"), [&] { source->SetAmount(extreme); });
     }
-    TAUTLINE_CHECK_THROWS(tautline::structuredSquare(extreme, 1.0, 0.2), wording("whole-elements"));
-    TAUTLINE_CHECK_THROWS(tautline::structuredSquare(0.1, extreme, 0.2),
+    TAUTLINE_CHECK_THROWS(structuredSquare(extreme, 1.0, 0.2), wording("whole-elements"));
+    TAUTLINE_CHECK_THROWS(structuredSquare(0.1, extreme, 0.2),
       extreme >= 1.0 ? "whole elements" : "the aspect ratio must be");
     TAUTLINE_CHECK_THROWS(
-      tautline::planarBoundary("disk2d", extreme), wording("the-spacing-of-a-boundary-is"));
+      planarBoundary("disk2d", extreme), wording("the-spacing-of-a-boundary-is"));
     TAUTLINE_CHECK_THROWS(
-      tautline::solidBoundary("sphere", extreme), wording("the-spacing-of-a-boundary-is"));
+      solidBoundary("sphere", extreme), wording("the-spacing-of-a-boundary-is"));
   }
   refuses(wording("layerwidth-is"), [&] { source->SetLayerWidth(-1e-150); });
   // What is inside: no layer, and one that is narrower than any element.
@@ -345,8 +332,7 @@ TAUTLINE_TEST(TestDomains)
   TAUTLINE_RUN(checkXml(argv[1]));
   for (int i = 0; i < vtkDomainSource::GetNumberOfDomains(); ++i)
   {
-    const bool structured =
-      tautline::domains()[static_cast<std::size_t>(i)].kind == tautline::DomainKind::Structured;
+    const bool structured = domains()[static_cast<std::size_t>(i)].kind == DomainKind::Structured;
     if (structured || vtkDomainSource::HasMeshing())
     {
       TAUTLINE_RUN(checkDomain(i));

@@ -463,8 +463,7 @@ TAUTLINE_PART(testRefusals)
   data = good;
   data.addCell(CellType::Triangle, { 0, 1, 2 });
   TAUTLINE_CHECK_THROWS(make(data, {}), wording("1-element-the-first-is-cell-32"));
-  data = good;
-  data.points[3 * 6] = NaN;
+  data = TAUTLINE_CHANGED(good, points[3 * 6] = NaN);
   TAUTLINE_CHECK_THROWS(make(data, {}), wording("not-finite"));
 
   // Data.

@@ -438,8 +438,7 @@ TAUTLINE_PART(testRefusals)
 {
   const MeshData data = block(CellType::Triangle, 4);
   const vtkIdType points = data.numberOfPoints();
-  auto grid = toGrid(data);
-  TAUTLINE_SET(grid,
+  auto grid = TAUTLINE_CHANGED(toGrid(data),
     GetPointData()->AddArray(arrayOf("nan", points, { std::numeric_limits<double>::quiet_NaN() })),
     GetPointData()->AddArray(arrayOf("vector", points, { 1, 2, 3 })),
     GetCellData()->AddArray(arrayOf("onCells", data.numberOfCells(), { 1 })));
@@ -511,8 +510,7 @@ TAUTLINE_PART(testRefusals)
   filter->SetInputData(lines);
   refuses(filter, wording("the-mesh-has-no-cells-finite-elements"));
   const vtkIdType corners[] = { 0, 1, 6, 7, 5 };
-  auto polygon = toGrid(data);
-  polygon->InsertNextCell(VTK_POLYGON, 5, corners);
+  auto polygon = TAUTLINE_CHANGED(toGrid(data), InsertNextCell(VTK_POLYGON, 5, corners));
   filter->SetInputData(polygon);
   refuses(filter, wording("1-cells-are-not-triangles"));
   // and after all that it works

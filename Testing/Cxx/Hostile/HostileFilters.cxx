@@ -142,8 +142,7 @@ Data outlines()
 vtkSmartPointer<vtkImageData> silhouette(int shift = 0)
 {
   constexpr int Size = 24;
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  image->SetDimensions(Size, Size, 1);
+  auto image = TAUTLINE_CHANGED(vtkSmartPointer<vtkImageData>::New(), SetDimensions(Size, Size, 1));
   TAUTLINE_NEW(vtkUnsignedCharArray, grey, SetName("Grey"));
   for (int y = 0; y < Size; ++y)
   {
@@ -187,8 +186,7 @@ Data polygon()
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkTransform> turn()
 {
-  auto transform = vtkSmartPointer<vtkTransform>::New();
-  transform->RotateZ(5);
+  auto transform = TAUTLINE_CHANGED(vtkSmartPointer<vtkTransform>::New(), RotateZ(5));
   return transform;
 }
 
@@ -294,8 +292,7 @@ void addWriter(std::vector<HostileFilter>& list, const char* name, const std::st
   TAUTLINE_LET(HostileFilter, entry, module = "Readers", name = name);
   entry.make = [file]
   {
-    auto writer = vtkSmartPointer<Writer>::New();
-    writer->SetFileName(file.c_str());
+    auto writer = TAUTLINE_CHANGED(vtkSmartPointer<Writer>::New(), SetFileName(file.c_str()));
     return writer;
   };
   TAUTLINE_SET(entry, suitable = suitable, keepsMesh = false, fileName = file);

@@ -53,9 +53,8 @@ Data cubePolyhedron()
 
 Data image(int x, int y, int z)
 {
-  auto result = vtkSmartPointer<vtkImageData>::New();
-  result->SetDimensions(x, y, z);
-  result->GetPointData()->SetScalars(makeArray<vtkDoubleArray>("T", Index(x) * y * z));
+  auto result = TAUTLINE_CHANGED(vtkSmartPointer<vtkImageData>::New(), SetDimensions(x, y, z),
+    GetPointData()->SetScalars(makeArray<vtkDoubleArray>("T", Index(x) * y * z)));
   return result;
 }
 
@@ -79,8 +78,7 @@ Data rectilinear()
 
 vtkSmartPointer<vtkStructuredGrid> structured(int points)
 {
-  auto result = vtkSmartPointer<vtkStructuredGrid>::New();
-  result->SetDimensions(4, 3, 1);
+  auto result = TAUTLINE_CHANGED(vtkSmartPointer<vtkStructuredGrid>::New(), SetDimensions(4, 3, 1));
   TAUTLINE_NEW(vtkPoints, place, SetDataType(VTK_DOUBLE));
   for (int i = 0; i < points; ++i)
   {
@@ -92,8 +90,7 @@ vtkSmartPointer<vtkStructuredGrid> structured(int points)
 
 Data hyperTreeGrid()
 {
-  auto result = vtkSmartPointer<vtkHyperTreeGrid>::New();
-  result->SetDimensions(3, 3, 1);
+  auto result = TAUTLINE_CHANGED(vtkSmartPointer<vtkHyperTreeGrid>::New(), SetDimensions(3, 3, 1));
   return result;
 }
 

@@ -104,9 +104,7 @@ TAUTLINE_PART(testBoundaries)
   const std::vector<double> regions = twoRegions(square);
   TAUTLINE_LET(FeatureOptions, options, regions = regions.data());
   checkCounts(featuresOf(square, options), 6, 7, 0);
-  options = FeatureOptions();
-  options.asSurface = true;
-  checkCounts(featuresOf(square, options), 4, 4, 1);
+  checkCounts(featuresOf(square, TAUTLINE_CHANGED(FeatureOptions(), asSurface = true)), 4, 4, 1);
 }
 
 /// The border of two regions of a surface is a curve without corners, whatever the order of cells.
@@ -151,8 +149,7 @@ TAUTLINE_PART(testKinds)
   checkCounts(featuresOf(sphere, options), 0, 1, 2);
   kinds[0] = 5;
   TAUTLINE_CHECK_THROWS(featuresOf(sphere, options), wording("must-be-0-patch-1-curve-2"));
-  options = FeatureOptions();
-  options.angle = 200;
+  options = TAUTLINE_CHANGED(FeatureOptions(), angle = 200);
   TAUTLINE_CHECK_THROWS(featuresOf(sphere, options), wording("between-0-and-180"));
 }
 }

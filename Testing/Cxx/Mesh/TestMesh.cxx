@@ -312,8 +312,7 @@ TAUTLINE_PART(testRefusals)
   }
   bad.connectivity[4 * 5] = -1; // the first of several is named
   TAUTLINE_CHECK_THROWS(Mesh(bad.view()), "Cell 5 ");
-  bad = good;
-  bad.types[3] = static_cast<unsigned char>(CellType::Hexahedron);
+  bad = TAUTLINE_CHANGED(good, types[3] = static_cast<unsigned char>(CellType::Hexahedron));
   TAUTLINE_CHECK_THROWS(Mesh(bad.view()), wording("cell-3-is-not-a-proper-hexahedron"));
   bad = good;
   bad.offsets[8] = bad.offsets[7];
@@ -331,9 +330,7 @@ TAUTLINE_PART(testRefusals)
       connectivity = missing == 3 ? nullptr : view.connectivity);
     TAUTLINE_CHECK_THROWS(Mesh mesh(view), "incomplete");
   }
-  MeshView view = good.view();
-  view.numberOfCells = -1;
-  TAUTLINE_CHECK_THROWS(Mesh mesh(view), "incomplete");
+  TAUTLINE_CHECK_THROWS(Mesh mesh(TAUTLINE_CHANGED(good.view(), numberOfCells = -1)), "incomplete");
 }
 }
 

@@ -60,8 +60,7 @@ void testOrientation(CellType type)
   o = orientationOf(Mesh(mixed.view()));
   TAUTLINE_CHECK_EQUAL(o.state, Orientation::Mixed);
   MeshData alone = singleCell(type, idealCell(type));
-  MeshData without = data;
-  without.types[odd] = 0;
+  MeshData without = TAUTLINE_CHANGED(data, types[odd] = 0);
   const Index own = Mesh(alone.view()).boundary().facets,
               opened = Mesh(without.view()).boundary().facets - Mesh(data.view()).boundary().facets;
   TAUTLINE_CHECK_EQUAL(o.disagreeing, (own + opened) / 2);

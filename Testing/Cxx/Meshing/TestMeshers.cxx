@@ -2,16 +2,9 @@
 // The meshers: bounds kept, sizes exact, markers and regions, failures as errors.
 
 #include "Registry.h"
-#include "vtkCallbackCommand.h"
-#include "vtkCellArray.h"
-#include "vtkCellData.h"
+#include "VtkMeshes.h"
 #include "vtkCommand.h"
-#include "vtkDoubleArray.h"
-#include "vtkExecutive.h"
 #include "vtkFieldData.h"
-#include "vtkNew.h"
-#include "vtkPointData.h"
-#include "vtkPolyData.h"
 #include "vtkSphereSource.h"
 #include "vtkTestErrorObserver.h"
 #include "vtkTetGenMesher.h"
@@ -19,16 +12,13 @@
 #include "vtkTransform.h"
 #include "vtkTransformFilter.h"
 #include "vtkTriangleMesher.h"
-#include "vtkUnstructuredGrid.h"
 
 #include <filesystem>
 
-using tautline::wording;
+using namespace tautline;
 
 namespace
 {
-using tautline::Vec3;
-using tautline::operator-;
 
 std::string data;
 
@@ -50,17 +40,17 @@ Facts measure(vtkUnstructuredGrid* mesh)
     {
       mesh->GetPoint(ids[c], p[c].data());
     }
-    const Vec3 normal = tautline::cross(p[1] - p[0], p[2] - p[0]);
-    const double cell = size == 3 ? 0.5 * normal[2] : tautline::dot(normal, p[3] - p[0]) / 6.0;
+    const Vec3 normal = cross(p[1] - p[0], p[2] - p[0]);
+    const double cell = size == 3 ? 0.5 * normal[2] : dot(normal, p[3] - p[0]) / 6.0;
     TAUTLINE_CHECK(cell > 0.0);
     facts.size += cell;
     facts.largestCell = std::max(facts.largestCell, cell);
     for (int c = 0; size == 3 && c < 3; ++c)
     {
       const Vec3 a = p[(c + 1) % 3] - p[c], b = p[(c + 2) % 3] - p[c];
-      const double angle = std::acos(tautline::dot(a, b) / (tautline::norm(a) * tautline::norm(b)));
+      const double angle = std::acos(dot(a, b) / (norm(a) * norm(b)));
       facts.smallestAngle = std::min(facts.smallestAngle, angle * 180.0 / std::acos(-1.0));
-      facts.longestEdge = std::max(facts.longestEdge, tautline::norm(a));
+      facts.longestEdge = std::max(facts.longestEdge, norm(a));
     }
   }
   return facts;
@@ -246,8 +236,7 @@ void testTetrahedra()
     {
       boundary->GetPoint(ids[c], p[c].data());
     }
-    areas[static_cast<int>(markers->GetTuple1(i))] +=
-      0.5 * tautline::norm(tautline::cross(p[1] - p[0], p[2] - p[0]));
+    areas[static_cast<int>(markers->GetTuple1(i))] += 0.5 * norm(cross(p[1] - p[0], p[2] - p[0]));
     TAUTLINE_CHECK(markers->GetTuple1(i) != 1 || p[0][2] == 0.0);
   }
   for (int m = 1; m <= 6; ++m)

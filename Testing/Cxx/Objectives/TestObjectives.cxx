@@ -468,8 +468,7 @@ void testErrors()
   const Mesh mesh(tets.view()), flat(quads.view());
   auto make1 = [&](Metric metric, T objectiveTemplate, double power = 8)
   {
-    Objective objective = make(metric, objectiveTemplate);
-    objective.power = power;
+    Objective objective = TAUTLINE_CHANGED(make(metric, objectiveTemplate), power = power);
     ObjectiveSum(mesh, objective);
   };
   TAUTLINE_CHECK_THROWS(make1(Metric::WidthRatio, T::Sum), wording("not-defined-on-any-cell"));

@@ -107,8 +107,7 @@ TAUTLINE_PART(testClosedForms)
       for (double c : { 0.0, 5.0 })
       {
         const Context name("method " + std::to_string(static_cast<int>(method)));
-        ScalarizationOptions options = optionsFor(method);
-        TAUTLINE_SET(options, c = c, exponent = 1.5);
+        ScalarizationOptions options = TAUTLINE_CHANGED(optionsFor(method), c = c, exponent = 1.5);
         options.utopia = utopia ? Values{ 0.5, -10, 1 } : Values{};
         const Scalarizer scalarizer(options, weights, initial);
         for (const Values& f : { initial, Values{ 2, 31, 6.5 }, Values{ 1, 41, 0.25 } })
@@ -158,8 +157,7 @@ TAUTLINE_PART(testExtremes)
   TAUTLINE_CHECK_RELATIVE(product.value({ 1e300, 1e300, 1e-300 }, slopes), 1e300, 1e-14);
   TAUTLINE_CHECK(slopes[2] == std::numeric_limits<double>::max() && slopes[0] == 1);
 
-  options = optionsFor(Scalarization::ExponentialWeighted);
-  options.exponent = 1000;
+  options = TAUTLINE_CHANGED(optionsFor(Scalarization::ExponentialWeighted), exponent = 1000);
   const Scalarizer weighted(options, { 1, 5 }, { 2, 2 });
   TAUTLINE_CHECK_RELATIVE(weighted.value({ 8, 8 }), 9, 1e-14); // w_2 + z_2, both exp() overflow
   testSlopes(weighted, { 16.001, 8 }, 1e-5);

@@ -44,24 +44,21 @@ inline MeshData perturbedBlock(CellType type, Index n, double amplitude, unsigne
 
 inline Index invalid(const MeshData& like, const std::vector<double>& points)
 {
-  MeshData moved = like;
-  moved.points = points;
+  MeshData moved = TAUTLINE_CHANGED(like, points = points);
   const std::vector<signed char> v = validityOf(moved);
   return std::count_if(v.begin(), v.end(), [](signed char s) { return s != Valid; });
 }
 
 inline double sumOfSquares(const MeshData& like, const std::vector<double>& points, Metric metric)
 {
-  MeshData moved = like;
-  moved.points = points;
+  MeshData moved = TAUTLINE_CHANGED(like, points = points);
   return sumOf<double>(0, valuesOf(moved, metric), [&](double q) { return q * q; });
 }
 
 /// Of the cells with a vertex that is not on the boundary.
 inline double worstMovable(const MeshData& like, const std::vector<double>& points)
 {
-  MeshData moved = like;
-  moved.points = points;
+  MeshData moved = TAUTLINE_CHANGED(like, points = points);
   const std::vector<char> boundary = Mesh(like.view()).boundary().isBoundaryPoint;
   const std::vector<double> q = valuesOf(moved, Metric::InverseMeanRatio);
   double worst = 0;
@@ -128,8 +125,7 @@ inline bool wentOn(const std::vector<IterationRecord>& history, double fraction)
 /// How much one more sweep over all vertices lowers the objective, relative to it.
 inline double nextGain(const MeshData& like, const std::vector<double>& points)
 {
-  MeshData moved = like;
-  moved.points = points;
+  MeshData moved = TAUTLINE_CHANGED(like, points = points);
   TAUTLINE_LET(OptimizeOptions, options, optimizer = Optimizer::LocalNewton,
     stopping.maximumIterations = 1, relaxation = 1, holdWorst = false);
   const OptimizeResult result = optimize(Mesh(moved.view()), options);

@@ -177,8 +177,7 @@ TAUTLINE_PART(testDirections)
   TAUTLINE_CHECK_EQUAL(held, inner * inner + 4 * inner);
 
   // On another geometry, all points that slide are held.
-  OptimizeOptions geometry = sliding.options;
-  geometry.onGeometry = true;
+  OptimizeOptions geometry = TAUTLINE_CHANGED(sliding.options, onGeometry = true);
   const PointSlides there = slidesOf(mesh, geometry);
   TAUTLINE_CHECK(there.planes.empty() && there.lines.empty());
   TAUTLINE_CHECK_EQUAL(

@@ -61,8 +61,7 @@ void checkTop(const MeshData& data, const std::vector<double>& points, const Sta
 
 Index invalid(const MeshData& like, const std::vector<double>& points)
 {
-  MeshData moved = like;
-  moved.points = points;
+  MeshData moved = TAUTLINE_CHANGED(like, points = points);
   const std::vector<signed char> v = validityOf(moved);
   return std::count_if(v.begin(), v.end(), [](signed char s) { return s != Valid; });
 }

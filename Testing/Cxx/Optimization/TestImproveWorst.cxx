@@ -64,8 +64,7 @@ public:
 private:
   Round at(const std::vector<double>& points) const
   {
-    MeshData moved = this->Data;
-    moved.points = points;
+    MeshData moved = TAUTLINE_CHANGED(this->Data, points = points);
     const std::vector<double> q = valuesOf(moved, this->TheMetric);
     const std::vector<char> boundary = Mesh(this->Data.view()).boundary().isBoundaryPoint;
     TAUTLINE_LET(Round, round, points = points);
@@ -118,8 +117,7 @@ TAUTLINE_PART(testRounds)
     Rounds rounds(data, metric, objectiveTemplate);
     const double sign = metricInfo(metric).direction == Direction::LargerIsBetter ? -1 : 1;
     // Where the mean is the smallest, the worst element can only improve at its cost.
-    OptimizeOptions least = rounds.options();
-    least.stopping.relativeChange = 1e-10;
+    OptimizeOptions least = TAUTLINE_CHANGED(rounds.options(), stopping.relativeChange = 1e-10);
     const std::vector<double> start = run(data, least).points;
     // In closed form, a round that gains little is the last.
     constexpr double worthwhile = 1e-3;
@@ -161,10 +159,8 @@ TAUTLINE_PART(testBackToInput)
     const Context context(topology(type).name);
     const MeshData data = wavy(type);
     Rounds rounds(data, Metric::InverseMeanRatio, ObjectiveTemplate::SumOfSquares);
-    OptimizeOptions least = rounds.options();
-    least.stopping.relativeChange = 1e-10;
-    MeshData input = data;
-    input.points = run(data, least).points;
+    OptimizeOptions least = TAUTLINE_CHANGED(rounds.options(), stopping.relativeChange = 1e-10);
+    MeshData input = TAUTLINE_CHANGED(data, points = run(data, least).points);
     // The input has a better worst element than the start, at the cost of the mean.
     const std::vector<double> start = input.points;
     const std::vector<Round> better = rounds.from(start, { 0.5, false });
@@ -205,8 +201,7 @@ TAUTLINE_PART(testPull)
     const Context context(topology(type).name);
     const MeshData data = wavy(type);
     Rounds rounds(data, Metric::InverseMeanRatio, ObjectiveTemplate::SumOfSquares);
-    OptimizeOptions least = rounds.options();
-    least.stopping.relativeChange = 1e-10;
+    OptimizeOptions least = TAUTLINE_CHANGED(rounds.options(), stopping.relativeChange = 1e-10);
     const std::vector<double> start = run(data, least).points;
     double last = 0;
     for (const auto& [allowance, most] : bounds)

@@ -107,10 +107,9 @@ Run optimized(
 {
   const auto regions =
     filledArray<vtkDoubleArray>("Regions", mesh.regions, [&](double region) { return region; });
-  const auto grid = toGrid(mesh.data);
-  grid->GetCellData()->AddArray(regions);
-  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(grid), SetBoundary(boundary),
-    SetSurfaceTolerance(tolerance),
+  TAUTLINE_NEW(vtkMeshOptimizer, filter,
+    SetInputData(TAUTLINE_CHANGED(toGrid(mesh.data), GetCellData()->AddArray(regions))),
+    SetBoundary(boundary), SetSurfaceTolerance(tolerance),
     SetInputArrayToProcess(6, 0, 0, vtkDataObject::FIELD_ASSOCIATION_CELLS, "Regions"),
     SetThreads(threads), SetHoldWorst(holdWorst), Update());
   TAUTLINE_LET(Run, run, points = toMesh(outputOf<vtkUnstructuredGrid>(filter)).points,
@@ -278,8 +277,7 @@ TAUTLINE_PART(testHeldWorst)
     { return sumOfSquares(mesh.data, points, Metric::InverseMeanRatio); };
     const auto worst = [&](const std::vector<double>& points)
     {
-      MeshData moved = mesh.data;
-      moved.points = points;
+      MeshData moved = TAUTLINE_CHANGED(mesh.data, points = points);
       const std::vector<double> values = valuesOf(moved, Metric::InverseMeanRatio);
       return *std::max_element(values.begin(), values.end());
     };

@@ -220,8 +220,7 @@ TAUTLINE_PART(testAllowance)
     TAUTLINE_LET(OptimizeOptions, options,
       stopping.relativeChange = options.stopping.gradientNorm = 1e-9, improveWorst = allowance);
     const OptimizeResult result = run(data, options);
-    MeshData moved = data;
-    moved.points = result.points;
+    MeshData moved = TAUTLINE_CHANGED(data, points = result.points);
     const std::vector<double> q = valuesOf(moved, Metric::InverseMeanRatio);
     const double mean =
       std::accumulate(q.begin(), q.end(), 0.0) / static_cast<double>(data.numberOfCells());

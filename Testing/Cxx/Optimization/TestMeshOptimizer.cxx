@@ -53,8 +53,7 @@ double largestStep(const MeshData& before, const std::vector<double>& after, Ind
 
 vtkSmartPointer<vtkDoubleArray> arrayOf(const char* name, const std::vector<double>& values)
 {
-  auto array = vtkSmartPointer<vtkDoubleArray>::New();
-  array->SetName(name);
+  auto array = TAUTLINE_CHANGED(vtkSmartPointer<vtkDoubleArray>::New(), SetName(name));
   for (double value : values)
   {
     array->InsertNextValue(value);
@@ -155,8 +154,7 @@ TAUTLINE_PART(testCustom)
   const OptimizeResult expected = optimize(Mesh(data.view()), options);
 
   vtkNew<vtkMeshOptimizer> filter;
-  auto grid = toGrid(data);
-  grid->GetCellData()->AddArray(arrayOf("w", weights));
+  auto grid = TAUTLINE_CHANGED(toGrid(data), GetCellData()->AddArray(arrayOf("w", weights)));
   TAUTLINE_SET(filter, SetInputData(grid), AddObjectiveByName("imr", vtkMeshOptimizer::P_MEAN),
     AddObjectiveByName("rr", vtkMeshOptimizer::DEFAULT_TEMPLATE, 3));
   TAUTLINE_CHECK_EQUAL(filter->GetPreset(), int(vtkMeshOptimizer::CUSTOM));

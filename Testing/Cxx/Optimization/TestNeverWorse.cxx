@@ -94,8 +94,7 @@ void testOne(int number, Totals& totals)
     return;
   }
   ++totals.valid;
-  MeshData moved = data;
-  moved.points = result.points;
+  MeshData moved = TAUTLINE_CHANGED(data, points = result.points);
   const Mesh now(moved.view());
   constexpr double rounding = 1e-8;
   const double worst = worstOf(mesh, options, type);

@@ -248,8 +248,7 @@ TAUTLINE_PART(testSweepTakenBack)
     TAUTLINE_CHECK(i == 0 || now <= result.history[i - 1].objective);
   }
   // The points are those of the last record.
-  MeshData moved = data;
-  moved.points = result.points;
+  MeshData moved = TAUTLINE_CHANGED(data, points = result.points);
   options.stopping.maximumIterations = 0;
   const std::vector<double> last = result.history.back().objectives;
   const std::vector<double> found = run(moved, options).history.front().objectives;
@@ -356,16 +355,12 @@ TAUTLINE_PART(testStopping)
     const double part = (first - result.history.back().objective) / (first - least);
     TAUTLINE_CHECK(part >= (std::isnan(known) ? 0.93 : 0.95) && part < 0.999);
   }
-  options = OptimizeOptions();
-  options.stopping.twoDigits = true;
-  result = run(data, options);
+  result = run(data, TAUTLINE_CHANGED(OptimizeOptions(), stopping.twoDigits = true));
   TAUTLINE_CHECK(result.reason == StopReason::TwoDigits);
   const std::size_t n = result.history.size();
   TAUTLINE_CHECK_EQUAL(std::round(100 * result.history[n - 1].mean[0]),
     std::round(100 * result.history[n - 2].mean[0]));
-  options = OptimizeOptions();
-  options.stopping.allValid = true;
-  result = run(data, options);
+  result = run(data, TAUTLINE_CHANGED(OptimizeOptions(), stopping.allValid = true));
   TAUTLINE_CHECK(result.reason == StopReason::AllValid);
   TAUTLINE_CHECK_EQUAL(result.iterations, 0);
   for (Optimizer optimizer : { Optimizer::Automatic, Optimizer::LimitedMemoryBFGS })
@@ -375,8 +370,7 @@ TAUTLINE_PART(testStopping)
     result = run(data, options);
     TAUTLINE_CHECK(result.reason == StopReason::TimeLimit);
     TAUTLINE_CHECK(result.iterations <= 2);
-    options = OptimizeOptions();
-    options.optimizer = optimizer;
+    options = TAUTLINE_CHANGED(OptimizeOptions(), optimizer = optimizer);
     int calls = 0;
     std::vector<double> seen(data.points.size());
     options.observer = [&](const IterationState& state)
@@ -560,11 +554,9 @@ TAUTLINE_PART(testFaulty)
   const MeshData data = perturbedBlock(CellType::Triangle, 4, 0.1);
   options.objectives.clear();
   TAUTLINE_CHECK_THROWS(run(data, options), wording("no-objective"));
-  options = OptimizeOptions();
-  options.relaxation = 2.5;
+  options = TAUTLINE_CHANGED(OptimizeOptions(), relaxation = 2.5);
   TAUTLINE_CHECK_THROWS(run(data, options), "relaxation");
-  options = OptimizeOptions();
-  options.stopping.reduction = 0;
+  options = TAUTLINE_CHANGED(OptimizeOptions(), stopping.reduction = 0);
   TAUTLINE_CHECK_THROWS(run(data, options), "reduction");
 }
 }

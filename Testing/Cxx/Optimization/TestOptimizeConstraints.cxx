@@ -31,8 +31,7 @@ TAUTLINE_PART(testConstraints)
 
   constexpr double limit = 0.03;
   const std::vector<double> limits(n, limit);
-  options = OptimizeOptions();
-  options.limits = limits.data();
+  options = TAUTLINE_CHANGED(OptimizeOptions(), limits = limits.data());
   result = run(data, options);
   double most = 0;
   for (Index i = 0; i < n; ++i)
@@ -74,8 +73,7 @@ TAUTLINE_PART(testConstraints)
       slid.setPoint(i, p);
     }
     TAUTLINE_CHECK_EQUAL(invalid(slid, slid.points), Index(0));
-    options = OptimizeOptions();
-    TAUTLINE_SET(options, optimizer = optimizer, fixed = fixed.data());
+    options = TAUTLINE_CHANGED(OptimizeOptions(), optimizer = optimizer, fixed = fixed.data());
     const double held = [&]()
     {
       std::vector<unsigned char> all = fixed;
@@ -83,9 +81,7 @@ TAUTLINE_PART(testConstraints)
       {
         all[i] = boundary[i];
       }
-      OptimizeOptions without = options;
-      without.fixed = all.data();
-      return run(slid, without).history.back().objective;
+      return run(slid, TAUTLINE_CHANGED(options, fixed = all.data())).history.back().objective;
     }();
     TAUTLINE_SET(options, slidePlanes = planes.data(), slideLines = lines.data());
     result = run(slid, options);

@@ -332,8 +332,7 @@ TAUTLINE_PART(testGeometry)
   const MeshData sphere = sphereSurface(CellType::Quadrilateral, 6),
                  finer = sphereSurface(CellType::Triangle, 40);
   const GeometryMatch onSphere = match(sphere, finer);
-  MeshData placed = sphere;
-  placed.points = onSphere.points;
+  MeshData placed = TAUTLINE_CHANGED(sphere, points = onSphere.points);
   TAUTLINE_LET(OptimizeOptions, options, model = &onSphere.model, parts = onSphere.parts.data(),
     onGeometry = true);
   const OptimizeResult result = run(placed, options);

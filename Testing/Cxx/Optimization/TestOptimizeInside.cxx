@@ -32,8 +32,7 @@ std::vector<std::vector<Vec3>> foldedCells(CellType type, int count)
 /// The cells that were valid and are not.
 Index lost(const MeshData& data, const std::vector<double>& points)
 {
-  MeshData moved = data;
-  moved.points = points;
+  MeshData moved = TAUTLINE_CHANGED(data, points = points);
   const std::vector<signed char> before = validityOf(data), after = validityOf(moved);
   return sumOf<Index>(
     0, before.size(), [&](std::size_t i) { return before[i] == Valid && after[i] != Valid; });

@@ -188,8 +188,7 @@ TAUTLINE_PART(testVerified)
       OptimizeOptions options;
       applyPreset(preset, options);
       const OptimizeResult result = optimize(mesh, options, validityOf(data));
-      MeshData moved = data;
-      moved.points = result.points;
+      MeshData moved = TAUTLINE_CHANGED(data, points = result.points);
       TAUTLINE_CHECK(result.elements.validity == validityOf(moved));
       const bool sameMetric = type == CellType::Tetrahedron || preset != Preset::WorstElement;
       TAUTLINE_CHECK_EQUAL(result.elements.after.empty(), !sameMetric);

@@ -151,8 +151,7 @@ void testMemory(CellType type, int beforeNewton, double mebibytes)
     });
   constexpr int sweeps = 12;
   TAUTLINE_LET(OptimizeOptions, options, threads = 1, stopping.maximumIterations = sweeps);
-  OptimizeOptions local = options;
-  local.optimizer = Optimizer::LocalNewton;
+  OptimizeOptions local = TAUTLINE_CHANGED(options, optimizer = Optimizer::LocalNewton);
   const OptimizeResult expected = run(data, local);
   const OptimizeResult usual = run(data, options);
   TAUTLINE_CHECK(usual.history.back().objective < 0.9 * expected.history.back().objective);

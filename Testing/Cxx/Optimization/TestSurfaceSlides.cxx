@@ -72,8 +72,7 @@ OptimizeResult runOnModel(const MeshData& data, bool smooth, OptimizeOptions opt
 /// The largest distance from the surface, and whether all elements face as its normals do.
 double offSurface(const MeshData& data, const std::vector<double>& points, const Surface& surface)
 {
-  MeshData moved = data;
-  moved.points = points;
+  MeshData moved = TAUTLINE_CHANGED(data, points = points);
   double off = largestOf<double>(
     0, moved.numberOfPoints(), [&](Index p) { return surface.distance(moved.point(p)); });
   Index turned = 0;

@@ -71,8 +71,7 @@ TAUTLINE_PART_SLOW(testEqual)
           [&](RankGroup& group)
           {
             const HorizonMesh here = meshOfFirst(group, group.rank() == 0 ? mesh : HorizonMesh());
-            PeridynamicOptions own = options;
-            own.threads = 1 + group.rank() % 2;
+            PeridynamicOptions own = TAUTLINE_CHANGED(options, threads = 1 + group.rank() % 2);
             systems[group.rank()] = assemblePeridynamics(group, here, own, &given);
           });
         const PeridynamicSystem& all = systems[0];

@@ -354,8 +354,7 @@ TAUTLINE_PART(testMatrix)
     }
   }
   // A free body: forces of rigid motions vanish.
-  PeridynamicOptions options = stateBased(0.4);
-  options.constrained = false;
+  PeridynamicOptions options = TAUTLINE_CHANGED(stateBased(0.4), constrained = false);
   const PeridynamicSystem system = assemblePeridynamics(mesh, options);
   const double rotation[4] = { 0, -1, 1, 0 };
   for (std::vector<double> u : { linearMotion(mesh, rotation), std::vector<double>() })
@@ -373,8 +372,7 @@ TAUTLINE_PART(testMatrix)
 TAUTLINE_PART(testSolutions)
 {
   const HorizonMesh mesh = shakenSquare(16, 4, 0.1);
-  PeridynamicOptions options = stateBased(0.3);
-  TAUTLINE_SET(options, horizon = 0.125, tolerance = 1e-4);
+  PeridynamicOptions options = TAUTLINE_CHANGED(stateBased(0.3), horizon = 0.125, tolerance = 1e-4);
   const PeridynamicSystem system = assemblePeridynamics(mesh, options);
   const std::vector<double> ones(2 * mesh.numberOfTriangles(), 1.0);
   const std::vector<double> load = sourceLoad(mesh, system, options.basis, ones, false);

@@ -69,8 +69,7 @@ std::vector<Sample> samples()
 
 MeshData moved(const MeshData& mesh, const Perturbation& result)
 {
-  MeshData after = mesh;
-  after.points = result.points;
+  MeshData after = TAUTLINE_CHANGED(mesh, points = result.points);
   return after;
 }
 
@@ -447,8 +446,7 @@ TAUTLINE_PART(testKindsOfInput)
   TAUTLINE_CHECK(messages.has(wording("run-tessellate")));
 
   messages.clear();
-  MeshData pentagon = quadratic;
-  TAUTLINE_SET(pentagon, types = {}, offsets = { 0 }, connectivity = {});
+  MeshData pentagon = TAUTLINE_CHANGED(quadratic, types = {}, offsets = { 0 }, connectivity = {});
   pentagon.addCell(VTK_POLYGON, { 0, 3, 1, 4, 2 });
   TAUTLINE_SET(filter, SetInputData(toPolyData(pentagon)), Update());
   TAUTLINE_CHECK(messages.has(wording("run-tetrahedralize-first")));

@@ -6,20 +6,20 @@
 
 #include <limits>
 
-using tautline::wording;
+using namespace tautline;
 
 namespace
 {
 
 TAUTLINE_PART(testVersionCheck)
 {
-  const tautline::ParaViewVersion built = { 5, 11, 0, "9.2.20230111" };
-  TAUTLINE_CHECK(tautline::versionMismatch(built, built).empty());
-  const tautline::ParaViewVersion others[] = { { 5, 11, 1, "9.2.20230111" },
-    { 5, 12, 0, "9.2.20230111" }, { 6, 11, 0, "9.2.20230111" }, { 5, 11, 0, "9.3.0" } };
+  const ParaViewVersion built = { 5, 11, 0, "9.2.20230111" };
+  TAUTLINE_CHECK(versionMismatch(built, built).empty());
+  const ParaViewVersion others[] = { { 5, 11, 1, "9.2.20230111" }, { 5, 12, 0, "9.2.20230111" },
+    { 6, 11, 0, "9.2.20230111" }, { 5, 11, 0, "9.3.0" } };
   for (const auto& running : others)
   {
-    const std::string message = tautline::versionMismatch(built, running);
+    const std::string message = versionMismatch(built, running);
     TAUTLINE_CHECK(contains(message, wording("built-for-paraview-5-11-0")));
     TAUTLINE_CHECK(contains(message, wording("build-it-again")));
   }
@@ -28,7 +28,7 @@ TAUTLINE_PART(testVersionCheck)
 TAUTLINE_PART(testColorMapSettings)
 {
   const double infinity = std::numeric_limits<double>::infinity();
-  const std::string json = tautline::colorMapSettings(
+  const std::string json = colorMapSettings(
     { { "mean ratio", 1.0, 0.2, 0.0, false }, { "imr", 1.0, 4.0, infinity, true } });
   const auto has = [&json](const char* text) { return contains(json, text); };
   TAUTLINE_CHECK(has("\"meanratio\""));
@@ -47,7 +47,7 @@ TAUTLINE_PART(testColorMapSettings)
 
 TAUTLINE_PART(testMetricColorMaps)
 {
-  const auto specs = tautline::metricColorMaps();
+  const auto specs = metricColorMaps();
   TAUTLINE_CHECK(!specs.empty());
   // Before and after have the range of the metric.
   const auto find = [&specs](const std::string& array)
@@ -59,7 +59,7 @@ TAUTLINE_PART(testMetricColorMaps)
         return spec;
       }
     }
-    return tautline::ColorMapSpec();
+    return ColorMapSpec();
   };
   const auto metric = find("imr"), before = find("imr_before"), after = find("imr_after");
   TAUTLINE_CHECK(metric.good == 1 && metric.bad == 3);

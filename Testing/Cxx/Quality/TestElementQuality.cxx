@@ -244,9 +244,8 @@ TAUTLINE_PART(testSpecialCells)
   TAUTLINE_CHECK_EQUAL(component(cellsOf(filter), "imr", 1), 0);
   TAUTLINE_CHECK(messages.has(wording("1-points-have-a-nan")));
 
-  auto grid = toGrid(triangles({ height, 0.1 }));
-  grid->AllocateCellGhostArray();
-  grid->GetCellGhostArray()->SetValue(1, vtkDataSetAttributes::DUPLICATECELL);
+  auto grid = TAUTLINE_CHANGED(toGrid(triangles({ height, 0.1 })), AllocateCellGhostArray(),
+    GetCellGhostArray()->SetValue(1, vtkDataSetAttributes::DUPLICATECELL));
   TAUTLINE_SET(filter, SetInputData(grid), Update());
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 1);
   TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", 1), imrOf(0.1), 1e-14);

@@ -246,8 +246,7 @@ TAUTLINE_PART(testRefusals)
   MeshData other = mesh;
   std::swap(other.connectivity[3 * 5], other.connectivity[3 * 5 + 1]);
   refuses(grid, toGrid(other), wording("cell-5-has-the-points"));
-  other = mesh;
-  other.types[6] = VTK_POLYGON;
+  other = TAUTLINE_CHANGED(mesh, types[6] = VTK_POLYGON);
   refuses(grid, toGrid(MeshData(blockMesh(CellType::Tetrahedron, 1, 1, 1))), "points");
   vtkNew<vtkMultiBlockDataSet> one, two;
   one->SetBlock(0, grid);

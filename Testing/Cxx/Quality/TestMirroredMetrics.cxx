@@ -95,8 +95,7 @@ TAUTLINE_PART(testFacts)
   const std::vector<MetricInfo>& before = metricRegistry();
   mirrorUserMetrics(list);
   TAUTLINE_CHECK(&metricRegistry() == &before);
-  MetricDescription other = d;
-  other.acceptable.high = 5;
+  MetricDescription other = TAUTLINE_CHANGED(d, acceptable.high = 5);
   mirrorUserMetrics(sentBy(other, "mirrored"));
   TAUTLINE_CHECK(findMetric("mirrored")->acceptable3D.high == 5);
   TAUTLINE_CHECK_EQUAL(metricRegistry().size(), before.size());

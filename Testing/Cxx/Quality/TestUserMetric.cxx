@@ -424,8 +424,7 @@ void testWithoutValue()
       const OptimizeResult result = optimize(Mesh(data.view()), options);
       const bool stuck = optimizer == Optimizer::LimitedMemoryBFGS; // where its steps end
       TAUTLINE_CHECK(result.history.back().objective < result.history.front().objective || stuck);
-      MeshData moved = data;
-      moved.points = result.points;
+      MeshData moved = TAUTLINE_CHANGED(data, points = result.points);
       const std::vector<double> ratios = valuesOf(moved, Metric::InverseMeanRatio);
       TAUTLINE_CHECK(*std::max_element(ratios.begin(), ratios.end()) <= Limited::limit);
     }
@@ -480,48 +479,32 @@ void testRegistry(const std::vector<Twin>& pairs)
 void testRefused()
 {
   const auto attempt = [](MetricDescription d) { registerJacobianMetric(d, Ratio()); };
-  MetricDescription d = copyOf(Metric::InverseMeanRatio, "_x");
-  const MetricDescription good = d;
-  d.name = "imr";
-  TAUTLINE_CHECK_THROWS(attempt(d), wording("there-is-a-metric-imr"));
-  d.name = "mu_2";
-  TAUTLINE_CHECK_THROWS(attempt(d), wording("there-is-a-metric-mu-2-shape"));
-  d = good;
-  d.label = "Inverse mean ratio";
-  TAUTLINE_CHECK_THROWS(attempt(d), wording("there-is-a-metric-inverse-mean-ratio"));
-  for (const char* name : { "", "My", "1x", "a b", "a\tb" })
+  const MetricDescription good = copyOf(Metric::InverseMeanRatio, "_x");
+#define REFUSED(change, text) TAUTLINE_CHECK_THROWS(attempt(TAUTLINE_CHANGED(good, change)), text)
+  REFUSED(name = "imr", wording("there-is-a-metric-imr"));
+  REFUSED(name = "mu_2", wording("there-is-a-metric-mu-2-shape"));
+  REFUSED(label = "Inverse mean ratio", wording("there-is-a-metric-inverse-mean-ratio"));
+  for (const char* bad : { "", "My", "1x", "a b", "a\tb" })
   {
-    d = good;
-    d.name = name;
-    TAUTLINE_CHECK_THROWS(attempt(d), wording("cannot-be-the-name"));
+    REFUSED(name = bad, wording("cannot-be-the-name"));
   }
-  d = good;
-  d.formula = "a\tb";
-  TAUTLINE_CHECK_THROWS(attempt(d), wording("control-characters"));
-  d = good;
-  d.cellTypes = 0;
-  TAUTLINE_CHECK_THROWS(attempt(d), wording("no-type-of-cell"));
-  d = good;
-  d.full = { 2, 1 };
-  TAUTLINE_CHECK_THROWS(attempt(d), wording("a-range-ends-before-it-begins"));
-  d = good;
-  d.direction = Direction::LargerIsBetter;
-  TAUTLINE_CHECK_THROWS(attempt(d), wording("tends-to-infinity"));
+  REFUSED(formula = "a\tb", wording("control-characters"));
+  REFUSED(cellTypes = 0, wording("no-type-of-cell"));
+  REFUSED(full = (Range{ 2, 1 }), wording("a-range-ends-before-it-begins"));
+  REFUSED(direction = Direction::LargerIsBetter, wording("tends-to-infinity"));
   TAUTLINE_CHECK_THROWS(
     registerJacobianMetric(good, NotFinite()), wording("not-finite-on-a-valid"));
-  d = good;
   TAUTLINE_CHECK_THROWS(
-    registerJacobianMetric(d, DistanceByTrace()), wording("depends-on-the-scale"));
-  d.scaleInvariant = false;
+    registerJacobianMetric(good, DistanceByTrace()), wording("depends-on-the-scale"));
   TAUTLINE_CHECK_THROWS(
-    registerJacobianMetric(d, DistanceByTrace()), wording("depends-on-the-rotation"));
+    registerJacobianMetric(TAUTLINE_CHANGED(good, scaleInvariant = false), DistanceByTrace()),
+    wording("depends-on-the-rotation"));
   TAUTLINE_LET(RatioBySlope, wrong, fault = 1e-3);
   TAUTLINE_CHECK_THROWS(
     registerJacobianMetric(good, wrong), wording("differ-from-finite-differences"));
   TAUTLINE_CHECK_THROWS(registerMetric(good, nullptr), wording("has-no-function"));
   TAUTLINE_CHECK_THROWS(loadMetrics("/nonexistent/metrics.so"), wording("cannot-be"));
-  MetricDescription taken = good;
-  taken.name = "imr";
+  MetricDescription taken = TAUTLINE_CHANGED(good, name = "imr");
   const MetricRegistration registration([&]() { registerJacobianMetric(taken, Ratio()); });
   TAUTLINE_CHECK(contains(metricLoadErrors(), wording("there-is-a-metric-imr")));
   TAUTLINE_CHECK(!findMetric(good.name));

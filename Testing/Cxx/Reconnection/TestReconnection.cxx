@@ -526,8 +526,7 @@ TAUTLINE_PART(testSizes)
 
   // The same by a length and by a tensor per point; other tensors and the input's lengths differ.
   const double length = 2.0 * shortest, entry = 1.0 / (length * length);
-  ReconnectionOptions all = options;
-  TAUTLINE_SET(all, insert = true, contract = false);
+  ReconnectionOptions all = TAUTLINE_CHANGED(options, insert = true, contract = false);
   std::vector<double> lengths(data.numberOfPoints(), length), tensors;
   for (Index i = 0; i < data.numberOfPoints(); ++i)
   {

@@ -33,8 +33,7 @@ TAUTLINE_PART(testRefusals)
   for (double value :
     { std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity() })
   {
-    MeshData data = blockMesh(CellType::Tetrahedron, 2, 2, 2);
-    data.points[7] = value;
+    MeshData data = TAUTLINE_CHANGED(blockMesh(CellType::Tetrahedron, 2, 2, 2), points[7] = value);
     TAUTLINE_CHECK_THROWS(reconnect(data, defaults), wording("nan-or-infinite"));
   }
 

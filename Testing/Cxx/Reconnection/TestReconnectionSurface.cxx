@@ -125,8 +125,7 @@ TAUTLINE_PART(testBall)
   TAUTLINE_CHECK(last.boundarySwaps > 0);
   // Facets cut off more or less of the ball; which are swapped, rounding decides.
   TAUTLINE_CHECK(std::abs(result.volumeAfter / result.volumeBefore - 1.0) < 0.015);
-  ReconnectionOptions fixed = options;
-  fixed.boundary = ReconnectionBoundary::Fixed;
+  ReconnectionOptions fixed = TAUTLINE_CHANGED(options, boundary = ReconnectionBoundary::Fixed);
   const ReconnectionRecord still = reconnect(ball, fixed).history.back();
   std::cout << "ball: smallest angle " << still.smallestAngle << " fixed, " << last.smallestAngle
             << " on the surface; worst " << still.worstInverseMeanRatio << ", "
@@ -166,8 +165,7 @@ TAUTLINE_PART(testCylinder)
   TAUTLINE_CHECK(result.history.back().smallestAngle > 20.0);
 
   // Without a distance only what is flat changes.
-  ReconnectionOptions exact = options;
-  exact.surfaceDistance = 0.0;
+  ReconnectionOptions exact = TAUTLINE_CHANGED(options, surfaceDistance = 0.0);
   const ReconnectionResult same = reconnect(cylinder, exact);
   checkBoundary(cylinder, same, 1e-11);
   TAUTLINE_CHECK_RELATIVE(same.volumeAfter, same.volumeBefore, 1e-10);
@@ -239,11 +237,9 @@ TAUTLINE_PART(testOptions)
 {
   const Context context("options");
   const MeshData ball = roundMesh(3);
-  ReconnectionOptions options = surfaceOptions();
-  options.surfaceDistance = -1.0;
+  ReconnectionOptions options = TAUTLINE_CHANGED(surfaceOptions(), surfaceDistance = -1.0);
   TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("surface-distance-must-be-0-to-1"));
-  options = surfaceOptions();
-  options.featureAngle = 181.0;
+  options = TAUTLINE_CHANGED(surfaceOptions(), featureAngle = 181.0);
   TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("feature-angle-must-be-0-to-180"));
 }
 }

@@ -223,8 +223,7 @@ TAUTLINE_PART(testSurfaceOverlaps)
   {
     field.push_back(2.0 + std::sin(static_cast<double>(c)));
   }
-  TriangleOptions options = triangleOptions(Preset::Aggressive);
-  options.overlaps = true;
+  TriangleOptions options = TAUTLINE_CHANGED(triangleOptions(Preset::Aggressive), overlaps = true);
   const ReconnectionResult result = reconnect(data, options);
   checkTriangles(data, result);
   checkRows(result);

@@ -73,8 +73,7 @@ TAUTLINE_PART_SLOW(testInvariance)
 TAUTLINE_PART(testExact)
 {
   OutlineOptions options;
-  OutlineOptions plain = options;
-  plain.bounds = false;
+  OutlineOptions plain = TAUTLINE_CHANGED(options, bounds = false);
   const std::vector<Picture> pictures = { blob(120, 60, 60, 30), blob(120, 60, 60, 34, 0.8, true),
     disc(120, 60, 60, 40),
     paint(120, 120,
@@ -136,14 +135,11 @@ TAUTLINE_PART(testErrors)
   const Silhouette shape = traceSilhouette(blob(120, 60, 60, 30).view());
   OutlineOptions options;
   const OutlineModel model = prepareOutline(shape, options);
-  OutlineOptions wrong = options;
-  wrong.spacing = std::nan("");
+  OutlineOptions wrong = TAUTLINE_CHANGED(options, spacing = std::nan(""));
   TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), wording("spacing-from-0-01"));
-  wrong = options;
-  wrong.stretch = 1.0;
+  wrong = TAUTLINE_CHANGED(options, stretch = 1.0);
   TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), wording("stretch-above-1"));
-  wrong = options;
-  wrong.locations = 20;
+  wrong = TAUTLINE_CHANGED(options, locations = 20);
   TAUTLINE_CHECK_THROWS(prepareOutline(shape, wrong), wording("locations-or-more"));
   wrong.locations = 80;
   TAUTLINE_CHECK_THROWS(matchOutlines(model, model, wrong), wording("prepared-with"));

@@ -24,8 +24,7 @@ namespace
 vtkSmartPointer<vtkImageData> makeImage(
   const Picture& picture, int components = 1, double spacing = 1.0)
 {
-  auto image = vtkSmartPointer<vtkImageData>::New();
-  TAUTLINE_SET(image,
+  auto image = TAUTLINE_CHANGED(vtkSmartPointer<vtkImageData>::New(),
     SetDimensions(static_cast<int>(picture.width), static_cast<int>(picture.height), 1),
     SetSpacing(spacing, spacing, 1.0), SetOrigin(10.0, 20.0, 3.0));
   TAUTLINE_NEW(vtkUnsignedCharArray, values, SetName("Pixels"), SetNumberOfComponents(components),

@@ -35,14 +35,12 @@ TAUTLINE_PART(testTerms)
   // gamma and delta are ratios of the larger to the smaller: shrinking elsewhere is free.
   const std::array<Vec2, 3> half = { Vec2{ 0, 0 }, Vec2{ 0.5, 0 }, Vec2{ 0, 0.5 } };
   TAUTLINE_CHECK_NEAR(triangleEnergy(s, half, 0.5, plain()).distortion, 0.0, 1e-12);
-  ShapeEnergy strict = plain();
-  strict.signedDistortion = true;
+  ShapeEnergy strict = TAUTLINE_CHANGED(plain(), signedDistortion = true);
   TAUTLINE_CHECK_NEAR(triangleEnergy(s, half, 0.5, strict).distortion, 2.0 * std::log(2.0), 1e-12);
   // A triangle turned over counts as flat, or is free.
   const std::array<Vec2, 3> mirror = { Vec2{ 0, 0 }, Vec2{ -1, 0 }, Vec2{ 0, 1 } };
   TAUTLINE_CHECK(triangleEnergy(s, mirror, 1.0, plain()).deformation > 100.0);
-  ShapeEnergy freely = plain();
-  freely.reflection = Reflection::Free;
+  ShapeEnergy freely = TAUTLINE_CHANGED(plain(), reflection = Reflection::Free);
   TAUTLINE_CHECK_NEAR(triangleEnergy(s, mirror, 1.0, freely).deformation, 0.0, 1e-12);
   // Flat and collapsed triangles are finite.
   for (const auto& t : { std::array<Vec2, 3>{ Vec2{ 0, 0 }, Vec2{ 1, 0 }, Vec2{ 2, 0 } },
@@ -64,8 +62,7 @@ TAUTLINE_PART(testEdgeCost)
   TAUTLINE_CHECK_NEAR(target.edgeCost({ 85, 40 }, { 85, 80 }), 10.0, 1e-3);
   const double whole = target.edgeCost({ 40, 60 }, { 80, 60 });
   TAUTLINE_CHECK(whole > 7.0 && whole < 10.0); // across: most of it has no gradient
-  ShapeEnergy directed = plain();
-  directed.directedEdges = true;
+  ShapeEnergy directed = TAUTLINE_CHANGED(plain(), directedEdges = true);
   const ShapeTarget sided(traceSilhouette(picture.view()), {}, directed);
   // The shape is to the right of x = 59.5: downwards it is on the left of the edge.
   TAUTLINE_CHECK_NEAR(sided.edgeCost({ 59.5, 90 }, { 59.5, 30 }), 1.0 / 1.1, 0.05);

@@ -84,8 +84,7 @@ TAUTLINE_PART(testFamilies)
   TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("shape-0-the-spacing"));
   TAUTLINE_SET(options, spacing = 15.0, match.energy.distortion = std::nan(""));
   TAUTLINE_CHECK_THROWS(retrieveShapes(shapes, labels, options), wording("distortion-weight"));
-  options = RetrievalOptions::highest();
-  options.complexity = 0.0;
+  options = TAUTLINE_CHANGED(RetrievalOptions::highest(), complexity = 0.0);
   TAUTLINE_CHECK_THROWS(
     retrieveShapes(shapes, labels, options), wording("complexity-must-be-above-0"));
   TAUTLINE_SET(options, complexity = 0.3, shortlist = -1);
@@ -168,8 +167,7 @@ TAUTLINE_PART(testArticulation)
       labels.push_back(kind);
     }
   }
-  RetrievalOptions options = RetrievalOptions::highest();
-  options.best = Members - 1;
+  RetrievalOptions options = TAUTLINE_CHANGED(RetrievalOptions::highest(), best = Members - 1);
   const Retrieval all = retrieveShapes(shapes, labels, options);
   std::cout << "articulation, occlusion, noise: " << 100.0 * all.recognition.rate << " %\n";
   TAUTLINE_CHECK(all.recognition.rate > 0.95);
@@ -253,8 +251,7 @@ TAUTLINE_PART(testRanks)
     onRanks(3,
       [&](RankGroup& group)
       {
-        RetrievalOptions options = RetrievalOptions::highest();
-        options.match.threads = 1;
+        RetrievalOptions options = TAUTLINE_CHANGED(RetrievalOptions::highest(), match.threads = 1);
         std::vector<Silhouette> here = shapes;
         if (group.rank() == rank)
         {

@@ -455,8 +455,7 @@ void testTrouble()
   options = {};
   options.tolerance = 0.0;
   TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(a), options), "tolerance");
-  LinearSystem unsymmetric = systemOf(a);
-  unsymmetric.symmetric = false;
+  LinearSystem unsymmetric = TAUTLINE_CHANGED(systemOf(a), symmetric = false);
   TAUTLINE_CHECK_THROWS(estimateCondition(unsymmetric, {}), "symmetric");
   const SparseMatrix none;
   TAUTLINE_CHECK_THROWS(estimateCondition(systemOf(none), {}), wording("no-unknowns"));

@@ -173,8 +173,7 @@ TAUTLINE_PART(testSingular)
   {
     for (const bool definite : { true, false })
     {
-      LinearSystem system = systemOf(*matrix);
-      system.positiveDefinite = definite;
+      LinearSystem system = TAUTLINE_CHANGED(systemOf(*matrix), positiveDefinite = definite);
       TAUTLINE_LET(SolverOptions, options, method = KrylovMethod::Direct);
       const Result result = solved(system, options, b);
       TAUTLINE_CHECK(!converged(result.solution.reason));
@@ -406,8 +405,7 @@ TAUTLINE_PART(testStranger)
   const Result beside = solved(systemOf(a), options, b);
   TAUTLINE_CHECK_EQUAL(beside.solution.iterations, alone.solution.iterations);
   TAUTLINE_CHECK(beside.x == alone.x);
-  SolverOptions wrong = options;
-  wrong.petscOptions = "-ksp_type nonsense";
+  SolverOptions wrong = TAUTLINE_CHANGED(options, petscOptions = "-ksp_type nonsense");
   TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), "nonsense");
   wrong.petscOptions = "-mine 3";
   TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), "-mine");
@@ -571,8 +569,7 @@ TAUTLINE_PART(testRefused)
   a.values[17] = std::numeric_limits<double>::quiet_NaN();
   TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(a), {}), wording("not-finite"));
   a = laplacian(5);
-  LinearSystem blocks = systemOf(a);
-  blocks.blockSize = 3;
+  LinearSystem blocks = TAUTLINE_CHANGED(systemOf(a), blockSize = 3);
   TAUTLINE_CHECK_THROWS(LinearSolver(blocks, {}), wording("block-size-3"));
   a.values.pop_back();
   TAUTLINE_CHECK_THROWS(LinearSolver(systemOf(a), {}), wording("not-complete"));

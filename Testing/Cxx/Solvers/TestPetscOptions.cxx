@@ -211,8 +211,7 @@ Outcome attempt(
 void testEveryType()
 {
   const SparseMatrix a = laplacian(12), indefinite = laplacian(12, 1.0, -2.1);
-  LinearSystem shifted = systemOf(indefinite);
-  shifted.positiveDefinite = false;
+  LinearSystem shifted = TAUTLINE_CHANGED(systemOf(indefinite), positiveDefinite = false);
   int solved = 0, refused = 0;
   for (const std::string& type : namesIn(KSPList))
   {
@@ -243,8 +242,7 @@ void testEveryType()
     {
       for (const int block : { 1, 2 })
       {
-        LinearSystem system = systemOf(a);
-        system.blockSize = block;
+        LinearSystem system = TAUTLINE_CHANGED(systemOf(a), blockSize = block);
         const std::string text = "-pc_type " + type + " -ksp_type " + method;
         const Outcome outcome = attempt(system, text, {}, "-pc_type");
         any = any || outcome == Outcome::Solved;
@@ -277,8 +275,7 @@ void testWording()
   {
     for (int choice = 0; choice <= static_cast<int>(Preconditioner::None) + 1; ++choice)
     {
-      LinearSystem system = systemOf(empty);
-      system.positiveDefinite = definite;
+      LinearSystem system = TAUTLINE_CHANGED(systemOf(empty), positiveDefinite = definite);
       SolverOptions options;
       const bool direct = choice > static_cast<int>(Preconditioner::None);
       TAUTLINE_SET(options, method = direct ? KrylovMethod::Direct : KrylovMethod::GMRES,
@@ -300,8 +297,7 @@ void testWording()
 
   // With an option of the user, the error of PETSc is added.
   TAUTLINE_LET(SolverOptions, options, petscOptions = "-pc_type lu -pc_factor_mat_solver_type klu");
-  LinearSystem system = systemOf(empty);
-  system.positiveDefinite = false;
+  LinearSystem system = TAUTLINE_CHANGED(systemOf(empty), positiveDefinite = false);
   std::vector<double> x(b.size());
   LinearSolver solver(system, options);
   const LinearSolution solution = solver.solve(b.data(), x.data());
@@ -316,8 +312,7 @@ void testFieldSplit()
   const std::string text = "-pc_type fieldsplit -pc_fieldsplit_type multiplicative "
                            "-fieldsplit_0_pc_type ilu -fieldsplit_1_ksp_type preonly "
                            "-fieldsplit_1_pc_type jacobi -ksp_type gmres";
-  LinearSystem system = systemOf(a);
-  system.blockSize = 2;
+  LinearSystem system = TAUTLINE_CHANGED(systemOf(a), blockSize = 2);
   TAUTLINE_CHECK(attempt(system, text, {}, "-pc_type") == Outcome::Solved);
   const std::string error = errorOf("-pc_type fieldsplit", a);
   TAUTLINE_CHECK(contains(error, wording("one-unknown-per-point")));

@@ -110,8 +110,7 @@ TAUTLINE_PART(testTangledMeshes)
     }
     TAUTLINE_CHECK_EQUAL(still, 0);
     // Any number of threads.
-    UntangleOptions two = simultaneous();
-    two.threads = 2;
+    UntangleOptions two = TAUTLINE_CHANGED(simultaneous(), threads = 2);
     TAUTLINE_CHECK(untangle(Mesh(data.view()), two).points == result.points);
   }
 }

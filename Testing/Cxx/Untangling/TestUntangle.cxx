@@ -141,8 +141,7 @@ Index countNotValid(const MeshData& data, bool mirrored = false)
 
 MeshData moved(const MeshData& data, const UntangleResult& result)
 {
-  MeshData after = data;
-  after.points = result.points;
+  MeshData after = TAUTLINE_CHANGED(data, points = result.points);
   return after;
 }
 
@@ -248,8 +247,7 @@ void testNewlyInvalid()
       data.setPoint(i, data.point(i) + Vec3{ d[0], d[1], 0 });
     }
     const UntangleResult result = untangle(Mesh(data.view()), UntangleOptions());
-    MeshData moved = data;
-    moved.points = result.points;
+    MeshData moved = TAUTLINE_CHANGED(data, points = result.points);
     const std::vector<signed char> before = validityOf(data), after = validityOf(moved);
     Index newly = sumOf<Index>(0, before.size(),
       [&](std::size_t cell) { return before[cell] == Valid && after[cell] != Valid; });
