@@ -51,8 +51,7 @@ TAUTLINE_PART(testUnstructuredGrid)
     // Too few points at the very end of the connectivity, and points the grid has not.
     for (Index node : { Index(1), Index(10000) })
     {
-      bad = data;
-      bad.addCell(vtkType, std::vector<Index>{ 0, node, 2 });
+      bad = TAUTLINE_CHANGED(data, addCell(vtkType, std::vector<Index>{ 0, node, 2 }));
       const auto last = toGrid(bad);
       TAUTLINE_CHECK_THROWS(
         MeshAdapter refused(last), "Cell " + std::to_string(data.numberOfCells()));
@@ -70,14 +69,14 @@ TAUTLINE_PART(testRelatedTypes)
 {
   MeshData data = blockMesh(CellType::Hexahedron, 1, 1, 1); // its points are those of a voxel
   data.connectivity = { 0, 1, 2, 3, 4, 5, 6, 7 };
-  data.types[0] = VTK_VOXEL;
-  data.addCell(VTK_TRIANGLE_STRIP, std::vector<Index>{ 0, 1, 2, 3 });
-  data.addCell(VTK_PIXEL, std::vector<Index>{ 0, 1, 2, 3 });
-  data.addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 3 });
-  data.addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 3, 2 });
-  data.addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 5, 7, 2 });
-  data.addCell(VTK_VERTEX, std::vector<Index>{ 0 });
-  data.addCell(VTK_TRIANGLE, std::vector<Index>{ 0, 1, 2 });
+  TAUTLINE_SET(data, types[0] = VTK_VOXEL,
+    addCell(VTK_TRIANGLE_STRIP, std::vector<Index>{ 0, 1, 2, 3 }),
+    addCell(VTK_PIXEL, std::vector<Index>{ 0, 1, 2, 3 }),
+    addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 3 }),
+    addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 3, 2 }),
+    addCell(VTK_POLYGON, std::vector<Index>{ 0, 1, 5, 7, 2 }),
+    addCell(VTK_VERTEX, std::vector<Index>{ 0 }),
+    addCell(VTK_TRIANGLE, std::vector<Index>{ 0, 1, 2 }));
   const auto grid = toGrid(data);
   const MeshAdapter adapter(grid);
   const std::vector<double> expected = { 1, 0, 1, 0.5, 1, 0, 0, 0.5 };

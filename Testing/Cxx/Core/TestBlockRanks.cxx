@@ -162,8 +162,7 @@ void testQuality(int rank, int ranks)
     { return component(of->GetCellData(), "Validity", cell) < 0 ? takers - 1 : 0; },
     10, rank, ranks);
   // All reversed on all ranks: the mesh is treated as if flipped.
-  MeshData reversed = moved;
-  reversed.swapNodes(0, 1);
+  MeshData reversed = TAUTLINE_CHANGED(moved, swapNodes(0, 1));
   compareQuality("reversed", reversed, scattered, 0, rank, ranks);
 }
 

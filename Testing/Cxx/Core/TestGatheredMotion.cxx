@@ -218,8 +218,7 @@ MeshData quadratic()
 {
   constexpr int edges[6][2] = { { 0, 1 }, { 1, 2 }, { 0, 2 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
   const Vec3 corners[4] = { { 9, 9, 9 }, { 10, 9, 9 }, { 9, 10, 9 }, { 9, 9, 10 } };
-  MeshData data;
-  data.addPoints(corners);
+  TAUTLINE_LET(MeshData, data, addPoints(corners));
   for (const auto& edge : edges)
   {
     data.addPoint(0.5 * (corners[edge[0]] + corners[edge[1]]));

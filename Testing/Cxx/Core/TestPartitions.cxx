@@ -210,8 +210,7 @@ TAUTLINE_PART(testOthers)
 /// A part of a mesh whose cells list their points in the other order, as its neighbours have not.
 TAUTLINE_PART(testQuality)
 {
-  MeshData mesh = rough(CellType::Tetrahedron, 4);
-  mesh.swapNodes(0, 1, 0, Parts);
+  MeshData mesh = TAUTLINE_CHANGED(rough(CellType::Tetrahedron, 4), swapNodes(0, 1, 0, Parts));
   vtkNew<vtkElementQuality> whole, parts;
   whole->AddMetricByName("imr");
   parts->AddMetricByName("imr");

@@ -260,9 +260,9 @@ TAUTLINE_PART(testPeridynamics)
   TAUTLINE_SET(stiffness, MergeCoincidentPointsOn(), SetInputDataObject(0, blocks), Update());
   TAUTLINE_CHECK_RELATIVE(stiffness->GetCondition(), condition, 1e-12);
   Messages messages(stiffness);
-  MeshData twice = cut.whole;
-  twice.addCell(CellType::Triangle,
-    std::vector<Index>(cut.whole.connectivity.begin(), cut.whole.connectivity.begin() + 3));
+  MeshData twice = TAUTLINE_CHANGED(cut.whole,
+    addCell(CellType::Triangle,
+      std::vector<Index>(cut.whole.connectivity.begin(), cut.whole.connectivity.begin() + 3)));
   TAUTLINE_SET(stiffness, SetInputDataObject(0, toGrid(twice)), Update());
   TAUTLINE_CHECK(messages.has(wording("1-duplicate-cell-has-the-same-points")));
 }

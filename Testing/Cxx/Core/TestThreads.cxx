@@ -244,8 +244,7 @@ TAUTLINE_PART_SLOW(testNonFinite)
 TAUTLINE_PART(testExtremeVertex)
 {
   constexpr Index triangles = 65 * 4096 + 1; // one more than 65 chunks of 4096
-  MeshData fan;
-  fan.addPoint({ 0, 0, 0 });
+  TAUTLINE_LET(MeshData, fan, addPoint({ 0, 0, 0 }));
   for (Index i = 0; i <= triangles; ++i)
   {
     const double angle = 2 * M_PI * i / (triangles + 1);

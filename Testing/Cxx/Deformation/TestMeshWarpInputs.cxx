@@ -31,13 +31,11 @@ TAUTLINE_PART(testRefusals)
   const MeshData data = blockMesh(CellType::Triangle, 4, 4, 0);
   TAUTLINE_NEW(vtkImageData, image, SetDimensions(3, 3, 3));
   refused(image, wording("image-data-to-point-set"));
-  MeshData wrong = data;
-  wrong.setPoint(6, { 2.5, 2.6, 0 });
+  MeshData wrong = TAUTLINE_CHANGED(data, setPoint(6, { 2.5, 2.6, 0 }));
   refused(toGrid(wrong), wording("run-untangle-mesh-first"));
   wrong = TAUTLINE_CHANGED(data, points[7] = std::numeric_limits<double>::quiet_NaN());
   refused(toGrid(wrong), wording("1-points-have-a-coordinate-that-is"));
-  wrong = data;
-  wrong.addCell(VTK_POLYGON, { 0, 1, 2, 3, 4 });
+  wrong = TAUTLINE_CHANGED(data, addCell(VTK_POLYGON, { 0, 1, 2, 3, 4 }));
   refused(toGrid(wrong), wording("1-polygons-polyhedra-or-other-cells-that"));
   wrong = TAUTLINE_CHANGED(MeshData(), points = data.points);
   wrong.addCell(VTK_QUADRATIC_TRIANGLE, { 0, 2, 10, 1, 6, 5 });
@@ -154,8 +152,7 @@ TAUTLINE_PART(testImpossible)
 TAUTLINE_PART(testOtherCells)
 {
   MeshData data = blockMesh(CellType::Triangle, 6, 6, 0);
-  data.addCell(VTK_LINE, { 0, 1 });
-  data.addCell(VTK_VERTEX, { 24 });
+  TAUTLINE_SET(data, addCell(VTK_LINE, { 0, 1 }), addCell(VTK_VERTEX, { 24 }));
   const Index lonely = data.addPoint({ 9, 9, 0 });
   auto grid = toGrid(data);
   const auto ghosts = filledArray<vtkUnsignedCharArray>(vtkDataSetAttributes::GhostArrayName(),

@@ -92,9 +92,7 @@ TAUTLINE_PART(testRefused)
   MeshData surface = data;
   surface.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[0] }; });
   TAUTLINE_CHECK_THROWS(warped(surface, nowhere, options), wording("surface-in-space"));
-  MeshData points;
-  points.addPoint({ 0, 0, 0 });
-  points.addCell(1, { 0 });
+  TAUTLINE_LET(MeshData, points, addPoint({ 0, 0, 0 }), addCell(1, { 0 }));
   TAUTLINE_CHECK_THROWS(warped(points, nowhere, options), wording("no-cells-that-can-be-warped"));
 
   for (const CellType type : { CellType::Wedge, CellType::Pyramid })

@@ -351,8 +351,7 @@ TAUTLINE_PART(testSystem)
   TAUTLINE_CHECK(linear.symmetric && linear.positiveDefinite && linear.blockSize == 1);
 
   // A reversed mesh and one left alone in part give the same; a skipped cell has no gradient.
-  MeshData reversed = data;
-  reversed.swapNodes(0, 1);
+  MeshData reversed = TAUTLINE_CHANGED(data, swapNodes(0, 1));
   const Mesh other(reversed.view());
   TAUTLINE_CHECK_NEAR(
     EllipticSystem(other, {}).solve({}).values[n + 2], solution.values[n + 2], 1e-12);
@@ -449,8 +448,7 @@ TAUTLINE_PART(testRefusals)
   };
   const MeshData good = blockMesh(CellType::Triangle, 4, 4, 0);
   TAUTLINE_CHECK_THROWS(make(MeshData(), {}), wording("no-cells"));
-  MeshData data = good;
-  data.addCell(3, { 0, 1 });
+  MeshData data = TAUTLINE_CHANGED(good, addCell(3, { 0, 1 }));
   TAUTLINE_CHECK_THROWS(make(data, {}), wording("1-cells-are-not-triangles"));
 
   // Elements.
@@ -460,8 +458,7 @@ TAUTLINE_PART(testRefusals)
   data = good;
   std::swap(data.connectivity[3 * 5], data.connectivity[3 * 5 + 1]);
   TAUTLINE_CHECK_THROWS(make(data, {}), wording("1-element-the-first-is-cell-5"));
-  data = good;
-  data.addCell(CellType::Triangle, { 0, 1, 2 });
+  data = TAUTLINE_CHANGED(good, addCell(CellType::Triangle, { 0, 1, 2 }));
   TAUTLINE_CHECK_THROWS(make(data, {}), wording("1-element-the-first-is-cell-32"));
   data = TAUTLINE_CHANGED(good, points[3 * 6] = NaN);
   TAUTLINE_CHECK_THROWS(make(data, {}), wording("not-finite"));

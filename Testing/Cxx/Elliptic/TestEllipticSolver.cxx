@@ -494,8 +494,7 @@ TAUTLINE_PART(testRefusals)
   refuses(filter, wording("between-0-and-2"));
   filter->SetOmega(1);
 
-  MeshData inverted = data;
-  inverted.setPoint(6, { 3.2, 3.1, 0 });
+  MeshData inverted = TAUTLINE_CHANGED(data, setPoint(6, { 3.2, 3.1, 0 }));
   filter->SetInputData(toGrid(inverted));
   refuses(filter, "inverted");
   filter->SetInputData(toGrid(block(CellType::Triangle, 1)));

@@ -466,8 +466,7 @@ TAUTLINE_PART(testBadElements)
   // absolute value.
   MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
   const SparseMatrix before = stiffnessMatrix(Mesh(data.view()), DiffusionOperator());
-  data.addCell(CellType::Triangle, { 0, 1, 2 });
-  data.addPoint({ 0.3, 0.3, 0 });
+  TAUTLINE_SET(data, addCell(CellType::Triangle, { 0, 1, 2 }), addPoint({ 0.3, 0.3, 0 }));
   const SparseMatrix after = stiffnessMatrix(Mesh(data.view()), DiffusionOperator());
   TAUTLINE_CHECK_EQUAL(after.size, before.size + 1);
   TAUTLINE_CHECK_EQUAL(after.offsets[after.size], after.offsets[after.size - 1]);
@@ -512,12 +511,10 @@ TAUTLINE_PART(testRefusals)
   TAUTLINE_CHECK_THROWS(assemble(MeshData()), wording("no-cells-finite-elements-are-made-of"));
   MeshData data = good;
   constexpr int line = 3, quadraticTriangle = 22;
-  data.addCell(line, { 0, 1 });
-  data.addCell(line, { 1, 2 });
+  TAUTLINE_SET(data, addCell(line, { 0, 1 }), addCell(line, { 1, 2 }));
   TAUTLINE_CHECK_THROWS(assemble(data), wording("2-cells-are-not-triangles"));
   TAUTLINE_CHECK_THROWS(assemble(data), wording("the-first-is-cell-5-vtk-cell"));
-  data = good;
-  data.addCell(CellType::Triangle, { 0, 1, 2 });
+  data = TAUTLINE_CHANGED(good, addCell(CellType::Triangle, { 0, 1, 2 }));
   TAUTLINE_CHECK_THROWS(assemble(data), wording("1-triangle-beside-its-volume-cells"));
   TAUTLINE_CHECK_THROWS(
     loadVector(Mesh(data.view()), nullptr, 1), wording("1-triangle-beside-its-volume-cells"));

@@ -30,8 +30,7 @@ Data grid(const MeshData& mesh)
 /** A mesh of cells of one type, each with its points in a row. */
 Data cells(int type, const std::vector<Vec3>& points, const std::vector<std::vector<Index>>& nodes)
 {
-  MeshData mesh;
-  mesh.addPoints(points);
+  TAUTLINE_LET(MeshData, mesh, addPoints(points));
   for (const auto& cell : nodes)
   {
     mesh.addCell(type, cell);
@@ -200,9 +199,8 @@ void addHostileMeshes(std::vector<HostileData>& list)
     []
     {
       MeshData mesh = blockMesh(CellType::Tetrahedron, 2, 2, 2);
-      mesh.addCell(VTK_TRIANGLE, { 0, 1, 4 });
-      mesh.addCell(VTK_LINE, { 0, 1 });
-      mesh.addCell(VTK_VERTEX, { 0 });
+      TAUTLINE_SET(mesh, addCell(VTK_TRIANGLE, { 0, 1, 4 }), addCell(VTK_LINE, { 0, 1 }),
+        addCell(VTK_VERTEX, { 0 }));
       return grid(mesh);
     });
   add("non-manifold edge",

@@ -209,9 +209,7 @@ TAUTLINE_PART(testApart)
   TAUTLINE_CHECK(merged(slit).connectivity == whole.connectivity);
 
   // Points that no cell has, and those that are not finite, do not count.
-  MeshData unused = whole;
-  unused.addPoint(whole.point(middle));
-  TAUTLINE_CHECK(!found(unused).any());
+  TAUTLINE_CHECK(!found(TAUTLINE_CHANGED(whole, addPoint(whole.point(middle)))).any());
   Pieces nan = inQuarters(whole, 2.0);
   for (double& x : nan.mesh.points)
   {
@@ -252,8 +250,7 @@ TAUTLINE_PART(testSurfaces)
     const Vec3 far[] = { { 1, 0, 0 }, { 0, 1, 0 }, { -1, 0, 0 }, { 0, -1, 0 } };
     if (k == 0)
     {
-      cross.addPoint({ 0, 0, 0 });
-      cross.addPoint({ 0, 0, 1 });
+      TAUTLINE_SET(cross, addPoint({ 0, 0, 0 }), addPoint({ 0, 0, 1 }));
     }
     const Index a = cross.addPoint(far[k]), b = cross.addPoint(far[k] + Vec3{ 0, 0, 1 });
     cross.addCell(CellType::Quadrilateral,
@@ -400,11 +397,9 @@ TAUTLINE_PART(testThreads)
     MeshData one = whole;
     const double x = static_cast<double>(at);
     const Index first = one.addPoint({ x, 0, 0 });
-    one.addPoint({ x + 1, 0, 0 });
-    one.addPoint({ x, -1, 0 });
-    one.addPoint({ x + 1, -1, 0 });
-    one.addCell(
-      CellType::Quadrilateral, std::vector<Index>{ first + 2, first + 3, first + 1, first });
+    TAUTLINE_SET(one, addPoint({ x + 1, 0, 0 }), addPoint({ x, -1, 0 }), addPoint({ x + 1, -1, 0 }),
+      addCell(
+        CellType::Quadrilateral, std::vector<Index>{ first + 2, first + 3, first + 1, first }));
     const Mesh mesh(one.view());
     TAUTLINE_CHECK_EQUAL(findCoincidentPoints(mesh, nullptr, several).merged, 2);
   }

@@ -67,8 +67,7 @@ TAUTLINE_PART(testDimension)
         dimensionOf(other) == (height < 5e-6 ? Dimension::Planar : Dimension::Surface));
     }
     // Points no cell uses, and points that are not finite, do not count.
-    other = flat;
-    other.addPoint({ 0, 0, 9 });
+    other = TAUTLINE_CHANGED(flat, addPoint({ 0, 0, 9 }));
     TAUTLINE_CHECK(dimensionOf(other) == Dimension::Planar);
     other.setPoint(0, { 0, std::nan(""), 9 });
     TAUTLINE_CHECK(dimensionOf(other) == Dimension::Planar);
@@ -87,8 +86,7 @@ TAUTLINE_PART(testDimension)
 
   MeshData none;
   TAUTLINE_CHECK(dimensionOf(none) == Dimension::None);
-  none.addPoint({ 0, 0, 0 });
-  none.addPoint({ 1, 0, 0 });
+  TAUTLINE_SET(none, addPoint({ 0, 0, 0 }), addPoint({ 1, 0, 0 }));
   constexpr int vtkLine = 3;
   none.addCell(vtkLine, { 0, 1 });
   TAUTLINE_CHECK(dimensionOf(none) == Dimension::None);
@@ -228,10 +226,10 @@ MeshData mixedMesh()
   data.addCell(CellType::Pyramid, { 2, 8, 11, 5, side });
   data.addCell(CellType::Tetrahedron, { 8, 2, side, data.addPoint({ 3, -1, 0.5 }) });
   constexpr int vtkVertex = 1;
-  data.addCell(vtkVertex, { 3 });
-  data.addCell(
-    CellType::Wedge, { 6, 7, data.addPoint({ 0, 0, 2 }), 9, 10, data.addPoint({ 0, 1, 2 }) });
-  data.addCell(CellType::Triangle, { 0, 1, 3 });
+  TAUTLINE_SET(data, addCell(vtkVertex, { 3 }),
+    addCell(
+      CellType::Wedge, { 6, 7, data.addPoint({ 0, 0, 2 }), 9, 10, data.addPoint({ 0, 1, 2 }) }),
+    addCell(CellType::Triangle, { 0, 1, 3 }));
   return data;
 }
 
@@ -253,10 +251,10 @@ TAUTLINE_PART(testMixed)
 TAUTLINE_PART(testNonManifold)
 {
   MeshData fans; // three triangles at an edge, as the pages of a book
-  fans.addPoints({ { 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { -1, 1, 0 }, { -1, -1, 0 } });
-  fans.addCell(CellType::Triangle, { 0, 1, 2 });
-  fans.addCell(CellType::Triangle, { 0, 1, 3 });
-  fans.addCell(CellType::Triangle, { 0, 1, 4 });
+  TAUTLINE_SET(fans,
+    addPoints({ { 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { -1, 1, 0 }, { -1, -1, 0 } }),
+    addCell(CellType::Triangle, { 0, 1, 2 }), addCell(CellType::Triangle, { 0, 1, 3 }),
+    addCell(CellType::Triangle, { 0, 1, 4 }));
   const Boundary boundary = Mesh(fans.view()).boundary();
   TAUTLINE_CHECK_EQUAL(boundary.nonManifold, 1);
   TAUTLINE_CHECK_EQUAL(boundary.facets, 6);
@@ -268,10 +266,9 @@ TAUTLINE_PART(testNonManifold)
     { { 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { 1, 1, 0 }, { -1, 0, 0 }, { -1, -1, 0 } });
   for (Index a : { 2, 4 })
   {
-    shells.addCell(CellType::Triangle, { 0, 1, a });
-    shells.addCell(CellType::Triangle, { 1, 0, a + 1 });
-    shells.addCell(CellType::Triangle, { 0, a, a + 1 });
-    shells.addCell(CellType::Triangle, { 1, a + 1, a });
+    TAUTLINE_SET(shells, addCell(CellType::Triangle, { 0, 1, a }),
+      addCell(CellType::Triangle, { 1, 0, a + 1 }), addCell(CellType::Triangle, { 0, a, a + 1 }),
+      addCell(CellType::Triangle, { 1, a + 1, a }));
   }
   const Boundary closed = Mesh(shells.view()).boundary();
   TAUTLINE_CHECK_EQUAL(closed.nonManifold, 1);

@@ -255,8 +255,7 @@ TAUTLINE_PART(testWorstMetrics)
   // One quadrilateral that is folded: nothing takes part.
   MeshData folded = blockMesh(CellType::Quadrilateral, 1, 1, 0);
   const Vec3 first = folded.point(0);
-  folded.setPoint(0, folded.point(1));
-  folded.setPoint(1, first);
+  TAUTLINE_SET(folded, setPoint(0, folded.point(1)), setPoint(1, first));
   TAUTLINE_CHECK_THROWS(
     optimize(Mesh(folded.view()), OptimizeOptions()), wording("no-element-is-valid"));
 }

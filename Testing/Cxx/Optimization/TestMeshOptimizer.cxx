@@ -442,8 +442,7 @@ TAUTLINE_PART(testBoundary)
   TAUTLINE_CHECK(norm(withPointsOf(data, meshOf(filter)).point(0) - data.point(0)) > 1e-3);
 
   // A flat mesh: along its sides only.
-  MeshData flat = perturbed(CellType::Triangle, 4);
-  flat.setPoint(2, { 2.4, 0, 0 });
+  MeshData flat = TAUTLINE_CHANGED(perturbed(CellType::Triangle, 4), setPoint(2, { 2.4, 0, 0 }));
   TAUTLINE_NEW(vtkMeshOptimizer, sides, SetInputData(toGrid(flat)),
     SetBoundary(vtkMeshOptimizer::SLIDING), Update());
   const MeshData after = withPointsOf(flat, meshOf(sides));

@@ -183,8 +183,7 @@ TAUTLINE_PART(testTaken)
   const MeshData data = perturbed(CellType::Triangle, 6);
   TAUTLINE_SET(filter, SetInputData(toGrid(data)), Update());
   const MeshData straight = withPointsOf(data, meshOf(filter));
-  MeshData reversed = data;
-  reversed.swapNodes(1, 2);
+  MeshData reversed = TAUTLINE_CHANGED(data, swapNodes(1, 2));
   TAUTLINE_SET(filter, SetInputData(toGrid(reversed)), Update());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("the-mesh-is-reversed")));
   const MeshData mirrored = withPointsOf(data, meshOf(filter));
@@ -193,8 +192,7 @@ TAUTLINE_PART(testTaken)
   TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetCellData(), "Validity", 0), 1);
 
   // Every third cell the other way round; the output keeps the cells as they are, with data.
-  MeshData mixed = data;
-  mixed.swapNodes(1, 2, 0, 3);
+  MeshData mixed = TAUTLINE_CHANGED(data, swapNodes(1, 2, 0, 3));
   TAUTLINE_SET(filter, SetInputData(toGrid(mixed)), Update());
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("24-of-the-72-cells-are-treated")));
   const MeshData alike = withPointsOf(data, meshOf(filter));

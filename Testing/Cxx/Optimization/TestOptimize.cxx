@@ -62,8 +62,7 @@ TAUTLINE_PART(testMinima)
 /// One free vertex goes to the centre of a regular hexagon.
 TAUTLINE_PART(testSingleVertex)
 {
-  MeshData data;
-  data.addPoint({ 0.3, -0.2, 0 });
+  TAUTLINE_LET(MeshData, data, addPoint({ 0.3, -0.2, 0 }));
   for (int k = 0; k < 6; ++k)
   {
     const double angle = k * std::acos(-1.0) / 3;

@@ -342,8 +342,7 @@ TAUTLINE_PART(testGeometry)
   TAUTLINE_CHECK(result.surfaceError > 0 && result.surfaceError < 0.05);
   TAUTLINE_CHECK(
     volumeWithin(sphere, result.points) > 0.9995 * volumeWithin(sphere, sphere.points));
-  MeshData lines;
-  lines.addPoint({ 0, 0, 0 });
+  TAUTLINE_LET(MeshData, lines, addPoint({ 0, 0, 0 }));
   TAUTLINE_CHECK_THROWS(match(sphere, lines), wording("no-triangles-or-quadrilaterals"));
   options.parts = nullptr;
   TAUTLINE_CHECK_THROWS(run(placed, options), wording("part-of-it"));

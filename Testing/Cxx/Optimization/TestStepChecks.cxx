@@ -74,8 +74,7 @@ SurfacePart curveOf(const Vec3& a, const Vec3& b)
 /// @param x of the free point
 MeshData fan(bool flat, double x)
 {
-  MeshData data;
-  data.addPoint({ x, flat ? 1.0 : 0.0, flat ? 0.0 : 1.0 });
+  TAUTLINE_LET(MeshData, data, addPoint({ x, flat ? 1.0 : 0.0, flat ? 0.0 : 1.0 }));
   const Index bend = data.addPoint({ 0, 0, 0 });
   if (flat)
   {
@@ -131,8 +130,7 @@ TAUTLINE_PART(testInvertedOnCurve)
 /// A curve through worse places, and one through better ones.
 TAUTLINE_PART(testWorseOnCurve)
 {
-  MeshData data;
-  data.addPoint({ 0.4, 0, 0 });
+  TAUTLINE_LET(MeshData, data, addPoint({ 0.4, 0, 0 }));
   constexpr Index around = 6;
   for (Index k = 0; k < around; ++k)
   {
@@ -158,8 +156,7 @@ TAUTLINE_PART(testWorseOnCurve)
 /// space. Flat triangles, which do not count, cannot turn over.
 TAUTLINE_PART(testTurnedOnCurve)
 {
-  MeshData data;
-  data.addPoint({ -3, 0, 0 });
+  TAUTLINE_LET(MeshData, data, addPoint({ -3, 0, 0 }));
   const Index low = data.addPoint({ 1, -1, 0 }), high = data.addPoint({ 1, 1, 0 });
   data.addCell(CellType::Triangle, std::vector<Index>{ Free, low, high });
   // Another plane makes it a surface in space.

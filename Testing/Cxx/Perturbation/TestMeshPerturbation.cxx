@@ -438,10 +438,9 @@ TAUTLINE_PART(testKindsOfInput)
   TAUTLINE_CHECK(messages.has(wording("run-image-data-to-point-set")));
 
   messages.clear();
-  MeshData quadratic;
-  quadratic.addPoints(
-    { { 0, 0, 0 }, { 2, 0, 0 }, { 0, 2, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } });
-  quadratic.addCell(VTK_QUADRATIC_TRIANGLE, { 0, 1, 2, 3, 4, 5 });
+  TAUTLINE_LET(MeshData, quadratic,
+    addPoints({ { 0, 0, 0 }, { 2, 0, 0 }, { 0, 2, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } }),
+    addCell(VTK_QUADRATIC_TRIANGLE, { 0, 1, 2, 3, 4, 5 }));
   TAUTLINE_SET(filter, SetInputData(toGrid(quadratic)), Update());
   TAUTLINE_CHECK(messages.has(wording("run-tessellate")));
 

@@ -234,9 +234,8 @@ TAUTLINE_PART(testSpecialCells)
   messages.clear();
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 0);
 
-  MeshData data = triangles({ height, 0.2, 0.5 });
-  data.addPoint({ 1e6, -1e6, 0 });
-  data.points[3 * 5] = std::numeric_limits<double>::quiet_NaN();
+  MeshData data = TAUTLINE_CHANGED(triangles({ height, 0.2, 0.5 }), addPoint({ 1e6, -1e6, 0 }),
+    points[3 * 5] = std::numeric_limits<double>::quiet_NaN());
   TAUTLINE_SET(filter, SetInputData(toGrid(data)), Update());
   TAUTLINE_CHECK_EQUAL(statistic(filter, "Measured"), 2);
   TAUTLINE_CHECK_EQUAL(statistic(filter, "NonFinite"), 1);
@@ -251,10 +250,8 @@ TAUTLINE_PART(testSpecialCells)
   TAUTLINE_CHECK_NEAR(component(cellsOf(filter), "imr", 1), imrOf(0.1), 1e-14);
 
   // The triangles of a volume mesh are measured, but not counted.
-  MeshData mixed;
-  mixed.addCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron));
-  mixed.addCell(CellType::Triangle, std::vector<Index>{ 0, 1, 2 });
-  mixed.addCell(VTK_LINE, { 0, 1 });
+  TAUTLINE_LET(MeshData, mixed, addCell(CellType::Tetrahedron, idealCell(CellType::Tetrahedron)),
+    addCell(CellType::Triangle, std::vector<Index>{ 0, 1, 2 }), addCell(VTK_LINE, { 0, 1 }));
   messages.clear();
   TAUTLINE_SET(filter, SetInputData(toGrid(mixed)), Update());
   TAUTLINE_CHECK(messages.empty());

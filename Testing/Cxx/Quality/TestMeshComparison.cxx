@@ -254,8 +254,7 @@ TAUTLINE_PART(testRefusals)
   refuses(one, two, wording("first-at-block-2"));
   refuses(grid, two, wording("extract-block"));
   filter->AddMetricByName("mu_98");
-  MeshData surface = mesh;
-  surface.setPoint(4, { 1, 1, 1 });
+  MeshData surface = TAUTLINE_CHANGED(mesh, setPoint(4, { 1, 1, 1 }));
   refuses(toGrid(surface), toGrid(surface), wording("without-orientation"));
 }
 

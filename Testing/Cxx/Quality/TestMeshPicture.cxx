@@ -36,10 +36,9 @@ void testPlane(double scale, const Vec3& shift)
 {
   MeshData data;
   const auto at = [&](double x, double y) { return scale * Vec3{ x, y, 0 } + shift; };
-  data.addCell(
-    CellType::Quadrilateral, std::vector<Vec3>{ at(0, 0), at(1, 0), at(1, 1), at(0, 1) });
-  data.addCell(
-    CellType::Quadrilateral, std::vector<Vec3>{ at(1, 0), at(2, 0), at(2, 1), at(1, 1) });
+  TAUTLINE_SET(data,
+    addCell(CellType::Quadrilateral, std::vector<Vec3>{ at(0, 0), at(1, 0), at(1, 1), at(0, 1) }),
+    addCell(CellType::Quadrilateral, std::vector<Vec3>{ at(1, 0), at(2, 0), at(2, 1), at(1, 1) }));
   const Mesh mesh(data.view());
   const Picture picture = drawMeshes({ { &mesh, { Red, Green }, {} } }, Width, Height);
   TAUTLINE_CHECK((pixel(picture, 60, 70) == std::array<int, 3>{ 255, 0, 0 }));
@@ -126,10 +125,10 @@ TAUTLINE_PART(testInside)
 TAUTLINE_PART(testLimits)
 {
   TAUTLINE_CHECK_EQUAL(covered(drawMeshes({}, Width, Height)), 0);
-  MeshData data;
-  data.addCell(CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } });
-  data.addCell(
-    CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, std::nan(""), 0 } });
+  TAUTLINE_LET(MeshData, data,
+    addCell(CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 } }),
+    addCell(
+      CellType::Triangle, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, std::nan(""), 0 } }));
   const Mesh mesh(data.view());
   // The second cell has a point that is not finite: the first is as large as fits.
   TAUTLINE_CHECK(covered(drawMeshes({ { &mesh, { Red, Green }, {} } }, Width, Height)) > 0.2);

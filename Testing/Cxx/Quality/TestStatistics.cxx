@@ -330,8 +330,7 @@ TAUTLINE_PART(testAngles)
     return std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 },
       { side * std::cos(a), side * std::sin(a), 0 } };
   };
-  MeshData data;
-  data.addCell(CellType::Triangle, withAngles(10, 30));
+  TAUTLINE_LET(MeshData, data, addCell(CellType::Triangle, withAngles(10, 30)));
   TAUTLINE_CHECK((distributionOf(data) == Counts{ 1, 1, 0, 0, 1 }));
   data.addCell(CellType::Triangle, withAngles(90, 60));
   TAUTLINE_CHECK((distributionOf(data) == Counts{ 1, 2, 1, 1, 1 }));

@@ -88,8 +88,7 @@ TAUTLINE_PART(testSmall)
     options.boundary = boundary;
     const ReconnectionResult empty = reconnect(MeshData(), options);
     TAUTLINE_CHECK(empty.points.empty() && empty.tetrahedra.empty() && empty.history.empty());
-    MeshData unused;
-    unused.addPoint({ 1, 2, 3 });
+    TAUTLINE_LET(MeshData, unused, addPoint({ 1, 2, 3 }));
     TAUTLINE_CHECK(reconnect(unused, options).points == unused.points);
 
     MeshData one = singleCell(

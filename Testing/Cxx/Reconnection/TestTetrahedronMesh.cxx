@@ -205,9 +205,8 @@ TAUTLINE_PART(testSmoothing)
 /// Tetrahedra round the edge from (0, 0, -1) to (0, 0, 1), with n ring points.
 MeshData ringMesh(int n, Random& random, double height)
 {
-  MeshData data;
-  data.addPoint({ random.uniform(-0.1, 0.1), 0, -height });
-  data.addPoint({ 0, random.uniform(-0.1, 0.1), height });
+  TAUTLINE_LET(MeshData, data, addPoint({ random.uniform(-0.1, 0.1), 0, -height }),
+    addPoint({ 0, random.uniform(-0.1, 0.1), height }));
   for (int i = 0; i < n; ++i)
   {
     const double angle = 2.0 * Pi * (i + random.uniform(-0.2, 0.2)) / n;

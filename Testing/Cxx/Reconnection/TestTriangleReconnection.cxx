@@ -234,8 +234,7 @@ TAUTLINE_PART(testInvariance)
   TAUTLINE_CHECK_EQUAL(one.size(), two.size());
   TAUTLINE_EACH(std::size_t, i, one.size(), TAUTLINE_CHECK_RELATIVE(one[i], two[i], 1e-9));
   // Reversed throughout: the mirror image.
-  MeshData reversed = data;
-  reversed.swapNodes(0, 1);
+  MeshData reversed = TAUTLINE_CHANGED(data, swapNodes(0, 1));
   Mesh mirrored(reversed.view());
   mirrored.setMirrored(true);
   const ReconnectionResult result = improveTriangles(mirrored, swap);
@@ -419,11 +418,8 @@ TAUTLINE_PART(testKept)
 TAUTLINE_PART(testForced)
 {
   constexpr double corner = 20.0 * Pi / 180.0;
-  MeshData data;
-  data.addPoint({ 0, 0, 0 });
-  data.addPoint({ 1, 0, 0 });
-  data.addPoint({ std::cos(corner), std::sin(corner), 0 });
-  data.addCell(CellType::Triangle, { 0, 1, 2 });
+  TAUTLINE_LET(MeshData, data, addPoint({ 0, 0, 0 }), addPoint({ 1, 0, 0 }),
+    addPoint({ std::cos(corner), std::sin(corner), 0 }), addCell(CellType::Triangle, { 0, 1, 2 }));
   const ReconnectionResult result = reconnect(data, triangleOptions(Preset::Aggressive));
   TAUTLINE_CHECK_EQUAL(result.history.back().tetrahedra, 1);
   TAUTLINE_CHECK_EQUAL(

@@ -227,13 +227,9 @@ TAUTLINE_PART(testCylinder)
 MeshData roof(double degrees)
 {
   const double turn = degrees * Pi / 180.0;
-  MeshData data;
-  data.addPoint({ -1, 0, 0 });
-  data.addPoint({ 1, 0, 0 });
-  data.addPoint({ 0, 0.2, 0 });
-  data.addPoint({ 0, -0.2 * std::cos(turn), -0.2 * std::sin(turn) });
-  data.addCell(CellType::Triangle, { 0, 1, 2 });
-  data.addCell(CellType::Triangle, { 1, 0, 3 });
+  TAUTLINE_LET(MeshData, data, addPoint({ -1, 0, 0 }), addPoint({ 1, 0, 0 }),
+    addPoint({ 0, 0.2, 0 }), addPoint({ 0, -0.2 * std::cos(turn), -0.2 * std::sin(turn) }),
+    addCell(CellType::Triangle, { 0, 1, 2 }), addCell(CellType::Triangle, { 1, 0, 3 }));
   return data;
 }
 
@@ -290,16 +286,14 @@ TAUTLINE_PART(testNonManifold)
   }
 
   // Two fans that touch at a point.
-  MeshData bow;
-  bow.addPoint({ 0, 0, 0 });
+  TAUTLINE_LET(MeshData, bow, addPoint({ 0, 0, 0 }));
   for (int side : { 1, -1 })
   {
     const Index first = bow.numberOfPoints();
-    bow.addPoint({ side * 1.0, -0.1 * side, 0.3 });
-    bow.addPoint({ side * 1.1, 0.0, 0.0 });
-    bow.addPoint({ side * 1.0, 0.1 * side, 0.2 });
-    bow.addCell(CellType::Triangle, { 0, first, first + 1 });
-    bow.addCell(CellType::Triangle, { 0, first + 1, first + 2 });
+    TAUTLINE_SET(bow, addPoint({ side * 1.0, -0.1 * side, 0.3 }),
+      addPoint({ side * 1.1, 0.0, 0.0 }), addPoint({ side * 1.0, 0.1 * side, 0.2 }),
+      addCell(CellType::Triangle, { 0, first, first + 1 }),
+      addCell(CellType::Triangle, { 0, first + 1, first + 2 }));
   }
   const ReconnectionResult touched = reconnect(bow, triangleOptions(Preset::Aggressive));
   checkTriangles(bow, touched);
@@ -330,12 +324,8 @@ TAUTLINE_PART(testNonManifold)
 
 TAUTLINE_PART(testSmall)
 {
-  MeshData one;
-  one.addPoint({ 0, 0, 0 });
-  one.addPoint({ 4, 0, 0 });
-  one.addPoint({ 1, 1, 0.5 });
-  one.addPoint({ 7, 7, 7 });
-  one.addCell(CellType::Triangle, { 0, 1, 2 });
+  TAUTLINE_LET(MeshData, one, addPoint({ 0, 0, 0 }), addPoint({ 4, 0, 0 }), addPoint({ 1, 1, 0.5 }),
+    addPoint({ 7, 7, 7 }), addCell(CellType::Triangle, { 0, 1, 2 }));
   const ReconnectionResult single = reconnect(one, triangleOptions(Preset::Aggressive));
   checkTriangles(one, single);
   TAUTLINE_CHECK(single.triangles == one.connectivity && single.points == one.points);
