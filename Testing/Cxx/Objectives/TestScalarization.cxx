@@ -224,19 +224,14 @@ TAUTLINE_PART(testErrors)
     Scalarizer(good, { std::nan(""), 1 }, { 1, 2 }), wording("weight-of-objective-1"));
   TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1, 1 }, { 1, infinity }), "Untangle");
   TAUTLINE_CHECK_THROWS(Scalarizer(good, { 1 }, { 1 }).value({ 1, 2 }), "2 values");
-  auto with = [](auto change)
-  {
-    ScalarizationOptions options;
-    change(options);
-    Scalarizer(options, { 1 }, { 1 });
-  };
-  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.c = -1; }), wording("c-of-the-exponential-sum"));
-  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.c = infinity; }), wording("c-of-the-exponential-sum"));
-  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.exponent = 0; }), "exponent");
-  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.tolerance = -0.1; }), "tolerance");
-  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.utopia = { 1, 2 }; }), "utopia");
-  TAUTLINE_CHECK_THROWS(with([](auto& o) { o.utopia = { infinity }; }), "utopia");
-  TAUTLINE_CHECK_THROWS(
-    with([](auto& o) { o.method = static_cast<Scalarization>(8); }), "number 8");
+#define REFUSED(change, text) \
+  TAUTLINE_CHECK_THROWS(Scalarizer(TAUTLINE_CHANGED(good, change), { 1 }, { 1 }), text)
+  REFUSED(c = -1, wording("c-of-the-exponential-sum"));
+  REFUSED(c = infinity, wording("c-of-the-exponential-sum"));
+  REFUSED(exponent = 0, "exponent");
+  REFUSED(tolerance = -0.1, "tolerance");
+  REFUSED(utopia = (std::vector<double>{ 1, 2 }), "utopia");
+  REFUSED(utopia = { infinity }, "utopia");
+  REFUSED(method = static_cast<Scalarization>(8), "number 8");
 }
 }

@@ -369,17 +369,13 @@ TAUTLINE_PART(testRefusals)
   MeshData folded = cubeSurface(CellType::Triangle, 2);
   folded.setPoint(folded.connectivity[0], folded.point(folded.connectivity[1]));
   TAUTLINE_CHECK_THROWS(reconnect(folded, defaults), wording("degenerate-triangles-run-clean"));
-  const auto refuses = [](auto change, const char* text)
-  {
-    TriangleOptions options;
-    change(options);
-    const MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
-    TAUTLINE_CHECK_THROWS(reconnect(data, options), text);
-  };
-  refuses([](TriangleOptions& o) { o.featureAngle = -1; }, "feature angle");
-  refuses([](TriangleOptions& o) { o.surfaceAngle = 91; }, "surface angle");
-  refuses([](TriangleOptions& o) { o.surfaceDistance = std::nan(""); }, "surface distance");
-  refuses([](TriangleOptions& o) { o.targetAngle = 61; }, "target angle");
+  const MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
+#define REFUSED(change, text) \
+  TAUTLINE_CHECK_THROWS(reconnect(data, TAUTLINE_CHANGED(TriangleOptions(), change)), text)
+  REFUSED(featureAngle = -1, "feature angle");
+  REFUSED(surfaceAngle = 91, "surface angle");
+  REFUSED(surfaceDistance = std::nan(""), "surface distance");
+  REFUSED(targetAngle = 61, "target angle");
   // Points that coincide where cells only touch are borders.
   MeshData apart = blockMesh(CellType::Triangle, 3, 3, 0);
   const MeshData other = blockMesh(CellType::Triangle, 3, 3, 0);

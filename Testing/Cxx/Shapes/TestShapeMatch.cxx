@@ -327,27 +327,20 @@ TAUTLINE_PART(testRefused)
   const ShapeSource source = makeShapeSource(shape, 20.0);
   const double nan = std::nan(""), inf = std::numeric_limits<double>::infinity();
   const ShapeTarget target(shape, {}, {});
+#define REFUSED(change, text) \
+  TAUTLINE_CHECK_THROWS(matchShape(source, target, TAUTLINE_CHANGED(MatchOptions(), change)), text)
+#define REFUSED_ENERGY(change, text) \
+  TAUTLINE_CHECK_THROWS(ShapeTarget(shape, {}, TAUTLINE_CHANGED(ShapeEnergy(), change)), text)
   for (double bad : { nan, inf, -1.0 })
   {
-    TAUTLINE_LET(MatchOptions, options, energy.deformation = bad);
-    TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("deformation-weight-a"));
-    options = {};
-    options.energy.distortion = bad;
-    TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("distortion-weight-b"));
-    options = {};
-    options.centreTolerance = bad;
-    TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("centre-tolerance"));
-    TAUTLINE_LET(ShapeEnergy, energy, lambda = bad);
-    TAUTLINE_CHECK_THROWS(ShapeTarget(shape, {}, energy), "lambda");
-    energy = {};
-    energy.smoothing = bad;
-    TAUTLINE_CHECK_THROWS(ShapeTarget(shape, {}, energy), "smoothing");
+    REFUSED(energy.deformation = bad, wording("deformation-weight-a"));
+    REFUSED(energy.distortion = bad, wording("distortion-weight-b"));
+    REFUSED(centreTolerance = bad, wording("centre-tolerance"));
+    REFUSED_ENERGY(lambda = bad, "lambda");
+    REFUSED_ENERGY(smoothing = bad, "smoothing");
   }
-  TAUTLINE_LET(MatchOptions, options, energy.lambda = 0.2);
-  TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("prepared-for-another"));
-  options = {};
-  options.scales = 2;
-  TAUTLINE_CHECK_THROWS(matchShape(source, target, options), wording("odd-number"));
+  REFUSED(energy.lambda = 0.2, wording("prepared-for-another"));
+  REFUSED(scales = 2, wording("odd-number"));
   TAUTLINE_CHECK_THROWS(matchShape(ShapeSource(), target, {}), wording("no-triangles"));
   TAUTLINE_LET(LocationOptions, huge, columns = huge.rows = 300);
   TAUTLINE_CHECK_THROWS(ShapeTarget(shape, huge), "4 GiB");

@@ -259,22 +259,13 @@ TAUTLINE_PART(testOptions)
   TAUTLINE_CHECK_THROWS(mistaken.setUp(), "-sub_pc_type");
   TAUTLINE_CHECK_THROWS(mistaken.solve(b.data(), x.data()), "-sub_pc_type");
 
-  const auto refuse = [&](const SolverOptions& wrong, const char* text)
-  { TAUTLINE_CHECK_THROWS(solved(systemOf(a), wrong, b), text); };
-  TAUTLINE_LET(SolverOptions, wrong, omega = 2.0);
-  refuse(wrong, wording("between-0-and-2"));
-  wrong = {};
-  wrong.relativeTolerance = -1.0;
-  refuse(wrong, "tolerance");
-  wrong = {};
-  wrong.restart = 0;
-  refuse(wrong, "restart");
-  wrong = {};
-  wrong.method = static_cast<KrylovMethod>(17);
-  refuse(wrong, "number 17");
-  wrong = {};
-  wrong.preconditioner = static_cast<Preconditioner>(-2);
-  refuse(wrong, "number -2");
+#define REFUSED(change, text) \
+  TAUTLINE_CHECK_THROWS(solved(systemOf(a), TAUTLINE_CHANGED(SolverOptions(), change), b), text)
+  REFUSED(omega = 2.0, wording("between-0-and-2"));
+  REFUSED(relativeTolerance = -1.0, "tolerance");
+  REFUSED(restart = 0, "restart");
+  REFUSED(method = static_cast<KrylovMethod>(17), "number 17");
+  REFUSED(preconditioner = static_cast<Preconditioner>(-2), "number -2");
 }
 
 /// Restart, relaxation, limits, the observer, the initial guess and Ritz values.
