@@ -6,6 +6,7 @@
 #ifndef tautline_Systems_h
 #define tautline_Systems_h
 
+#include "tautline/Solvers/LinearSolver.h"
 #include "tautline/Solvers/SparseMatrix.h"
 
 #include <cmath>
@@ -65,6 +66,13 @@ inline std::vector<double> someVector(Index n, unsigned seed = 1)
     value = static_cast<double>(state >> 11) / 4503599627370496.0 - 1.0;
   }
   return x;
+}
+
+inline LinearSystem systemOf(const SparseMatrix& matrix)
+{
+  LinearSystem system;
+  system.matrix = &matrix;
+  return system;
 }
 
 /// |b - A x| / |b|

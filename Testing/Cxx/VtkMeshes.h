@@ -29,6 +29,8 @@
 #include "vtkPointData.h"
 #include "vtkPoints.h"
 #include "vtkPolyData.h"
+#include "vtkSelection.h"
+#include "vtkSelectionNode.h"
 #include "vtkSmartPointer.h"
 #include "vtkStringArray.h"
 #include "vtkTable.h"
@@ -127,6 +129,16 @@ vtkSmartPointer<Array> filledArray(const char* name, const Range& range, const F
   forEach(range,
     [&](const auto& x) { array->InsertNextValue(static_cast<typename Array::ValueType>(f(x))); });
   return array;
+}
+
+/** A selection of points by their numbers. */
+inline vtkSmartPointer<vtkSelection> pointSelection(vtkAbstractArray* ids)
+{
+  TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
+    SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
+  auto selection = vtkSmartPointer<vtkSelection>::New();
+  selection->AddNode(node);
+  return selection;
 }
 
 /** The first output of a filter, null if it is not of that type. */

@@ -46,8 +46,7 @@ vtkSmartPointer<vtkUnstructuredGrid> pieceOf(
   {
     return vtkSmartPointer<vtkUnstructuredGrid>::New();
   }
-  auto grid = TAUTLINE_CHANGED(toGrid(data), GetCellData()->SetGlobalIds(ids));
-  return grid;
+  return TAUTLINE_CHANGED(toGrid(data), GetCellData()->SetGlobalIds(ids));
 }
 
 void setUp(vtkElementQuality* filter)

@@ -109,11 +109,10 @@ Outcome outcomeOf(const char* text, const RankPart& part, const Change& change, 
     vtkMeshOptimizer, filter, SetMergeCoincidentPoints(merge), SetInputDataObject(0, change(part)));
   Messages messages(filter);
   filter->Update();
-  TAUTLINE_LET(Outcome, outcome, refused = messages.has("ERROR: "), named = messages.has(text),
+  return TAUTLINE_CHANGED(Outcome(), refused = messages.has("ERROR: "), named = messages.has(text),
     image = outputOf<vtkImageData>(filter),
     cells = filter->GetOutputDataObject(0)->GetNumberOfElements(vtkDataObject::CELL),
     summary = filter->GetSummary() ? filter->GetSummary() : "");
-  return outcome;
 }
 
 /// The same error on each process, also on those that have nothing wrong.
@@ -261,8 +260,7 @@ void testErrors(vtkMPIController* controller)
       {
         return numberedGridOf(part);
       }
-      auto image = TAUTLINE_CHANGED(vtkSmartPointer<vtkImageData>::New(), SetDimensions(3, 3, 3));
-      return image;
+      return TAUTLINE_CHANGED(vtkSmartPointer<vtkImageData>::New(), SetDimensions(3, 3, 3));
     },
     true);
 }

@@ -29,8 +29,6 @@
 #include "vtkObjectFactory.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkRegularPolygonSource.h"
-#include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 #include "vtkUnstructuredGridAlgorithm.h"
 
 using namespace tautline;
@@ -243,9 +241,7 @@ void testSelection()
       ++chosen;
     }
   }
-  TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
-    SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
-  TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
+  const auto selection = pointSelection(ids);
   TAUTLINE_SET(filter, SetInputData(mesh), SetInputDataObject(2, selection),
     SetMovedPart(vtkMeshWarp::SELECTION), SetTransformKind(vtkMeshWarp::TRANSLATION),
     SetTranslation(-0.1, 0, 0), Update());

@@ -9,7 +9,6 @@
 #include "tautline/Core/LoopInterruption.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Stopwatch.h"
-#include "tautline/Solvers/LinearSolver.h"
 #include "vtkElementQuality.h"
 #include "vtkHorizonNeighbors.h"
 #include "vtkInterruption.h"

@@ -6,8 +6,6 @@
 #include "ValidateInput.h"
 #include "VtkCompatibility.h"
 #include "tautline/Mesh/ArrayChecks.h"
-#include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 #include "vtkStructuredGrid.h"
 
 using namespace tautline;

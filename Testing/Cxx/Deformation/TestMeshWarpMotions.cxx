@@ -4,8 +4,6 @@
 #include "WarpingMeshes.h"
 #include "tautline/Mesh/BoundaryParts.h"
 #include "tautline/Deformation/PointMotion.h"
-#include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTransform.h"
 
@@ -199,8 +197,7 @@ vtkSmartPointer<vtkSelection> select(int field, const std::vector<Index>& ids)
   }
   TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
     SetFieldType(field), SetSelectionList(list));
-  auto selection = TAUTLINE_CHANGED(vtkSmartPointer<vtkSelection>::New(), AddNode(node));
-  return selection;
+  return TAUTLINE_CHANGED(vtkSmartPointer<vtkSelection>::New(), AddNode(node));
 }
 
 /// Which points move by each choice, and which stay.

@@ -270,11 +270,7 @@ TAUTLINE_PART(testCoefficients)
       q[2] == 0 ? 0.1 * (q[0] > 0 && q[0] < 4) : 0.0 };
   };
   const SymmetricTensor sums = warped(data, axes,
-    [&]
-    {
-      auto o = TAUTLINE_CHANGED(options, coefficients = WarpCoefficients::DisplacementSums);
-      return o;
-    }())
+    [&] { return TAUTLINE_CHANGED(options, coefficients = WarpCoefficients::DisplacementSums); }())
                                  .tensor;
   const SymmetricTensor directions = warped(data, axes, options).tensor;
   TAUTLINE_EACH(int, k, 6, TAUTLINE_CHECK_NEAR(directions[k], sums[k], 1e-14));

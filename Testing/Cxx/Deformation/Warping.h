@@ -35,8 +35,7 @@ inline WarpResult warped(const MeshData& data, const Field& motion, const WarpOp
 
 inline WarpOptions withMethod(WarpMethod method)
 {
-  TAUTLINE_LET(WarpOptions, options, method = method, threads = 1);
-  return options;
+  return TAUTLINE_CHANGED(WarpOptions(), method = method, threads = 1);
 }
 
 /// Anisotropic FEMWARP with coefficients by hand.

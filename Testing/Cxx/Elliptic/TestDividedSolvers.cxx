@@ -9,8 +9,6 @@
 #include "vtkEllipticSolver.h"
 #include "vtkSolverStudy.h"
 #include "vtkMPIController.h"
-#include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 
 using namespace tautline;
 
@@ -223,9 +221,7 @@ void testSolutions()
           }
         }
       }
-      TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
-        SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
-      TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
+      const auto selection = pointSelection(ids);
       filter->SetInputData(1, selection);
     },
     scalar, converged);

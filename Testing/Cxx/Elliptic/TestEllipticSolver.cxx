@@ -6,8 +6,6 @@
 #include "vtkMultiPieceDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"
-#include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 
 using namespace tautline;
 
@@ -161,9 +159,7 @@ TAUTLINE_PART(testWays)
   {
     ids->InsertNextValue(i);
   }
-  TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
-    SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
-  TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
+  const auto selection = pointSelection(ids);
   filter->SetInputData(1, selection);
   TAUTLINE_CHECK_NEAR(distance(values(solved(filter)), expected), 0, 1e-9);
   filter->RemoveAllInputConnections(1);

@@ -59,9 +59,8 @@ EllipticProblem withoutSource()
 
 SolverOptions exactly()
 {
-  TAUTLINE_LET(
-    SolverOptions, options, relativeTolerance = Tolerance, preconditioner = Preconditioner::ICC);
-  return options;
+  return TAUTLINE_CHANGED(
+    SolverOptions(), relativeTolerance = Tolerance, preconditioner = Preconditioner::ICC);
 }
 
 /// The factor of an eigenmode after so many steps of dt, in closed form.

@@ -186,8 +186,7 @@ Data polygon()
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkTransform> turn()
 {
-  auto transform = TAUTLINE_CHANGED(vtkSmartPointer<vtkTransform>::New(), RotateZ(5));
-  return transform;
+  return TAUTLINE_CHANGED(vtkSmartPointer<vtkTransform>::New(), RotateZ(5));
 }
 
 /// The name of a class and a function that makes its object, for the list below.
@@ -291,10 +290,7 @@ void addWriter(std::vector<HostileFilter>& list, const char* name, const std::st
 {
   TAUTLINE_LET(HostileFilter, entry, module = "Readers", name = name);
   entry.make = [file]
-  {
-    auto writer = TAUTLINE_CHANGED(vtkSmartPointer<Writer>::New(), SetFileName(file.c_str()));
-    return writer;
-  };
+  { return TAUTLINE_CHANGED(vtkSmartPointer<Writer>::New(), SetFileName(file.c_str())); };
   TAUTLINE_SET(entry, suitable = suitable, keepsMesh = false, fileName = file);
   list.push_back(entry);
 }

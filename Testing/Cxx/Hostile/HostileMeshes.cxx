@@ -52,9 +52,8 @@ Data cubePolyhedron()
 
 Data image(int x, int y, int z)
 {
-  auto result = TAUTLINE_CHANGED(vtkSmartPointer<vtkImageData>::New(), SetDimensions(x, y, z),
+  return TAUTLINE_CHANGED(vtkSmartPointer<vtkImageData>::New(), SetDimensions(x, y, z),
     GetPointData()->SetScalars(makeArray<vtkDoubleArray>("T", Index(x) * y * z)));
-  return result;
 }
 
 Data rectilinear()
@@ -89,8 +88,7 @@ vtkSmartPointer<vtkStructuredGrid> structured(int points)
 
 Data hyperTreeGrid()
 {
-  auto result = TAUTLINE_CHANGED(vtkSmartPointer<vtkHyperTreeGrid>::New(), SetDimensions(3, 3, 1));
-  return result;
+  return TAUTLINE_CHANGED(vtkSmartPointer<vtkHyperTreeGrid>::New(), SetDimensions(3, 3, 1));
 }
 
 Data amr()

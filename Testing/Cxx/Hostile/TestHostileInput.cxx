@@ -15,8 +15,6 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkDataSet.h"
 #include "vtkOutputWindow.h"
-#include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkWriter.h"
 
@@ -382,13 +380,10 @@ std::vector<HostileData> dataFor(const HostileFilter& entry)
     } });
   const auto select = [&](const char* name, vtkAbstractArray* ids)
   {
-    TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
-      SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
-    TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
-    const vtkSmartPointer<vtkSelection> kept = selection.Get();
+    const auto selection = pointSelection(ids);
     const int port = entry.selectionPort;
     list.push_back({ name, suitable, Expected::Error, false, false,
-      [kept, port](vtkAlgorithm* filter) { filter->SetInputDataObject(port, kept); } });
+      [selection, port](vtkAlgorithm* filter) { filter->SetInputDataObject(port, selection); } });
   };
   if (entry.selectionPort >= 0)
   {

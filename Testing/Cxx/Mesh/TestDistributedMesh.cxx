@@ -405,7 +405,7 @@ TAUTLINE_PART(testSum)
 {
   Random random(11);
   auto values = collect<double>(
-    1000, [&](int i) { return random.uniform(-1, 1) * std::pow(10.0, random.uniform(-8, 8)); });
+    1000, [&](int) { return random.uniform(-1, 1) * std::pow(10.0, random.uniform(-8, 8)); });
   SingleRank single;
   const double expected = single.orderlessSum(values);
   long double sum = 0;

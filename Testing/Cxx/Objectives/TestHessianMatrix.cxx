@@ -16,9 +16,8 @@ using Vector = std::vector<double>;
 
 Objective make(Metric metric, ObjectiveTemplate objectiveTemplate = ObjectiveTemplate::Default)
 {
-  TAUTLINE_LET(Objective, objective, metric = metric, objectiveTemplate = objectiveTemplate,
-    evaluation.threads = 1);
-  return objective;
+  return TAUTLINE_CHANGED(
+    Objective(), metric = metric, objectiveTemplate = objectiveTemplate, evaluation.threads = 1);
 }
 
 Vector randomVector(std::size_t n, bool flat, unsigned seed)

@@ -82,9 +82,8 @@ bool applies(const MetricInfo& info, ObjectiveTemplate objectiveTemplate, const 
 
 Objective make(Metric metric, ObjectiveTemplate objectiveTemplate)
 {
-  TAUTLINE_LET(Objective, objective, metric = metric, objectiveTemplate = objectiveTemplate,
+  return TAUTLINE_CHANGED(Objective(), metric = metric, objectiveTemplate = objectiveTemplate,
     evaluation.parameters.beta = 0.3, evaluation.threads = 1);
-  return objective;
 }
 
 /// Cells the metric is defined on, with the cells of the mesh sorted as the kernel does.

@@ -20,8 +20,7 @@ using Values = std::vector<double>;
 
 ScalarizationOptions optionsFor(Scalarization method)
 {
-  TAUTLINE_LET(ScalarizationOptions, options, method = method);
-  return options;
+  return TAUTLINE_CHANGED(ScalarizationOptions(), method = method);
 }
 
 /// The formula of the header, term by term, in long double.

@@ -68,8 +68,7 @@ void check(const MeshData& data, Index firstApart, Index cells, double shift,
 
 OptimizeOptions allFree(const std::vector<unsigned char>& fixed)
 {
-  TAUTLINE_LET(OptimizeOptions, options, fixed = fixed.data(), threads = 1);
-  return options;
+  return TAUTLINE_CHANGED(OptimizeOptions(), fixed = fixed.data(), threads = 1);
 }
 
 /// Stretched triangles are worse than all of the input.

@@ -5,8 +5,6 @@
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Perturbation/Perturb.h"
 #include "vtkMeshOptimizer.h"
-#include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 
 #include <sstream>
 

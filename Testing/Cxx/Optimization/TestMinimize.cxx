@@ -196,9 +196,8 @@ struct Rough : SmoothFunction
 
 MinimizeOptions optionsFor(Optimizer method, int iterations, double gradientNorm)
 {
-  TAUTLINE_LET(MinimizeOptions, options, method = method, maximumIterations = iterations,
+  return TAUTLINE_CHANGED(MinimizeOptions(), method = method, maximumIterations = iterations,
     gradientNorm = gradientNorm, threads = 1);
-  return options;
 }
 
 void report(const char* what, Optimizer method, const MinimizeResult& m)

@@ -232,8 +232,8 @@ TAUTLINE_PART(testSweepTakenBack)
   const MeshData data = perturbedBlock(CellType::Quadrilateral, 40, 0.25);
   const auto objective = [](Metric metric)
   {
-    TAUTLINE_LET(Objective, o, metric = metric, objectiveTemplate = ObjectiveTemplate::Maximum);
-    return o;
+    return TAUTLINE_CHANGED(
+      Objective(), metric = metric, objectiveTemplate = ObjectiveTemplate::Maximum);
   };
   TAUTLINE_LET(OptimizeOptions, options, optimizer = Optimizer::LocalNewton);
   options.objectives = { objective(Metric::InverseMeanRatio), objective(Metric::ScaledJacobian) };

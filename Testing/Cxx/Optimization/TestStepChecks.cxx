@@ -14,14 +14,12 @@ constexpr Index Free = 0; // the point that moves
 
 LocalTerm squaredSize()
 {
-  TAUTLINE_LET(LocalTerm, term, sizeSquared = 1);
-  return term;
+  return TAUTLINE_CHANGED(LocalTerm(), sizeSquared = 1);
 }
 
 LocalTerm squaredRatio()
 {
-  TAUTLINE_LET(LocalTerm, term, shapePower = 2);
-  return term;
+  return TAUTLINE_CHANGED(LocalTerm(), shapePower = 2);
 }
 
 /// One sweep with Newton's whole step; where the first point is then.

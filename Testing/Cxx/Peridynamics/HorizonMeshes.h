@@ -14,6 +14,16 @@
 
 namespace tautline
 {
+inline constexpr PeridynamicBasis bases[] = { PeridynamicBasis::Constant, PeridynamicBasis::Linear,
+  PeridynamicBasis::DiscontinuousLinear };
+
+inline std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>& x)
+{
+  std::vector<double> y(matrix.size);
+  matrix.multiply(x.data(), y.data());
+  return y;
+}
+
 /** A square (0,1)^2 with an interaction layer of whole layers; inner points moved by up to `shake`
  * element sizes. */
 inline HorizonMesh shakenSquare(int n, int layers, double shake, unsigned seed = 5)
@@ -108,11 +118,10 @@ inline const std::vector<TableCell>& tableCells()
 
 inline PeridynamicOptions optionsOf(const TableCell& cell, Discretization discretization)
 {
-  TAUTLINE_LET(PeridynamicOptions, options, horizon = cell.delta,
+  return TAUTLINE_CHANGED(PeridynamicOptions(), horizon = cell.delta,
     kernel.exponent = cell.table == 3 ? 2.5 : 1.0,
     basis = cell.table == 1 ? PeridynamicBasis::Constant : PeridynamicBasis::Linear,
     discretization = discretization, allowThinLayer = true);
-  return options;
 }
 
 } // namespace tautline

@@ -31,10 +31,9 @@ constexpr Case cases[] = {
 
 PeridynamicOptions optionsOf(const Case& each)
 {
-  TAUTLINE_LET(PeridynamicOptions, options, basis = each.basis, model = each.model,
+  return TAUTLINE_CHANGED(PeridynamicOptions(), basis = each.basis, model = each.model,
     discretization = each.discretization, horizon = 0.2, tolerance = 1e-4, threads = 1,
     poissonRatio = 0.3);
-  return options;
 }
 
 constexpr int Elements = 10; // along a side

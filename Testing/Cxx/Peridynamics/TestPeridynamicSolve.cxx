@@ -10,21 +10,12 @@ using namespace tautline;
 
 namespace
 {
-constexpr PeridynamicBasis bases[] = { PeridynamicBasis::Constant, PeridynamicBasis::Linear,
-  PeridynamicBasis::DiscontinuousLinear };
 constexpr NonlocalPreconditioner others[] = { NonlocalPreconditioner::LocalMultigrid,
   NonlocalPreconditioner::TwoLevel };
 
 double product(const std::vector<double>& x, const std::vector<double>& y)
 {
   return sumOf<double>(0.0, x.size(), [&](std::size_t i) { return x[i] * y[i]; });
-}
-
-std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>& x)
-{
-  std::vector<double> y(matrix.size);
-  matrix.multiply(x.data(), y.data());
-  return y;
 }
 
 std::vector<double> randomVector(Index n, unsigned seed)

@@ -9,9 +9,6 @@ using namespace tautline;
 
 namespace
 {
-constexpr PeridynamicBasis bases[] = { PeridynamicBasis::Constant, PeridynamicBasis::Linear,
-  PeridynamicBasis::DiscontinuousLinear };
-
 /// A function of the plane on the functions of a basis.
 template <class Function>
 std::vector<double> sampled(const HorizonMesh& mesh, PeridynamicBasis basis, const Function& f)
@@ -48,13 +45,6 @@ std::vector<double> sampled(const HorizonMesh& mesh, PeridynamicBasis basis, con
 double largestSize(const std::vector<double>& values)
 {
   return largestOf<double>(0.0, values, [&](const double v) { return std::abs(v); });
-}
-
-std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>& x)
-{
-  std::vector<double> y(matrix.size);
-  matrix.multiply(x.data(), y.data());
-  return y;
 }
 
 //------------------------------------------------------------------------------

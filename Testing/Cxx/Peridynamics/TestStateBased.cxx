@@ -15,24 +15,13 @@ using namespace tautline;
 
 namespace
 {
-constexpr PeridynamicBasis bases[] = { PeridynamicBasis::Constant, PeridynamicBasis::Linear,
-  PeridynamicBasis::DiscontinuousLinear };
-
 /// Of the rule of degree 5 for the square of the dilatation, relative to the diagonal.
 constexpr double RuleError = 5e-4;
 
 PeridynamicOptions stateBased(double nu, PlaneState state = PlaneState::Strain)
 {
-  TAUTLINE_LET(PeridynamicOptions, options, horizon = 0.25, model = PeridynamicModel::StateBased,
-    poissonRatio = nu, planeState = state);
-  return options;
-}
-
-std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>& x)
-{
-  std::vector<double> y(matrix.size);
-  matrix.multiply(x.data(), y.data());
-  return y;
+  return TAUTLINE_CHANGED(PeridynamicOptions(), horizon = 0.25,
+    model = PeridynamicModel::StateBased, poissonRatio = nu, planeState = state);
 }
 
 double product(const std::vector<double>& x, const std::vector<double>& y)

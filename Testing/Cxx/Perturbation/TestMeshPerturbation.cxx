@@ -69,8 +69,7 @@ std::vector<Sample> samples()
 
 MeshData moved(const MeshData& mesh, const Perturbation& result)
 {
-  MeshData after = TAUTLINE_CHANGED(mesh, points = result.points);
-  return after;
+  return TAUTLINE_CHANGED(mesh, points = result.points);
 }
 
 Index count(const std::vector<signed char>& validity, signed char value)

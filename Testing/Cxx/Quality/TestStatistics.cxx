@@ -220,7 +220,7 @@ TAUTLINE_PART(testHistogram)
   TAUTLINE_CHECK_THROWS(histogram({ 1 }, 0), wording("at-least-one-bin"));
 
   Random random(20);
-  auto values = collect<double>(10000, [&](int i) { return random.uniform(-3, 5); });
+  auto values = collect<double>(10000, [&](int) { return random.uniform(-3, 5); });
   const Histogram r = histogram(values, 37);
   for (std::size_t bin = 0; bin < r.counts.size(); ++bin)
   {

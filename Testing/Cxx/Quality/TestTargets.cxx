@@ -285,7 +285,7 @@ TAUTLINE_PART(testGivenIdeal)
   {
     for (int i = 0; i < cellsPerMesh; ++i)
     {
-      auto corners = collect<Vec3>(4, [&](int k) { return size * random.vector(-1, 1); });
+      auto corners = collect<Vec3>(4, [&](int) { return size * random.vector(-1, 1); });
       if (i == 0 && size == 1)
       {
         corners[3] = corners[1]; // flat: of larger ones rounding decides the determinant

@@ -156,13 +156,12 @@ struct Limited
 MetricDescription copyOf(Metric metric, const std::string& suffix = "")
 {
   const MetricInfo& info = metricInfo(metric);
-  TAUTLINE_LET(MetricDescription, d, name = std::string("user_") + info.name + suffix,
+  return TAUTLINE_CHANGED(MetricDescription(), name = std::string("user_") + info.name + suffix,
     label = std::string("User's ") + info.label + suffix, unit = info.unit, in2D = info.in2D,
     in3D = info.in3D, cellTypes = info.cellTypes, full = info.in2D ? info.full2D : info.full3D,
     direction = info.direction, inverted = info.inverted, barrier = info.barrier,
     differentiable = info.differentiable, scaleInvariant = info.scaleInvariant,
     rotationInvariant = info.rotationInvariant);
-  return d;
 }
 
 struct Twin

@@ -126,9 +126,8 @@ struct CornerRatio
 
 MetricDescription describe(const std::string& name, bool barrier, bool scale, bool rotation)
 {
-  TAUTLINE_LET(MetricDescription, d, name = name, barrier = barrier, scaleInvariant = scale,
-    rotationInvariant = rotation);
-  return d;
+  return TAUTLINE_CHANGED(MetricDescription(), name = name, barrier = barrier,
+    scaleInvariant = scale, rotationInvariant = rotation);
 }
 
 /// Every function of numbers; one after another.

@@ -6,7 +6,6 @@
 #include "tautline/Elliptic/ElementContributions.h"
 #include "tautline/Elliptic/EllipticSystem.h"
 #include "tautline/Solvers/ConditionEstimate.h"
-#include "tautline/Solvers/LinearSolver.h"
 
 #include <mpi.h>
 #include <limits>

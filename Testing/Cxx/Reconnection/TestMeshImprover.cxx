@@ -4,8 +4,6 @@
 #include "Reconnecting.h"
 #include "VtkMeshes.h"
 #include "vtkMeshImprover.h"
-#include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 
 using namespace tautline;
 

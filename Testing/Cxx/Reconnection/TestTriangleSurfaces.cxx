@@ -227,10 +227,9 @@ TAUTLINE_PART(testCylinder)
 MeshData roof(double degrees)
 {
   const double turn = degrees * Pi / 180.0;
-  TAUTLINE_LET(MeshData, data, addPoint({ -1, 0, 0 }), addPoint({ 1, 0, 0 }),
+  return TAUTLINE_CHANGED(MeshData(), addPoint({ -1, 0, 0 }), addPoint({ 1, 0, 0 }),
     addPoint({ 0, 0.2, 0 }), addPoint({ 0, -0.2 * std::cos(turn), -0.2 * std::sin(turn) }),
     addCell(CellType::Triangle, { 0, 1, 2 }), addCell(CellType::Triangle, { 1, 0, 3 }));
-  return data;
 }
 
 /// A fold is flipped only where it is flat within the angle and the distance, and not at a feature.

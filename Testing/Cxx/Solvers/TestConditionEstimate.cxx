@@ -20,12 +20,6 @@ constexpr Preconditioner preconditioners[] = { Preconditioner::None, Preconditio
   Preconditioner::SSOR, Preconditioner::ILU, Preconditioner::ICC, Preconditioner::BoomerAMG,
   Preconditioner::GAMG };
 
-LinearSystem systemOf(const SparseMatrix& matrix)
-{
-  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
-  return system;
-}
-
 Dense denseOf(const SparseMatrix& a)
 {
   Dense dense = Dense::Zero(a.size, a.size);

@@ -4,7 +4,6 @@
 #include "Registry.h"
 #include "Systems.h"
 #include "tautline/Elliptic/EllipticSystem.h"
-#include "tautline/Solvers/LinearSolver.h"
 
 #include <petscksp.h>
 #include <limits>
@@ -19,12 +18,6 @@ constexpr KrylovMethod methods[] = { KrylovMethod::ConjugateGradient, KrylovMeth
 constexpr Preconditioner preconditioners[] = { Preconditioner::Jacobi, Preconditioner::SSOR,
   Preconditioner::ILU, Preconditioner::BoomerAMG, Preconditioner::ICC, Preconditioner::GAMG,
   Preconditioner::None };
-
-LinearSystem systemOf(const SparseMatrix& matrix)
-{
-  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
-  return system;
-}
 
 struct Result
 {

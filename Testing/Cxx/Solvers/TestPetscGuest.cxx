@@ -5,7 +5,6 @@
 #include "Sanitized.h"
 #include "Systems.h"
 #include "tautline/Solvers/ConditionEstimate.h"
-#include "tautline/Solvers/LinearSolver.h"
 
 #include <memory>
 #include <petscksp.h>
@@ -18,8 +17,7 @@ const SparseMatrix matrix = laplacian(20);
 
 LinearSystem theSystem()
 {
-  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
-  return system;
+  return TAUTLINE_CHANGED(LinearSystem(), matrix = &matrix);
 }
 
 std::vector<double> solved()

@@ -4,7 +4,6 @@
 #include "Registry.h"
 #include "Systems.h"
 #include "tautline/Solvers/ConditionEstimate.h"
-#include "tautline/Solvers/LinearSolver.h"
 
 #include <petscksp.h>
 #include <cstdio>
@@ -16,12 +15,6 @@ using namespace tautline;
 namespace
 {
 std::string directory; // to write to
-
-LinearSystem systemOf(const SparseMatrix& matrix)
-{
-  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
-  return system;
-}
 
 bool exists(const std::string& file)
 {

@@ -5,7 +5,6 @@
 #include "Systems.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Solvers/ConditionEstimate.h"
-#include "tautline/Solvers/LinearSolver.h"
 #include "tautline/Solvers/Watchdog.h"
 
 #include <memory>
@@ -182,13 +181,6 @@ void testWatchdog()
     thread.join();
   }
   TAUTLINE_CHECK_EQUAL(sum.load(), 200);
-}
-
-//------------------------------------------------------------------------------
-LinearSystem systemOf(const SparseMatrix& matrix)
-{
-  TAUTLINE_LET(LinearSystem, system, matrix = &matrix);
-  return system;
 }
 
 /// A small system solved under a limit that allows for the end of what was given up.

@@ -6,8 +6,6 @@
 #include "tautline/Untangling/Untangle.h"
 #include "vtkInterruption.h"
 #include "vtkMeshUntangler.h"
-#include "vtkSelection.h"
-#include "vtkSelectionNode.h"
 
 using namespace tautline;
 
@@ -112,9 +110,7 @@ TAUTLINE_PART(testImpossible)
   MeshData star = blockMesh(CellType::Triangle, 2, 2, 0);
   star.setPoint(4, { 5, 5, 0 });
   TAUTLINE_NEW(vtkIdTypeArray, ids, InsertNextValue(4));
-  TAUTLINE_NEW(vtkSelectionNode, node, SetContentType(vtkSelectionNode::INDICES),
-    SetFieldType(vtkSelectionNode::POINT), SetSelectionList(ids));
-  TAUTLINE_NEW(vtkSelection, selection, AddNode(node));
+  const auto selection = pointSelection(ids);
   vtkNew<vtkMeshUntangler> chosen;
   Messages warnings(chosen);
   TAUTLINE_SET(chosen, SetInputData(0, toGrid(star)), Update());

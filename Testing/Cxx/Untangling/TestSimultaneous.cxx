@@ -15,8 +15,7 @@ namespace
 {
 UntangleOptions simultaneous()
 {
-  TAUTLINE_LET(UntangleOptions, options, method = UntangleMethod::Simultaneous);
-  return options;
+  return TAUTLINE_CHANGED(UntangleOptions(), method = UntangleMethod::Simultaneous);
 }
 
 Index countInvalid(const Mesh& mesh)

@@ -141,8 +141,7 @@ Index countNotValid(const MeshData& data, bool mirrored = false)
 
 MeshData moved(const MeshData& data, const UntangleResult& result)
 {
-  MeshData after = TAUTLINE_CHANGED(data, points = result.points);
-  return after;
+  return TAUTLINE_CHANGED(data, points = result.points);
 }
 
 bool samePoint(const MeshData& a, const MeshData& b, Index i)
