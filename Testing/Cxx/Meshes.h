@@ -107,6 +107,9 @@ struct MeshData
   }
 };
 
+/** A function of a place p that gives the place of these coordinates, for MeshData::transform(). */
+#define TAUTLINE_PLACE(...) [=](const tautline::Vec3& p) { return tautline::Vec3{ __VA_ARGS__ }; }
+
 inline std::vector<double> valuesOf(
   const Mesh& mesh, Metric metric, const EvaluationOptions& options = {})
 {

@@ -413,7 +413,7 @@ void testSeams(vtkMultiProcessController* controller)
     compareBlocks("on top of each other", { at, at }, false, true, false, controller);
   }
   MeshData bent = block(CellType::Quadrilateral, { 0, 0, 0 });
-  bent.transform([](const Vec3& p) { return Vec3{ side, p[1], p[0] }; });
+  bent.transform(TAUTLINE_PLACE(side, p[1], p[0]));
   compareBlocks("surface", { block(CellType::Quadrilateral, { 0, 0, 0 }), bent }, true, true, false,
     controller);
 }

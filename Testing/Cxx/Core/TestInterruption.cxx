@@ -311,7 +311,7 @@ TAUTLINE_PART(testBlocksShareTheTime)
   for (unsigned i = 0; i < blocks; ++i)
   {
     MeshData moved = data;
-    moved.transform([i](const Vec3& p) { return Vec3{ p[0] + 100.0 * i, p[1], p[2] }; });
+    moved.transform(TAUTLINE_PLACE(p[0] + 100.0 * i, p[1], p[2]));
     input->SetBlock(i, toGrid(moved));
   }
   TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(input), SetPreset(0),

@@ -334,21 +334,18 @@ void testWholeMeshes(vtkMPIController* controller)
     [](vtkMeshOptimizer* filter, const RankPart& part)
     {
       RankPart reference = part;
-      reference.data.transform(
-        [](const Vec3& p) {
-          return Vec3{ p[0], p[1] + 0.3 * p[1] * p[1], p[2] };
-        });
+      reference.data.transform(TAUTLINE_PLACE(p[0], p[1] + 0.3 * p[1] * p[1], p[2]));
       filter->SetPreset(vtkMeshOptimizer::PRESERVE_SHAPE);
       filter->SetInputDataObject(1, numberedGridOf(reference));
     });
   MeshData wave = jittered(CellType::Triangle, 8, 0.25);
-  wave.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.3 * std::sin(p[0]) }; });
+  wave.transform(TAUTLINE_PLACE(p[0], p[1], 0.3 * std::sin(p[0])));
   const char* inSpace =
     "it is a surface in space, or in a plane that is not at right angles to an axis";
   testGathered<vtkMeshOptimizer>(
     "surface", controller, wave, inSpace, [](vtkMeshOptimizer*, const RankPart&) {});
   MeshData turned = jittered(CellType::Triangle, 8, 0.8);
-  turned.transform([](const Vec3& p) { return Vec3{ 0.6 * p[0], p[1], 0.8 * p[0] }; });
+  turned.transform(TAUTLINE_PLACE(0.6 * p[0], p[1], 0.8 * p[0]));
   testGathered<vtkMeshUntangler>(
     "inclined plane", controller, turned, inSpace, [](vtkMeshUntangler*, const RankPart&) {});
 }
@@ -377,7 +374,7 @@ void testMostlyInverted(vtkMPIController* controller)
 {
   MeshData inverted = jittered(CellType::Hexahedron, 4, 1.1);
   MeshData reversed = jittered(CellType::Hexahedron, 4, 0.2);
-  reversed.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+  reversed.transform(TAUTLINE_PLACE(-p[0], p[1], p[2]));
   for (const MeshData* whole : { &inverted, &reversed })
   {
     const Context context(whole == &reversed ? "reversed" : "mostly inverted");

@@ -294,7 +294,7 @@ TAUTLINE_PART(testNothingFree)
   MeshData nearly = all.pieces.mesh;
   Random random(1);
   nearly.transform([&](Vec3 p) { return p + random.vector(-1e-9, 1e-9); });
-  nearly.transform([](Vec3 p) { return Vec3{ p[0], p[1], 0 }; });
+  nearly.transform(TAUTLINE_PLACE(p[0], p[1], 0));
   TAUTLINE_CHECK(contains(summary(nearly), wording("run-clean-to-grid-with-a-tolerance")));
   text = summary(blockMesh(CellType::Triangle, 3, 1, 0));
   TAUTLINE_CHECK(contains(text, wording("every-point-is-on-the-boundary-of")));

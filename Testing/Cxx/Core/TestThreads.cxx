@@ -68,7 +68,7 @@ std::vector<NamedMesh> makeMeshes()
   meshes.push_back({ "quadrilaterals", perturbedBlock(CellType::Quadrilateral, 100, 0.2) });
   meshes.push_back({ "mixed", mixedBlocks() });
   MeshData curved = perturbedBlock(CellType::Triangle, 70, 0.15);
-  curved.transform([](const Vec3& p) { return Vec3{ p[0], p[1], std::sin(0.1 * p[0] * p[1]) }; });
+  curved.transform(TAUTLINE_PLACE(p[0], p[1], std::sin(0.1 * p[0] * p[1])));
   meshes.push_back({ "surface", curved });
   return meshes;
 }

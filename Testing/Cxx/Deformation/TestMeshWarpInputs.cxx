@@ -47,7 +47,7 @@ TAUTLINE_PART(testRefusals)
   TAUTLINE_NEW(vtkSphereSource, sphere, Update());
   refused(sphere->GetOutput(), wording("no-boundary"));
   wrong = data;
-  wrong.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[0] }; });
+  wrong.transform(TAUTLINE_PLACE(p[0], p[1], 0.1 * p[0] * p[0]));
   refused(toGrid(wrong), wording("a-surface-in-space"));
   filter->SetTranslation(0.1, 0, 0.1);
   refused(toGrid(data), wording("lead-out-of-its-plane"));

@@ -49,12 +49,8 @@ TAUTLINE_PART(testPaths)
     TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::TRANSLATION), SetTranslation(0.5, -0.25, 0));
     check([&](const Vec3& p) { return p + amount * Vec3{ 0.5, -0.25, 0 }; });
     TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::SCALING), SetScaleFactors(1.5, 0.75, 1));
-    check(
-      [&](const Vec3& p)
-      {
-        return Vec3{ 2.5 + (1 + 0.5 * amount) * (p[0] - 2.5),
-          2.5 + (1 - 0.25 * amount) * (p[1] - 2.5), 0 };
-      });
+    check(TAUTLINE_PLACE(
+      2.5 + (1 + 0.5 * amount) * (p[0] - 2.5), 2.5 + (1 - 0.25 * amount) * (p[1] - 2.5), 0));
     // The same turn about a point outside by a matrix: the way is an arc, not a chord.
     filter->SetTransformKind(vtkMeshWarp::MATRIX);
     TAUTLINE_NEW(vtkTransform, transform, Translate(2, 3, 0), RotateZ(30), Translate(-2, -3, 0));
@@ -102,7 +98,7 @@ TAUTLINE_PART(testPaths)
 TAUTLINE_PART(testBending)
 {
   MeshData data = blockMesh(CellType::Quadrilateral, 20, 2, 0);
-  data.transform([](const Vec3& p) { return Vec3{ p[0], p[1] - 1, 0 }; });
+  data.transform(TAUTLINE_PLACE(p[0], p[1] - 1, 0));
   const double radius = 20 / (Pi / 2);
   vtkNew<vtkMeshWarp> filter;
   Messages messages(filter);

@@ -260,7 +260,7 @@ void testPutTogether(vtkMPIController* controller)
   const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
   MeshData whole = blockWithHole(CellType::Triangle);
   // In a plane that is at right angles to no axis.
-  whole.transform([](const Vec3& p) { return Vec3{ p[0], 0.8 * p[1], 0.6 * p[1] }; });
+  whole.transform(TAUTLINE_PLACE(p[0], 0.8 * p[1], 0.6 * p[1]));
   const auto set = [](vtkMeshWarp* filter)
   {
     TAUTLINE_SET(filter, SetTransformKind(vtkMeshWarp::TRANSLATION), SetTranslation(0.3, 0, 0),

@@ -39,7 +39,7 @@ std::vector<double> spaced(Index n, double length, double growth)
 MeshData rectangle(CellType type, const std::vector<double>& x, const std::vector<double>& y)
 {
   MeshData data = blockMesh(type, Index(x.size()) - 1, Index(y.size()) - 1, 0);
-  data.transform([&](const Vec3& p) { return Vec3{ x[Index(p[0])], y[Index(p[1])], 0 }; });
+  data.transform(TAUTLINE_PLACE(x[Index(p[0])], y[Index(p[1])], 0));
   return data;
 }
 
@@ -51,9 +51,8 @@ TAUTLINE_PART(testPropositions)
   {
     const MeshData data =
       rectangle(CellType::Triangle, spaced(16, 2.0, 1.0), spaced(10, 1.0, growth));
-    const auto motion = [](const Vec3& p) {
-      return Vec3{ 0, p[1] > 0.999 ? -0.85 * std::pow(std::sin(1.5 * p[0]), 2) : 0.0, 0 };
-    };
+    const auto motion =
+      TAUTLINE_PLACE(0, p[1] > 0.999 ? -0.85 * std::pow(std::sin(1.5 * p[0]), 2) : 0.0, 0);
     WarpOptions options = manual(0, 1);
     const WarpResult result = warped(data, motion, options);
     double worst = 0;
@@ -110,10 +109,8 @@ TAUTLINE_PART(testPropositions)
   constexpr Index n = 6;
   const std::vector<double> z = spaced(n, 1.0, 1.4);
   MeshData cubes = cutIntoTetrahedra(blockMesh(CellType::Hexahedron, n, n, n), n);
-  cubes.transform([&](const Vec3& p) { return Vec3{ p[0] / n, p[1] / n, z[Index(p[2])] }; });
-  const auto top = [](const Vec3& p) {
-    return Vec3{ 0, 0, p[2] > 0.999 ? -2.4 * p[0] * (1 - p[0]) * p[1] : 0.0 };
-  };
+  cubes.transform(TAUTLINE_PLACE(p[0] / n, p[1] / n, z[Index(p[2])]));
+  const auto top = TAUTLINE_PLACE(0, 0, p[2] > 0.999 ? -2.4 * p[0] * (1 - p[0]) * p[1] : 0.0);
   const WarpResult result = warped(cubes, top, manual(0, 0, 1));
   TAUTLINE_CHECK_EQUAL(result.decoupled, 0);
   TAUTLINE_CHECK_EQUAL(result.regularization, 0.0);
@@ -203,9 +200,8 @@ TAUTLINE_PART(testEquation)
     const MeshData data = perturbedBlock(type, 6, 0.2);
     const Mesh mesh(data.view());
     const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
-    const auto motion = [&](const Vec3& p) {
-      return Vec3{ std::sin(p[1]), 0.3 * p[0] * p[1], flat ? 0.0 : std::cos(p[0] + p[2]) };
-    };
+    const auto motion =
+      TAUTLINE_PLACE(std::sin(p[1]), 0.3 * p[0] * p[1], flat ? 0.0 : std::cos(p[0] + p[2]));
     for (const bool direct : { true, false })
     {
       WarpOptions options =
@@ -241,16 +237,13 @@ TAUTLINE_PART(testCoefficients)
   // Absolute sums, the largest 1: displacements that cancel count.
   const MeshData data = perturbedBlock(CellType::Tetrahedron, 4, 0.2);
   WarpOptions options = withMethod(WarpMethod::AnisotropicFemwarp);
-  const auto motion = [](const Vec3& p)
-  {
-    return Vec3{ p[0] == 4 ? 0.6
-        : p[0] == 0        ? -0.6
-                           : 0.0,
-      p[0] == 4     ? 0.1
-        : p[0] == 0 ? -0.1
-                    : 0.0,
-      0 };
-  };
+  const auto motion = TAUTLINE_PLACE(p[0] == 4 ? 0.6
+      : p[0] == 0                              ? -0.6
+                                               : 0.0,
+    p[0] == 4     ? 0.1
+      : p[0] == 0 ? -0.1
+                  : 0.0,
+    0);
   const SymmetricTensor t = warped(data, motion, options).tensor;
   TAUTLINE_CHECK_NEAR(t[0], 1, 0);
   TAUTLINE_CHECK_NEAR(t[1], 1.0 / 6, 1e-14);
@@ -357,9 +350,7 @@ TAUTLINE_PART(testDecoupled)
       prescribed[i] = (p[1] == 0 || p[1] > 0.999) && p[0] < 0.55;
     }
     WarpOptions options = TAUTLINE_CHANGED(manual(0, 1), prescribed = prescribed.data());
-    const auto motion = [](const Vec3& p) {
-      return Vec3{ 0, p[1] > 0.5 ? -0.4 * p[0] * p[0] : 0.0, 0 };
-    };
+    const auto motion = TAUTLINE_PLACE(0, p[1] > 0.5 ? -0.4 * p[0] * p[0] : 0.0, 0);
     const WarpResult result = warped(data, motion, options);
     // Q1 couples columns with each other, and no column is alone.
     TAUTLINE_CHECK_EQUAL(result.decoupled, type == CellType::Triangle ? 5 * 7 : 0);

@@ -53,12 +53,7 @@ TAUTLINE_PART(testRefused)
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const MeshData data = boxInBox(CellType::Triangle, 8, 2);
   const WarpOptions options = withMethod(WarpMethod::Hybrid);
-  TAUTLINE_CHECK_THROWS(warped(
-                          data,
-                          [=](const Vec3& p) {
-                            return Vec3{ p[0] == 0 ? nan : 0.0, 0, 0 };
-                          },
-                          options),
+  TAUTLINE_CHECK_THROWS(warped(data, TAUTLINE_PLACE(p[0] == 0 ? nan : 0.0, 0, 0), options),
     wording("displacements-of-9-prescribed-points-are-nan"));
   // Of points that are not prescribed they are not read.
   const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
@@ -90,7 +85,7 @@ TAUTLINE_PART(testRefused)
   TAUTLINE_CHECK_THROWS(
     warped(tangled, nowhere, options), wording("inverted-or-degenerate-before-anything-moves"));
   MeshData surface = data;
-  surface.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[0] }; });
+  surface.transform(TAUTLINE_PLACE(p[0], p[1], 0.1 * p[0] * p[0]));
   TAUTLINE_CHECK_THROWS(warped(surface, nowhere, options), wording("surface-in-space"));
   TAUTLINE_LET(MeshData, points, addPoint({ 0, 0, 0 }), addCell(1, { 0 }));
   TAUTLINE_CHECK_THROWS(warped(points, nowhere, options), wording("no-cells-that-can-be-warped"));
@@ -153,7 +148,7 @@ TAUTLINE_PART(testParts)
 {
   // No interior: two triangles; the boundary moves as prescribed.
   const MeshData square = blockMesh(CellType::Triangle, 1, 1, 0);
-  const auto stretch = [](const Vec3& p) { return Vec3{ p[0], 0, 0 }; };
+  const auto stretch = TAUTLINE_PLACE(p[0], 0, 0);
   for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
   {
     const WarpResult result = warped(square, stretch, withMethod(WarpMethod(method)));

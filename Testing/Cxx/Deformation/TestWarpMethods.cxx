@@ -108,7 +108,7 @@ TAUTLINE_PART(testSimilarity)
     {
       TAUTLINE_CHECK_NEAR(q, 0, 1e-24);
     }
-    moved.transform([&](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+    moved.transform(TAUTLINE_PLACE(-p[0], p[1], p[2]));
     for (double q : shapeSimilarity(mesh, moved.points.data()))
     {
       TAUTLINE_CHECK(std::isnan(q));
@@ -218,7 +218,7 @@ TAUTLINE_PART(testBiharmonic)
   data.transform([](const Vec3& p) { return (1.0 / 12) * p - Vec3{ 0.5, 0.5, 0 }; });
   const Mesh mesh(data.view());
   const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
-  const auto motion = [](const Vec3& p) { return Vec3{ 0.1 * p[0] * p[1], 0, 0 }; };
+  const auto motion = TAUTLINE_PLACE(0.1 * p[0] * p[1], 0, 0);
   WarpOptions options = withMethod(WarpMethod::Biharmonic);
   const WarpResult result = warped(data, motion, options);
   const SparseMatrix K = stiffnessMatrix(mesh, DiffusionOperator());
@@ -373,9 +373,7 @@ TAUTLINE_PART(testSteps)
   for (const int steps : { 0, 3 })
   {
     few.steps = steps;
-    const auto affine = [](const Vec3& p) {
-      return Vec3{ 0.3 * p[0] + 0.2 * p[1] + 1, -0.4 * p[0] + 0.1 * p[1], 0 };
-    };
+    const auto affine = TAUTLINE_PLACE(0.3 * p[0] + 0.2 * p[1] + 1, -0.4 * p[0] + 0.1 * p[1], 0);
     const WarpResult result = warped(data, affine, few);
     TAUTLINE_CHECK_EQUAL(result.history.size(), std::size_t(std::max(1, steps)));
     for (Index i = 0; i < data.numberOfPoints(); ++i)
@@ -422,7 +420,7 @@ TAUTLINE_PART(testMirrored)
     const bool flat = type == CellType::Triangle;
     const MeshData data = boxInBox(type, flat ? 16 : 9, flat ? 6 : 3);
     MeshData image = data;
-    image.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+    image.transform(TAUTLINE_PLACE(-p[0], p[1], p[2]));
     std::vector<double> d = displacements(data, turnedBox(70, flat)), mirrored = d;
     for (std::size_t i = 0; i < d.size(); i += 3)
     {

@@ -469,10 +469,7 @@ TAUTLINE_PART(testLimits)
 
     // a surface: half a cylinder
     Problem bent = boundaryProblem(blockMesh(CellType::Triangle, 12, 12, 0));
-    bent.data.transform(
-      [](const Vec3& p) {
-        return Vec3{ 4 * std::cos(0.25 * p[0]), p[1], 4 * std::sin(0.25 * p[0]) };
-      });
+    bent.data.transform(TAUTLINE_PLACE(4 * std::cos(0.25 * p[0]), p[1], 4 * std::sin(0.25 * p[0])));
     bent.prescribe([](const Vec3& p) { return wave(p, 12); });
     double farthest = 0, given = 0;
     const std::vector<double> moves = bent.run(method.warp);

@@ -327,7 +327,7 @@ void testSpaces()
   testFilter<vtkEllipticSolver>("bent", bent, set, arrays, none);
   // The normal has two components of equal size: pieces may take either sense of it.
   MeshData oblique = jittered(CellType::Triangle, 6, 0.1);
-  oblique.transform([](const Vec3& p) { return Vec3{ 0.1 * p[0], p[1], 0.1 * p[0] }; });
+  oblique.transform(TAUTLINE_PLACE(0.1 * p[0], p[1], 0.1 * p[0]));
   testFilter<vtkEllipticSolver>("oblique", oblique, set, arrays, none);
   MeshData reversed = jittered(CellType::Triangle, 6, 0.1);
   for (Index cell = 0; cell < reversed.numberOfCells(); ++cell)

@@ -189,7 +189,7 @@ TAUTLINE_PART(testLinearFields)
       const Vec3 axis = planar ? Vec3{ 0, 0, 1 } : Vec3{ 1, 2, -1 };
       set([&](const Vec3& p) { return cross(axis, p); });
       TAUTLINE_CHECK(largest(times(a, u)) < 1e-11);
-      set([](const Vec3& p) { return Vec3{ 1e-2 * p[0], -2e-2 * p[1], 3e-2 * p[2] }; });
+      set(TAUTLINE_PLACE(1e-2 * p[0], -2e-2 * p[1], 3e-2 * p[2]));
       const std::vector<double> au = times(a, u);
       double energy = 0;
       for (Index i = 0; i < a.size; ++i)
@@ -322,7 +322,7 @@ TAUTLINE_PART(testInvariance)
 
     // A mesh turned inside out has the same matrices.
     other = data;
-    other.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+    other.transform(TAUTLINE_PLACE(-p[0], p[1], p[2]));
     checkSameMatrix(poisson, stiffnessMatrix(Mesh(other.view()), DiffusionOperator()), 1, 1e-12);
   }
 }
@@ -336,9 +336,7 @@ TAUTLINE_PART(testSurface)
     MeshData flat = blockMesh(type, 6, 3, 0), bent = flat;
     const double angle = 0.5, radius = 0.5 / std::sin(angle / 2);
     bent.transform(
-      [&](const Vec3& p) {
-        return Vec3{ radius * std::cos(angle * p[0]), radius * std::sin(angle * p[0]), p[1] };
-      });
+      TAUTLINE_PLACE(radius * std::cos(angle * p[0]), radius * std::sin(angle * p[0]), p[1]));
     const Mesh plane(flat.view()), cylinder(bent.view());
     TAUTLINE_CHECK(cylinder.dimension() == Dimension::Surface);
     checkSameMatrix(stiffnessMatrix(plane, DiffusionOperator()),
@@ -418,7 +416,7 @@ TAUTLINE_PART(testThreadsAndReuse)
   {
     const Mesh mesh(data.view());
     MeshData moved = data;
-    moved.transform([](const Vec3& p) { return Vec3{ 2 * p[0], p[1] + 0.1 * p[0], p[2] }; });
+    moved.transform(TAUTLINE_PLACE(2 * p[0], p[1] + 0.1 * p[0], p[2]));
     TAUTLINE_LET(AssemblyOptions, options, threads = 1);
     DiffusionOperator pde;
     pde.tensor = { 2, 1, 3, 0.5, 0, 0 };

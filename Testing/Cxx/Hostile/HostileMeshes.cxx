@@ -208,7 +208,7 @@ void addHostileMeshes(std::vector<HostileData>& list)
     []
     {
       MeshData mesh = blockMesh(CellType::Triangle, 4, 4, 0);
-      mesh.transform([](Vec3 p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[1] }; });
+      mesh.transform(TAUTLINE_PLACE(p[0], p[1], 0.1 * p[0] * p[1]));
       return grid(mesh);
     });
   add("triangle strip",

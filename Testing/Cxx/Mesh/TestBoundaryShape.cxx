@@ -54,7 +54,7 @@ TAUTLINE_PART(testCube)
 TAUTLINE_PART(testAngle)
 {
   MeshData data = blockMesh(CellType::Hexahedron, 3, 3, 3);
-  data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], p[2] + 0.01 * p[0] * p[0] }; });
+  data.transform(TAUTLINE_PLACE(p[0], p[1], p[2] + 0.01 * p[0] * p[0]));
   const Mesh mesh(data.view());
   const Index top = 1 + 4 * (1 + 4 * 3);
   TAUTLINE_CHECK_EQUAL(int(boundaryShape(mesh, 1).fixed[top]), 0); // 1.1 degrees: along the fold
@@ -105,10 +105,7 @@ TAUTLINE_PART(testSmooth)
   TAUTLINE_CHECK_EQUAL(sharp.inPlanes, 54);
   TAUTLINE_CHECK_EQUAL(sharp.onLines, 36);
   MeshData bent = cube;
-  bent.transform(
-    [](const Vec3& p) {
-      return Vec3{ p[0], p[1], p[2] + 0.02 * p[0] * p[0] * p[2] };
-    });
+  bent.transform(TAUTLINE_PLACE(p[0], p[1], p[2] + 0.02 * p[0] * p[0] * p[2]));
   const BoundaryShape smooth = boundaryShape(Mesh(bent.view()), 1, 60);
   TAUTLINE_CHECK_EQUAL(smooth.onSurface, 9);
   TAUTLINE_CHECK_THROWS(boundaryShape(Mesh(cube.view()), 1, -5), wording("between-0-and-180"));

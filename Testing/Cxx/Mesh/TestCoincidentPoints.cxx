@@ -224,10 +224,7 @@ TAUTLINE_PART(testSurfaces)
   const auto sheet = [](double angle, bool reversed)
   {
     MeshData data = block(CellType::Triangle, 3);
-    data.transform(
-      [&](Vec3 p) {
-        return Vec3{ p[0] * std::cos(angle), p[1], p[0] * std::sin(angle) };
-      });
+    data.transform(TAUTLINE_PLACE(p[0] * std::cos(angle), p[1], p[0] * std::sin(angle)));
     for (Index cell = 0; reversed && cell < data.numberOfCells(); ++cell)
     {
       std::swap(data.connectivity[3 * cell], data.connectivity[3 * cell + 1]);

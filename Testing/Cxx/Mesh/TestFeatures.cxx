@@ -58,7 +58,7 @@ TAUTLINE_PART(testSurfaces)
     // Without the corner of the cube at (1, 1, 1) it has that of an L.
     checkCounts(featuresOf(lSurface(type, 4)), 12, 18, 8);
     MeshData sheet = blockMesh(type, 6, 6, 0);
-    sheet.transform([](Vec3 p) { return Vec3{ p[0], p[1], 0.02 * p[0] * p[0] }; });
+    sheet.transform(TAUTLINE_PLACE(p[0], p[1], 0.02 * p[0] * p[0]));
     checkCounts(featuresOf(sheet), 4, 4, 1);
   }
   checkCounts(featuresOf(cylinderSurface(32, 8)), 0, 2, 3);

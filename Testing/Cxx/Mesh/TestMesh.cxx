@@ -45,9 +45,9 @@ TAUTLINE_PART(testDimension)
     TAUTLINE_CHECK(
       Mesh(flat.view()).frame() == (std::array<Vec3, 2>{ Vec3{ 1, 0, 0 }, { 0, 1, 0 } }));
     MeshData other = flat;
-    other.transform([](const Vec3& p) { return Vec3{ p[2], p[0], p[1] }; });
+    other.transform(TAUTLINE_PLACE(p[2], p[0], p[1]));
     checkPlane(other, { 1, 0, 0 });
-    other.transform([](const Vec3& p) { return Vec3{ p[2], p[0], p[1] }; });
+    other.transform(TAUTLINE_PLACE(p[2], p[0], p[1]));
     checkPlane(other, { 0, 1, 0 });
     Random random(15);
     for (double scale : { 1e-8, 1.0, 1e8 })

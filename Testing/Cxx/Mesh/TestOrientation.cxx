@@ -165,7 +165,7 @@ TAUTLINE_PART(testMostlyInverted)
 TAUTLINE_PART(testSurfaceOrientation)
 {
   MeshData curved = box(CellType::Triangle);
-  curved.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.1 * p[0] * p[0] }; });
+  curved.transform(TAUTLINE_PLACE(p[0], p[1], 0.1 * p[0] * p[0]));
   TAUTLINE_CHECK_EQUAL(orientationOf(Mesh(curved.view())).state, Orientation::Consistent);
   flip(curved, 11); // the upper left triangle of an inner square
   const Orientation o = orientationOf(Mesh(curved.view()));

@@ -126,7 +126,7 @@ TAUTLINE_PART(testDifferences)
         MeshData data = movedBlock(type, 2, 0.08);
         if (mirrored)
         {
-          data.transform([](const Vec3& p) { return Vec3{ p[1], p[0], p[2] }; });
+          data.transform(TAUTLINE_PLACE(p[1], p[0], p[2]));
         }
         Mesh mesh(data.view());
         mesh.setMirrored(mirrored);

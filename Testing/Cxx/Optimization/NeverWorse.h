@@ -16,12 +16,8 @@ inline MeshData randomMesh(CellType type, bool surface, double amplitude, unsign
   const Index n = topology(type).dimension == 2 ? 6 : 4;
   MeshData data = perturbedBlock(type, n, amplitude, seed);
   const double wave = 0.05 * (seed % 4);
-  data.transform(
-    [&](const Vec3& p)
-    {
-      return Vec3{ p[0] * (1 + wave * std::sin(1.3 * p[1])), p[1],
-        surface ? 0.3 * std::sin(p[0]) * std::cos(p[1]) : p[2] };
-    });
+  data.transform(TAUTLINE_PLACE(p[0] * (1 + wave * std::sin(1.3 * p[1])), p[1],
+    surface ? 0.3 * std::sin(p[0]) * std::cos(p[1]) : p[2]));
   return data;
 }
 

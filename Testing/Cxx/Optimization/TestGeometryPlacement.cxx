@@ -28,7 +28,7 @@ MeshData blockWith(Index i, Index j, double height)
 std::vector<double> placed(const MeshData& data)
 {
   MeshData geometry = cubeSurface(CellType::Quadrilateral, Cells);
-  geometry.transform([](const Vec3& p) { return Vec3{ Cells * p[0], Cells * p[1], Top * p[2] }; });
+  geometry.transform(TAUTLINE_PLACE(Cells * p[0], Cells * p[1], Top * p[2]));
   TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)),
     SetInputDataObject(3, toGrid(geometry)), SetBoundary(vtkMeshOptimizer::ON_SURFACE),
     SetMaximumIterations(0), Update());

@@ -69,13 +69,13 @@ TAUTLINE_TEST(TestHarmonicSaddle)
   for (const double shear : { 3.0, -3.0 })
   {
     MeshData data = checkerboard(false);
-    data.transform([shear](const Vec3& p) { return Vec3{ p[0] + shear * p[1], p[1], p[2] }; });
+    data.transform(TAUTLINE_PLACE(p[0] + shear * p[1], p[1], p[2]));
     TAUTLINE_CHECK(aboveOthers(data) < 2e-3);
   }
   for (const double aspect : { 30.0, 300.0 })
   {
     MeshData data = checkerboard(true);
-    data.transform([aspect](const Vec3& p) { return Vec3{ aspect * p[0], p[1], p[2] }; });
+    data.transform(TAUTLINE_PLACE(aspect * p[0], p[1], p[2]));
     TAUTLINE_CHECK(aboveOthers(data) < 5e-3);
   }
 }

@@ -94,9 +94,7 @@ MeshData wavy(CellType type)
 {
   MeshData data = perturbedBlock(type, 6, 0.12);
   data.transform(
-    [](const Vec3& p) {
-      return Vec3{ p[0] * (1 + 0.1 * std::sin(1.3 * p[1])), p[1], p[2] * (1 + p[0] / 8) };
-    });
+    TAUTLINE_PLACE(p[0] * (1 + 0.1 * std::sin(1.3 * p[1])), p[1], p[2] * (1 + p[0] / 8)));
   return data;
 }
 

@@ -33,10 +33,7 @@ TwoRegions mapped(
 {
   TAUTLINE_LET(TwoRegions, made, data = blockMesh(type, 2 * half, 2 * half, layers));
   const auto n = static_cast<double>(half), depth = static_cast<double>(layers);
-  made.data.transform(
-    [&](Vec3 p) {
-      return Vec3{ p[0] / n - 1, p[1] / n - 1, 2 * p[2] / depth - 1 };
-    });
+  made.data.transform(TAUTLINE_PLACE(p[0] / n - 1, p[1] / n - 1, 2 * p[2] / depth - 1));
   const double edge = inner / n, rounding = 1e-9;
   for (Index cell = 0; cell < made.data.numberOfCells(); ++cell)
   {

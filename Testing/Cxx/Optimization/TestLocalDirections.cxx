@@ -18,7 +18,7 @@ TAUTLINE_PART(testConjugateSteps)
     MeshData data =
       blockMesh(flat ? CellType::Triangle : CellType::Tetrahedron, 2, 2, flat ? 0 : 2);
     const std::vector<char> boundary = Mesh(data.view()).boundary().isBoundaryPoint;
-    data.transform([&](const Vec3& p) { return Vec3{ stretch * p[0], p[1], p[2] }; });
+    data.transform(TAUTLINE_PLACE(stretch * p[0], p[1], p[2]));
     for (Index i = 0; i < data.numberOfPoints(); ++i)
     {
       if (!boundary[i])

@@ -150,10 +150,7 @@ TAUTLINE_PART(testCulling)
   constexpr Index n = 24;
   MeshData data = blockMesh(CellType::Triangle, n, n, 0);
   // Equilateral: no vertex but the one has anything to gain.
-  data.transform(
-    [](const Vec3& p) {
-      return Vec3{ p[0] - 0.5 * p[1], std::sqrt(0.75) * p[1], 0 };
-    });
+  data.transform(TAUTLINE_PLACE(p[0] - 0.5 * p[1], std::sqrt(0.75) * p[1], 0));
   const Index middle = (n / 2) * (n + 1) + n / 2;
   data.setPoint(middle, data.point(middle) + Vec3{ 0.3, 0.1, 0 });
   const Mesh mesh(data.view());
@@ -214,7 +211,7 @@ TAUTLINE_PART(testConvergenceOfAll)
 TAUTLINE_PART(testAllowance)
 {
   MeshData data = perturbedBlock(CellType::Tetrahedron, 5, 0.25);
-  data.transform([](const Vec3& p) { return Vec3{ p[0] * (1 + 0.15 * p[1]), p[1], p[2] }; });
+  data.transform(TAUTLINE_PLACE(p[0] * (1 + 0.15 * p[1]), p[1], p[2]));
   const auto with = [&data](double allowance)
   {
     TAUTLINE_LET(OptimizeOptions, options,

@@ -534,7 +534,7 @@ TAUTLINE_PART(testTargets)
 {
   const MeshData data = perturbed(CellType::Triangle, 6);
   MeshData wanted = blockMesh(CellType::Triangle, 6, 6, 0);
-  wanted.transform([](const Vec3& p) { return Vec3{ p[0] * p[0] / 6, p[1], 0 }; });
+  wanted.transform(TAUTLINE_PLACE(p[0] * p[0] / 6, p[1], 0));
   MeshData start = wanted;
   TAUTLINE_LET(PerturbOptions, perturbation, fraction = 0.6);
   start.points = perturb(Mesh(wanted.view()), nullptr, perturbation).points;

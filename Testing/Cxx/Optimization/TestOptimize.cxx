@@ -468,9 +468,7 @@ TAUTLINE_PART(testWorst)
     MeshData data = perturbedBlock(type, 8, 0.12);
     // A wavy side keeps the elements from being equal.
     data.transform(
-      [](const Vec3& p) {
-        return Vec3{ p[0] * (1 + 0.1 * std::sin(1.3 * p[1])), p[1], p[2] * (1 + p[0] / 8) };
-      });
+      TAUTLINE_PLACE(p[0] * (1 + 0.1 * std::sin(1.3 * p[1])), p[1], p[2] * (1 + p[0] / 8)));
     TAUTLINE_LET(OptimizeOptions, options, worstMetric = Metric::InverseMeanRatio);
     applyPreset(Preset::BestShape, options);
     const OptimizeResult best = run(data, options);

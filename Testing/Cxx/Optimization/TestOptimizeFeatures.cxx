@@ -182,10 +182,7 @@ TAUTLINE_PART_SLOW(testEllipsoid)
     {
       const Context context(std::string(topology(type).name) + " " + std::to_string(n));
       MeshData data = sphereSurface(type, n);
-      data.transform(
-        [&](const Vec3& p) {
-          return Vec3{ axes[0] * p[0], axes[1] * p[1], axes[2] * p[2] };
-        });
+      data.transform(TAUTLINE_PLACE(axes[0] * p[0], axes[1] * p[1], axes[2] * p[2]));
       double mean = 0, second = 0;
       const int repeats = n == 32 ? 2 : 5;
       for (int repeat = 0; repeat < repeats; ++repeat)

@@ -13,23 +13,14 @@ namespace
 /// is not valid.
 MeshData bentStrip(CellType type, int cells, double power)
 {
-  MeshData data = stretched(type, cells,
-    [power](const Vec3& p) {
-      return Vec3{ p[0], std::pow(p[1], power), p[2] };
-    });
-  data.transform(
-    [](const Vec3& p) {
-      return Vec3{ p[0], p[1] + 0.6 * std::sin(2 * Pi * p[0]), p[2] };
-    });
+  MeshData data = stretched(type, cells, TAUTLINE_PLACE(p[0], std::pow(p[1], power), p[2]));
+  data.transform(TAUTLINE_PLACE(p[0], p[1] + 0.6 * std::sin(2 * Pi * p[0]), p[2]));
   return data;
 }
 
 MeshData stretchedRows(CellType type, int cells, double power)
 {
-  return stretched(type, cells,
-    [power](const Vec3& p) {
-      return Vec3{ p[0], std::pow(p[1], power), p[2] };
-    });
+  return stretched(type, cells, TAUTLINE_PLACE(p[0], std::pow(p[1], power), p[2]));
 }
 
 double minimumOf(const MeshData& data, OptimizeOptions options)

@@ -15,10 +15,8 @@ namespace
 /// iterations from the harmonic map, which is the minimum here.
 void testStiffThreads()
 {
-  const MeshData data = stretched(CellType::Quadrilateral, 96,
-    [](const Vec3& p) {
-      return Vec3{ p[0], p[1] * p[1] * p[1] * p[1], p[2] };
-    });
+  const MeshData data =
+    stretched(CellType::Quadrilateral, 96, TAUTLINE_PLACE(p[0], p[1] * p[1] * p[1] * p[1], p[2]));
   for (Optimizer optimizer : { Optimizer::Automatic, Optimizer::NewtonConjugateGradient })
   {
     const Context which("optimizer " + std::to_string(static_cast<int>(optimizer)));
@@ -41,10 +39,8 @@ void testStiffThreads()
 /// On three quarters of a ring the harmonic map is not the minimum.
 void testStiffRing()
 {
-  MeshData data = stretched(CellType::Quadrilateral, 40,
-    [](const Vec3& p) {
-      return Vec3{ p[0], p[1] * p[1] * p[1], p[2] };
-    });
+  MeshData data =
+    stretched(CellType::Quadrilateral, 40, TAUTLINE_PLACE(p[0], p[1] * p[1] * p[1], p[2]));
   data.transform(
     [](const Vec3& p)
     {
@@ -64,7 +60,7 @@ void testStiffRing()
 /// and Newton's method reach the minimum, and stop there for the right reason.
 void testStiff()
 {
-  const auto cubed = [](const Vec3& p) { return Vec3{ p[0], p[1] * p[1] * p[1], p[2] }; };
+  const auto cubed = TAUTLINE_PLACE(p[0], p[1] * p[1] * p[1], p[2]);
   const std::pair<const char*, MeshData> cases[] = {
     { "sine", stretched(CellType::Quadrilateral, 64, sheared) },
     { "power", stretched(CellType::Quadrilateral, 64, fourthPower) },
@@ -145,10 +141,7 @@ void testFewQuadrilaterals()
 /// @param mebibytes left for it: the sweeps need less, the matrix alone 11, its grids as much
 void testMemory(CellType type, int beforeNewton, double mebibytes)
 {
-  const MeshData data = stretched(type, 200,
-    [](const Vec3& p) {
-      return Vec3{ p[0], p[1] * p[1], p[2] };
-    });
+  const MeshData data = stretched(type, 200, TAUTLINE_PLACE(p[0], p[1] * p[1], p[2]));
   constexpr int sweeps = 12;
   TAUTLINE_LET(OptimizeOptions, options, threads = 1, stopping.maximumIterations = sweeps);
   OptimizeOptions local = TAUTLINE_CHANGED(options, optimizer = Optimizer::LocalNewton);

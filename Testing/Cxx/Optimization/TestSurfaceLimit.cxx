@@ -452,10 +452,7 @@ TAUTLINE_PART(testFlatParts)
 
   // A sheet that is bent at x = 2: its border counts, too.
   MeshData sheet = blockMesh(CellType::Triangle, n, n, 0);
-  sheet.transform(
-    [](Vec3 p) {
-      return Vec3{ std::min(p[0], 2.0), p[1], std::max(p[0] - 2, 0.0) };
-    });
+  sheet.transform(TAUTLINE_PLACE(std::min(p[0], 2.0), p[1], std::max(p[0] - 2, 0.0)));
   SteppedMesh bent(sheet);
   TAUTLINE_CHECK(bent.allows({ 1, 2, 0 }, { 0.3, 0.2, 0 }));
   TAUTLINE_CHECK(bent.allows({ 2, 2, 0 }, { 0, 0.3, 0 }));

@@ -45,10 +45,7 @@ const Surface surfaces[] = {
 /// Rows that become flat towards one border, between borders of uniform edges.
 MeshData meshOf(const Surface& surface, CellType type, int cells, double power)
 {
-  MeshData data = stretched(type, cells,
-    [power](const Vec3& p) {
-      return Vec3{ p[0], std::pow(p[1], power), p[2] };
-    });
+  MeshData data = stretched(type, cells, TAUTLINE_PLACE(p[0], std::pow(p[1], power), p[2]));
   data.transform(surface.point);
   return data;
 }

@@ -20,9 +20,7 @@ MeshData wavyBlock(unsigned seed)
 {
   MeshData data = perturbedBlock(CellType::Tetrahedron, 5, 0.22, seed);
   data.transform(
-    [](const Vec3& p) {
-      return Vec3{ p[0] * (1 + 0.03 * std::sin(1.3 * p[1])), p[1], p[2] * (1 + p[0] / 40) };
-    });
+    TAUTLINE_PLACE(p[0] * (1 + 0.03 * std::sin(1.3 * p[1])), p[1], p[2] * (1 + p[0] / 40)));
   return data;
 }
 

@@ -206,7 +206,7 @@ void testEnergies()
 TAUTLINE_PART(testProjection)
 {
   MeshData data = blockMesh(CellType::Quadrilateral, 4, 4, 0);
-  data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], 0.25 * p[0] * p[0] }; });
+  data.transform(TAUTLINE_PLACE(p[0], p[1], 0.25 * p[0] * p[0]));
   const Mesh mesh(data.view());
   const SimplexMesh simplices(mesh, nullptr, nullptr, 1);
   const SurfaceProjection surface(mesh, simplices);

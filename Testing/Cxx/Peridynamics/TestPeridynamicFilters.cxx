@@ -223,7 +223,7 @@ TAUTLINE_PART(testErrors)
   filter->SetInputData(toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2)));
   check(filter, "no triangles (tetrahedron)");
   MeshData curved = blockMesh(CellType::Triangle, 4, 4, 0);
-  curved.transform([](const Vec3& p) { return Vec3{ p[0], p[1], p[0] * p[1] }; });
+  curved.transform(TAUTLINE_PLACE(p[0], p[1], p[0] * p[1]));
   filter->SetInputData(toGrid(curved));
   check(filter, "do not lie in a plane");
   TAUTLINE_NEW(vtkInteractionLayer, layer, SetInputData(toGrid(curved)));

@@ -318,10 +318,7 @@ TAUTLINE_PART(testFloatPoints)
     const Context context(topology(type).name);
     const bool flat = topology(type).dimension == 2;
     MeshData data = blockMesh(type, flat ? 20 : 6, flat ? 20 : 6, flat ? 0 : 6);
-    data.transform(
-      [](const Vec3& p) {
-        return Vec3{ 1024 + p[0] / 1024, 1024 + p[1] / 1024, 1024 + p[2] / 1024 };
-      });
+    data.transform(TAUTLINE_PLACE(1024 + p[0] / 1024, 1024 + p[1] / 1024, 1024 + p[2] / 1024));
     TAUTLINE_NEW(vtkMeshPerturbation, filter, SetInputData(toGrid(data, VTK_FLOAT)),
       SetPercentage(100), SetFraction(1.0), Update());
     auto* output = vtkUnstructuredGrid::SafeDownCast(filter->GetOutput());
@@ -390,7 +387,7 @@ TAUTLINE_PART(testWhatStays)
 TAUTLINE_PART(testReversed)
 {
   MeshData data = blockMesh(CellType::Tetrahedron, 6, 6, 6);
-  data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], -p[2] }; });
+  data.transform(TAUTLINE_PLACE(p[0], p[1], -p[2]));
   TAUTLINE_NEW(
     vtkMeshPerturbation, filter, SetInputData(toGrid(data)), SetPercentage(100), Update());
   TAUTLINE_CHECK_EQUAL(filter->GetNumberOfMovedPoints(), 125);

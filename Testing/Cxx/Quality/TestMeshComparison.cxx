@@ -131,7 +131,7 @@ TAUTLINE_PART(testReversed)
   auto reversed = [](std::vector<Vec3> apexes)
   {
     MeshData data = triangles(apexes);
-    data.transform([](const Vec3& p) { return Vec3{ p[0], -p[1], p[2] }; });
+    data.transform(TAUTLINE_PLACE(p[0], -p[1], p[2]));
     return data;
   };
   TAUTLINE_NEW(vtkMeshComparison, filter, SetInputData(0, toGrid(reversed({ flat, ideal }))),

@@ -207,7 +207,7 @@ void testScale(const Cloud& cloud)
 {
   // For metrics that are no power of length, a reference mesh that is scaled along.
   MeshData reference = makeCloud(cloud.type, cloud.surface).data;
-  reference.transform([](const Vec3& p) { return Vec3{ 2 * p[0], p[1], 0.5 * p[2] }; });
+  reference.transform(TAUTLINE_PLACE(2 * p[0], p[1], 0.5 * p[2]));
   for (double scale : { 1e-8, 1e8 })
   {
     const auto times = [&](const Vec3& p) { return scale * p; };

@@ -200,7 +200,7 @@ TAUTLINE_PART(testBeyond)
   {
     MeshData data = singleCell(type, idealCell(type));
     // A neighbour of ordinary shape keeps a planar mesh upright.
-    data.transform([=](const Vec3& p) { return Vec3{ inverted ? -p[0] : p[0], p[1], p[2] }; });
+    data.transform(TAUTLINE_PLACE(inverted ? -p[0] : p[0], p[1], p[2]));
     const MeshData far = scaled(data, exponent);
     double value = 0;
     const Index count = evaluateMetric(Mesh(far.view()), metric, {}, &value);
@@ -269,7 +269,7 @@ TAUTLINE_PART(testStray)
 TAUTLINE_PART(testRange)
 {
   MeshData data = blockMesh(CellType::Triangle, 40, 40, 0);
-  data.transform([](const Vec3& p) { return Vec3{ 1e6 + 0.25 * p[0], 0.25 * p[1], -2 }; });
+  data.transform(TAUTLINE_PLACE(1e6 + 0.25 * p[0], 0.25 * p[1], -2));
   const CoordinateRange range = coordinateRange(data.view());
   TAUTLINE_CHECK_EQUAL(range.extent, 0.25);
   TAUTLINE_CHECK_EQUAL(range.low[0], 1e6);

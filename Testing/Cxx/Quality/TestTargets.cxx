@@ -209,7 +209,7 @@ void testTensor(CellType type, bool surface)
 
   // The same, mirrored: x reversed, and the tensors with it.
   MeshData reversed = data;
-  reversed.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+  reversed.transform(TAUTLINE_PLACE(-p[0], p[1], p[2]));
   for (int i = 0; i < cellsPerMesh; ++i)
   {
     for (int entry : { 1, 2, 3, 6 })

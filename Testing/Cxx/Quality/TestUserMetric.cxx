@@ -269,10 +269,7 @@ void testScales(const std::vector<Twin>& pairs)
       {
         const Context context(metricInfo(pair.user).name + std::to_string(std::log10(scale)));
         MeshData data = movedBlock(type, 2, 0.1);
-        data.transform(
-          [=](const Vec3& p) {
-            return Vec3{ -scale * p[0], scale * p[1], scale * p[2] };
-          });
+        data.transform(TAUTLINE_PLACE(-scale * p[0], scale * p[1], scale * p[2]));
         Mesh mesh(data.view());
         mesh.setMirrored(true);
         TAUTLINE_CHECK_EQUAL(validityOf(mesh)[0], Valid);
@@ -427,7 +424,7 @@ void testWithoutValue()
       const std::vector<double> ratios = valuesOf(moved, Metric::InverseMeanRatio);
       TAUTLINE_CHECK(*std::max_element(ratios.begin(), ratios.end()) <= Limited::limit);
     }
-    data.transform([](const Vec3& p) { return Vec3{ 40 * p[0], p[1], p[2] }; });
+    data.transform(TAUTLINE_PLACE(40 * p[0], p[1], p[2]));
     TAUTLINE_CHECK_EQUAL(valuesOf(data, limited)[0], 0.0);
     const Mesh stretched(data.view());
     TAUTLINE_CHECK_THROWS(optimize(stretched, options), wording("limited-has-no-finite-value"));

@@ -412,7 +412,7 @@ TAUTLINE_PART(testInputs)
   TAUTLINE_CHECK(messages.has(wording("in-block-2-1-hexahedra")));
 
   // The mirror image, cells not renumbered: reversed throughout.
-  data.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+  data.transform(TAUTLINE_PLACE(-p[0], p[1], p[2]));
   messages.clear();
   TAUTLINE_SET(filter, SetInputData(withArrays(data)), Update());
   TAUTLINE_CHECK(messages.empty());

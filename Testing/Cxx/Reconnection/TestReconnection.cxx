@@ -280,7 +280,7 @@ TAUTLINE_PART(testDividedBoundary)
 {
   constexpr double length = 6.0;
   MeshData data = blockMesh(CellType::Tetrahedron, 1, 1, 1);
-  data.transform([](const Vec3& p) { return Vec3{ length * p[0], p[1], p[2] }; });
+  data.transform(TAUTLINE_PLACE(length * p[0], p[1], p[2]));
   TAUTLINE_LET(ReconnectionOptions, options, largestCount = 100.0);
   const ReconnectionResult fixed = reconnect(data, options);
   options.boundary = ReconnectionBoundary::Sliding;

@@ -273,10 +273,7 @@ TAUTLINE_PART(testFlat)
 {
   // Points of the border that are unevenly spaced.
   MeshData data = sliverSheet(12, 3, 0.3);
-  data.transform(
-    [](Vec3 p) {
-      return Vec3{ p[0] + 0.07 * p[0] * p[0], p[1] + 0.3 * std::sin(p[1]), 0.0 };
-    });
+  data.transform(TAUTLINE_PLACE(p[0] + 0.07 * p[0] * p[0], p[1] + 0.3 * std::sin(p[1]), 0.0));
   TriangleOptions options = triangleOptions(Preset::Aggressive);
   const double kept = reconnect(data, options).history.back().smallestAngle;
   TAUTLINE_SET(options, boundary = ReconnectionBoundary::Sliding, smallestCount = 0.5);

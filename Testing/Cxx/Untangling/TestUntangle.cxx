@@ -479,7 +479,7 @@ void testDegenerate()
   {
     const Context context(std::string("mirrored ") + topology(type).name);
     MeshData data = scattered(block(type, isFlat(type) ? 12 : 6), 0.3);
-    data.transform([](const Vec3& p) { return Vec3{ -p[0], p[1], p[2] }; });
+    data.transform(TAUTLINE_PLACE(-p[0], p[1], p[2]));
     Mesh mesh(data.view());
     mesh.setMirrored(true);
     const UntangleResult result = untangle(mesh, {});
@@ -558,7 +558,7 @@ void testTimeLimitWithinSweep()
 void testSurface()
 {
   MeshData data = block(CellType::Quadrilateral, 4);
-  data.transform([](const Vec3& p) { return Vec3{ p[0], p[1], p[0] * p[0] + p[1] }; });
+  data.transform(TAUTLINE_PLACE(p[0], p[1], p[0] * p[0] + p[1]));
   TAUTLINE_CHECK(untangle(Mesh(data.view()), {}).reason == StopReason::AllValid);
   data.setPoint(12, { 3.5, 3.5, 15.75 });
   TAUTLINE_CHECK_THROWS(untangle(Mesh(data.view()), {}), "surface");
