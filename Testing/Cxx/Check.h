@@ -143,6 +143,13 @@ void checkThrows(const Statement& statement, const std::string& part, const char
 /** The statement throws an exception whose message contains a text. */
 #define TAUTLINE_CHECK_THROWS(statement, text) \
   tautline::checkThrows([&]() { statement; }, (text), __FILE__, __LINE__)
+/** The same check for each element of a range, declared as in a for loop. */
+#define TAUTLINE_EACH_OF(element, range, ...) \
+  for (element : range)                       \
+  {                                           \
+    __VA_ARGS__;                              \
+  }                                           \
+  static_assert(true, "")
 /** The same check for each index from 0 to a count. */
 #define TAUTLINE_EACH(type, index, count, ...)   \
   for (type index = 0; index < (count); ++index) \

@@ -104,15 +104,11 @@ TAUTLINE_PART(testSimilarity)
     const Columns turn = flat ? rotation({ 0, 0, 1 }, 0.7) : rotation({ 1, 2, 3 }, 0.7);
     moved.points = data.points;
     moved.transform([&](const Vec3& p) { return turn * (2.5 * p); });
-    for (double q : shapeSimilarity(mesh, moved.points.data()))
-    {
-      TAUTLINE_CHECK_NEAR(q, 0, 1e-24);
-    }
+    TAUTLINE_EACH_OF(
+      double q, shapeSimilarity(mesh, moved.points.data()), TAUTLINE_CHECK_NEAR(q, 0, 1e-24));
     moved.transform(TAUTLINE_PLACE(-p[0], p[1], p[2]));
-    for (double q : shapeSimilarity(mesh, moved.points.data()))
-    {
-      TAUTLINE_CHECK(std::isnan(q));
-    }
+    TAUTLINE_EACH_OF(
+      double q, shapeSimilarity(mesh, moved.points.data()), TAUTLINE_CHECK(std::isnan(q)));
   }
 }
 

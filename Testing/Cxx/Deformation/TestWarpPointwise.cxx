@@ -462,10 +462,8 @@ TAUTLINE_PART(testLimits)
     twice.prescribed.push_back(1);
     twice.prescribe([](const Vec3& p) { return wave(p, 4); });
     twice.displacement[3 * copy] += 1;
-    for (const double value : twice.run(method.warp))
-    {
-      TAUTLINE_CHECK(std::isfinite(value));
-    }
+    TAUTLINE_EACH_OF(
+      const double value, twice.run(method.warp), TAUTLINE_CHECK(std::isfinite(value)));
 
     // a surface: half a cylinder
     Problem bent = boundaryProblem(blockMesh(CellType::Triangle, 12, 12, 0));

@@ -164,10 +164,8 @@ void testSolutions(MPI_Comm comm, CellType type, Pde pde, bool scattered, bool l
   const SolverStudy here = studySolvers(together, study), there = studySolvers(alone, study);
   TAUTLINE_CHECK_EQUAL(here.rows[0].linear.iterations, there.rows[0].linear.iterations);
   TAUTLINE_CHECK_RELATIVE(here.rows[0].condition, there.rows[0].condition, 1e-6);
-  for (const SolverStudyRow& row : here.rows)
-  {
-    TAUTLINE_CHECK(converged(row.linear.reason) && row.trueResidual < 1e-3);
-  }
+  TAUTLINE_EACH_OF(const SolverStudyRow& row, here.rows,
+    TAUTLINE_CHECK(converged(row.linear.reason) && row.trueResidual < 1e-3));
 }
 
 //------------------------------------------------------------------------------

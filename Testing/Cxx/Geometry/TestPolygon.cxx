@@ -100,11 +100,9 @@ TAUTLINE_TEST(TestPolygon)
   {
     // The flat quadrilateral: its short diagonal is the Delaunay one.
     const PolygonMesh mesh = triangulatePolygon({ { 0, 0 }, { 2, -0.2 }, { 4, 0 }, { 2, 0.2 } });
-    for (const auto& t : mesh.triangles)
-    {
+    TAUTLINE_EACH_OF(const auto& t, mesh.triangles,
       TAUTLINE_CHECK(
-        std::count(t.begin(), t.end(), 1) == 1 && std::count(t.begin(), t.end(), 3) == 1);
-    }
+        std::count(t.begin(), t.end(), 1) == 1 && std::count(t.begin(), t.end(), 3) == 1));
   }
   // Stars with random radii, at usual and extreme places and sizes.
   std::mt19937 random(7);

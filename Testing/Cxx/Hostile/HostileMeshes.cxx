@@ -196,8 +196,8 @@ void addHostileMeshes(std::vector<HostileData>& list)
   add("mixed dimensions",
     []
     {
-      MeshData mesh = blockMesh(CellType::Tetrahedron, 2, 2, 2);
-      TAUTLINE_SET(mesh, addCell(VTK_TRIANGLE, { 0, 1, 4 }), addCell(VTK_LINE, { 0, 1 }),
+      MeshData mesh = TAUTLINE_CHANGED(blockMesh(CellType::Tetrahedron, 2, 2, 2),
+        addCell(VTK_TRIANGLE, { 0, 1, 4 }), addCell(VTK_LINE, { 0, 1 }),
         addCell(VTK_VERTEX, { 0 }));
       return grid(mesh);
     });

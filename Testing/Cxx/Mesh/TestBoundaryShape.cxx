@@ -157,10 +157,7 @@ TAUTLINE_PART(testFineCircle)
     TAUTLINE_CHECK_EQUAL(shape.inPlanes, flat ? 0 : 2 * around);
     TAUTLINE_CHECK_EQUAL(
       std::count(shape.fixed.begin(), shape.fixed.end(), 1), (flat ? 2 : 6) * around);
-    for (double value : shape.lines)
-    {
-      TAUTLINE_CHECK_EQUAL(value, 0);
-    }
+    TAUTLINE_EACH_OF(double value, shape.lines, TAUTLINE_CHECK_EQUAL(value, 0));
     const BoundaryShape smooth = boundaryShape(mesh, 1, 60);
     TAUTLINE_CHECK_EQUAL(smooth.onSurface, 2 * around);
   }
@@ -209,9 +206,6 @@ TAUTLINE_PART(testFaulty)
   const BoundaryShape none = boundaryShape(Mesh(collapsed.view()), 1);
   TAUTLINE_CHECK_EQUAL(int(none.fixed[0]), 1);
   TAUTLINE_CHECK_EQUAL(int(none.fixed[1]), 1);
-  for (double value : none.lines)
-  {
-    TAUTLINE_CHECK(std::isfinite(value));
-  }
+  TAUTLINE_EACH_OF(double value, none.lines, TAUTLINE_CHECK(std::isfinite(value)));
 }
 }

@@ -12,11 +12,8 @@ namespace
 std::vector<unsigned char> inside(const MeshData& whole)
 {
   const Mesh mesh(whole.view());
-  std::vector<unsigned char> free;
-  for (const char onBoundary : mesh.boundary().isBoundaryPoint)
-  {
-    free.push_back(!onBoundary);
-  }
+  auto free = collect<unsigned char>(
+    mesh.boundary().isBoundaryPoint, [&](const char onBoundary) { return !onBoundary; });
   return free;
 }
 

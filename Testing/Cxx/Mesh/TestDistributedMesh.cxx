@@ -453,11 +453,9 @@ TAUTLINE_PART(testIntervals)
     {
       sought.insert(sought.end(), { number - 1, number, number + 1 });
     }
-    for (const Index number : sought)
-    {
+    TAUTLINE_EACH_OF(const Index number, sought,
       TAUTLINE_CHECK_EQUAL(intervals.find(number, numberOf),
-        Index(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin()));
-    }
+        Index(std::lower_bound(numbers.begin(), numbers.end(), number) - numbers.begin())));
   }
 }
 }

@@ -50,10 +50,7 @@ void testIncidence(const CellTopology& t)
       TAUTLINE_CHECK_EQUAL(edges.count({ c, t.cornerNodes[c][k] }), 1u);
     }
   }
-  for (double sine : cornerSines(t.type, ideal))
-  {
-    TAUTLINE_CHECK(sine > 0.5);
-  }
+  TAUTLINE_EACH_OF(double sine, cornerSines(t.type, ideal), TAUTLINE_CHECK(sine > 0.5));
   if (t.dimension == 2)
   {
     TAUTLINE_CHECK_EQUAL(t.faces, 0);

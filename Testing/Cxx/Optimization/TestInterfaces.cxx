@@ -218,10 +218,8 @@ TAUTLINE_PART_SLOW(testFineBall)
     TAUTLINE_CHECK(now > (1 - 5e-4) * volume && now < full);
     first = repeat == 0 ? now : first;
     TAUTLINE_CHECK_RELATIVE(now, first, 5e-5);
-    for (Index p : mesh.interface)
-    {
-      TAUTLINE_CHECK_NEAR(norm(mesh.data.point(p)), radius, 1e-5);
-    }
+    TAUTLINE_EACH_OF(
+      Index p, mesh.interface, TAUTLINE_CHECK_NEAR(norm(mesh.data.point(p)), radius, 1e-5));
   }
 }
 

@@ -20,11 +20,8 @@ OptimizeResult runOnFeatures(
   const Features found = findFeatures(mesh, features);
   const SurfaceModel model = makeSurfaceModel(mesh, found, smooth);
   const std::vector<std::int32_t> parts = partsOfPoints(found);
-  std::vector<unsigned char> fixed;
-  for (signed char kind : found.kind)
-  {
-    fixed.push_back(kind == CornerPoint);
-  }
+  auto fixed =
+    collect<unsigned char>(found.kind, [&](signed char kind) { return kind == CornerPoint; });
   OptimizeOptions options;
   options.holdWorst = false; // elements that are all alike cannot improve otherwise
   TAUTLINE_SET(options, fixed = fixed.data(), model = &model, parts = parts.data());

@@ -45,11 +45,8 @@ Outcome runOn(const MeshData& data, double tolerance, int threads = 1)
   const Features found = findFeatures(mesh, {});
   const SurfaceModel model = makeSurfaceModel(mesh, found, true);
   const std::vector<std::int32_t> parts = partsOfPoints(found);
-  std::vector<unsigned char> fixed;
-  for (signed char kind : found.kind)
-  {
-    fixed.push_back(kind == CornerPoint);
-  }
+  auto fixed =
+    collect<unsigned char>(found.kind, [&](signed char kind) { return kind == CornerPoint; });
   TAUTLINE_LET(OptimizeOptions, options, holdWorst = false, fixed = fixed.data(), model = &model,
     parts = parts.data(), surfaceTolerance = tolerance, threads = threads);
   Outcome outcome = { optimize(mesh, options), 0, 0 };

@@ -56,11 +56,8 @@ OptimizeResult runOnModel(const MeshData& data, bool smooth, OptimizeOptions opt
   const Features found = findFeatures(mesh, {});
   const SurfaceModel model = makeSurfaceModel(mesh, found, smooth);
   const std::vector<std::int32_t> parts = partsOfPoints(found);
-  std::vector<unsigned char> fixed;
-  for (signed char kind : found.kind)
-  {
-    fixed.push_back(kind == CornerPoint);
-  }
+  auto fixed =
+    collect<unsigned char>(found.kind, [&](signed char kind) { return kind == CornerPoint; });
   options.holdWorst = false; // the sum alone is compared
   TAUTLINE_SET(options, fixed = fixed.data(), model = &model, parts = parts.data());
   return optimize(mesh, options);

@@ -178,9 +178,6 @@ TAUTLINE_PART(testSoon)
                             assemblePeridynamics(group, mesh, own);
                           }),
     wording("stopped-by-the-user"));
-  for (const double part : farthest)
-  {
-    TAUTLINE_CHECK(part > 0 && part < soon);
-  }
+  TAUTLINE_EACH_OF(const double part, farthest, TAUTLINE_CHECK(part > 0 && part < soon));
 }
 }

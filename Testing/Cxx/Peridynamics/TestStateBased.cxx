@@ -349,10 +349,8 @@ TAUTLINE_PART(testMatrix)
   for (std::vector<double> u : { linearMotion(mesh, rotation), std::vector<double>() })
   {
     u.resize(static_cast<std::size_t>(system.matrix.size), 1.0);
-    for (const double force : times(system.matrix, u))
-    {
-      TAUTLINE_CHECK_NEAR(force, 0.0, 1e-6);
-    }
+    TAUTLINE_EACH_OF(
+      const double force, times(system.matrix, u), TAUTLINE_CHECK_NEAR(force, 0.0, 1e-6));
   }
 }
 
@@ -470,10 +468,8 @@ TAUTLINE_PART(testCuts)
   const HorizonMesh narrow = ring(32, 4, 0.15, 0.35);
   const PeridynamicSystem cut = assemblePeridynamics(narrow, options);
   const std::vector<double> ones(cut.matrix.size, 1.0);
-  for (const double force : times(cut.matrix, ones))
-  {
-    TAUTLINE_CHECK_NEAR(force, 0.0, 1e-12);
-  }
+  TAUTLINE_EACH_OF(
+    const double force, times(cut.matrix, ones), TAUTLINE_CHECK_NEAR(force, 0.0, 1e-12));
   options.cutBonds = false;
   const PeridynamicSystem full = assemblePeridynamics(narrow, options);
   // Opposite points at the hole.

@@ -66,10 +66,8 @@ TAUTLINE_PART(testMetricColorMaps)
   TAUTLINE_CHECK(before.good == metric.good && before.bad == metric.bad);
   TAUTLINE_CHECK(after.good == metric.good && after.bad == metric.bad);
   TAUTLINE_CHECK(metric.title == "Inverse mean ratio" && before.title != metric.title);
-  for (const auto& spec : specs)
-  {
-    TAUTLINE_CHECK(std::isfinite(spec.good) && std::isfinite(spec.bad) && spec.good != spec.bad);
-  }
+  TAUTLINE_EACH_OF(const auto& spec, specs,
+    TAUTLINE_CHECK(std::isfinite(spec.good) && std::isfinite(spec.bad) && spec.good != spec.bad));
 }
 
 } // anonymous namespace

@@ -52,10 +52,8 @@ TAUTLINE_PART(testNames)
   // The numbers of the literature, in both dimensions.
   const char* literature[][2] = { { "mu_2", "mu_303" }, { "mu_4", "mu_360" }, { "mu_7", "mu_321" },
     { "mu_55", "mu_315" }, { "mu_56", "mu_316" }, { "mu_77", "mu_318" }, { "mu_211", "mu_311" } };
-  for (const auto& pair : literature)
-  {
-    TAUTLINE_CHECK(findMetric(pair[0]) && findMetric(pair[0]) == findMetric(pair[1]));
-  }
+  TAUTLINE_EACH_OF(const auto& pair, literature,
+    TAUTLINE_CHECK(findMetric(pair[0]) && findMetric(pair[0]) == findMetric(pair[1])));
 }
 
 TAUTLINE_PART(testConsistency)

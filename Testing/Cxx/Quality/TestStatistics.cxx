@@ -196,10 +196,7 @@ TAUTLINE_PART(testMagnitudes)
   TAUTLINE_CHECK_NEAR(s.mean, 0, 0);
   TAUTLINE_CHECK_RELATIVE(s.rms, most, 1e-14);
   TAUTLINE_CHECK_RELATIVE(s.standardDeviation, most, 1e-14);
-  for (double quantile : s.quantiles)
-  {
-    TAUTLINE_CHECK(std::isfinite(quantile));
-  }
+  TAUTLINE_EACH_OF(double quantile, s.quantiles, TAUTLINE_CHECK(std::isfinite(quantile)));
   const Histogram h = histogram(extremes, 4);
   TAUTLINE_CHECK((h.counts == std::vector<Index>{ 1, 0, 0, 1 }));
   TAUTLINE_CHECK(h.edges.front() == -most && h.edges.back() == most && h.edges[2] == 0);

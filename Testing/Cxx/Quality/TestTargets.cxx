@@ -52,10 +52,8 @@ void checkIdeal(const Mesh& mesh, CellType type, const Targets& targets, const C
       continue;
     }
     const Context context(info.name);
-    for (double value : valuesOf(mesh, info.metric, options))
-    {
-      TAUTLINE_CHECK_NEAR(value, valueAtTarget(info, topology(type).dimension), tolerance);
-    }
+    TAUTLINE_EACH_OF(double value, valuesOf(mesh, info.metric, options),
+      TAUTLINE_CHECK_NEAR(value, valueAtTarget(info, topology(type).dimension), tolerance));
   }
 }
 
@@ -81,10 +79,8 @@ void testReference(CellType type, bool surface)
     [](const MetricInfo& info) { return info.scaleInvariant && info.rotationInvariant; });
   TAUTLINE_LET(EvaluationOptions, options, targets = &targets);
   const double tau = std::pow(growth, topology(type).dimension);
-  for (double value : valuesOf(grownMesh, Metric::SizeNonBarrier, options))
-  {
-    TAUTLINE_CHECK_NEAR(value, (tau - 1) * (tau - 1), tolerance);
-  }
+  TAUTLINE_EACH_OF(double value, valuesOf(grownMesh, Metric::SizeNonBarrier, options),
+    TAUTLINE_CHECK_NEAR(value, (tau - 1) * (tau - 1), tolerance));
 
   // A mirrored pair is as good as the original pair.
   if (!surface)

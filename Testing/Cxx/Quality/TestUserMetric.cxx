@@ -297,14 +297,8 @@ void testDegenerate(const std::vector<Twin>& pairs)
       data.addCell(type, flattenedCell(type, 0));
       data.addCell(type, std::vector<Vec3>(topology(type).nodes, Vec3{ 1, 2, 0 }));
       const Gradients found = gradientsOf(Mesh(data.view()), pair.user);
-      for (const double x : found.values)
-      {
-        TAUTLINE_CHECK(std::isfinite(x));
-      }
-      for (const double x : found.gradients)
-      {
-        TAUTLINE_CHECK(std::isfinite(x));
-      }
+      TAUTLINE_EACH_OF(const double x, found.values, TAUTLINE_CHECK(std::isfinite(x)));
+      TAUTLINE_EACH_OF(const double x, found.gradients, TAUTLINE_CHECK(std::isfinite(x)));
       if (info.barrier && info.family == MetricFamily::Target)
       {
         TAUTLINE_CHECK_EQUAL(found.values[1], 0.0);

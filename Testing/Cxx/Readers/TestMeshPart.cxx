@@ -152,10 +152,7 @@ void checkParts(const MeshFile& whole, int parts, int ghostLayers)
     const std::set<Index> own = checkPart(whole, { part, parts, ghostLayers }, points);
     fewest = std::min(fewest, own.size());
     most = std::max(most, own.size());
-    for (const Index cell : own)
-    {
-      TAUTLINE_CHECK(all.insert(cell).second);
-    }
+    TAUTLINE_EACH_OF(const Index cell, own, TAUTLINE_CHECK(all.insert(cell).second));
   }
   TAUTLINE_CHECK(all.size() == whole.cellTypes.size());
   TAUTLINE_CHECK(static_cast<Index>(points.size()) == whole.numberOfPoints());

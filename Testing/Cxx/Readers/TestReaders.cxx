@@ -302,10 +302,7 @@ void testValidity()
     std::vector<signed char> validity(file.cellTypes.size());
     mesh.classifyCells(validity.data());
     TAUTLINE_CHECK(mesh.unsupportedCells() == 0);
-    for (const signed char each : validity)
-    {
-      TAUTLINE_CHECK(each == Valid);
-    }
+    TAUTLINE_EACH_OF(const signed char each, validity, TAUTLINE_CHECK(each == Valid));
   }
 }
 

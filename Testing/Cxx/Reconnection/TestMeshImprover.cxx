@@ -399,10 +399,8 @@ TAUTLINE_PART(testInputs)
   auto* third = vtkUnstructuredGrid::SafeDownCast(output->GetBlock(2));
   TAUTLINE_CHECK_EQUAL(first->GetPoints()->GetDataType(), VTK_FLOAT);
   TAUTLINE_CHECK_EQUAL(third->GetPoints()->GetDataType(), VTK_DOUBLE);
-  for (signed char v : validityOf(dataOf(first)))
-  {
-    TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid));
-  }
+  TAUTLINE_EACH_OF(signed char v, validityOf(dataOf(first)),
+    TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid)));
   TAUTLINE_CHECK_EQUAL(
     filter->GetElementsAfter(), first->GetNumberOfCells() + third->GetNumberOfCells());
   TAUTLINE_CHECK_EQUAL(filter->GetHistory()->GetValueByName(0, "Block").ToString(), "block 1");

@@ -135,10 +135,8 @@ TAUTLINE_PART(testTargets)
   const ReconnectionResult none = reconnect(output, options);
   TAUTLINE_CHECK(none.points == output.points && none.tetrahedra == output.connectivity);
   TAUTLINE_CHECK_EQUAL(none.history.size(), std::size_t(1));
-  for (signed char obstacle : none.obstacles)
-  {
-    TAUTLINE_CHECK_EQUAL(static_cast<int>(obstacle), 0);
-  }
+  TAUTLINE_EACH_OF(
+    signed char obstacle, none.obstacles, TAUTLINE_CHECK_EQUAL(static_cast<int>(obstacle), 0));
 }
 
 TAUTLINE_PART(testCount)
@@ -150,11 +148,9 @@ TAUTLINE_PART(testCount)
     const ReconnectionResult result = reconnect(data, options);
     checkResult(data, result);
     const double n = static_cast<double>(data.numberOfCells());
-    for (const ReconnectionRecord& record : result.history)
-    {
+    TAUTLINE_EACH_OF(const ReconnectionRecord& record, result.history,
       TAUTLINE_CHECK(static_cast<double>(record.tetrahedra) >= bounds[0] * n &&
-        static_cast<double>(record.tetrahedra) <= bounds[1] * n);
-    }
+        static_cast<double>(record.tetrahedra) <= bounds[1] * n));
   }
   ReconnectionOptions none; // nor by repairs, which are tried for high targets
   none.smallestCount = none.largestCount = 1.0;
@@ -344,10 +340,7 @@ TAUTLINE_PART(testFlat)
     for (int k = 0; k < 3; ++k)
     {
       // A coordinate that is 0 or 5 at one corner of all three: the face of the block.
-      for (const Vec3& p : f)
-      {
-        TAUTLINE_CHECK(p[k] > -1e-14 && p[k] < 5.0 + 1e-14);
-      }
+      TAUTLINE_EACH_OF(const Vec3& p, f, TAUTLINE_CHECK(p[k] > -1e-14 && p[k] < 5.0 + 1e-14));
     }
   }
   TAUTLINE_CHECK_RELATIVE(area, 6.0 * 25.0, 1e-13);

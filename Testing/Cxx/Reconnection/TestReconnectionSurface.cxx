@@ -60,10 +60,7 @@ Index eulerOf(const std::set<Facet>& facets)
       ++edges[{ std::min(f[i], f[(i + 1) % 3]), std::max(f[i], f[(i + 1) % 3]) }];
     }
   }
-  for (const auto& edge : edges)
-  {
-    TAUTLINE_CHECK_EQUAL(edge.second, 2);
-  }
+  TAUTLINE_EACH_OF(const auto& edge, edges, TAUTLINE_CHECK_EQUAL(edge.second, 2));
   return static_cast<Index>(points.size()) - static_cast<Index>(edges.size()) +
     static_cast<Index>(facets.size());
 }
@@ -79,10 +76,8 @@ ReconnectionOptions surfaceOptions()
 void checkBoundary(const MeshData& input, const ReconnectionResult& result, double tolerance)
 {
   const MeshData output = outputOf(result);
-  for (signed char v : validityOf(output))
-  {
-    TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid));
-  }
+  TAUTLINE_EACH_OF(signed char v, validityOf(output),
+    TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid)));
   const ReconnectionRecord &first = result.history.front(), &last = result.history.back();
   TAUTLINE_CHECK(last.smallestAngle >= first.smallestAngle);
   TAUTLINE_CHECK(last.worstInverseMeanRatio <= first.worstInverseMeanRatio);

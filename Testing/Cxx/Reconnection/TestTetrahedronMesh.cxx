@@ -418,10 +418,7 @@ void testRandomOperations(int wanted)
       TAUTLINE_CHECK(wallsOf(mesh) == walls);
       TAUTLINE_CHECK(worstQuality(mesh) >= worst * (1.0 - 1e-12));
       worst = worstQuality(mesh);
-      for (TetId s : operations.changed())
-      {
-        TAUTLINE_CHECK(mesh.alive(s));
-      }
+      TAUTLINE_EACH_OF(TetId s, operations.changed(), TAUTLINE_CHECK(mesh.alive(s)));
     }
   }
   TAUTLINE_CHECK(accepted >= wanted);

@@ -62,10 +62,8 @@ TAUTLINE_PART_SLOW(testSizes)
   // Without motion the bound holds in the output.
   options.edgeLength = 2.0 * shortest;
   options.smooth = options.swap = options.swapEverywhere = false;
-  for (double length : insertedLengths(reconnect(data, options)))
-  {
-    TAUTLINE_CHECK(length >= options.edgeLength / options.edgeFactor);
-  }
+  TAUTLINE_EACH_OF(double length, insertedLengths(reconnect(data, options)),
+    TAUTLINE_CHECK(length >= options.edgeLength / options.edgeFactor));
 
   options = triangleOptions(Preset::Aggressive);
   TAUTLINE_SET(options, smallestCount = 0.0, insert = false);

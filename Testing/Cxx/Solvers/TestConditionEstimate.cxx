@@ -338,10 +338,8 @@ void testEquations()
   }
   const Mesh regular = box.mesh();
   const EllipticSystem plain(regular, EllipticProblem());
-  for (const double value : elementContributions(plain, false).largestEigenvalue)
-  {
-    TAUTLINE_CHECK_NEAR(value, 1.5, 1e-14);
-  }
+  TAUTLINE_EACH_OF(const double value, elementContributions(plain, false).largestEigenvalue,
+    TAUTLINE_CHECK_NEAR(value, 1.5, 1e-14));
   TAUTLINE_CHECK_NEAR(elementContributions(plain, false).bound, 9.0, 1e-13);
   box.points[3 * (3 * 7 + 3)] += 0.98; // an inner point close to its neighbour on the right
   box.points[3 * (3 * 7 + 3) + 1] += 0.005;

@@ -40,10 +40,8 @@ void testParts(CellType type, int parts)
     sizes[part] += 1.0;
   }
   const double mean = static_cast<double>(data.numberOfCells()) / parts;
-  for (const double size : sizes)
-  {
-    TAUTLINE_CHECK(size > 0.8 * mean && size < 1.2 * mean);
-  }
+  TAUTLINE_EACH_OF(
+    const double size, sizes, TAUTLINE_CHECK(size > 0.8 * mean && size < 1.2 * mean));
   if (flat && parts == 2)
   {
     // Straight through the middle are 24 edges of squares; at random about half of all.

@@ -171,10 +171,7 @@ TAUTLINE_PART(testSingular)
       const Result result = solved(system, options, b);
       TAUTLINE_CHECK(!converged(result.solution.reason));
       TAUTLINE_CHECK(!result.solution.message.empty());
-      for (const double value : result.x)
-      {
-        TAUTLINE_CHECK(std::isfinite(value));
-      }
+      TAUTLINE_EACH_OF(const double value, result.x, TAUTLINE_CHECK(std::isfinite(value)));
     }
   }
   for (const Preconditioner preconditioner : preconditioners)

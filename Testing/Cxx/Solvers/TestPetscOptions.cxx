@@ -185,10 +185,7 @@ Outcome attempt(
     TAUTLINE_CHECK(contains(error.what(), of));
     return contains(error.what(), wording("possible-is")) ? Outcome::Refused : Outcome::Failed;
   }
-  for (const double value : x)
-  {
-    TAUTLINE_CHECK(std::isfinite(value));
-  }
+  TAUTLINE_EACH_OF(const double value, x, TAUTLINE_CHECK(std::isfinite(value)));
   const double residual = relativeResidual(a, x, b);
   if (converged(solution.reason))
   {

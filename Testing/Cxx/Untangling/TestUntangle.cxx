@@ -344,8 +344,8 @@ void testThreads()
 MeshData star(const Vec3& center)
 {
   MeshData data = block(CellType::Tetrahedron, 1);
-  data = MeshData();
-  TAUTLINE_SET(data, addPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, center }),
+  data = TAUTLINE_CHANGED(MeshData(),
+    addPoints({ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 }, center }),
     addCell(CellType::Tetrahedron, std::vector<Index>{ 4, 1, 2, 3 }),
     addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 4, 2, 3 }),
     addCell(CellType::Tetrahedron, std::vector<Index>{ 0, 1, 4, 3 }),
