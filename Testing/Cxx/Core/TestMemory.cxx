@@ -99,7 +99,7 @@ void testLimits()
     0);
 }
 
-void testRequire()
+TAUTLINE_PART(testRequire)
 {
   const double little = 1000, endless = std::numeric_limits<double>::infinity();
   requireMemory(little, "the test", "stop");
@@ -114,7 +114,7 @@ void testRequire()
   TAUTLINE_CHECK_THROWS(requireMemory(std::nan(""), "the test", "stop"), "nan");
 }
 
-void testTexts()
+TAUTLINE_PART(testTexts)
 {
   TAUTLINE_CHECK_EQUAL(memoryText(512 * Mebibyte), std::string("512 MiB"));
   TAUTLINE_CHECK_EQUAL(memoryText(999 * Mebibyte), std::string("999 MiB"));
@@ -132,6 +132,4 @@ TAUTLINE_TEST(TestMemory)
   {
     TAUTLINE_RUN(testLimits());
   }
-  TAUTLINE_RUN(testRequire());
-  TAUTLINE_RUN(testTexts());
 }

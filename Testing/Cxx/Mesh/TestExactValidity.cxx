@@ -122,7 +122,7 @@ std::vector<std::vector<Vec3>> foldedCells(CellType type, int count, Random& ran
 
 //------------------------------------------------------------------------------
 /// Verdict and metric agree with samples.
-void testSamples()
+TAUTLINE_PART(testSamples)
 {
   constexpr int cells = 400, fine = 50, coarse = 16;
   for (CellType type : solidTypes)
@@ -160,7 +160,7 @@ void testSamples()
 }
 
 /// A folded element is found in every numbering, size and place, and in the mirror.
-void testFrames()
+TAUTLINE_PART(testFrames)
 {
   for (CellType type : solidTypes)
   {
@@ -222,7 +222,7 @@ std::vector<std::vector<int>> cubeRotations()
   return all;
 }
 
-void testNumberings()
+TAUTLINE_PART(testNumberings)
 {
   const auto rotations = cubeRotations();
   TAUTLINE_CHECK_EQUAL(rotations.size(), 24u);
@@ -245,7 +245,7 @@ void testNumberings()
 //------------------------------------------------------------------------------
 /// The top turned about the axis: with R(w) the mean of the turns, det = |R|^2, which is 1 at the
 /// corners and falls to cos^2(angle / 2) half way up: 0 at half a turn, negative nowhere.
-void testTwists()
+TAUTLINE_PART(testTwists)
 {
   for (CellType type : { CellType::Hexahedron, CellType::Wedge })
   {
@@ -269,7 +269,7 @@ void testTwists()
 }
 
 /// What a parallelepiped and a simplex have; collapsed elements are degenerate, not inverted.
-void testKnownValues()
+TAUTLINE_PART(testKnownValues)
 {
   const Columns shear = { Vec3{ 2, 0, 0 }, { 1, 3, 0 }, { 0.5, -1, 0.7 } };
   const double volume = 2 * 3 * 0.7;
@@ -340,15 +340,6 @@ void testFiles(const std::string& directory)
               << folded << " of them between valid corners\n";
   }
 }
-}
-
-TAUTLINE_TEST(TestExactValidity)
-{
-  TAUTLINE_RUN(testSamples());
-  TAUTLINE_RUN(testFrames());
-  TAUTLINE_RUN(testNumberings());
-  TAUTLINE_RUN(testTwists());
-  TAUTLINE_RUN(testKnownValues());
 }
 
 // Meshes that are not part of the repository.

@@ -88,7 +88,7 @@ std::string failure(vtkAlgorithm* mesher, vtkDataObject* input)
   return error;
 }
 
-void testTriangles()
+TAUTLINE_PART(testTriangles)
 {
   // a plate of 9 with a hole of 1
   TAUTLINE_NEW(vtkTriangleMesher, mesher, SetInputData(read("plate.poly")), SetSize(0.2),
@@ -134,7 +134,7 @@ void testTriangles()
 }
 
 /// Coordinates of any magnitude: the mesh is the same, times a power of two even bit by bit.
-void testTriangleScales()
+TAUTLINE_PART(testTriangleScales)
 {
   const auto meshed = [](double scale, bool sizes)
   {
@@ -181,7 +181,7 @@ void testTriangleScales()
   }
 }
 
-void testTriangleFailures()
+TAUTLINE_PART(testTriangleFailures)
 {
   const double half = 1e20;
   TAUTLINE_NEW(vtkTriangleMesher, fine, SetSize(1.0));
@@ -215,7 +215,7 @@ void testTriangleFailures()
   TAUTLINE_CHECK(aborted->GetAbortExecute() != 0);
 }
 
-void testTetrahedra()
+TAUTLINE_PART(testTetrahedra)
 {
   TAUTLINE_NEW(
     vtkTetGenMesher, mesher, SetInputData(read("cube.smesh")), SetVolume(0.005), Update());
@@ -252,7 +252,7 @@ void testTetrahedra()
 }
 
 /// A bound of the volume far below 1e-15: of a cube in metres whose edge is a few nanometres long.
-void testTetrahedraScales()
+TAUTLINE_PART(testTetrahedraScales)
 {
   constexpr double scale = 1e-8;
   TAUTLINE_NEW(vtkTransform, shrink, Scale(scale, scale, scale));
@@ -268,7 +268,7 @@ void testTetrahedraScales()
 
 /// Facets that are kept hold larger tetrahedra than wanted: no smaller bound is tried then, which
 /// would only make many more inside.
-void testTetrahedraOfKeptSurface()
+TAUTLINE_PART(testTetrahedraOfKeptSurface)
 {
   constexpr int steps = 24; // around and between the poles
   TAUTLINE_NEW(vtkSphereSource, sphere, SetThetaResolution(steps), SetPhiResolution(steps));
@@ -284,7 +284,7 @@ void testTetrahedraOfKeptSurface()
 }
 
 /// Two nested cubes: the inner one a region of its own, or a hole.
-void testRegionsAndHoles()
+TAUTLINE_PART(testRegionsAndHoles)
 {
   vtkSmartPointer<vtkUnstructuredGrid> cube = read("cube.smesh");
   vtkNew<vtkPolyData> nested;
@@ -341,7 +341,7 @@ void testRegionsAndHoles()
   TAUTLINE_CHECK(errors->GetError() || box->GetOutput()->GetNumberOfCells() > 0);
 }
 
-void testTetrahedraFailures()
+TAUTLINE_PART(testTetrahedraFailures)
 {
   // two spheres through each other
   vtkNew<vtkPolyData> both;
@@ -403,12 +403,4 @@ void testTetrahedraFailures()
 TAUTLINE_TEST(TestMeshers)
 {
   data = argv[1];
-  TAUTLINE_RUN(testTriangles());
-  TAUTLINE_RUN(testTriangleScales());
-  TAUTLINE_RUN(testTriangleFailures());
-  TAUTLINE_RUN(testTetrahedra());
-  TAUTLINE_RUN(testTetrahedraScales());
-  TAUTLINE_RUN(testTetrahedraOfKeptSurface());
-  TAUTLINE_RUN(testRegionsAndHoles());
-  TAUTLINE_RUN(testTetrahedraFailures());
 }

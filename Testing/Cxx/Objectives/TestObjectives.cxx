@@ -322,7 +322,7 @@ void testDifferences(MeshData data, double scale, int& compared, int& skipped)
 }
 
 //------------------------------------------------------------------------------
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   MeshData data = movedBlock(CellType::Tetrahedron, 12, 0.1);
   append(data, movedBlock(CellType::Hexahedron, 17, 0.1));
@@ -356,7 +356,7 @@ void testThreads()
 }
 
 /// The rules of the header for inverted and degenerate elements.
-void testFaults()
+TAUTLINE_PART(testFaults)
 {
   auto value =
     [](const std::vector<Vec3>& corners, Metric metric, ObjectiveTemplate objectiveTemplate)
@@ -435,7 +435,7 @@ void testFaults()
 }
 
 /// Bounds and limits of the mean and the smooth maximum, with powers that overflow by themselves.
-void testStability()
+TAUTLINE_PART(testStability)
 {
   const MeshData data = movedBlock(CellType::Tetrahedron, 4, 0.1);
   const Mesh mesh(data.view());
@@ -459,7 +459,7 @@ void testStability()
   }
 }
 
-void testErrors()
+TAUTLINE_PART(testErrors)
 {
   using T = ObjectiveTemplate;
   const MeshData tets = movedBlock(CellType::Tetrahedron, 1, 0),
@@ -521,8 +521,4 @@ TAUTLINE_TEST(TestObjectives)
   }
   std::cout << compared << " gradients compared, " << skipped << " skipped at kinks\n";
   TAUTLINE_CHECK(skipped * 20 < compared);
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testFaults());
-  TAUTLINE_RUN(testStability());
-  TAUTLINE_RUN(testErrors());
 }

@@ -13,7 +13,7 @@ namespace
 {
 /// Stiff meshes of some thousand points: the same result for any number of threads, and few
 /// iterations from the harmonic map, which is the minimum here.
-void testStiffThreads()
+TAUTLINE_PART(testStiffThreads)
 {
   const MeshData data =
     stretched(CellType::Quadrilateral, 96, TAUTLINE_PLACE(p[0], p[1] * p[1] * p[1] * p[1], p[2]));
@@ -37,7 +37,7 @@ void testStiffThreads()
 }
 
 /// On three quarters of a ring the harmonic map is not the minimum.
-void testStiffRing()
+TAUTLINE_PART(testStiffRing)
 {
   MeshData data =
     stretched(CellType::Quadrilateral, 40, TAUTLINE_PLACE(p[0], p[1] * p[1] * p[1], p[2]));
@@ -58,7 +58,7 @@ void testStiffRing()
 
 /// Sheared and strongly stretched meshes, on which sweeps take thousands of iterations: the default
 /// and Newton's method reach the minimum, and stop there for the right reason.
-void testStiff()
+TAUTLINE_PART(testStiff)
 {
   const auto cubed = TAUTLINE_PLACE(p[0], p[1] * p[1] * p[1], p[2]);
   const std::pair<const char*, MeshData> cases[] = {
@@ -109,7 +109,7 @@ void testStiff()
 }
 
 /// Few quadrilaterals among triangles make sweeps slow, not Newton's method: it comes first.
-void testFewQuadrilaterals()
+TAUTLINE_PART(testFewQuadrilaterals)
 {
   constexpr Index n = 30, every = 20;
   const MeshData quads = perturbedBlock(CellType::Quadrilateral, n, 0.2);
@@ -172,10 +172,6 @@ void testMemory(CellType type, int beforeNewton, double mebibytes)
 
 TAUTLINE_TEST(TestOptimizeStiff)
 {
-  TAUTLINE_RUN(testStiff());
-  TAUTLINE_RUN(testStiffThreads());
-  TAUTLINE_RUN(testStiffRing());
-  TAUTLINE_RUN(testFewQuadrilaterals());
   if (!TAUTLINE_ADDRESS_SANITIZER)
   {
     // With less memory the harmonic map does not fit, either.

@@ -49,7 +49,7 @@ std::string with(std::string bytes, std::size_t at, const std::string& others)
   return bytes.replace(at, others.size(), others);
 }
 
-void testPixels()
+TAUTLINE_PART(testPixels)
 {
   for (const char* name : { "grey.png", "alpha.png", "colour.tif", "colour.bmp", "grey.pgm",
          "colour.ppm", "colour.jpg", "grey.jpg" })
@@ -78,7 +78,7 @@ void testPixels()
 }
 
 /// Cut anywhere, a file is an error; with a changed byte it is one or an image.
-void testDamage()
+TAUTLINE_PART(testDamage)
 {
   for (const auto& entry : fs::directory_iterator(corpus))
   {
@@ -124,7 +124,7 @@ std::string tiff(const std::map<int, int>& changed, int nextDirectory = 0)
   return text + number(nextDirectory, 4);
 }
 
-void testTiff()
+TAUTLINE_PART(testTiff)
 {
   for (const bool oriented : { false, true })
   {
@@ -147,7 +147,7 @@ void testTiff()
   expect(tiff({}, begin) + page, wording("its-size-is-2-x-2-x-2"));
 }
 
-void testMessages()
+TAUTLINE_PART(testMessages)
 {
   const auto text = [](const char* name) { return readText((corpus / name).string()); };
   expect("", wording("it-is-none-of-png-jpeg"));
@@ -171,7 +171,7 @@ void testMessages()
   TAUTLINE_CHECK_EQUAL(complaintOf("P5 # a comment\n2 1 # another\n255\nab"), std::string());
 }
 
-void testFolder()
+TAUTLINE_PART(testFolder)
 {
   const fs::path set = folder / "set";
   fs::remove_all(set);
@@ -216,9 +216,4 @@ TAUTLINE_TEST(TestImageFiles)
   corpus = fs::path(argv[1]) / "../Testing/Fuzz/Corpus/image";
   folder = fs::path(argv[2]) / "image-files";
   fs::create_directories(folder);
-  TAUTLINE_RUN(testPixels());
-  TAUTLINE_RUN(testDamage());
-  TAUTLINE_RUN(testTiff());
-  TAUTLINE_RUN(testMessages());
-  TAUTLINE_RUN(testFolder());
 }

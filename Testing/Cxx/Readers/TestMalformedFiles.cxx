@@ -26,7 +26,7 @@ void expect(const std::string& extension, const std::string& text, const std::st
   }
 }
 
-void testTetGenMessages()
+TAUTLINE_PART(testTetGenMessages)
 {
   const std::string good = "4 3 0 1\n1 0 0 0 1\n2 1 0 0 1\n3 0 1 0 1\n4 0 0 1 1\n";
   expect("node", "", wording("bad-node-1-no-header"));
@@ -72,7 +72,7 @@ void testTetGenMessages()
   TAUTLINE_CHECK(contains(complaint(output), wording("is-expected-as-the-file-s-ending")));
 }
 
-void testOtherMessages()
+TAUTLINE_PART(testOtherMessages)
 {
   const std::string mesh = "MeshVersionFormatted 2\nDimension 2\nVertices 3\n0 0 1\n1 0 1\n0 1 1\n";
   expect("mesh", mesh, wording("bad-mesh-7-the-file-ends-without"));
@@ -135,7 +135,7 @@ void testOtherMessages()
 }
 
 /// CRLF, a byte order mark, comments and blank lines change nothing.
-void testHarmlessForms()
+TAUTLINE_PART(testHarmlessForms)
 {
   for (const char* name :
     { "cube.smesh", "zoo.mesh", "house.off", "plate.poly", "tent.msh", "part.msh" })
@@ -157,7 +157,7 @@ void testHarmlessForms()
 }
 
 /// The parts of two writes, as a process leaves them that is killed between two renames.
-void testMixedSets()
+TAUTLINE_PART(testMixedSets)
 {
   MeshFile mesh;
   mesh.points = { 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1 };
@@ -196,8 +196,4 @@ TAUTLINE_TEST(TestMalformedFiles)
   output = std::string(argv[2]) + "/malformed";
   const std::string makeFolder = "mkdir -p '" + output + "'";
   TAUTLINE_CHECK(std::system(makeFolder.c_str()) == 0);
-  TAUTLINE_RUN(testTetGenMessages());
-  TAUTLINE_RUN(testOtherMessages());
-  TAUTLINE_RUN(testHarmlessForms());
-  TAUTLINE_RUN(testMixedSets());
 }

@@ -160,7 +160,7 @@ void checkParts(const MeshFile& whole, int parts, int ghostLayers)
 }
 
 /// A box of n x n x 2n voxels as hexahedra: its halves meet at one layer of points.
-void testCompact()
+TAUTLINE_PART(testCompact)
 {
   constexpr Index n = 6, depth = 2 * n;
   MeshFile box;
@@ -229,7 +229,7 @@ protected:
   MeshFile ReadMesh() override { throw std::bad_alloc(); }
 };
 
-void testMemory()
+TAUTLINE_PART(testMemory)
 {
   TAUTLINE_NEW(ReaderWithoutMemory, reader, SetFileName("some.mesh"));
   vtkObject::GlobalWarningDisplayOff();
@@ -259,9 +259,7 @@ TAUTLINE_TEST(TestMeshPart)
       }
     }
   }
-  TAUTLINE_RUN(testCompact());
   TAUTLINE_RUN(checkParts(MeshFile(), 3, 1));
-  TAUTLINE_RUN(testMemory());
   TAUTLINE_RUN(testReader<vtkGmshReader, vtkUnstructuredGrid>(data + "/cylinder.msh", 487));
   TAUTLINE_RUN(testReader<vtkOffReader, vtkPolyData>(data + "/house.off", 7));
 }

@@ -57,7 +57,7 @@ double volume(const MeshFile& mesh)
   return sum;
 }
 
-void testTetGen()
+TAUTLINE_PART(testTetGen)
 {
   const MeshFile tets = readTetGen(data + "/cube.1.node", false);
   TAUTLINE_CHECK(tets.numberOfPoints() == 73 && tets.numberOfCells() == 171);
@@ -78,7 +78,7 @@ void testTetGen()
   TAUTLINE_CHECK(std::abs(volume(quadratic) - 1.0) < 1e-12);
 }
 
-void testComplexes()
+TAUTLINE_PART(testComplexes)
 {
   const MeshFile plate = readTetGen(data + "/plate.poly", false);
   TAUTLINE_CHECK(plate.numberOfPoints() == 8 && countCells(plate, FileLine) == 9);
@@ -103,7 +103,7 @@ void testComplexes()
   TAUTLINE_CHECK(value(cube.cellArrays, "BoundaryMarker", 5) == 6.0);
 }
 
-void testMedit()
+TAUTLINE_PART(testMedit)
 {
   const MeshFile zoo = readMedit(data + "/zoo.sol", true);
   TAUTLINE_CHECK(zoo.numberOfPoints() == 14 && zoo.numberOfCells() == 9);
@@ -136,7 +136,7 @@ void testMedit()
   TAUTLINE_CHECK(readMedit(data + "/zoo.mesh", false).numberOfCells() == 5);
 }
 
-void testGmsh()
+TAUTLINE_PART(testGmsh)
 {
   for (const char* name : { "/part.msh", "/part22-binary.msh" })
   {
@@ -168,7 +168,7 @@ void checkSmall(const MeshFile& mesh)
 }
 
 /// Versions 1 and 4.0 of Gmsh's format, and names of groups without their dimension.
-void testOldGmsh()
+TAUTLINE_PART(testOldGmsh)
 {
   const std::string file = output + "/old.msh";
   writeText(file,
@@ -249,7 +249,7 @@ void testOldGmsh()
 }
 
 /// Elements of third order are read as their corners; the other nodes go, unless a cell has them.
-void testHighOrder()
+TAUTLINE_PART(testHighOrder)
 {
   const std::string file = output + "/cubic.msh";
   std::ostringstream text;
@@ -291,7 +291,7 @@ void testHighOrder()
 }
 
 /// The kernel finds every cell valid: orders of nodes are those VTK and Tautline compute with.
-void testValidity()
+TAUTLINE_PART(testValidity)
 {
   for (const char* name :
     { "/zoo.mesh", "/wedges.msh", "/part.msh", "/cube.1.ele", "/quadratic.1.ele" })
@@ -306,7 +306,7 @@ void testValidity()
   }
 }
 
-void testFreeFemAndOff()
+TAUTLINE_PART(testFreeFemAndOff)
 {
   const MeshFile tent = readGmsh(data + "/tent.msh", true);
   TAUTLINE_CHECK(tent.numberOfPoints() == 5 && countCells(tent, FileTriangle) == 4);
@@ -374,7 +374,7 @@ void testOrderOfMiddleNodes(vtkMeshFileReader* reader, const char* name, int poi
 }
 
 /// The classes of VTK: outputs, errors with empty outputs, recovery, CanReadFile.
-void testReaderClasses()
+TAUTLINE_PART(testReaderClasses)
 {
   vtkNew<vtkTetGenReader> reader;
   vtkNew<vtkTest::ErrorObserver> errors;
@@ -405,17 +405,8 @@ TAUTLINE_TEST(TestReaders)
 {
   data = argv[1];
   output = argv[2];
-  TAUTLINE_RUN(testTetGen());
-  TAUTLINE_RUN(testComplexes());
-  TAUTLINE_RUN(testMedit());
-  TAUTLINE_RUN(testGmsh());
-  TAUTLINE_RUN(testOldGmsh());
-  TAUTLINE_RUN(testHighOrder());
-  TAUTLINE_RUN(testValidity());
-  TAUTLINE_RUN(testFreeFemAndOff());
   vtkNew<vtkGmshReader> gmsh;
   TAUTLINE_RUN(testOrderOfMiddleNodes(gmsh, "/wedges.msh", 27));
   vtkNew<vtkTetGenReader> tetgen;
   TAUTLINE_RUN(testOrderOfMiddleNodes(tetgen, "/quadratic.1.ele", 27));
-  TAUTLINE_RUN(testReaderClasses());
 }

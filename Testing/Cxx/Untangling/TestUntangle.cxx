@@ -178,7 +178,7 @@ UntangleResult checkUntangles(
 }
 
 //------------------------------------------------------------------------------
-void testCellTypes()
+TAUTLINE_PART(testCellTypes)
 {
   for (CellType type : allTypes)
   {
@@ -194,7 +194,7 @@ void testCellTypes()
   }
 }
 
-void testTurnedHoles()
+TAUTLINE_PART(testTurnedHoles)
 {
   for (CellType type : allTypes)
   {
@@ -212,7 +212,7 @@ void testTurnedHoles()
 }
 
 /// Only the neighbourhood of inverted elements moves.
-void testLocality()
+TAUTLINE_PART(testLocality)
 {
   MeshData data = block(CellType::Tetrahedron, 12);
   const Index center = 6 + 13 * (6 + 13 * 6);
@@ -233,7 +233,7 @@ void testLocality()
 }
 
 /// Where fixed points keep some elements invalid: how many valid ones have become invalid.
-void testNewlyInvalid()
+TAUTLINE_PART(testNewlyInvalid)
 {
   Index all = 0;
   for (unsigned seed = 1; seed <= 20; ++seed)
@@ -285,7 +285,7 @@ void testFiles(const std::string& directory)
 }
 
 //------------------------------------------------------------------------------
-void testFrames()
+TAUTLINE_PART(testFrames)
 {
   for (CellType type : { CellType::Tetrahedron, CellType::Hexahedron, CellType::Quadrilateral })
   {
@@ -315,7 +315,7 @@ void testFrames()
   }
 }
 
-void testThreads()
+TAUTLINE_PART(testThreads)
 {
   for (const MeshData& data : { slightlyTangled(block(CellType::Tetrahedron, 20), 0.02),
          turnedHole(CellType::Tetrahedron, 20, 60) })
@@ -353,7 +353,7 @@ MeshData star(const Vec3& center)
   return data;
 }
 
-void testObstacles()
+TAUTLINE_PART(testObstacles)
 {
   {
     const Context context("a single free vertex");
@@ -422,7 +422,7 @@ void testObstacles()
   }
 }
 
-void testDegenerate()
+TAUTLINE_PART(testDegenerate)
 {
   {
     const Context context("empty");
@@ -490,7 +490,7 @@ void testDegenerate()
 }
 
 /// Limits and observers; never more inverted elements than before.
-void testLimits()
+TAUTLINE_PART(testLimits)
 {
   const MeshData data = turnedHole(CellType::Tetrahedron, 12, 120);
   const Index before = countNotValid(data);
@@ -527,7 +527,7 @@ void testLimits()
 }
 
 /// A time limit that is reached within the first sweep ends it there.
-void testTimeLimitWithinSweep()
+TAUTLINE_PART(testTimeLimitWithinSweep)
 {
   constexpr double limit = 0.5;
   const auto sleep = [](double seconds)
@@ -555,7 +555,7 @@ void testTimeLimitWithinSweep()
   TAUTLINE_CHECK(result.points == data.points);
 }
 
-void testSurface()
+TAUTLINE_PART(testSurface)
 {
   MeshData data = block(CellType::Quadrilateral, 4);
   data.transform(TAUTLINE_PLACE(p[0], p[1], p[0] * p[0] + p[1]));
@@ -566,7 +566,7 @@ void testSurface()
 
 //------------------------------------------------------------------------------
 /// The widest place in a plane against all intersections of three distances.
-void testLinearPrograms()
+TAUTLINE_PART(testLinearPrograms)
 {
   Random random(5);
   for (int trial = 0; trial < 300; ++trial)
@@ -610,22 +610,6 @@ void testLinearPrograms()
     TAUTLINE_CHECK_NEAR(radius, best, 1e-8);
   }
 }
-}
-
-TAUTLINE_TEST(TestUntangle)
-{
-  TAUTLINE_RUN(testLinearPrograms());
-  TAUTLINE_RUN(testCellTypes());
-  TAUTLINE_RUN(testNewlyInvalid());
-  TAUTLINE_RUN(testTurnedHoles());
-  TAUTLINE_RUN(testLocality());
-  TAUTLINE_RUN(testFrames());
-  TAUTLINE_RUN(testThreads());
-  TAUTLINE_RUN(testObstacles());
-  TAUTLINE_RUN(testDegenerate());
-  TAUTLINE_RUN(testLimits());
-  TAUTLINE_RUN(testTimeLimitWithinSweep());
-  TAUTLINE_RUN(testSurface());
 }
 
 // Meshes that are not part of the repository.
