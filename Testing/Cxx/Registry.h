@@ -68,7 +68,7 @@ inline std::vector<RegisteredTest>& registeredTests()
 /** Null if there is none. */
 RegisteredTest* findTest(const std::string& name);
 
-/** Registers the function of a test, or a part of the test of a source file, when it is constructed. */
+/** Registers the function of a test, or a part of the test of a file, when it is constructed. */
 struct Registration
 {
   Registration(const char* name, TestFunction run);

@@ -50,7 +50,7 @@ T& setIn(T& object, long)
       TAUTLINE_SET(tautlineChanged, __VA_ARGS__); \
       return tautlineChanged;                     \
     }())
-/** A function that makes a filter, or any VTK object, on which functions are called as by TAUTLINE_SET. */
+/** A function that makes a VTK object, of which functions are called as by TAUTLINE_SET. */
 #define TAUTLINE_MAKER(type, ...)                   \
   [=]                                               \
   {                                                 \

@@ -315,7 +315,7 @@ Data mutated(vtkDataObject* suitable, unsigned seed)
   return data == suitable ? nullptr : data;
 }
 
-/// A function that makes hostile data of suitable `data`, and one that changes a point p of number i.
+/// A function that makes hostile data of suitable `data`; one that changes a point p, number i.
 #define MAKES(...) [=](vtkDataObject* data) -> Data { return __VA_ARGS__; }
 #define POINTS(...) \
   MAKES(withPoints( \

@@ -447,10 +447,9 @@ TAUTLINE_PART(testBad)
     TAUTLINE_CHECK_EQUAL(bad->GetCellData()->GetArray("imr")->GetComponent(i, 0),
       component(cellsOf(filter), "imr", i + 1)));
   // A limit that the flat element keeps: only the inverted one fails.
-  TAUTLINE_SET(filter,
-    SetCriteria(
-      R"({ "criteria": [ { "metric": "imr", "limits": { "all": { "ideal": 1, "good": 2, "warn": 3, "fail": 1e6, "worst": 1e7 } } } ] })"),
-    Update());
+  filter->SetCriteria(R"({ "criteria": [ { "metric": "imr",
+    "limits": { "all": { "ideal": 1, "good": 2, "warn": 3, "fail": 1e6, "worst": 1e7 } } } ] })");
+  filter->Update();
   TAUTLINE_CHECK_EQUAL(filter->GetBad()->GetNumberOfCells(), 1);
   TAUTLINE_SET(
     filter, SetCriteria(""), SetInputData(toGrid(triangles({ height, 0.01, -0.3 }))), Update());

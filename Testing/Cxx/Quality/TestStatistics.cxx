@@ -271,8 +271,10 @@ TAUTLINE_PART(testWorst)
   {
     return collect<Index>(worstElements(info, cells.view()),
       [&](const WorstElement& e)
-      { return e.cell);
-        TAUTLINE_CHECK_EQUAL(e.value, cells.values[e.cell]); TAUTLINE_CHECK_EQUAL(int(e.validity), int(cells.validity[e.cell]);
+      {
+        TAUTLINE_CHECK_EQUAL(e.value, cells.values[e.cell]);
+        TAUTLINE_CHECK_EQUAL(int(e.validity), int(cells.validity[e.cell]));
+        return e.cell;
       });
   };
   TAUTLINE_CHECK((ids(imr) == std::vector<Index>{ 3, 2, 1, 4, 0 }));

@@ -155,7 +155,8 @@ inline void checkArrays(const MeshData& output, const ReconnectionResult& result
   TAUTLINE_CHECK_EQUAL(result.originalPoints.size(), output.points.size() / 3);
   TAUTLINE_CHECK_EQUAL(static_cast<Index>(result.originalCells.size()), output.numberOfCells());
   TAUTLINE_CHECK_EQUAL(static_cast<Index>(result.obstacles.size()), output.numberOfCells());
-  TAUTLINE_EACH_OF(signed char v, validityOf(output), TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid)));
+  TAUTLINE_EACH_OF(signed char v, validityOf(output),
+    TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid)));
 }
 
 /// Valid cells, consistent arrays, worst values not worse and as the history states.

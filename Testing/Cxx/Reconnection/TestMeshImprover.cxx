@@ -358,11 +358,8 @@ TAUTLINE_PART(testSeams)
   MeshData pieces;
   for (Index i = 0; i < data.numberOfCells(); ++i)
   {
-    auto ids = collect<Index>(4,
-      [&](int k)
-      { return pieces.numberOfPoints());
-        const Vec3 p = data.point(data.connectivity[data.offsets[i] + k]); pieces.points.insert(pieces.points.end(), p.begin(), p.end();
-      });
+    const auto ids =
+      collect<Index>(data.nodes(i), [&](Index node) { return pieces.addPoint(data.point(node)); });
     pieces.addCell(CellType::Tetrahedron, ids);
   }
   vtkNew<vtkMeshImprover> filter;

@@ -368,9 +368,9 @@ TAUTLINE_PART(testRefusals)
   MeshData folded = cubeSurface(CellType::Triangle, 2);
   folded.setPoint(folded.connectivity[0], folded.point(folded.connectivity[1]));
   TAUTLINE_CHECK_THROWS(reconnect(folded, defaults), wording("degenerate-triangles-run-clean"));
-  const MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
 #define REFUSED(change, text) \
   TAUTLINE_CHECK_THROWS(reconnect(data, TAUTLINE_CHANGED(TriangleOptions(), change)), text)
+  const MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
   REFUSED(featureAngle = -1, "feature angle");
   REFUSED(surfaceAngle = 91, "surface angle");
   REFUSED(surfaceDistance = std::nan(""), "surface distance");
