@@ -216,7 +216,7 @@ void testNotFinite(vtkMPIController* controller)
 MeshData quadratic()
 {
   constexpr int edges[6][2] = { { 0, 1 }, { 1, 2 }, { 0, 2 }, { 0, 3 }, { 1, 3 }, { 2, 3 } };
-  const Vec3 corners[4] = { { 9, 9, 9 }, { 10, 9, 9 }, { 9, 10, 9 }, { 9, 9, 10 } };
+  const std::vector<Vec3> corners = { { 9, 9, 9 }, { 10, 9, 9 }, { 9, 10, 9 }, { 9, 9, 10 } };
   TAUTLINE_LET(MeshData, data, addPoints(corners));
   for (const auto& edge : edges)
   {
