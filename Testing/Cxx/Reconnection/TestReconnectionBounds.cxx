@@ -68,8 +68,8 @@ TAUTLINE_PART(testFacetQuality)
 MeshData bipyramid()
 {
   MeshData data;
-  const Vec3 points[] = { { 1, 0, 0 }, { -0.5, 0.9, 0 }, { -0.6, -0.8, 0.1 }, { 0.1, 0, 3 },
-    { 0, 0.1, -1 }, { 0.1, 0.1, 0.2 } };
+  const std::vector<Vec3> points = { { 1, 0, 0 }, { -0.5, 0.9, 0 }, { -0.6, -0.8, 0.1 },
+    { 0.1, 0, 3 }, { 0, 0.1, -1 }, { 0.1, 0.1, 0.2 } };
   data.addPoints(points);
   for (Index i = 0; i < 3; ++i)
   {
