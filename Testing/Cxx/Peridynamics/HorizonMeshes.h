@@ -17,6 +17,30 @@ namespace tautline
 inline constexpr PeridynamicBasis bases[] = { PeridynamicBasis::Constant, PeridynamicBasis::Linear,
   PeridynamicBasis::DiscontinuousLinear };
 
+/** The matrices of the module. */
+struct NonlocalCase
+{
+  const char* name;
+  PeridynamicBasis basis;
+  PeridynamicModel model;
+  Discretization discretization = Discretization::Exact;
+};
+inline constexpr NonlocalCase nonlocalCases[] = {
+  { "linear", PeridynamicBasis::Linear, PeridynamicModel::Scalar },
+  { "constant", PeridynamicBasis::Constant, PeridynamicModel::Scalar },
+  { "discontinuous", PeridynamicBasis::DiscontinuousLinear, PeridynamicModel::Scalar },
+  { "elastic", PeridynamicBasis::Linear, PeridynamicModel::Elastic },
+  { "constant elastic", PeridynamicBasis::Constant, PeridynamicModel::Elastic },
+  { "state-based", PeridynamicBasis::Linear, PeridynamicModel::StateBased },
+  { "constant state-based", PeridynamicBasis::Constant, PeridynamicModel::StateBased },
+  { "dissertation", PeridynamicBasis::Linear, PeridynamicModel::Scalar,
+    Discretization::Dissertation },
+  { "constant dissertation", PeridynamicBasis::Constant, PeridynamicModel::Scalar,
+    Discretization::Dissertation },
+  { "discontinuous dissertation", PeridynamicBasis::DiscontinuousLinear, PeridynamicModel::Elastic,
+    Discretization::Dissertation },
+};
+
 inline std::vector<double> times(const SparseMatrix& matrix, const std::vector<double>& x)
 {
   std::vector<double> y(matrix.size);

@@ -158,33 +158,7 @@ void compare(const HorizonMesh& mesh, const PeridynamicOptions& options)
 
 TAUTLINE_TEST(TestPeridynamicOrder)
 {
-  struct Case
-  {
-    const char* name;
-    PeridynamicBasis basis;
-    PeridynamicModel model;
-    Discretization discretization;
-  };
-  const Case cases[] = {
-    { "linear", PeridynamicBasis::Linear, PeridynamicModel::Scalar, Discretization::Exact },
-    { "constant", PeridynamicBasis::Constant, PeridynamicModel::Scalar, Discretization::Exact },
-    { "discontinuous", PeridynamicBasis::DiscontinuousLinear, PeridynamicModel::Scalar,
-      Discretization::Exact },
-    { "elastic", PeridynamicBasis::Linear, PeridynamicModel::Elastic, Discretization::Exact },
-    { "constant elastic", PeridynamicBasis::Constant, PeridynamicModel::Elastic,
-      Discretization::Exact },
-    { "state-based", PeridynamicBasis::Linear, PeridynamicModel::StateBased,
-      Discretization::Exact },
-    { "constant state-based", PeridynamicBasis::Constant, PeridynamicModel::StateBased,
-      Discretization::Exact },
-    { "dissertation", PeridynamicBasis::Linear, PeridynamicModel::Scalar,
-      Discretization::Dissertation },
-    { "constant dissertation", PeridynamicBasis::Constant, PeridynamicModel::Scalar,
-      Discretization::Dissertation },
-    { "discontinuous dissertation", PeridynamicBasis::DiscontinuousLinear,
-      PeridynamicModel::Elastic, Discretization::Dissertation },
-  };
-  for (const Case& each : cases)
+  for (const NonlocalCase& each : nonlocalCases)
   {
     const Context context(each.name);
     TAUTLINE_LET(PeridynamicOptions, options, basis = each.basis, model = each.model,

@@ -10,26 +10,7 @@ using namespace tautline;
 
 namespace
 {
-struct Case
-{
-  const char* name;
-  PeridynamicBasis basis;
-  PeridynamicModel model;
-  Discretization discretization;
-};
-
-constexpr Case cases[] = {
-  { "linear", PeridynamicBasis::Linear, PeridynamicModel::Scalar, Discretization::Exact },
-  { "constant", PeridynamicBasis::Constant, PeridynamicModel::Scalar, Discretization::Exact },
-  { "discontinuous", PeridynamicBasis::DiscontinuousLinear, PeridynamicModel::Scalar,
-    Discretization::Exact },
-  { "elastic", PeridynamicBasis::Linear, PeridynamicModel::Elastic, Discretization::Exact },
-  { "state-based", PeridynamicBasis::Linear, PeridynamicModel::StateBased, Discretization::Exact },
-  { "dissertation", PeridynamicBasis::Linear, PeridynamicModel::Scalar,
-    Discretization::Dissertation },
-};
-
-PeridynamicOptions optionsOf(const Case& each)
+PeridynamicOptions optionsOf(const NonlocalCase& each)
 {
   return TAUTLINE_CHANGED(PeridynamicOptions(), basis = each.basis, model = each.model,
     discretization = each.discretization, horizon = 0.2, tolerance = 1e-4, threads = 1,
@@ -48,7 +29,7 @@ TAUTLINE_PART_SLOW(testEqual)
 {
   for (const bool shaken : { false, true })
   {
-    for (const Case& each : cases)
+    for (const NonlocalCase& each : nonlocalCases)
     {
       const PeridynamicOptions options = optionsOf(each);
       // Shaken, no two pairs of triangles are alike.
@@ -95,7 +76,7 @@ TAUTLINE_PART_SLOW(testEqual)
 
 TAUTLINE_PART(testEnds)
 {
-  const PeridynamicOptions options = optionsOf(cases[0]);
+  const PeridynamicOptions options = optionsOf(nonlocalCases[0]);
   const HorizonMesh mesh = meshFor(options, 0.0);
   const auto run = [&](int rank, const auto& change)
   {
@@ -162,7 +143,7 @@ TAUTLINE_PART(testEnds)
 TAUTLINE_PART(testSoon)
 {
   constexpr double stop = 0.1, soon = 0.15;
-  const PeridynamicOptions options = optionsOf(cases[0]);
+  const PeridynamicOptions options = optionsOf(nonlocalCases[0]);
   const HorizonMesh mesh = meshFor(options, 0.1);
   std::vector<double> farthest(3, 0.0);
   TAUTLINE_CHECK_THROWS(onRanks(3,
