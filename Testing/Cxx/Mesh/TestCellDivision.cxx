@@ -3,6 +3,7 @@
 // values go to the parts and back to the pieces.
 #include "Registry.h"
 #include "MovingOnRanks.h"
+
 #include "tautline/Mesh/CellDivision.h"
 
 #include <limits>
@@ -135,7 +136,7 @@ void testDivision(CellType type, Cut cut, int ranks)
 }
 
 /// Points without an owner leave their cells where they are; else the highest owner counts.
-TAUTLINE_PART(testOwners)
+void testOwners()
 {
   const MeshData whole = blockMesh(CellType::Triangle, 1, 1, 0);
   onRanks(3,
@@ -170,4 +171,5 @@ TAUTLINE_TEST(TestCellDivision)
     const Context context(topology(type).plural);
     forEachCut({ 1, 2, 3, 4 }, [type](Cut cut, int ranks) { testDivision(type, cut, ranks); });
   }
+  TAUTLINE_RUN(testOwners());
 }

@@ -3,6 +3,7 @@
 #include "Registry.h"
 #include "OptimizingRanks.h"
 #include "StretchedMeshes.h"
+
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Untangling/Untangle.h"
 
@@ -125,7 +126,7 @@ void testMethods(const char* name, CellType type, int cells, double limit)
 }
 
 /// Limits that no point reaches change nothing: the minimum is the uniform grid.
-TAUTLINE_PART(testWide)
+void testWide()
 {
   constexpr int cells = 48;
   const MeshData data = stretchedRows(CellType::Quadrilateral, cells);
@@ -189,7 +190,7 @@ void testSmall(CellType type, int cells)
 }
 
 /// Points that slide in planes stay there, with limits, too.
-TAUTLINE_PART(testSliding)
+void testSliding()
 {
   constexpr double limit = 0.05;
   const MeshData data = stretchedRows(CellType::Tetrahedron, 8);
@@ -247,7 +248,7 @@ void testSurface(CellType type, bool project)
 
 /// Limits count from the input, not from what untangling leaves: where that goes too far, it is an
 /// error, on ranks, too.
-TAUTLINE_PART(testUntangling)
+void testUntangling()
 {
   const MeshData data = stretched(CellType::Tetrahedron, 8,
     [](const Vec3& p) {
@@ -343,6 +344,7 @@ TAUTLINE_TEST(TestOptimizeLimits)
   TAUTLINE_RUN(testMethods("triangles", CellType::Triangle, 24, 0.1));
   TAUTLINE_RUN(testMethods("tetrahedra", CellType::Tetrahedron, 10, 0.1));
   TAUTLINE_RUN(testMethods("hexahedra", CellType::Hexahedron, 10, 0.1));
+  TAUTLINE_RUN(testWide());
   for (const double limit : { 0.0, 0.02, 0.05 })
   {
     TAUTLINE_RUN(testSome(limit));
@@ -350,11 +352,13 @@ TAUTLINE_TEST(TestOptimizeLimits)
   TAUTLINE_RUN(testSmall(CellType::Quadrilateral, 30));
   TAUTLINE_RUN(testSmall(CellType::Tetrahedron, 8));
   TAUTLINE_RUN(testSmall(CellType::Hexahedron, 10));
+  TAUTLINE_RUN(testSliding());
   for (const bool project : { true, false })
   {
     TAUTLINE_RUN(testSurface(CellType::Triangle, project));
     TAUTLINE_RUN(testSurface(CellType::Quadrilateral, project));
   }
+  TAUTLINE_RUN(testUntangling());
   TAUTLINE_RUN(testRanks(CellType::Hexahedron, 8, 0.1));
   TAUTLINE_RUN(testRanks(CellType::Tetrahedron, 8, 0.1));
 }
