@@ -7,12 +7,15 @@
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Types.h"
 
+#include "vtkDataArray.h"
 #include "vtkDataObject.h"
 #include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkPointSet.h"
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
+
+#include <cmath>
 
 //------------------------------------------------------------------------------
 vtkBoundaryMesher::vtkBoundaryMesher()
@@ -78,6 +81,28 @@ int vtkBoundaryMesher::RequestData(
     return 0;
   }
   return 1;
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> vtkBoundaryMesher::TakeSizes(vtkPointSet* input)
+{
+  vtkDataArray* sizes = this->GetInputArrayToProcess(0, input);
+  if (!sizes || sizes->GetNumberOfComponents() != 1 ||
+    sizes->GetNumberOfTuples() != input->GetNumberOfPoints())
+  {
+    throw tautline::Error("choose a point array with one component for the sizes");
+  }
+  std::vector<double> values;
+  for (vtkIdType i = 0; i < sizes->GetNumberOfTuples(); ++i)
+  {
+    values.push_back(sizes->GetComponent(i, 0));
+    if (!(values.back() > 0.0 && std::isfinite(values.back())))
+    {
+      throw tautline::Error("sizes must be positive and finite; that of point " +
+        std::to_string(i) + " is " + std::to_string(values.back()));
+    }
+  }
+  return values;
 }
 
 //------------------------------------------------------------------------------

@@ -7,7 +7,8 @@
  * the mesh; output port 1 is a vtkPolyData, the subdivided boundary on the same points. Both
  * have the array `BoundaryMarker`. After an error or an abort both are empty.
  *
- * Derived classes link libraries under the GPL or the AGPL, see Filters/Meshing/README.md.
+ * Derived classes run the program tautline-mesher, see Filters/Meshing/README.md; without it they
+ * report an error.
  *
  * @sa vtkTriangleMesher, vtkTetGenMesher
  */
@@ -17,6 +18,8 @@
 #include "TautlineMeshingModule.h" // for export macro
 #include "vtkTautlineSetRange.h"   // for the setters
 #include "vtkUnstructuredGridAlgorithm.h"
+
+#include <vector> // for the sizes
 
 class vtkPointSet;
 class vtkPolyData;
@@ -59,6 +62,9 @@ protected:
 
   /// Fills the outputs from an input with points. Throws tautline::Error.
   virtual void Generate(vtkPointSet* input, vtkUnstructuredGrid* output, vtkPolyData* boundary) = 0;
+
+  /// The point array to process, checked. Throws tautline::Error.
+  std::vector<double> TakeSizes(vtkPointSet* input);
 
   bool UseSizeArray = false;
   double TimeLimit = 600.0;

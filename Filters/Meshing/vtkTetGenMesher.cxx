@@ -17,7 +17,6 @@
 #include "vtkPolyData.h"
 #include "vtkUnstructuredGrid.h"
 
-#include <cmath>
 #include <map>
 
 vtkStandardNewMacro(vtkTetGenMesher);
@@ -100,26 +99,6 @@ tautline::SolidBoundary takeSurface(vtkPointSet* input)
   }
   return boundary;
 }
-
-std::vector<double> takeSizes(vtkPointSet* input, vtkDataArray* sizes)
-{
-  if (!sizes || sizes->GetNumberOfComponents() != 1 ||
-    sizes->GetNumberOfTuples() != input->GetNumberOfPoints())
-  {
-    throw Error("choose a point array with one component for the sizes");
-  }
-  std::vector<double> values;
-  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
-  {
-    values.push_back(sizes->GetComponent(i, 0));
-    if (!(values.back() > 0.0 && std::isfinite(values.back())))
-    {
-      throw Error("sizes must be positive and finite; that of point " + std::to_string(i) + " is " +
-        std::to_string(values.back()));
-    }
-  }
-  return values;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -144,7 +123,7 @@ void vtkTetGenMesher::Generate(
   };
   if (this->UseSizeArray)
   {
-    options.pointSizes = takeSizes(input, this->GetInputArrayToProcess(0, input));
+    options.pointSizes = this->TakeSizes(input);
   }
   const tautline::SolidMesh mesh = tautline::meshSolid(takeSurface(input), options);
   this->UpdateProgress(0.95);

@@ -15,9 +15,7 @@
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
 #include "vtkPointSet.h"
-#include "vtkPoints.h"
 #include "vtkPolyData.h"
-#include "vtkStaticPointLocator.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -70,51 +68,6 @@ tautline::PlanarBoundary takeBoundary(vtkPointSet* input)
   }
   return boundary;
 }
-
-/// The allowed edge at a place: that of the nearest input point, growing with the distance.
-std::function<double(double, double)> makeSizeField(
-  vtkPointSet* input, vtkDataArray* sizes, double gradation)
-{
-  if (!sizes || sizes->GetNumberOfComponents() != 1 ||
-    sizes->GetNumberOfTuples() != input->GetNumberOfPoints())
-  {
-    throw Error("choose a point array with one component for the sizes");
-  }
-  for (vtkIdType i = 0; i < sizes->GetNumberOfTuples(); ++i)
-  {
-    const double size = sizes->GetComponent(i, 0);
-    if (!(size > 0.0) || !std::isfinite(size))
-    {
-      throw Error("sizes must be positive and finite; that of point " + std::to_string(i) + " is " +
-        std::to_string(size));
-    }
-  }
-  // The locator computes squares: it searches at a scale where they neither overflow nor vanish.
-  double bounds[6];
-  input->GetBounds(bounds);
-  int exponent = 0;
-  std::frexp(std::max({ -bounds[0], bounds[1], -bounds[2], bounds[3] }), &exponent);
-  auto scaled = vtkSmartPointer<vtkPolyData>::New();
-  vtkNew<vtkPoints> points;
-  points->SetDataType(VTK_DOUBLE);
-  for (vtkIdType i = 0; i < input->GetNumberOfPoints(); ++i)
-  {
-    const double* p = input->GetPoint(i);
-    points->InsertNextPoint(std::ldexp(p[0], -exponent), std::ldexp(p[1], -exponent), 0.0);
-  }
-  scaled->SetPoints(points);
-  auto locator = vtkSmartPointer<vtkStaticPointLocator>::New();
-  locator->SetDataSet(scaled);
-  locator->BuildLocator();
-  return [=](double x, double y)
-  {
-    const double place[] = { std::ldexp(x, -exponent), std::ldexp(y, -exponent), 0.0 };
-    const vtkIdType nearest = std::max<vtkIdType>(0, locator->FindClosestPoint(place));
-    double p[3];
-    input->GetPoint(nearest, p);
-    return sizes->GetComponent(nearest, 0) + gradation * std::hypot(p[0] - x, p[1] - y);
-  };
-}
 }
 
 //------------------------------------------------------------------------------
@@ -141,8 +94,8 @@ void vtkTriangleMesher::Generate(
   }
   if (this->UseSizeArray)
   {
-    options.sizeField =
-      makeSizeField(input, this->GetInputArrayToProcess(0, input), this->Gradation);
+    options.pointSizes = this->TakeSizes(input);
+    options.gradation = this->Gradation;
   }
   options.progress = [this](tautline::Index points)
   {

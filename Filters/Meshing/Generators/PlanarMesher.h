@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlanarMesher.h
- * @brief Quality triangulation of a planar region with CGAL (GPL); no VTK, and no CGAL in this
- * header.
+ * @brief Quality triangulation of a planar region with CGAL (GPL), which the program
+ * tautline-mesher links; this library and its users do not.
  *
  * The constrained Delaunay triangulation of the segments is refined until no triangle has an angle
  * below a bound or an edge above a size (J. Shewchuk's and J. Ruppert's algorithms as CGAL has
@@ -17,6 +17,7 @@
 #include "tautline/Domains/Domains.h"
 
 #include <functional>
+#include <vector>
 
 namespace tautline
 {
@@ -28,8 +29,10 @@ struct PlanarOptions
   double minimumAngle = 20.7;
   /// Longest edge allowed; 0 for no bound.
   double size = 0.0;
-  /// Longest edge allowed near a place; empty for none. Both bounds hold.
-  std::function<double(double, double)> sizeField;
+  /// Longest edge allowed at each point of the boundary, above 0; empty for none. Elsewhere it is
+  /// the value of the nearest point plus gradation times the distance. Both bounds hold.
+  std::vector<double> pointSizes;
+  double gradation = 0.0;
   /// Whether there are no triangles where the boundary has `holes`. Otherwise there are none in
   /// every part that an odd number of outlines does not surround.
   bool holesGiven = false;
@@ -49,7 +52,8 @@ struct PlanarMesh
   std::vector<int> edgeMarkers;
 };
 
-/// Throws Error: crossing segments are named, as are points that are not finite.
+/// Runs the program tautline-mesher. Throws Error: crossing segments are named, as are points that
+/// are not finite; where the program is missing, the package that has it.
 TAUTLINE_MESH_GENERATORS_EXPORT PlanarMesh meshPlane(
   const PlanarBoundary& boundary, const PlanarOptions& options);
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SolidMesher.h
- * @brief Quality tetrahedralization of a region with TetGen (AGPL); no VTK, and no TetGen in this
- * header.
+ * @brief Quality tetrahedralization of a region with TetGen (AGPL), which the program
+ * tautline-mesher links; this library and its users do not.
  *
- * TetGen is called as a library, in a forked process: whatever it does there (throw, crash, exit,
- * loop) comes out as an Error here, or can be stopped. For surfaces that intersect themselves the
- * Error names the facets. The result depends on nothing but the input.
+ * Whatever TetGen does there (throw, crash, exit, loop) comes out as an Error here, or can be
+ * stopped. For surfaces that intersect themselves the Error names the facets. The result depends on
+ * nothing but the input.
  */
 #ifndef tautline_SolidMesher_h
 #define tautline_SolidMesher_h
@@ -16,6 +16,7 @@
 #include "tautline/Domains/Domains.h"
 
 #include <functional>
+#include <vector>
 
 namespace tautline
 {
@@ -50,6 +51,8 @@ struct SolidMesh
   std::vector<int> faceMarkers;
 };
 
+/// Runs the program tautline-mesher. Throws Error; where the program is missing, it names the
+/// package that has it.
 TAUTLINE_MESH_GENERATORS_EXPORT SolidMesh meshSolid(
   const SolidBoundary& boundary, const SolidOptions& options);
 }

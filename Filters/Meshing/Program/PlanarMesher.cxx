@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PlanarMesher.h"
 
-#include "tautline/Core/Interruption.h"
+#include "SizeField.h"
+
 #include "tautline/Core/Memory.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
@@ -39,6 +40,12 @@ using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Traits, Structu
 using Vertex = Triangulation::Vertex_handle;
 using Face = Triangulation::Face_handle;
 
+/// The options, with the sizes at points as a function of the place.
+struct Bounds : PlanarOptions
+{
+  std::function<double(double, double)> sizeField;
+};
+
 /// Angle and size bounds after CGAL's concept MeshingCriteria_2.
 class Criteria
 {
@@ -63,7 +70,7 @@ public:
   class Is_bad
   {
   public:
-    Is_bad(const PlanarOptions& options, double smallest)
+    Is_bad(const Bounds& options, double smallest)
       : Options(options)
       , Smallest(smallest)
     {
@@ -100,12 +107,12 @@ public:
     }
 
   private:
-    const PlanarOptions& Options;
+    const Bounds& Options;
     double Smallest; ///< squared edge below which angles do not count
     double Bound;
   };
 
-  Criteria(const PlanarOptions& options, double smallest)
+  Criteria(const Bounds& options, double smallest)
     : Options(&options)
     , Smallest(smallest)
   {
@@ -113,7 +120,7 @@ public:
   Is_bad is_bad_object() const { return Is_bad(*this->Options, this->Smallest); }
 
 private:
-  const PlanarOptions* Options;
+  const Bounds* Options;
   double Smallest;
 };
 
@@ -144,9 +151,9 @@ void scale(std::vector<double>& values, int exponent)
   }
 }
 
-PlanarOptions scaled(const PlanarOptions& options, int exponent)
+Bounds scaled(const PlanarBoundary& boundary, const PlanarOptions& options, int exponent)
 {
-  PlanarOptions result = options;
+  Bounds result = { options, {} };
   // Of the largest coordinate; shorter edges can hardly be told from points.
   constexpr double Resolution = 1e-13;
   const auto size = [exponent](double value)
@@ -163,10 +170,15 @@ PlanarOptions scaled(const PlanarOptions& options, int exponent)
     return relative;
   };
   result.size = size(options.size);
-  if (options.sizeField)
+  if (!options.pointSizes.empty())
   {
+    if (options.pointSizes.size() != boundary.points.size() / 2)
+    {
+      throw Error("there must be one size for each point");
+    }
+    const auto field = makeSizeField(boundary.points, options.pointSizes, options.gradation);
     result.sizeField = [=](double x, double y)
-    { return size(options.sizeField(std::ldexp(x, -exponent), std::ldexp(y, -exponent))); };
+    { return size(field(std::ldexp(x, -exponent), std::ldexp(y, -exponent))); };
   }
   return result;
 }
@@ -312,7 +324,7 @@ void markDomain(Triangulation& triangulation, const PlanarBoundary& boundary, bo
   }
 }
 
-void refine(Triangulation& triangulation, const PlanarOptions& options, double smallest)
+void refine(Triangulation& triangulation, const Bounds& options, double smallest)
 {
   CGAL::Delaunay_mesher_2<Triangulation, Criteria> mesher(
     triangulation, Criteria(options, smallest));
@@ -323,7 +335,6 @@ void refine(Triangulation& triangulation, const PlanarOptions& options, double s
   double checked = 1e5;
   while (!mesher.is_refinement_done())
   {
-    throwIfInterrupted();
     for (int step = 0; step < Steps && mesher.try_one_step_refine_mesh(); ++step)
     {
     }
@@ -407,7 +418,7 @@ PlanarMesh meshPlane(const PlanarBoundary& given, const PlanarOptions& required)
   PlanarBoundary boundary = given;
   scale(boundary.points, -exponent);
   scale(boundary.holes, -exponent);
-  const PlanarOptions options = scaled(required, -exponent);
+  const Bounds options = scaled(given, required, -exponent);
   if (!(options.minimumAngle >= 0.0 && options.minimumAngle <= 35.0) || !(options.size >= 0.0))
   {
     throw Error("the smallest angle must be from 0 to 35 degrees and the size not negative");

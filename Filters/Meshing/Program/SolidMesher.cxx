@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SolidMesher.h"
 
-#include "tautline/Core/Interruption.h"
+#include "Termination.h"
+
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/VectorAlgebra.h"
 
@@ -13,9 +14,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <exception>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -238,10 +239,6 @@ private:
   {
     _exit(notBegun);
   }
-  for (const int signal : { SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL, SIGTERM, SIGINT })
-  {
-    ::signal(signal, SIG_DFL); // no backtraces of the calling program
-  }
   const rlimit noCore = { 0, 0 };
   setrlimit(RLIMIT_CORE, &noCore);
   limitMemory(available); // TetGen reports the lack of it; the system would end a process
@@ -297,8 +294,9 @@ constexpr int Crashed = -1;
 constexpr int Stopped = -2;
 constexpr int TooLong = -3;
 
-/// Reads the pipe until it closes, and regularly checks for a stop; 0, Stopped or TooLong.
-int readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
+/// Reads the pipe until it closes or a stop is requested; 0, Stopped or TooLong.
+int readAll(int pipe, const TerminationSignal& termination, const SolidOptions& options,
+  std::vector<char>& bytes)
 {
   using Clock = std::chrono::steady_clock;
   constexpr int Milliseconds = 200;
@@ -306,10 +304,9 @@ int readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
   std::vector<char> buffer(1 << 16);
   while (true)
   {
-    pollfd poll = { pipe, POLLIN, 0 };
-    const int ready = ::poll(&poll, 1, Milliseconds);
-    throwIfInterrupted();
-    if (ready == 0 && options.progress && !options.progress())
+    pollfd files[] = { { pipe, POLLIN, 0 }, { termination.file(), POLLIN, 0 } };
+    const int ready = ::poll(files, std::size(files), Milliseconds);
+    if (ready > 0 && files[1].revents != 0)
     {
       return Stopped;
     }
@@ -328,14 +325,16 @@ int readAll(int pipe, const SolidOptions& options, std::vector<char>& bytes)
 }
 
 /**
- * Runs TetGen; 0, the number it throws, Crashed, Stopped or TooLong. It runs in a process of its
- * own: TetGen 1.5 frees its memory twice when it throws, which would take this program with it, and
- * some inputs make it loop or crash. Where TetGen 1.6 throws, the mesh has the markers of the
+ * Runs TetGen; 0, the number it throws, Crashed, Stopped or TooLong. It runs in a child process:
+ * TetGen 1.5 frees its memory twice when it throws, which would end this program as well, and
+ * some inputs make it loop or crash. The child ends with this process, and SIGTERM to this process
+ * ends the child and removes the folder of its files first. Where TetGen 1.6 throws, the mesh has the markers of the
  * facets that intersect others.
  */
 int run(const std::string& switches, const SolidBoundary& boundary, const SolidOptions& options,
   bool numbers, SolidMesh& mesh)
 {
+  const TerminationSignal termination;
   const ScratchFolder folder;
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0)
@@ -343,25 +342,21 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
     throw Error(std::string("no pipe for TetGen: ") + std::strerror(errno));
   }
   const double available = availableMemory();
+  const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child == 0)
   {
+    if (!endWithParent(parent, SIGKILL))
+    {
+      _exit(1);
+    }
+    termination.release();
     ::close(ends[0]);
     work(switches, boundary, options, numbers, available, folder.path(), ends[1]);
   }
   ::close(ends[1]);
   std::vector<char> bytes;
-  int ended = 0;
-  std::exception_ptr interruption;
-  try
-  {
-    ended = child > 0 ? readAll(ends[0], options, bytes) : 0;
-  }
-  catch (...) // an interruption, or of the observer
-  {
-    interruption = std::current_exception();
-    ended = Stopped;
-  }
+  const int ended = child > 0 ? readAll(ends[0], termination, options, bytes) : 0;
   ::close(ends[0]);
   if (child < 0)
   {
@@ -374,10 +369,6 @@ int run(const std::string& switches, const SolidBoundary& boundary, const SolidO
   int status = 0;
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR)
   {
-  }
-  if (interruption)
-  {
-    std::rethrow_exception(interruption);
   }
   if (ended != 0)
   {
