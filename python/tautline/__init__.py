@@ -8,7 +8,8 @@
 The functions take a mesh as a vtkDataSet, a file name, (points, cells) numpy arrays or the result of another function,
 and never change it. They return a result; where it has a mesh, this is its attribute `mesh`. Errors raise
 tautline.Error. Functions that can take long have the arguments time_limit and progress, and end soon after Ctrl-C.
-The compiled VTK classes (vtkElementQuality, ...) are attributes of the package, too.
+The compiled VTK classes (vtkElementQuality, ...) are attributes of the package. Those that solve linear systems load
+PETSc when they are first used.
 `python3 -m tautline --help` shows the same functions as commands of the shell.
 """
 
@@ -95,7 +96,17 @@ if _vtk.available("_peridynamics"):
     from ._peridynamics_parts import HorizonResult, PeridynamicsResult
     __all__ += ["HorizonResult", "PeridynamicsResult", "horizon_neighbors", "interaction_layer", "peridynamics"]
 
-globals()["__all__"] += sorted(_vtk.CLASSES)
+globals()["__all__"] += sorted([*_vtk.CLASSES, *_vtk.LATER])
+
+if not TYPE_CHECKING:  # to a type checker every name would be an attribute
+
+    def __getattr__(name):
+        if name in _vtk.LATER:
+            return getattr(_vtk, name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+    def __dir__():
+        return sorted({*globals(), *_vtk.LATER})
 
 if "pyvista" in sys.modules and hasattr(sys.modules["pyvista"], "DataObject"):
     _import_module(".pyvista", __name__)

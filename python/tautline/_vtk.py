@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The compiled modules of the package and their VTK classes.
 
-Every compiled module that was built (TautlineQuality, ...) stands beside this file. Its classes become attributes of
-this module: `_vtk.vtkElementQuality()`. An optional module that was not built is skipped; a module that exists but
-cannot be imported raises ImportError.
+Every compiled module that was built (TautlineQuality, ...) stands beside this file. Its classes are attributes of this
+module: `_vtk.vtkElementQuality()`. An optional module that was not built is skipped; a module that exists but cannot be
+imported raises ImportError. The modules with linear solvers, which load PETSc and its libraries, are imported when one
+of their classes is used.
 """
 
 from __future__ import annotations
@@ -41,13 +42,28 @@ CAPABILITIES = {
     "_pipeline": "TautlineQuality",
 }
 
-#: The compiled classes by name.
-CLASSES = {
-    name: value
-    for module in sorted(MODULES)
-    for name, value in vars(import_module(f".{module}", __package__)).items()
-    if name.startswith("vtk")
-}
+#: The classes of the modules that link PETSc, by module.
+_OF_SOLVERS = {
+    "TautlineDeformation": ("vtkMeshWarp", "vtkMovingBoundary"),
+    "TautlineElliptic": (
+        "vtkConditionEstimator", "vtkEllipticAlgorithm", "vtkEllipticSolver", "vtkKrylovAlgorithm",
+        "vtkMeshDecomposition", "vtkSolverStudy",
+    ),
+    "TautlinePeridynamics": ("vtkHorizonNeighbors", "vtkInteractionLayer", "vtkPeridynamicStiffness"),
+}  # fmt: skip
+
+#: The module of each class that is imported on its first use.
+LATER = {name: module for module in MODULES & _OF_SOLVERS.keys() for name in _OF_SOLVERS[module]}
+
+
+def _classes(module: str) -> dict[str, Any]:
+    """Import a compiled module; its classes by name."""
+    found = vars(import_module(f".{module}", __package__))
+    return {name: value for name, value in found.items() if name.startswith("vtk")}
+
+
+#: The compiled classes by name, without those in LATER.
+CLASSES = {name: value for module in sorted(MODULES - _OF_SOLVERS.keys()) for name, value in _classes(module).items()}
 globals().update(CLASSES)
 
 
@@ -57,4 +73,7 @@ def available(capability: str) -> bool:
 
 
 def __getattr__(name: str) -> Any:
+    if name in LATER:
+        globals().update(_classes(LATER[name]))
+        return globals()[name]
     raise AttributeError(f"{name} is in none of the compiled modules that were built: {', '.join(sorted(MODULES))}")
