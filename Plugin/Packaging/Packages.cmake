@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
 # Packages for Debian, made by ./run package (cpack -G DEB): libtautline, python3-tautline, paraview-tautline,
-# libtautline-dev and tautline-doc, one for each install component.
+# tautline-meshers, libtautline-dev and tautline-doc, one for each install component.
 install(DIRECTORY Data/ DESTINATION "${CMAKE_INSTALL_DATADIR}/tautline/samples" COMPONENT doc
   PATTERN "*.py" EXCLUDE)
 install(DIRECTORY python/examples python/studies DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT doc
@@ -17,6 +17,11 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_COMPONENTS_ALL runtime python plugin development doc)
+set(meshers)
+if (TAUTLINE_MESHING)
+  list(APPEND CPACK_COMPONENTS_ALL meshers)
+  set(meshers ", tautline-meshers")
+endif ()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
@@ -53,15 +58,33 @@ if (EXISTS "${requirements}")
   string(REPLACE " " ", " headers "${headers}")
 endif ()
 
-# tautline_package(COMPONENT NAME SUMMARY TEXT DEPENDS): a package of one install component.
+# The license as Debian's copyright files have it: indented, a point in empty lines.
+file(STRINGS LICENSE lines)
+set(TAUTLINE_LICENSE)
+foreach (line IN LISTS lines)
+  if (line STREQUAL "")
+    set(line ".")
+  endif ()
+  string(APPEND TAUTLINE_LICENSE " ${line}\n")
+endforeach ()
+
+# tautline_package(COMPONENT NAME SUMMARY TEXT DEPENDS): a package of one install component. The file of its name in
+# notices says what its binaries link, under which licenses: a comment, and after an empty line the licenses of parts.
 function (tautline_package component name summary text depends)
   string(TOUPPER "${component}" upper)
   set("CPACK_DEBIAN_${upper}_PACKAGE_NAME" "${name}" PARENT_SCOPE)
   set("CPACK_DEBIAN_${upper}_DESCRIPTION" "${summary}\n${text}" PARENT_SCOPE)
   string(REGEX REPLACE "(^, |, $)" "" depends "${depends}")
   set("CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS" "${depends}" PARENT_SCOPE)
-  install(FILES LICENSE DESTINATION "${CMAKE_INSTALL_DATADIR}/doc/${name}" COMPONENT "${component}"
-    RENAME copyright)
+  file(READ "${PROJECT_SOURCE_DIR}/Plugin/Packaging/notices/${component}" notice)
+  string(REGEX MATCH "^([^\n]*\n)([^\n]+\n)*" TAUTLINE_NOTICE "${notice}")
+  string(LENGTH "${TAUTLINE_NOTICE}" length)
+  string(SUBSTRING "${notice}" ${length} -1 TAUTLINE_FURTHER_LICENSES)
+  set(copyright "${CMAKE_BINARY_DIR}/Packaging/copyright/${name}")
+  configure_file(Plugin/Packaging/copyright.in "${copyright}" @ONLY)
+  set(place "${CMAKE_INSTALL_DATADIR}/doc/${name}")
+  install(FILES "${copyright}" DESTINATION "${place}" COMPONENT "${component}" RENAME copyright)
+  install(FILES Plugin/Site/licenses.md DESTINATION "${place}" COMPONENT "${component}" RENAME THIRD-PARTY.md)
 endfunction ()
 tautline_package(runtime libtautline "measures, repairs, deforms and matches meshes - libraries"
   "C++ libraries: the numerics, which need no VTK, and modules for the VTK of ParaView." "${paraview}")
@@ -70,12 +93,17 @@ tautline_package(python python3-tautline "measures, repairs, deforms and matches
 tautline_package(plugin paraview-tautline "measures, repairs, deforms and matches meshes - plugin for ParaView"
   "Filters, sources, readers, writers and panels. ParaView loads the plugin when it starts.\n\
 The package tautline-doc has a tutorial: /usr/share/doc/tautline/help/tutorial.html" "${library}, ${paraview}")
+if (TAUTLINE_MESHING)
+  tautline_package(meshers tautline-meshers "measures, repairs, deforms and matches meshes - mesh generators"
+    "A program that the meshers and domains of the other packages run. It links TetGen\n\
+and CGAL, which are under the AGPL and the GPL; the other packages do not." "${library}, ${paraview}")
+endif ()
 tautline_package(development libtautline-dev "measures, repairs, deforms and matches meshes - development files"
   "Headers and CMake files, for find_package(Tautline)." "${library}, paraview-dev, ${headers}")
 tautline_package(doc tautline-doc "measures, repairs, deforms and matches meshes - documentation"
   "Help pages, tutorial, sample meshes, example scripts and the studies of the dissertation." "")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "tautline-doc")
-set(CPACK_DEBIAN_PLUGIN_PACKAGE_RECOMMENDS "tautline-doc, python3-tautline")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "tautline-doc${meshers}")
+set(CPACK_DEBIAN_PLUGIN_PACKAGE_RECOMMENDS "tautline-doc, python3-tautline${meshers}")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_DOC_PACKAGE_SECTION doc)

@@ -5,7 +5,7 @@
 # debootstrap and the network; takes about 2 GB in TMPDIR. TAUTLINE_CHROOT names a chroot to use again.
 set -euo pipefail
 packages="$(cd "$1" && pwd -P)" version="$2" source="$3" suite="${4:-bookworm}" mirror="${5:-http://deb.debian.org/debian}"
-names=(libtautline python3-tautline paraview-tautline libtautline-dev tautline-doc)
+names=(libtautline python3-tautline paraview-tautline tautline-meshers libtautline-dev tautline-doc)
 fail() { echo "test_packages.sh: $*" >&2; exit 1; }
 ((EUID == 0)) || fail "a chroot needs root"
 
@@ -63,6 +63,18 @@ inside 'cd /tmp; tautline untangle /usr/share/tautline/samples/bracket-tangled.v
   tee "$root/quality.log"
 grep -q 'inverted' "$root/quality.log" || fail "no quality"
 inside 'cd /tmp; python3 -c "import tautline as tl; q = tl.quality(\"valid.vtu\"); print(tl.__version__, q.inverted); assert q.inverted == 0"'
+
+echo "--- the mesh generators are a package of their own, which the others do without"
+without="$(inside 'cd /tmp; mv /usr/libexec/tautline/tautline-mesher /tmp; code=0
+  tautline tet-mesh /usr/share/tautline/samples/cube.smesh -o cube.vtu 2>&1 || code=$?
+  mv /tmp/tautline-mesher /usr/libexec/tautline; echo "code $code"')"
+[[ $without == *"install the Debian package tautline-meshers"*"code 1" ]] || fail "without tautline-meshers: $without"
+inside 'cd /tmp; tautline tet-mesh /usr/share/tautline/samples/cube.smesh -o cube.vtu'
+inside 'python3 -c "import tautline; maps = open(\"/proc/self/maps\").read(); assert \"libtet\" not in maps and \"petsc\" not in maps"'
+for name in "${names[@]}"; do
+  inside "grep -q '^License: BSD-3-Clause' /usr/share/doc/$name/copyright" || fail "no copyright of $name"
+done
+inside 'grep -q "^License: AGPL-3+" /usr/share/doc/tautline-meshers/copyright'
 
 echo "--- every example script runs"
 inside 'shopt -s nullglob; mkdir -p /tmp/examples; cd /tmp/examples

@@ -135,6 +135,7 @@ def closure(path: Path) -> set[str]:
 
 
 CACHE = subprocess.run(["/sbin/ldconfig", "-p"], capture_output=True, text=True, check=True).stdout
-INSTALLED = {name: Path(path) for name, path in reversed(re.findall(r"^\s+(\S+) \(.*\) => (\S+)$", CACHE, re.MULTILINE))}
+ENTRY = re.compile(r"^\s+(\S+) \(.*\) => (\S+)$", re.MULTILINE)
+INSTALLED = {name: Path(path) for name, path in reversed(ENTRY.findall(CACHE))}  # the first counts
 
 run_tests(globals())

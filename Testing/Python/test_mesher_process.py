@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The program of the meshers: it ends with the process that started it; where it is missing, an error names the package."""
+"""The program of the meshers ends with the process that started it; where it is missing, an error names the package."""
 
 import os
 import shutil
@@ -104,9 +104,11 @@ def test_not_installed():
     """Without the package of the program: a copy of the libraries, with no program beside them."""
     top = OUT / "no-mesher"
     shutil.rmtree(top, ignore_errors=True)
-    shutil.copytree(OWN / "lib", top / "lib", symlinks=True, ignore=shutil.ignore_patterns("paraview-*", "cmake", "*.a"))
+    left_out = shutil.ignore_patterns("paraview-*", "cmake", "*.a")
+    shutil.copytree(OWN / "lib", top / "lib", symlinks=True, ignore=left_out)
     script = "import tautline as tl; print(tl.quality(tl.domain('rectangle')).inverted); tl.domain('disk2d')"
-    environment = dict(os.environ, PYTHONPATH=str(top / "lib/python3/dist-packages"), LD_LIBRARY_PATH=str(top / "lib"))
+    package = top / "lib/python3/dist-packages"
+    environment = dict(os.environ, PYTHONPATH=str(package), LD_LIBRARY_PATH=str(top / "lib"))
     done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True)
     assert done.stdout == "0\n" and done.returncode == 1, done
     assert wording("install-the-debian-package-meshers") in done.stderr, done.stderr

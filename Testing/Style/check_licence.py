@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """check_licence.py SOURCE_TREE [--write]: every source file names its licence in its first lines, as SPDX has it.
 
---write inserts the line where it is missing: after #! and <?xml ...?>, before everything else.
+REUSE.toml has the licence of all other files, LICENSES its text. --write inserts the line where it is missing: after #!
+and <?xml ...?>, before everything else.
 """
 
+import re
 import sys
 from pathlib import Path
 
@@ -33,6 +35,22 @@ def with_licence(text: str, comment: str) -> str:
     return "\n".join(lines)
 
 
+def reuse_complaints(top: Path):
+    """What the REUSE specification requires beside the lines in sources: a licence for every file, the text of each."""
+    text = (top / "REUSE.toml").read_text(encoding="utf-8")
+    named = set(re.findall(r'^SPDX-License-Identifier = "(.*)"$', text, re.MULTILINE))
+    if 'path = "**"' not in text or text.count("[[annotations]]") != text.count("SPDX-FileCopyrightText"):
+        yield "REUSE.toml does not have the copyright of every file"
+    texts = {path.stem for path in (top / "LICENSES").iterdir()}
+    if named != texts:
+        yield f"REUSE.toml names {sorted(named)}, LICENSES has {sorted(texts)}"
+    for path in re.findall(r'"([\w/]+)/\*\*"', text):
+        if not (top / path).is_dir():
+            yield f"REUSE.toml names {path}, which does not exist"
+    if (top / "LICENSES" / "BSD-3-Clause.txt").read_bytes() != (top / "LICENSE").read_bytes():
+        yield "LICENSES/BSD-3-Clause.txt is not LICENSE"
+
+
 def main(top: Path, write: bool) -> int:
     files, missing = list(sources(top)), 0
     for path in files:
@@ -44,8 +62,9 @@ def main(top: Path, write: bool) -> int:
             continue
         missing += 1
         print(f"{path} has no line '{LICENCE}': {Path(__file__).name} SOURCE_TREE --write inserts it")
-    print(f"{len(files)} files, {missing} without licence")
-    return 1 if missing or not files else 0
+    wrong = list(reuse_complaints(top))
+    print(*wrong, f"{len(files)} files, {missing} without licence", sep="\n")
+    return 1 if missing or wrong or not files else 0
 
 
 if __name__ == "__main__":

@@ -326,10 +326,10 @@ int readAll(int pipe, const TerminationSignal& termination, const SolidOptions& 
 
 /**
  * Runs TetGen; 0, the number it throws, Crashed, Stopped or TooLong. It runs in a child process:
- * TetGen 1.5 frees its memory twice when it throws, which would end this program as well, and
- * some inputs make it loop or crash. The child ends with this process, and SIGTERM to this process
- * ends the child and removes the folder of its files first. Where TetGen 1.6 throws, the mesh has the markers of the
- * facets that intersect others.
+ * TetGen 1.5 frees its memory twice when it throws, which would end this program as well, and some
+ * inputs make it loop or crash. The child ends with this process, and SIGTERM to this process ends
+ * the child and removes the folder of its files first. Where TetGen 1.6 throws, the mesh has the
+ * markers of the facets that intersect others.
  */
 int run(const std::string& switches, const SolidBoundary& boundary, const SolidOptions& options,
   bool numbers, SolidMesh& mesh)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// tautline-mesher VERSION PARENT: reads a request from standard input, meshes it, writes the answer
-// to standard output, both as MesherMessages.h has them. The library TautlineMeshGenerators runs it.
+// tautline-mesher VERSION PARENT: reads a request from standard input, meshes it, and writes the
+// answer to standard output, both as MesherMessages.h has them. The library TautlineMeshGenerators
+// runs it.
 
 #include "MesherMessages.h"
 #include "Termination.h"
