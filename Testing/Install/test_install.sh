@@ -17,7 +17,7 @@ echo "--- no library of Tautline is missing, nothing points into the build tree"
 while IFS= read -r -d '' library; do
   if ldd "$library" | grep -E 'not found'; then echo "in $library" >&2; exit 1; fi
   if readelf -d "$library" | grep -E 'R(UN)?PATH' | grep -F "$build"; then echo "in $library" >&2; exit 1; fi
-done < <(find "$tree" -name '*.so' -print0)
+done < <(find "$tree" \( -name '*.so' -o -name 'libTautline*.so.*' -o -name tautline-mesher \) -print0)
 if grep -rlF --include='*.cmake' -e "$build" -e "$work/first" "$tree"; then
   echo "these package files contain paths of the build" >&2; exit 1
 fi
@@ -69,6 +69,20 @@ import tautline
 assert tautline.__file__.startswith(sys.argv[1]), tautline.__file__
 print(tautline.vtkElementQuality().GetClassName(), tautline.__file__)
 PYTHON
+
+  program="$tree/libexec/tautline/tautline-mesher"
+  if [[ -x $program ]]; then
+    echo "--- the program of the mesh generators is found in the moved tree, and named where it is missing"
+    tet_mesh() {
+      PYTHONPATH="$tree/lib/python3/dist-packages" "$python" -m tautline tet-mesh "$tree/share/tautline/samples/cube.smesh" \
+        -o "$work/cube.vtu"
+    }
+    tet_mesh
+    mv "$program" "$work/program"
+    without="$(tet_mesh 2>&1 || true)"
+    mv "$work/program" "$program"
+    if [[ $without != *"none at $program; install the Debian package tautline-meshers"* ]]; then echo "$without" >&2; exit 1; fi
+  fi
 
   echo "--- the studies are part of the documents, not of the package"
   study() { PYTHONPATH="$tree/lib/python3/dist-packages" "$python" -m tautline study list; }
