@@ -102,7 +102,7 @@ if not TYPE_CHECKING:  # to a type checker every name would be an attribute
 
     def __getattr__(name):
         if name in _vtk.LATER:
-            return getattr(_vtk, name)
+            return globals().setdefault(name, getattr(_vtk, name))
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
     def __dir__():
