@@ -3,10 +3,12 @@
 
 import sys
 import warnings
+from importlib.util import find_spec
 
 import numpy as np
 import tautline as tl
 from checks import DATA, OUT, points, refused, run_tests, shell, square, wording
+from tautline._meshio import MESHIO_FORMATS
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkUnstructuredGrid
 
@@ -65,6 +67,33 @@ coordinates
 tetra4
          1
          1         2         3         4
+"""
+
+
+SU2_CUBE = """% a comment
+NDIME = 3
+NZONE= 1
+NELEM= 2 % of two kinds
+12 0 1 2 3 4 5 6 7 0
+14 4 5 6 7 8 1
+NPOIN= 9 9 0
+0 0 0 0
+1 0 0 1
+1 1 0 2
+0 1 0 3
+0 0 1 4
+1 0 1 5
+1 1 1 6
+0 1 1 7
+0.5 0.5 2.5 8
+NMARK= 2
+MARKER_TAG= lower wall
+MARKER_ELEMS= 1
+9 0 3 2 1
+MARKER_TAG= 7x
+MARKER_ELEMS= 2
+5 4 5 8
+5 5 6 8
 """
 
 
@@ -243,6 +272,66 @@ def test_meshio():
     images = tl.metric_field(dimensions=(3, 3)).mesh
     refused(wording("vtk-s-type-8"), tl.to_meshio, images)
     assert tl.to_meshio(square(2)).points.shape == (9, 3)
+
+
+def test_round_trips():
+    """What the table says is written comes back: the cells and their sizes, of a mesh and of a result with arrays."""
+    plane, solid = square(2), tl.read(DATA / "bracket.vtu")
+    assert {row["ending"] for row in tl.formats() if row["by"] == "meshio" and row["write"]} <= set(MESHIO_FORMATS)
+    for row in tl.formats():
+        if row["by"] != "meshio" or not row["write"]:
+            continue
+        for name, mesh in (("plane", plane), ("solid", solid)):
+            for what in (mesh, tl.quality(mesh, ["imr", "rr"])):
+                file = FOLDER / f"{name}{row['ending']}"
+                file.write_text("older")
+                if row["ending"] == ".f3grid" and mesh is plane:
+                    refused(wording("cells-of-3-dimensions"), tl.write, what, file)
+                    assert file.read_text() == "older"
+                    continue
+                tl.write(what, file)
+                found, known = tl.quality(file, "size"), tl.quality(mesh, "size")
+                assert (found.validity > -2).sum() == mesh.GetNumberOfCells() and found.inverted == 0, file
+                assert np.isclose(found.values["size"].sum(), known.values["size"].sum(), rtol=1e-4), file
+
+
+def test_su2():
+    """Cells below the largest dimension are markers, named by Reference; damages are named with their line."""
+    cube = FOLDER / "cube.su2"
+    cube.write_text(SU2_CUBE)
+    mesh = tl.read(cube)
+    assert mesh.GetNumberOfCells() == 2 and tl.quality(mesh, "size").values["size"].sum() == 1.5
+    mesh = tl.read(cube, lower_cells=True)
+    assert vtk_to_numpy(mesh.GetCellData().GetArray("Reference")).tolist() == [0, 0, 1, 2, 2]
+    tl.write(mesh, FOLDER / "again.su2")
+    again = tl.read(FOLDER / "again.su2", lower_cells=True)
+    assert [again.GetFieldData().GetAbstractArray("Markers").GetValue(i) for i in (0, 1)] == ["lower wall", "7x"]
+    assert (points(again) == points(mesh)).all() and again.GetNumberOfCells() == 5
+    for old, new, text in (("NELEM= 2", "NELEM= 3", "cube.su2:7: "), ("NPOIN= 9 9 0", "NPOIN= 8", "cube.su2:16: "),
+                           ("0 0 1 4", "x 0 1 4", "cube.su2:12: "), ("12 0 1 2 3", "12 0 1", "cube.su2:5: "),
+                           ("14 4 5 6 7 8", "14 4 5 6 7 9", "cube.su2:6: "), ("NDIME = 3", "NDIME = 4", "cube.su2:2: "),
+                           ("0 0 0 0\n", "nan 0 0 0\n", "cube.su2:8: ")):  # fmt: skip
+        assert old in SU2_CUBE
+        cube.write_text(SU2_CUBE.replace(old, new, 1))
+        refused(text, tl.read, cube)
+    complete = (SU2_CUBE.index("NMARK") - 1, SU2_CUBE.index("NMARK"), len(SU2_CUBE) - 1)  # there or without markers
+    for end in set(range(len(SU2_CUBE))) - set(complete):
+        cube.write_bytes(SU2_CUBE.encode()[:end])
+        refused("cube.su2", tl.read, cube)
+    if not find_spec("meshio"):
+        return
+    import meshio
+
+    blocks = [("line", [[0, 1], [1, 2]]), ("triangle", [[0, 1, 2]]), ("quad", [[0, 2, 3, 4]])]
+    corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [-1, 0.1, 0]]
+    labels = {"Reference": [np.array([7, 8]), np.array([0]), np.array([0])], "other": [np.zeros(2), [0.5], [0.5]]}
+    tl.write(meshio.Mesh(corners, blocks, cell_data=labels), FOLDER / "markers.su2")
+    text = (FOLDER / "markers.su2").read_text()
+    assert text.splitlines()[:4] == ["NDIME= 2", "NELEM= 2", "5 0 1 2", "9 0 2 3 4"]
+    assert text.endswith("NMARK= 2\nMARKER_TAG= 7\nMARKER_ELEMS= 1\n3 0 1\nMARKER_TAG= 8\nMARKER_ELEMS= 1\n3 1 2\n")
+    corners[3][2] = 0.5
+    refused(wording("no-surfaces-in-space"), tl.write, meshio.Mesh(corners, blocks), FOLDER / "markers.su2")
+    assert (FOLDER / "markers.su2").read_text() == text
 
 
 def test_views():

@@ -16,6 +16,7 @@ import stat
 import subprocess
 import sys
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import tautline as tl
@@ -35,7 +36,8 @@ CLASSES = {".mesh": "vtkMeditWriter", ".msh": "vtkGmshWriter", ".off": "vtkOffWr
 SURFACES = (".vtp", ".ply", ".stl", ".off")
 MESHES = (".vtu", ".vtk", ".vtm", ".vti", ".node", ".poly", ".mesh", ".msh")
 TEXTS = (".csv", ".png")
-WRITERS = (*MESHES, *SURFACES, *TEXTS, *(f"{name} {ending}" for ending, name in CLASSES.items()))
+MESHIO = (".inp", ".bdf", ".su2", ".mdpa") if find_spec("meshio") else ()
+WRITERS = (*MESHES, *SURFACES, *TEXTS, *MESHIO, *(f"{name} {ending}" for ending, name in CLASSES.items()))
 
 
 def new_folder(name: str) -> Path:

@@ -9,7 +9,7 @@ from typing import Any
 from . import _commands
 from ._errors import checked
 from ._formats import FORMATS
-from ._io import read, readable
+from ._io import SU2, read, readable
 from ._meshio import MESHIO_FORMATS, installed
 from ._tables import align
 from ._vtk_readers import SERIES, SOLVER_FORMATS
@@ -43,13 +43,15 @@ def _facts(ending: str) -> dict[str, Any]:
         form = FORMATS[ending]
         facts |= {"read": form.reader is not None, "write": form.writer is not None}
         facts["by"] = "Tautline" if form.own else "VTK"
+    elif ending == SU2:
+        facts |= {"format": "SU2", "write": True, "by": "Tautline"}
     elif ending == SERIES:
         facts |= {"format": "ParaView, files by time", "times": True, "by": "Tautline"}
     elif ending in SOLVER_FORMATS:
         solver = SOLVER_FORMATS[ending]
         facts |= {"format": solver.title, "read": solver.built(), "times": solver.times}
     elif meshio:
-        here = installed()
+        here = installed(ending)
         facts |= {"format": MESHIO_FORMATS[ending], "read": here, "write": here, "by": "meshio"}
         if ending == ".inp":  # of two formats: AVS UCD is read by VTK
             facts["format"] = f"{facts['format']}, AVS UCD"

@@ -3,7 +3,8 @@
 
 A file is written under a temporary name with a random part, `.tautline-....part`, in the directory where it will be;
 that name is created anew and never followed if it is a link. Then the content is forced to the disk and the temporary
-file renamed. A process that is killed may leave the temporary file behind, which can be deleted.
+file renamed. Programs that open files themselves (meshio) write into a directory of such a name. A process that is
+killed may leave the temporary file or directory behind, which can be deleted.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import fcntl
 import os
 import resource
+import shutil
 import stat
 from contextlib import contextmanager, suppress
 from os import PathLike, fspath
@@ -109,6 +111,35 @@ def replacing(file: str | PathLike[str], *, stream: bool = False) -> Iterator[Bi
             with suppress(OSError):
                 os.unlink(temporary)
             raise
+        sync_folder(_folder(target))
+    except OSError as error:
+        raise _unwritable(name, error.strerror or str(error)) from None
+
+
+@contextmanager
+def replacing_by_name(file: str | PathLike[str]) -> Iterator[str]:
+    """The name of a new file, for programs that open it themselves; it replaces `file` at the end of the block.
+
+    It has the ending of `file`, and is in a new directory beside it, of a temporary name. Raises Error if the file
+    cannot be written; it is then as it was.
+    """
+    name = file_name(file)
+    try:
+        target = check_target(name)
+        folder = os.path.join(_folder(target), temporary_name())
+        os.mkdir(folder)
+        try:
+            made = os.path.join(folder, "content" + os.path.splitext(name)[1])
+            yield made
+            descriptor = os.open(made, os.O_RDWR)
+            try:
+                _keep_mode(target, descriptor)
+                os.fsync(descriptor)
+            finally:
+                os.close(descriptor)
+            os.replace(made, target)
+        finally:
+            shutil.rmtree(folder, ignore_errors=True)
         sync_folder(_folder(target))
     except OSError as error:
         raise _unwritable(name, error.strerror or str(error)) from None

@@ -22,7 +22,8 @@ from ._interrupts import Progress, updating
 from ._grid_checks import check_grid, writable
 from ._legacy import check_counts, scan_legacy
 from ._mesh import from_arrays
-from ._meshio import MESHIO_FORMATS, PACKAGE, from_meshio, installed, is_meshio, meshio_of, read_meshio, write_meshio
+from ._meshio import MESHIO_FORMATS, check_installed, from_meshio, is_meshio, meshio_of, read_meshio, write_meshio
+from ._su2 import read_su2, write_su2
 from ._surfaces import check_surface
 from ._vtk_readers import SERIES, SOLVER_FORMATS, is_ucd, read_series, read_solver, series, times_of
 from ._vtk_writers import block_files, write_composite, write_data
@@ -53,6 +54,7 @@ _CONVERTERS = {
     ".cdb": "save it as Nastran .bdf in ANSYS",
     ".ans": "save it as Nastran .bdf in ANSYS",
 }
+SU2 = ".su2"
 # Of one file; a damaged one may have thousands.
 _MOST_MESSAGES = 5
 
@@ -88,9 +90,9 @@ def read(
 
     file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was
         built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++
-        (.msh), OFF (.off .coff .noff .cnoff). Of solvers: Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD
+        (.msh), OFF (.off .coff .noff .cnoff). Of solvers: SU2, Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD
         (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam), Gambit (.neu), Fluent (.cas), Tecplot (.tec); .pvd; and
-        where meshio is installed Abaqus (.inp), Nastran (.bdf), MED, Netgen (.vol), SU2 and others, see formats().
+        where meshio is installed Abaqus (.inp), Nastran (.bdf), MED, Netgen (.vol) and others, see formats().
     options: lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the
         formats of mesh generators. time: the time step to read, the nearest to this number, see times(); the default is
         the first. Of the formats of solvers and .pvd.
@@ -135,7 +137,7 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
     """Read a file of a solver with a reader of VTK, else with meshio."""
     if ending not in readable():
         raise Error(f"{name}: no reader for '{ending}'{_tool(ending)}; there are {' '.join(readable())}")
-    _check_options(name, ending, options, None)
+    _check_options(name, ending, options, "lower_cells" if ending == SU2 else None)
     check_input(name)
     if os.path.getsize(name) == 0 and ending != ".foam":
         raise Error(f"{name}: the file is empty")
@@ -145,7 +147,7 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
     if form is None:
         if time is not None:
             raise Error(f"{name}: '{ending}' has no time steps; leave out time")
-        return read_meshio(name)
+        return read_su2(name, **options) if ending == SU2 else read_meshio(name)
     with _CapturedOutput() as captured:
         try:
             mesh = read_solver(name, form, time)
@@ -160,7 +162,7 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
 def readable() -> list[str]:
     """The endings of the files that read() takes, whether meshio is installed or not."""
     own = {ending for ending, form in FORMATS.items() if form.reader}
-    return sorted({*own, *SOLVER_FORMATS, SERIES, *MESHIO_FORMATS})
+    return sorted({*own, *SOLVER_FORMATS, SERIES, SU2, *MESHIO_FORMATS})
 
 
 def _tool(ending: str) -> str:
@@ -217,7 +219,11 @@ def write(
         _check_options(name, ending, options, None)
         one = as_data_set(mesh)
         check_grid(one)
-        return write_meshio(one, name, groups)
+        if ending != SU2:
+            return write_meshio(one, name, groups)
+        if groups is not None:
+            raise Error(f"{name}: SU2 has no groups of cells; write .vtu, .inp or .med")
+        return write_su2(one, name)
     _check_options(name, ending, options, "binary" if form.own else None)
     data = as_mesh(mesh) if groups is None else with_groups(as_mesh(mesh), groups)
     for leaf in leaves(data):
@@ -244,17 +250,19 @@ def to_meshio(mesh: Mesh) -> Any:
 
 
 def check_output(file: str | PathLike[str]) -> Format | None:
-    """The format of a mesh to be written; None: meshio writes it.
+    """The format of a mesh to be written; None: SU2, or meshio writes it.
 
     Raises Error if there is no writer for it or no file can be made there.
     """
     name = file_name(file)
     ending = Path(name).suffix.lower()
-    if ending in MESHIO_FORMATS and installed():
+    if ending == SU2:
         check_target(name)
         return None
     if ending in MESHIO_FORMATS:
-        raise Error(f"{name}: this format is that of {PACKAGE}, which is not installed")
+        check_installed(name)
+        check_target(name)
+        return None
     if ending not in FORMATS or not FORMATS[ending].writer:
         known = " ".join(sorted(key for key, form in FORMATS.items() if form.writer))
         raise Error(f"{name}: no writer for '{ending}'; there are {known}")

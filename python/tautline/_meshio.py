@@ -7,6 +7,7 @@ import io
 import sys
 import warnings
 from contextlib import redirect_stderr, redirect_stdout
+from importlib import import_module
 from importlib.util import find_spec
 from typing import Any, Callable, cast
 
@@ -17,6 +18,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPointSet,
 
 from ._arrays import Array
 from ._errors import Error
+from ._files import replacing_by_name
 from ._grid_checks import check_block
 from ._groups import Groups, element_sets, families, masks, members_of, with_groups
 
@@ -38,19 +40,38 @@ MESHIO_FORMATS = {
     ".fem": "Nastran",
     ".med": "Salome MED",
     ".vol": "Netgen",
-    ".su2": "SU2",
     ".h5m": "MOAB",
     ".mdpa": "Kratos",
     ".ugrid": "UGRID",
     ".f3grid": "FLAC3D",
     ".xml": "DOLFIN",
 }
+#: Formats with one label for each cell, and the cell arrays it is taken from.
+_ONE_LABEL = (".ugrid",)
+_LABELS = ("Reference", "ugrid:ref", "BoundaryMarker")
+_DIMENSION = {"line": 1, "triangle": 2, "quad": 2, "tetra": 3, "hexahedron": 3, "wedge": 3, "pyramid": 3}
 PACKAGE = "meshio (Debian: apt-get install python3-meshio)"
+_HDF5_FORMATS = (".med", ".h5m")
+_HDF5_PACKAGE = "h5py (Debian: apt-get install python3-h5py)"
+#: The cells of formats that do not have all of meshio's.
+_ONLY_CELLS = {
+    ".f3grid": ("FLAC3D", {"tetra", "pyramid", "wedge", "hexahedron", "triangle", "quad"}, 3),
+    ".xml": ("DOLFIN", {"triangle", "tetra"}, 2),
+}
 
 
-def installed() -> bool:
-    """Whether meshio can be imported."""
-    return find_spec("meshio") is not None
+def installed(ending: str = "") -> bool:
+    """Whether meshio can be imported, and what it needs for the format."""
+    return find_spec("meshio") is not None and (ending not in _HDF5_FORMATS or find_spec("h5py") is not None)
+
+
+def check_installed(name: str) -> None:
+    """Raise Error, with the names of the packages, if meshio or what it needs for the format is not installed."""
+    ending = name[name.rfind(".") :].lower()
+    if find_spec("meshio") is None:
+        raise Error(f"{name}: this format is that of {PACKAGE}, which is not installed")
+    if not installed(ending):
+        raise Error(f"{name}: meshio needs {_HDF5_PACKAGE} for '{ending}', which is not installed")
 
 
 def is_meshio(mesh: Any) -> bool:
@@ -82,11 +103,33 @@ def write_meshio(data: vtkDataSet, name: str, groups: Groups | None = None) -> l
     made = meshio_of(data)
     if ending == ".med":
         made = _by_type(made, *families(sets, data.GetNumberOfCells()))
-    _quietly(name, "write", lambda: meshio.write(name, made))
-    if sets and ending == ".inp":
-        with open(name, "a", encoding="ascii", errors="replace") as file:
-            file.write(element_sets(sets))
+    _check_cells(name, ending, made)
+    made = _labeled(made) if ending in _ONE_LABEL else made
+    with replacing_by_name(name) as temporary:
+        _quietly(name, "write", lambda: meshio.write(temporary, made), temporary)
+        if sets and ending == ".inp":
+            with open(temporary, "a", encoding="ascii", errors="replace") as file:
+                file.write(element_sets(sets))
     return [name]
+
+
+def _check_cells(name: str, ending: str, mesh: Any) -> None:
+    """Raise Error for cells that the format does not have; meshio ends with an assertion, or leaves them out."""
+    title, known, least = _ONLY_CELLS.get(ending, ("", None, 0))
+    if known is None:
+        return
+    found = {block.type for block in mesh.cells if len(block.data)}
+    if found - known:
+        raise Error(f"{name}: {title} has no cells {' '.join(sorted(found - known))}; write .vtu or .msh")
+    if max((_DIMENSION.get(kind, 0) for kind in found), default=0) < least:
+        raise Error(f"{name}: {title} has no meshes without cells of {least} dimensions; write .vtu or .msh")
+
+
+def _labeled(mesh: Any) -> Any:
+    """The mesh with no other cell data than labels, of which meshio would pick some integer array."""
+    names = [name for name in _LABELS if name in mesh.cell_data]
+    labels = {"Reference": [np.asarray(part).astype(np.int64) for part in mesh.cell_data[names[0]]]} if names else {}
+    return type(mesh)(mesh.points, [(block.type, block.data) for block in mesh.cells], cell_data=labels)
 
 
 def _by_type(mesh: Any, tags: Array, names: dict[int, list[str]]) -> Any:
@@ -106,26 +149,31 @@ def _by_type(mesh: Any, tags: Array, names: dict[int, list[str]]) -> Any:
     return made
 
 
-def _quietly(name: str, verb: str, action: Callable[[], Any]) -> Any:
-    """The result of an action of meshio, which prints messages and exits the program after some errors."""
+def _quietly(name: str, verb: str, action: Callable[[], Any], temporary: str = "") -> Any:
+    """The result of an action of meshio, which prints messages and exits the program after some errors.
+
+    temporary: the name of the file in these messages, where it is another one than `name`.
+    """
     said = io.StringIO()
     try:
         with redirect_stdout(said), redirect_stderr(said):
             result = action()
+    except OSError as error:
+        if temporary:  # not the format: a full disk
+            raise
+        raise Error(f"{name}: meshio cannot {verb} it: {error.strerror or error}") from None
     except (Exception, SystemExit) as error:
-        text = " ".join((said.getvalue() or str(error)).split())
+        reason = "" if isinstance(error, SystemExit) else str(error) or type(error).__name__
+        text = " ".join(f"{reason} {said.getvalue()}".split()).replace(temporary or name, name)
         raise Error(f"{name}: meshio cannot {verb} it: {text or type(error).__name__}") from None
-    if text := " ".join(said.getvalue().split()):
+    if text := " ".join(said.getvalue().split()).replace(temporary or name, name):
         warnings.warn(f"{name}: meshio: {text}", stacklevel=2)
     return result
 
 
 def _module(name: str) -> Any:
-    try:
-        import meshio
-    except ImportError:
-        raise Error(f"{name}: this format is that of {PACKAGE}, which is not installed") from None
-    return meshio
+    check_installed(name)
+    return import_module("meshio")
 
 
 def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
