@@ -25,7 +25,7 @@ FLOORS = (
     ("_arrays", "_files", "_formats", "_tables"),
     ("_grid_checks",),
     ("_arguments", "_groups", "_legacy", "_mesh", "_pictures", "_surfaces", "_vtk_readers", "_vtk_writers"),
-    ("_meshio", "_su2"),
+    ("_meshio", "_su2", "_template"),
     ("_io", "_results"),
     ("_commands",),
     ("_html", "_metrics", "_state", "_state_runner"),  # the runner is a script that imports the whole package

@@ -7,6 +7,7 @@ import argparse
 import os
 import shutil
 import sys
+import warnings
 from contextlib import contextmanager
 from tempfile import TemporaryDirectory
 from textwrap import fill
@@ -18,7 +19,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendFilter
 from ._errors import Error, run as update
 from ._files import check_stream_or_target, replace_bytes, replace_text
 from ._groups import Groups
-from ._io import as_mesh, check_output, write
+from ._io import as_mesh, can_be_template, check_output, write
 from ._names import find_name, nearest_name
 from ._results import Result
 from ._tables import csv_text, json_text
@@ -231,7 +232,7 @@ def finish(
     if getattr(arguments, "output", None) == STREAM:
         _write_stream(result, options.get("groups"))
     elif getattr(arguments, "output", None):
-        files += write(result, arguments.output, **options)
+        files += _write(arguments, result, options)
     texts = dict(texts or {})
     if getattr(arguments, "csv", None):
         texts[arguments.csv] = csv_text(rows or [])
@@ -243,6 +244,17 @@ def finish(
         print(json_text({**found, "files": files}))
     elif files and not silent:
         print("\n".join(files), file=out)
+
+
+def _write(arguments: argparse.Namespace, result: Any, options: dict[str, Any]) -> list[str]:
+    """Write a mesh; after a motion of points, to the format that was read: the file itself with new coordinates."""
+    source, output = getattr(arguments, "mesh", None), arguments.output
+    if isinstance(source, str) and not options and hasattr(result, "displacement") and can_be_template(source, output):
+        try:
+            return write(result, output, template=source)
+        except Error as error:
+            warnings.warn(f"{error}; {output} is written anew", stacklevel=2)
+    return write(result, output, **options)
 
 
 def _facts(result: Any) -> dict[str, Any]:

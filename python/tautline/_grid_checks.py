@@ -98,6 +98,24 @@ def _check_fields(title: str, fields: Any, count: int, things: str) -> None:
             raise Error(f"{title} '{array.GetName()}' has {array.GetNumberOfTuples()} rows; there are {count} {things}")
 
 
+def same_cells(one: vtkDataSet, other: vtkDataSet) -> bool:
+    """Whether two data sets have as many points, and the same cells in the same order."""
+    if one.GetNumberOfPoints() != other.GetNumberOfPoints() or one.GetNumberOfCells() != other.GetNumberOfCells():
+        return False
+    lists, others = cell_lists(one), cell_lists(other)
+    if lists.keys() != others.keys():
+        return False
+    for key, cells in lists.items():
+        for part in ("GetOffsetsArray", "GetConnectivityArray"):
+            mine, its = (vtk_to_numpy(getattr(which, part)()) for which in (cells, others[key]))
+            if not np.array_equal(mine, its):
+                return False
+    if isinstance(one, vtkUnstructuredGrid):
+        kinds = [vtk_to_numpy(found).ravel() if (found := cell_types(mesh)) else [] for mesh in (one, other)]
+        return np.array_equal(*kinds)
+    return True
+
+
 def check_block(kind: str, cells: Array, size: int, points: int) -> Array:
     """The point numbers of cells of one type, m x size. Raises Error for another shape or range."""
     if cells.size == 0:

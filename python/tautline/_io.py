@@ -9,8 +9,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Callable, Union
 
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet, vtkPointSet
 
 from ._arrays import leaves
 from ._arguments import number
@@ -19,12 +21,13 @@ from ._files import check_input, check_target, file_name, require_memory
 from ._formats import FORMATS, Format
 from ._groups import Groups, with_groups
 from ._interrupts import Progress, updating
-from ._grid_checks import check_grid, writable
+from ._grid_checks import check_grid, same_cells, writable
 from ._legacy import check_counts, scan_legacy
 from ._mesh import from_arrays
 from ._meshio import MESHIO_FORMATS, check_installed, from_meshio, is_meshio, meshio_of, read_meshio, write_meshio
 from ._su2 import read_su2, write_su2
 from ._surfaces import check_surface
+from ._template import LOCATORS, rewrite
 from ._vtk_readers import SERIES, SOLVER_FORMATS, is_ucd, read_series, read_solver, series, times_of
 from ._vtk_writers import block_files, write_composite, write_data
 
@@ -55,6 +58,10 @@ _CONVERTERS = {
     ".ans": "save it as Nastran .bdf in ANSYS",
 }
 SU2 = ".su2"
+# Formats of VTK that are templates by their data.
+_VTK_TEMPLATES = (".vtk", ".vtu")
+# Of the extent of a mesh: coordinates that are rounded by more are worth a warning.
+_ROUNDING = 1e-9
 # Of one file; a damaged one may have thousands.
 _MOST_MESSAGES = 5
 
@@ -192,6 +199,7 @@ def write(
     file: str | PathLike[str],
     *,
     groups: Groups | None = None,
+    template: str | PathLike[str] | None = None,
     progress: Progress | bool | None = None,
     **options: Any,
 ) -> list[str]:
@@ -204,6 +212,10 @@ def write(
     groups: sets of cells by name: numbers of cells from 0, or a mask of one value per cell; see
         QualityResult.groups(). They are element sets in Abaqus's .inp and groups in Salome's .med, in other files cell
         arrays of 0 and 1.
+    template: the file that the mesh was read from, of the same format. The output is a copy of it in which only the
+        coordinates are those of the mesh: markers, sets, materials, types of elements, comments and the format of the
+        numbers stay. The mesh must have the cells of that file, in its order, as after untangle(), optimize(), warp()
+        and perturb(); its arrays are not written. For .msh, .mesh, .su2, .inp, .bdf .nas .fem, .off, .vtk and .vtu.
     options: binary (False): write .msh as bytes. Not for formats of VTK.
 
     A file is replaced as a whole: whatever happens, there is the older file or the complete new one. Where `file` is
@@ -215,6 +227,10 @@ def write(
     name = file_name(file)
     ending = Path(name).suffix.lower()
     form = check_output(name)
+    if template is not None:
+        if groups is not None or options:
+            raise Error(f"{name}: with a template there are no groups and no other options")
+        return _write_like(as_data_set(mesh), name, file_name(template))
     if form is None:
         _check_options(name, ending, options, None)
         one = as_data_set(mesh)
@@ -234,6 +250,46 @@ def write(
     if form.own:
         return _write_own(data, name, form, options.get("binary", False))
     return write_composite(data, name) if ending == ".vtm" else write_data(data, name, form)
+
+
+def can_be_template(source: str, target: str) -> bool:
+    """Whether a file can be the template of another one: both are of one format, and of one for which that is useful.
+
+    Files of VTK have everything in the mesh.
+    """
+    ending = Path(target).suffix.lower()
+    return ending in LOCATORS and ending == Path(source).suffix.lower()
+
+
+def _write_like(data: vtkDataSet, name: str, source: str) -> list[str]:
+    """Write a copy of a file with the coordinates of a mesh."""
+    ending = Path(name).suffix.lower()
+    if ending != Path(source).suffix.lower():
+        raise Error(f"{name}: the template {source} is of another format")
+    if ending not in LOCATORS and ending not in _VTK_TEMPLATES:
+        known = " ".join(sorted([*LOCATORS, *_VTK_TEMPLATES]))
+        raise Error(f"{name}: files '{ending}' cannot be templates; these can: {known}")
+    lower = ending == SU2 or (ending in FORMATS and FORMATS[ending].own)
+    found = read(source)
+    if lower and isinstance(found, vtkDataSet) and found.GetNumberOfCells() != data.GetNumberOfCells():
+        found = read(source, lower_cells=True)
+    if not isinstance(found, vtkPointSet) or not isinstance(data, vtkPointSet):
+        raise Error(f"{name}: a template holds one mesh with points of its own, not a {found.GetClassName()}")
+    if not same_cells(found, data):
+        raise Error(f"{name}: the mesh has other cells or another number of points than the template {source}; leave "
+                    "out template")  # fmt: skip
+    if ending in _VTK_TEMPLATES:
+        made = found.NewInstance()
+        made.ShallowCopy(found)
+        made.SetPoints(data.GetPoints())
+        return write_data(made, name, FORMATS[ending])
+    before, after = (np.array(vtk_to_numpy(mesh.GetPoints().GetData()), float) for mesh in (found, data))
+    if not np.isfinite(after).all():
+        raise Error(f"{name}: a coordinate is not finite")
+    rounding = rewrite(source, name, before, after)
+    if rounding > _ROUNDING * np.ptp(after, axis=0).max():
+        warnings.warn(f"{name}: the fields of the file round coordinates by up to {rounding:.2g}", stacklevel=5)
+    return [name]
 
 
 @checked

@@ -1,0 +1,386 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""A mesh file with other coordinates: everything else of it stays as it is, byte by byte.
+
+Markers, sets, materials, types of elements and comments of a solver's file are not in the mesh that is read from it.
+After a motion of points, the file is copied and only its coordinates are replaced, in the format of its numbers.
+"""
+
+from __future__ import annotations
+
+import re
+import struct
+from pathlib import Path
+from typing import Callable, Iterator
+
+import numpy as np
+
+from ._arrays import Array
+from ._errors import Error
+from ._files import replace_bytes
+
+#: Where a coordinate stands, from and to; the three of a point one after the other, missing ones (z) left out.
+_Span = tuple[int, int]
+_TOKEN = re.compile(rb"\S+")
+_NUMBER = re.compile(rb"([+-]?)(\d*)(\.?)(\d*)(?:([eEdD])([+-]?)(\d+))?")
+#: Numbers of a file are written with as many digits as they have in it, where that is a fixed number of at least this.
+_FEWEST_DIGITS = 8
+_EXACT_DIGITS = 17  # of a double
+_SMALL_FIELD, _LARGE_FIELD = 8, 16  # characters, of Nastran
+_GRID_FIELD, _LARGE_GRID_FIELD = 24, 40  # where x begins
+_DOUBLE = struct.calcsize("d")
+_SIZE = struct.calcsize("Q")
+_BLOCKS, _NUMBERS_FIRST = 4.0, 4.1  # Gmsh's versions with blocks of points, and with all numbers of a block first
+
+
+def rewrite(source: str, target: str, before: Array, after: Array) -> float:
+    """Write the file `source` as `target` with other coordinates.
+
+    before: the coordinates of the points as the reader of the format gives them, n x 3. after: the new ones. Returns
+    the largest rounding of a coordinate by the fields of the file. Raises Error if the coordinates in the file are not
+    `before`, and for a format that cannot be handled so; then no file is written.
+    """
+    content = Path(source).read_bytes()
+    ending = Path(source).suffix.lower()
+    if ending == ".msh" and (place := _binary_msh(source, content)) is not None:
+        replace_bytes(target, _with_doubles(source, content, place, before, after))
+        return 0.0
+    try:
+        spans = list(LOCATORS[ending](content))
+    except (RuntimeError, ValueError, IndexError):  # a generator ends where tokens are missing
+        raise _changed(source, "the section of the points is damaged") from None
+    nastran = ending in _NASTRAN
+    numbers = [[content[a:b] for a, b in point] for point in spans]
+    _check(source, numbers, before)
+    layout = None if nastran else _layout([text for point in numbers for text in point])
+    parts: list[bytes] = []
+    at, rounding = 0, 0.0
+    for i in np.flatnonzero((before != after).any(axis=1)):
+        if after[i, len(spans[i]) :].any():
+            raise Error(f"{source}: point {i} leaves the plane of the file, which has no z coordinates")
+        for axis, (a, b) in enumerate(spans[i]):
+            if before[i, axis] == after[i, axis]:
+                continue
+            new = _nastran(after[i, axis], content[a:b]) if nastran else _text(after[i, axis], layout, b - a)
+            rounding = max(rounding, abs(_value(new) - after[i, axis]))
+            begin = a
+            if layout and len(new) > b - a:  # in a column of fixed width, into the blanks before it
+                begin -= min(len(new) - (b - a), _blanks_before(content, a) - 1)
+            parts += [content[at:begin], new]
+            at = b
+    replace_bytes(target, b"".join([*parts, content[at:]]))
+    return rounding
+
+
+def _changed(source: str, reason: str) -> Error:
+    return Error(f"{source}: its coordinates cannot be replaced: {reason}")
+
+
+def _check(source: str, numbers: list[list[bytes]], before: Array) -> None:
+    """Raise Error unless the numbers found are the coordinates that were read."""
+    if len(numbers) != len(before):
+        raise _changed(source, f"it has {len(numbers)} points and the mesh {len(before)}")
+    found = np.array([[_value(text) for text in point] + [0.0] * (3 - len(point)) for point in numbers])
+    _check_equal(source, found.reshape(-1, 3), before)
+
+
+def _check_equal(source: str, found: Array, before: Array) -> None:
+    wrong = (found != before).any(axis=1)
+    if wrong.any():
+        i = int(np.flatnonzero(wrong)[0])
+        raise _changed(source, f"point {i} is at {found[i].tolist()} in it and at {before[i].tolist()} as it is read")
+
+
+# --- numbers ---------------------------------------------------------------------------------------------------
+
+
+def _value(text: bytes) -> float:
+    """A number of any of the formats: 1.5, 1.5E3, 1.5D3, Nastran's 1.5+3; nothing is 0."""
+    word = text.strip().decode("latin-1").upper().replace("D", "E")
+    if not word:
+        return 0.0
+    try:
+        return float(word)
+    except ValueError:
+        pass
+    try:
+        return float(re.sub(r"(?<=[\d.])([+-])", r"E\1", word))
+    except ValueError:
+        return float("nan")
+
+
+def _layout(texts: list[bytes]) -> tuple[int, str] | None:
+    """Digits after the point and the letter of the exponent ("" without one) if all numbers have the same."""
+    found = set()
+    for text in texts:
+        match = _NUMBER.fullmatch(text)
+        if not match or not match[3]:
+            return None
+        found.add((len(match[4]), (match[5] or b"").decode()))
+        if len(found) > 1:
+            return None
+    return found.pop() if found else None
+
+
+def _text(value: float, layout: tuple[int, str] | None, width: int) -> bytes:
+    """A number in the layout of the file; exact where that has too few digits. Right-aligned where it was shorter."""
+    value = float(value) + 0.0  # -0 is 0
+    if layout and layout[1] and layout[0] >= _FEWEST_DIGITS:
+        text = f"{value:.{layout[0]}e}".replace("e", layout[1])
+    elif layout and not layout[1] and layout[0] >= _FEWEST_DIGITS:
+        text = f"{value:.{layout[0]}f}"
+    else:
+        text = repr(value)
+    return text.encode().rjust(width) if layout else text.encode()
+
+
+def _blanks_before(content: bytes, a: int) -> int:
+    count = 0
+    while a - count > 0 and content[a - count - 1] in b" ":
+        count += 1
+    return max(count, 1)
+
+
+def _nastran(value: float, old: bytes) -> bytes:
+    """A number in a field of Nastran: as many digits as the field has room for; of a free field all digits."""
+    width = len(old)
+    if width not in (_SMALL_FIELD, _LARGE_FIELD):
+        text = repr(float(value))
+        return (text if "." in text else text.replace("e", ".e") if "e" in text else text + ".").encode()
+    best = ""
+    for digits in range(_EXACT_DIGITS, -1, -1):
+        for text in (f"{value:.{digits}f}", _short_exponent(f"{value:.{digits}e}")):
+            text = text.replace("0.", ".", 1) if text.lstrip("-").startswith("0.") and len(text) > width else text
+            if "." not in text:
+                text += "."
+            better = not best or abs(_value(text.encode()) - value) < abs(_value(best.encode()) - value)
+            if len(text) <= width and better:
+                best = text
+    return best.rjust(width).encode()
+
+
+def _short_exponent(text: str) -> str:
+    """1.5e-03 as Nastran's 1.5-3."""
+    mantissa, _, exponent = text.partition("e")
+    mantissa = mantissa if "." in mantissa else mantissa + "."
+    return f"{mantissa}{int(exponent):+d}"
+
+
+# --- where the coordinates stand, by format -----------------------------------------------------------------------
+
+
+def _tokens(content: bytes, begin: int, end: int) -> Iterator[_Span]:
+    for match in _TOKEN.finditer(content, begin, end):
+        yield match.span()
+
+
+def _msh(content: bytes) -> Iterator[list[_Span]]:
+    """Gmsh's text, versions 1, 2, 4.0 and 4.1; FreeFem++'s, which begins with the numbers of points and elements."""
+    section = re.search(rb"^\$(Nodes|NOD)\b[^\n]*\n", content, re.MULTILINE)
+    if not section:
+        yield from _freefem(content)
+        return
+    version = re.search(rb"^\$MeshFormat\s+(\S+)", content, re.MULTILINE)
+    number = float(version[1]) if version else 1.0
+    tokens = _tokens(content, section.end(), len(content))
+
+    def take() -> _Span:
+        return next(tokens)
+
+    def whole() -> int:
+        return int(content[slice(*take())])
+
+    first = whole()
+    if number < _BLOCKS:
+        for _ in range(first):
+            take()
+            yield [take(), take(), take()]
+        return
+    for _ in range(3 if number >= _NUMBERS_FIRST else 1):  # number of points; the smallest and the largest number
+        take()
+    for _ in range(first):
+        dimension, tag = whole(), whole()
+        if number < _NUMBERS_FIRST:
+            dimension = tag
+        parametric, count = whole(), whole()
+        extra = dimension if parametric else 0
+        if number >= _NUMBERS_FIRST:
+            for _ in range(count):
+                take()
+        for _ in range(count):
+            if number < _NUMBERS_FIRST:
+                take()
+            yield [take(), take(), take()]
+            for _ in range(extra):
+                take()
+
+
+def _freefem(content: bytes) -> Iterator[list[_Span]]:
+    tokens = _tokens(content, 0, len(content))
+    count = int(content[slice(*next(tokens))])
+    first = content.split(b"\n", 2)[1]
+    dimension = len(first.split()) - 1
+    next(tokens), next(tokens)
+    for _ in range(count):
+        yield [next(tokens) for _ in range(dimension)]
+        next(tokens)
+
+
+def _binary_msh(source: str, content: bytes) -> tuple[list[tuple[int, int]], int] | None:
+    """Of a binary file of Gmsh, runs of points (their place and their number) and bytes from one to the next."""
+    head = re.match(rb"\$MeshFormat\s+(\S+) +1 +8", content)
+    if not head:
+        return None
+    section = re.search(rb"\n\$Nodes\s*\n", content)
+    version = float(head[1])
+    one = content[content.index(b"\n", head.end()) + 1 :][:4]
+    if not section or one != struct.pack("<i", 1) or not (version < _BLOCKS or version >= _NUMBERS_FIRST):
+        raise Error(f"{source}: its coordinates cannot be replaced: binary .msh are handled in versions 2 and 4.1, of "
+                    "this machine's order of bytes")  # fmt: skip
+    at = section.end()
+    if version < _BLOCKS:
+        count = int(content[at : content.index(b"\n", at)])
+        return [(content.index(b"\n", at) + 1 + 4, count)], 4 + 3 * _DOUBLE
+    runs = []
+    blocks = struct.unpack_from("<Q", content, at)[0]
+    at += 4 * _SIZE
+    for _ in range(blocks):
+        dimension, _, parametric = struct.unpack_from("<3i", content, at)
+        count = struct.unpack_from("<Q", content, at + 12)[0]
+        if parametric and dimension:
+            raise Error(f"{source}: its coordinates cannot be replaced: binary .msh with parametric nodes")
+        at += 12 + _SIZE + count * _SIZE
+        runs.append((at, count))
+        at += 3 * _DOUBLE * count
+    return runs, 3 * _DOUBLE
+
+
+def _with_doubles(
+    source: str, content: bytes, place: tuple[list[tuple[int, int]], int], before: Array, after: Array
+) -> bytes:
+    runs, stride = place
+    made = np.frombuffer(content, np.uint8).copy()
+    first = 0
+    if sum(count for _, count in runs) != len(before):
+        raise _changed(source, f"it has {sum(count for _, count in runs)} points and the mesh {len(before)}")
+    for at, count in runs:
+        rows = np.arange(count)[:, None] * stride + at + np.arange(3 * _DOUBLE)[None]
+        _check_equal(source, np.ascontiguousarray(made[rows]).view("<f8"), before[first : first + count])
+        made[rows] = np.ascontiguousarray(after[first : first + count], "<f8").view(np.uint8).reshape(count, -1)
+        first += count
+    return made.tobytes()
+
+
+def _uncommented(content: bytes, sign: bytes) -> bytes:
+    """The content with blanks in the place of comments."""
+    return re.sub(re.escape(sign) + rb"[^\n]*", lambda match: b" " * len(match[0]), content)
+
+
+def _medit(content: bytes) -> Iterator[list[_Span]]:
+    text = _uncommented(content, b"#")
+    dimension = re.search(rb"\bDimension\s+(\d)", text)
+    section = re.search(rb"(?<!\S)Vertices\s+(\d+)", text)
+    if not dimension or not section:
+        return
+    tokens = _tokens(text, section.end(), len(text))
+    for _ in range(int(section[1])):
+        yield [next(tokens) for _ in range(int(dimension[1]))]
+        next(tokens)
+
+
+def _su2(content: bytes) -> Iterator[list[_Span]]:
+    text = _uncommented(content, b"%")
+    dimension = re.search(rb"^\s*NDIME\s*=\s*(\d)", text, re.MULTILINE)
+    section = re.search(rb"^\s*NPOIN\s*=\s*(\d+)[^\n]*\n", text, re.MULTILINE)
+    if not dimension or not section:
+        return
+    at, count = section.end(), int(section[1])
+    while count and at < len(text):
+        end = text.find(b"\n", at)
+        end = len(text) if end < 0 else end
+        spans = list(_tokens(text, at, end))
+        if spans:
+            yield spans[: int(dimension[1])]
+            count -= 1
+        at = end + 1
+
+
+def _off(content: bytes) -> Iterator[list[_Span]]:
+    text = _uncommented(content, b"#")
+    header = re.match(rb"\s*((?:ST)?C?N?)OFF\b", text)
+    tokens = _tokens(text, header.end() if header else 0, len(text))
+    count = int(text[slice(*next(tokens))])
+    next(tokens), next(tokens)
+    at = next(tokens)[0] if count else 0
+    while count:
+        end = text.find(b"\n", at)
+        end = len(text) if end < 0 else end
+        spans = list(_tokens(text, at, end))
+        if spans:
+            yield spans[:3]
+            count -= 1
+        elif end == len(text):
+            return
+        at = end + 1
+
+
+def _abaqus(content: bytes) -> Iterator[list[_Span]]:
+    """The lines of *NODE of Abaqus and CalculiX: number, x, y, z."""
+    inside, at = False, 0
+    for line in content.splitlines(keepends=True):
+        if line.startswith(b"*"):
+            if not line.startswith(b"**"):
+                inside = line[1:].split(b",")[0].strip().upper() == b"NODE"
+        elif inside and line.strip():
+            spans, place = [], at
+            for field in line.split(b",")[:4]:
+                inner = field.strip()
+                begin = place + (field.index(inner) if inner else 0)
+                spans.append((begin, begin + len(inner)))
+                place += len(field) + 1
+            yield spans[1:]
+        at += len(line)
+
+
+def _nastran_grids(content: bytes) -> Iterator[list[_Span]]:
+    """GRID of Nastran in small, large and free fields."""
+    lines = content.splitlines(keepends=True)
+    places = np.cumsum([0] + [len(line) for line in lines]).tolist()
+    for i, line in enumerate(lines):
+        word = line[:_SMALL_FIELD].strip().upper()
+        if b"," in line[:_SMALL_FIELD + 2] and line.upper().startswith((b"GRID,", b"GRID ", b"GRID*")):
+            yield from _free_grid(line, places[i])
+        elif word == b"GRID":
+            yield _fields(line, places[i], _GRID_FIELD, 3, _SMALL_FIELD)
+        elif word == b"GRID*":
+            row = _fields(line, places[i], _LARGE_GRID_FIELD, 2, _LARGE_FIELD)
+            more = lines[i + 1] if i + 1 < len(lines) and lines[i + 1][:1] in (b"*", b" ") else b""
+            yield row + (_fields(more, places[i + 1], _SMALL_FIELD, 1, _LARGE_FIELD) if more else [])
+
+
+def _fields(line: bytes, place: int, begin: int, count: int, width: int) -> list[_Span]:
+    end = len(line.rstrip(b"\r\n"))
+    return [(place + min(a, end), place + min(a + width, end)) for a in (begin + k * width for k in range(count))]
+
+
+def _free_grid(line: bytes, place: int) -> Iterator[list[_Span]]:
+    spans, at = [], place
+    for field in line.rstrip(b"\r\n").split(b",")[:6]:
+        inner = field.strip()
+        begin = at + (field.index(inner) if inner else 0)
+        spans.append((begin, begin + len(inner)))
+        at += len(field) + 1
+    yield spans[3:]
+
+
+_NASTRAN = (".bdf", ".nas", ".fem")
+#: How the coordinates of each format are found.
+LOCATORS: dict[str, Callable[[bytes], Iterator[list[_Span]]]] = {
+    ".msh": _msh,
+    ".mesh": _medit,
+    ".su2": _su2,
+    ".off": _off,
+    ".inp": _abaqus,
+    ".bdf": _nastran_grids,
+    ".nas": _nastran_grids,
+    ".fem": _nastran_grids,
+}
