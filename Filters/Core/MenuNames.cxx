@@ -14,6 +14,7 @@ struct MenuName
 };
 
 constexpr MenuName Names[] = {
+  { "vtkAbaqusReader", "Abaqus Reader" },
   { "vtkConditionEstimator", "Condition Estimator" },
   { "vtkDomainSource", "Mesh Domain" },
   { "vtkElementQuality", "Element Quality" },
@@ -29,6 +30,7 @@ constexpr MenuName Names[] = {
   { "vtkMeshUntangler", "Untangle Mesh" },
   { "vtkMeshWarp", "Warp Mesh" },
   { "vtkMetricField", "Metric Field" },
+  { "vtkNastranReader", "Nastran Reader" },
   { "vtkOffReader", "OFF Reader" },
   { "vtkPeridynamicStiffness", "Peridynamic Condition" },
   { "vtkShapeMatcher", "Match Shape" },

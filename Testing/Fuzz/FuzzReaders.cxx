@@ -5,7 +5,9 @@
 #include "Readers/MeshFileChecks.h"
 #include "FuzzTargets.h"
 
+#include "AbaqusFile.h"
 #include "MeshFileAdapter.h"
+#include "NastranFile.h"
 
 #include "vtkNew.h"
 #include "vtkPolyData.h"
@@ -155,6 +157,12 @@ void fuzzFile(std::string_view bytes, const char* ending, Read read, Write write
   readAndCheck(name, read, write);
 }
 
+/// For formats that are only read.
+std::vector<std::string> writeNothing(const MeshFile&, const std::string& name)
+{
+  throw FileError(name + ": is not written");
+}
+
 std::vector<std::string> writeGmshText(const MeshFile& mesh, const std::string& name)
 {
   return writeGmsh(mesh, name, false);
@@ -171,6 +179,18 @@ void fuzzTetGen(std::string_view bytes)
 void fuzzMedit(std::string_view bytes)
 {
   fuzzSet(bytes, { "mesh", "sol" }, readMedit, writeMedit);
+}
+
+//------------------------------------------------------------------------------
+void fuzzAbaqus(std::string_view bytes)
+{
+  fuzzFile(bytes, "inp", readAbaqus, writeNothing);
+}
+
+//------------------------------------------------------------------------------
+void fuzzNastran(std::string_view bytes)
+{
+  fuzzFile(bytes, "bdf", readNastran, writeNothing);
 }
 
 //------------------------------------------------------------------------------

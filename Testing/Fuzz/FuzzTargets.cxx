@@ -13,6 +13,8 @@ const std::vector<FuzzTarget>& fuzzTargets()
     { "medit", fuzzMedit },
     { "gmsh", fuzzGmsh },
     { "off", fuzzOff },
+    { "abaqus", fuzzAbaqus },
+    { "nastran", fuzzNastran },
     { "quality", fuzzQuality },
     { "mesh", fuzzMesh },
     { "move", fuzzMove },

@@ -70,6 +70,8 @@ void fuzzTetGen(std::string_view bytes);
 void fuzzMedit(std::string_view bytes);
 void fuzzGmsh(std::string_view bytes);
 void fuzzOff(std::string_view bytes);
+void fuzzAbaqus(std::string_view bytes);
+void fuzzNastran(std::string_view bytes);
 // FuzzImages.cxx:
 void fuzzImage(std::string_view bytes);
 void fuzzImageList(std::string_view bytes);

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from ._vtk import vtkAbaqusReader as vtkAbaqusReader
 from ._vtk import vtkBoundaryMesher as vtkBoundaryMesher
 from ._vtk import vtkConditionEstimator as vtkConditionEstimator
 from ._vtk import vtkDomainSource as vtkDomainSource
@@ -32,6 +33,7 @@ from ._vtk import vtkMeshWarp as vtkMeshWarp
 from ._vtk import vtkMetricAlgorithm as vtkMetricAlgorithm
 from ._vtk import vtkMetricField as vtkMetricField
 from ._vtk import vtkMovingBoundary as vtkMovingBoundary
+from ._vtk import vtkNastranReader as vtkNastranReader
 from ._vtk import vtkOffReader as vtkOffReader
 from ._vtk import vtkOffWriter as vtkOffWriter
 from ._vtk import vtkPeridynamicStiffness as vtkPeridynamicStiffness

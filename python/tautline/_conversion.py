@@ -43,6 +43,10 @@ def _facts(ending: str) -> dict[str, Any]:
         form = FORMATS[ending]
         facts |= {"read": form.reader is not None, "write": form.writer is not None}
         facts["by"] = "Tautline" if form.own else "VTK"
+        if meshio:  # which writes what is read here
+            facts |= {"format": MESHIO_FORMATS[ending], "write": installed(ending)}
+        if ending == ".inp":  # of two formats: AVS UCD is read by VTK
+            facts["format"] += ", AVS UCD"
     elif ending == SU2:
         facts |= {"format": "SU2", "write": True, "by": "Tautline"}
     elif ending == SERIES:

@@ -56,6 +56,8 @@ _OWN_FORMATS = {
     ".mesh": Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet"),
     ".sol": Format("vtkMeditReader", None, "vtkDataSet"),
     ".msh": Format("vtkGmshReader", "vtkGmshWriter", "vtkDataSet"),
+    ".inp": Format("vtkAbaqusReader", None, "vtkDataSet"),
+    **dict.fromkeys((".bdf", ".nas", ".fem"), Format("vtkNastranReader", None, "vtkDataSet")),
     ".pos": Format(None, "vtkGmshWriter", "vtkDataSet"),
     ".off": Format(_OFF, "vtkOffWriter", "vtkDataSet"),
     **dict.fromkeys((".coff", ".noff", ".cnoff"), Format(_OFF, None, "vtkDataSet")),

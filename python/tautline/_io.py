@@ -97,11 +97,11 @@ def read(
 
     file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was
         built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++
-        (.msh), OFF (.off .coff .noff .cnoff). Of solvers: SU2, Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD
+        (.msh), OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2, Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD
         (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam), Gambit (.neu), Fluent (.cas), Tecplot (.tec); .pvd; and
-        where meshio is installed Abaqus (.inp), Nastran (.bdf), MED, Netgen (.vol) and others, see formats().
+        where meshio is installed MED, Netgen (.vol) and others, see formats().
     options: lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the
-        formats of mesh generators. time: the time step to read, the nearest to this number, see times(); the default is
+        formats of mesh generators, Abaqus, Nastran and SU2. time: the time step to read, the nearest to this number, see times(); the default is
         the first. Of the formats of solvers and .pvd.
 
     Returns a vtkDataSet; of .vtm and some .vtk files a composite data set. The pieces of a .pvtu or .pvtp file come one
@@ -123,7 +123,8 @@ def _read(name: str, options: dict[str, Any]) -> vtkDataObject:
     """Read a file with the reader of its format, which may return cells and arrays that do not fit each other."""
     ending = Path(name).suffix.lower()
     time = options.pop("time", None)
-    if ending not in FORMATS or not FORMATS[ending].reader:
+    ucd = ending == ".inp" and os.path.isfile(name) and is_ucd(name)
+    if ucd or ending not in FORMATS or not FORMATS[ending].reader:
         return _read_other(name, ending, options, None if time is None else number("time", time))
     if time is not None:
         raise Error(f"{name}: '{ending}' has no time steps; leave out time")
