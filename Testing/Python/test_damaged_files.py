@@ -10,6 +10,7 @@ from pathlib import Path
 
 import tautline as tl
 from checks import DATA, OUT, SLOW, refused, shell, square, wording
+from tautline import _reading
 from vtkmodules.vtkCommonDataModel import (
     vtkMultiBlockDataSet,
     vtkPolyData,
@@ -258,6 +259,92 @@ def test_images() -> None:
             if size > 8 and file.suffix != ".tga":
                 refused(f"{file}: the image cannot be read", tl.read_silhouettes, folder)
         file.write_bytes(whole)
+
+
+POLYHEDRON = """<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">
+<UnstructuredGrid><Piece NumberOfPoints="4" NumberOfCells="1"><Points>
+<DataArray type="Float64" NumberOfComponents="3" format="ascii">0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells>
+<DataArray type="Int64" Name="connectivity" format="ascii">0 1 2 3</DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii">4</DataArray>
+<DataArray type="UInt8" Name="types" format="ascii">42</DataArray>
+<DataArray type="Int64" Name="faces" format="ascii">4 3 0 2 1 3 0 1 3 3 1 2 3 3 0 3 2</DataArray>
+<DataArray type="Int64" Name="faceoffsets" format="ascii">17</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>
+"""
+
+
+def test_crash_of_a_reader() -> None:
+    """VTK's reader crashes on a wrong number of corners of a face: an error here, with the name of the file."""
+    file = FOLDER / "polyhedron.vtu"
+    file.write_text(POLYHEDRON)
+    assert tl.read(file).GetNumberOfCells() == 1
+    file.write_text(POLYHEDRON.replace("4 3 0 2 1", "4 30000000 0 2 1"))
+    refused("polyhedron.vtu: the file is damaged: its reader ended by SIG", tl.read, file)
+    assert "its reader ended by SIG" in shell("quality", file, code=1)
+
+
+def test_limits_of_a_reader() -> None:
+    """A reader that needs too long or too much memory is ended."""
+    file = FOLDER / "limits.ply"
+    tl.write(surface(square(4)), file)
+    assert tl.read(file).GetNumberOfCells() == 32
+    for name, value, text in (("_SECONDS", 0.05, "reading takes more than 0 s"), ("_MEMORY", 2**20, "")):
+        before = getattr(_reading, name)
+        setattr(_reading, name, value)
+        try:
+            if name == "_SECONDS":
+                refused(text, tl.read, file)
+            else:
+                refused("limits.ply", tl.read, file)
+        finally:
+            setattr(_reading, name, before)
+    folder = Path.cwd()
+    os.chdir(FOLDER)
+    try:
+        refused("limits.avs: ", tl.read, "limits.avs")
+        Path("limits.avs").write_text("4 1 0 0 0\n1 0 0 0\n")
+        refused("limits.avs: the file is truncated", tl.read, "limits.avs")
+    finally:
+        os.chdir(folder)
+
+
+UCD = """# a comment
+5 2 2 1 0
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 1 1 1
+1 7 tet 1 2 3 4
+2 7 tet 2 3 4 5
+2 1 1
+height, m
+depth, m
+1 0 0
+2 0 0
+3 0 0
+4 1 0
+5 1 0
+1 1
+density, kg
+1 2.5
+2 2.75
+"""
+
+
+def test_cut_ucd() -> None:
+    """The counts of the header are those of the file; only the last number may be cut."""
+    file = FOLDER / "cut.avs"
+    file.write_text(UCD)
+    mesh = tl.read(file)
+    assert mesh.GetNumberOfCells() == 2 and mesh.GetPointData().GetArray("depth").GetValue(4) == 0
+    ends = range(1, len(UCD) - len("2.75\n"), 1 if SLOW else 9)
+    for end in ends:
+        file.write_text(UCD[:end])
+        refused("cut.avs", tl.read, file)
+    for old, new in (("5 2 2 1 0", "5 3 2 1 0"), ("5 2 2 1 0", "6 2 2 1 0"), ("5 2 2 1 0", "-5 2 2 1 0"),
+                     ("tet 1 2 3 4", "hex 1 2 3 4"), ("2 1 1\n", "x 1 1\n")):  # fmt: skip
+        file.write_text(UCD.replace(old, new, 1))
+        refused("cut.avs", tl.read, file)
 
 
 def test_no_permission() -> None:

@@ -25,10 +25,11 @@ from ._grid_checks import check_grid, same_cells, writable
 from ._legacy import check_counts, scan_legacy
 from ._mesh import from_arrays
 from ._meshio import MESHIO_FORMATS, check_installed, from_meshio, is_meshio, meshio_of, read_meshio, write_meshio
+from ._reading import answer, read_apart
 from ._su2 import read_su2, write_su2
 from ._surfaces import check_surface
 from ._template import LOCATORS, rewrite
-from ._vtk_readers import SERIES, SOLVER_FORMATS, is_ucd, read_series, read_solver, series, times_of
+from ._vtk_readers import SERIES, SOLVER_FORMATS, SolverFormat, check_content, is_ucd, read_series, read_solver, series, times_of
 from ._vtk_writers import block_files, write_composite, write_data
 
 #: What every function takes as a mesh: a vtkDataSet, a composite data set, a file name, the result of another function,
@@ -58,6 +59,8 @@ _CONVERTERS = {
     ".ans": "save it as Nastran .bdf in ANSYS",
 }
 SU2 = ".su2"
+# Formats whose readers in VTK crash on damaged files.
+_UNSAFE = (".ply", ".obj")
 # Formats of VTK that are templates by their data.
 _VTK_TEMPLATES = (".vtk", ".vtu")
 # Of the extent of a mesh: coordinates that are rounded by more are worth a warning.
@@ -138,7 +141,35 @@ def _read(name: str, options: dict[str, Any]) -> vtkDataObject:
         for text in dict.fromkeys(run(reader).warnings):
             warnings.warn(text, stacklevel=5)  # the caller of read()
         return reader.GetOutput()
+    if _may_crash(name, ending):
+        if os.path.getsize(name):
+            check_surface(name)  # before a process is started for it
+        return read_apart(name, {}, lambda: _read_vtk(name, form))
     return _read_vtk(name, form)
+
+
+def _may_crash(name: str, ending: str) -> bool:
+    """Whether a reader of VTK trusts what is in the file: lists of vertices, the faces of polyhedra."""
+    if ending == ".vtu":
+        return b'Name="faces"' in Path(name).read_bytes()
+    return ending in _UNSAFE
+
+
+def read_for_another() -> None:
+    """Read a file, or its time steps, in a process that read_apart() has started."""
+    answer(lambda request: _times(request["name"]) if request.get("times") else _read_checked(request))
+
+
+def _read_checked(request: dict[str, Any]) -> vtkDataObject:
+    options = {} if request.get("time") is None else {"time": request["time"]}
+    mesh = _read(request["name"], options)
+    for leaf in leaves(mesh):
+        check_grid(leaf, request["name"])
+    return mesh
+
+
+def _times(name: str) -> list[float]:
+    return times_of(name, SOLVER_FORMATS[Path(name).suffix.lower()])
 
 
 def _read_other(name: str, ending: str, options: dict[str, Any], time: float | None) -> vtkDataObject:
@@ -155,7 +186,16 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
     if form is None:
         if time is not None:
             raise Error(f"{name}: '{ending}' has no time steps; leave out time")
-        return read_su2(name, **options) if ending == SU2 else read_meshio(name)
+        if ending == SU2:
+            return read_su2(name, **options)
+        check_installed(name)
+        return read_apart(name, {}, lambda: read_meshio(name))
+    check_content(name, form)  # before a process is started for it
+    return read_apart(name, {"time": time}, lambda: _read_with(name, form, time))
+
+
+def _read_with(name: str, form: SolverFormat, time: float | None) -> vtkDataObject:
+    """Read a file with a reader of VTK, of which every message is an error."""
     with _CapturedOutput() as captured:
         try:
             mesh = read_solver(name, form, time)
@@ -191,7 +231,10 @@ def times(file: str | PathLike[str]) -> list[float]:
     check_input(name)
     if ending == SERIES:
         return sorted({when for when, _ in series(name)})
-    return times_of(name, SOLVER_FORMATS[ending]) if ending in SOLVER_FORMATS else []
+    if ending not in SOLVER_FORMATS:
+        return []
+    steps: list[float] = read_apart(name, {"times": True}, lambda: _times(name))
+    return steps
 
 
 @interruptible

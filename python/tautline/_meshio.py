@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import io
+import os
 import sys
 import warnings
 from contextlib import redirect_stderr, redirect_stdout
@@ -46,6 +47,8 @@ MESHIO_FORMATS = {
     ".f3grid": "FLAC3D",
     ".xml": "DOLFIN",
 }
+#: Formats as text without counts, of which a cut line can be read as a whole one.
+_LINES_ONLY = (".f3grid",)
 #: Formats with one label for each cell, and the cell arrays it is taken from.
 _ONE_LABEL = (".ugrid",)
 _LABELS = ("Reference", "ugrid:ref", "BoundaryMarker")
@@ -83,6 +86,11 @@ def is_meshio(mesh: Any) -> bool:
 def read_meshio(name: str) -> vtkUnstructuredGrid:
     """Read a file. Raises Error if meshio is not installed or cannot read it; what it prints becomes a warning."""
     meshio = _module(name)
+    if name.lower().endswith(_LINES_ONLY):
+        with open(name, "rb") as file:
+            file.seek(-1, os.SEEK_END)
+            if file.read() != b"\n":
+                raise Error(f"{name}: the file ends within a line: it is truncated")
     mesh = _quietly(name, "read", lambda: meshio.read(name))
     try:
         return from_meshio(mesh)

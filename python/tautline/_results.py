@@ -12,20 +12,17 @@ from typing import Any, ClassVar
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkCharArray
 from vtkmodules.vtkCommonDataModel import (
     vtkCompositeDataSet,
     vtkDataObject,
-    vtkDataObjectTypes,
     vtkDataSet,
-    vtkImageData,
     vtkTable,
 )
-from vtkmodules.vtkParallelCore import vtkCommunicator
 
 from ._arrays import Array, cell_types, leaves, table_rows
 from ._errors import Error
 from ._files import file_name, replace_text
+from ._packing import Packed
 from ._pictures import picture_html
 from ._tables import csv_text, json_text
 
@@ -121,36 +118,6 @@ class Result:
         return pandas.DataFrame(self.table())
 
 
-class _Packed:
-    """A VTK data object as bytes, for pickle."""
-
-    def __init__(self, data: vtkDataObject) -> None:
-        buffer = vtkCharArray()
-        if not vtkCommunicator.MarshalDataObject(data, buffer):
-            raise Error(f"a {data.GetClassName()} cannot be written to bytes")
-        self.content = bytes(memoryview(buffer))
-        self.class_name = data.GetClassName()
-        # The bytes have these rounded to six digits.
-        self.grids = [(leaf.GetOrigin(), leaf.GetSpacing()) for leaf in _images(data)]
-
-    def data(self) -> vtkDataObject:
-        """The object again."""
-        buffer = vtkCharArray()
-        buffer.SetNumberOfValues(len(self.content))
-        memoryview(buffer).cast("B")[:] = self.content
-        data = vtkDataObjectTypes.NewDataObject(self.class_name)
-        if not vtkCommunicator.UnMarshalDataObject(buffer, data):
-            raise Error(f"a {self.class_name} cannot be made of its bytes")
-        for image, (origin, spacing) in zip(_images(data), self.grids):
-            image.SetOrigin(origin)
-            image.SetSpacing(spacing)
-        return data
-
-
-def _images(data: vtkDataObject) -> list[vtkImageData]:
-    return [] if isinstance(data, vtkTable) else [leaf for leaf in leaves(data) if isinstance(leaf, vtkImageData)]
-
-
 def _fields(result: Any) -> tuple[Any, ...]:
     return fields(result)  # of the dataclass that is derived from Result
 
@@ -172,13 +139,13 @@ def _map(value: Any, function: Any) -> Any:
 
 def _pack(value: Any) -> Any:
     if isinstance(value, vtkDataObject):
-        return _Packed(value)
+        return Packed(value)
     inner = _map(value, _pack)
     return np.array(value) if isinstance(value, np.ndarray) else value if inner is None else inner
 
 
 def _unpack(value: Any) -> Any:
-    if isinstance(value, _Packed):
+    if isinstance(value, Packed):
         return value.data()
     inner = _map(value, _unpack)
     return value if inner is None else inner

@@ -64,7 +64,10 @@ SERIES = ".pvd"
 #: How files begin.
 _HDF5, _NETCDF, _ADF = b"\x89HDF\r\n\x1a\n", b"CDF", b"@(#)ADF"
 _HEAD = 16  # bytes
+_UCD_BINARY = b"\x07"
 _UCD_NUMBERS = 5  # in the first line of a UCD file
+_UCD_NODE, _UCD_CELL = 4, 3  # words in the line of a node; before the nodes of a cell
+_UCD_SIZES = {"pt": 1, "line": 2, "tri": 3, "quad": 4, "tet": 4, "pyr": 5, "prism": 6, "hex": 8}
 
 
 def is_ucd(name: str) -> bool:
@@ -75,6 +78,45 @@ def is_ucd(name: str) -> bool:
             if words and not words[0].startswith("#"):
                 return len(words) >= _UCD_NUMBERS and all(word.isdecimal() for word in words[:_UCD_NUMBERS])
     return False
+
+
+def _check_ucd(name: str) -> None:
+    """Raise Error, with the line, if an UCD file as text has not as many nodes, cells and values as its header says.
+
+    VTK's reader takes what is missing as zeros, or as the rest of another line.
+    """
+    with open(name, "rb") as file:
+        content = file.read()
+    if content[:1] == _UCD_BINARY:
+        return
+    lines = [(i + 1, line.split()) for i, line in enumerate(content.split(b"\n"))]
+    rows = [(i, words) for i, words in lines if words and not words[0].startswith(b"#")]
+    try:
+        nodes, cells, *values = (int(word) for word in rows[0][1][:_UCD_NUMBERS])
+    except (ValueError, IndexError):
+        raise Error(f"{name}: is not AVS UCD: five numbers are expected in the first line") from None
+    if len(values) != _UCD_NUMBERS - 2 or min(nodes, cells, *values) < 0:
+        raise Error(f"{name}:{rows[0][0]}: the counts of nodes, cells and values are wrong")
+    needed = [_UCD_NODE] * nodes + [_UCD_CELL] * cells
+    for i, least in enumerate(needed, 1):
+        if i >= len(rows):
+            raise Error(f"{name}: the file is truncated: its header has {nodes} nodes and {cells} cells")
+        number, words = rows[i]
+        if least == _UCD_CELL and len(words) > 2:
+            least += _UCD_SIZES.get(words[2].decode("latin-1").lower(), 0)
+        if len(words) < least:
+            raise Error(f"{name}:{number}: {len(words)} words; {least} are expected: is the file truncated?")
+    at = 1 + nodes + cells
+    for count, width in ((nodes, values[0]), (cells, values[1])):
+        if not width:
+            continue
+        labels = int(rows[at][1][0]) if at < len(rows) and rows[at][1][0].isdigit() else 0
+        end = at + 1 + labels + count
+        short = [number for number, words in rows[at + 1 + labels : end] if len(words) < 1 + width]
+        if end > len(rows) or short or not labels:
+            place = f":{short[0]}" if short else ""
+            raise Error(f"{name}{place}: the file is truncated: values are missing")
+        at = end
 
 
 def read_solver(name: str, form: SolverFormat, time: float | None) -> vtkDataObject:
@@ -131,12 +173,19 @@ def read_series(name: str, time: float | None, read: Callable[[str], vtkDataObje
     return parts[0] if len(parts) == 1 else _blocks([(f"part {i}", part) for i, part in enumerate(parts)])
 
 
-def _check_content(name: str, form: SolverFormat) -> None:
-    """Raise Error for what is not of the format: some libraries print to stderr or end the process then."""
+def check_content(name: str, form: SolverFormat) -> None:
+    """Raise Error for what is not of the format: some libraries print to stderr or end the process then.
+
+    Also if there is no such reader in this VTK.
+    """
+    if not form.built():
+        raise Error(f"{name}: this VTK has no reader for {form.title}; save the mesh as .vtu")
     with open(name, "rb") as file:
         head = file.read(_HEAD)
     if form is _CGNS and head.startswith(_ADF):
         raise Error(f"{name}: is CGNS of the older kind, ADF: convert it by the program adf2hdf of CGNS")
+    if form is _AVS:
+        _check_ucd(name)
     signatures = {_CGNS: (_HDF5,), _EXODUS: (_HDF5, _NETCDF)}.get(form, ())
     if signatures and not head.startswith(signatures):
         raise Error(f"{name}: is not {form.title}, or damaged")
@@ -148,9 +197,7 @@ def _check_content(name: str, form: SolverFormat) -> None:
 
 
 def _reader(name: str, form: SolverFormat) -> Any:
-    if not form.built():
-        raise Error(f"{name}: this VTK has no reader for {form.title}; save the mesh as .vtu")
-    _check_content(name, form)
+    check_content(name, form)
     reader = getattr(import_module(f"vtkmodules.{form.module}"), form.reader)()
     getattr(reader, form.setter)(name)
     if form is _EXODUS:
