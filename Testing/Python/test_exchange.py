@@ -267,7 +267,8 @@ def test_meshio():
     assert vtk_to_numpy(grid.GetCellData().GetArray("part")).tolist() == [1, 0]
     refused(wording("cells-triangle10-of-meshio-are-not-supported"), tl.quality,
             meshio.Mesh(np.zeros((10, 3)), [("triangle10", [list(range(10))])]))  # fmt: skip
-    refused(wording("meshio-cannot-read-it"), tl.read, broken(".bdf"))
+    refused(wording("meshio-cannot-read-it"), tl.read, broken(".vol"))
+    refused("broken.bdf:2: ", tl.read, broken(".bdf"))
     refused(wording("use-the-points-0-to-9"), tl.quality, meshio.Mesh(np.zeros((3, 3)), [("triangle", [[0, 1, 9]])]))
     images = tl.metric_field(dimensions=(3, 3)).mesh
     refused(wording("vtk-s-type-8"), tl.to_meshio, images)
@@ -332,6 +333,25 @@ def test_su2():
     corners[3][2] = 0.5
     refused(wording("no-surfaces-in-space"), tl.write, meshio.Mesh(corners, blocks), FOLDER / "markers.su2")
     assert (FOLDER / "markers.su2").read_text() == text
+
+
+def test_abaqus():
+    """Parts and instances, by every route of Python."""
+    part = "*Part, name={0}\n*Node\n1, 0., 0.\n2, {1}, 0.\n3, {1}, {1}\n4, 0., {1}\n"
+    part += "*Element, type=CPS4\n1, 1, 2, 3, 4\n"
+    text = part.format("A", 1.0) + "*End Part\n" + part.format("B", 3.0) + "*End Part\n*Assembly, name=X\n"
+    for instance in ("name=A-1, part=A\n", "name=B-1, part=B\n 10., 0., 0.\n", "name=A-2, part=A\n -5., 0., 0.\n"):
+        text += f"*Instance, {instance}*End Instance\n"
+    file = FOLDER / "job.inp"
+    file.write_text(text + "*End Assembly\n")
+    mesh = tl.read(file)
+    assert tl.quality(mesh, "size").values["size"].tolist() == [1, 9, 1] and mesh.GetBounds()[:2] == (-5, 13)
+    expected = "job.inp: " + wording("its-coordinates-cannot-be-replaced")
+    refused(expected, tl.write, mesh, FOLDER / "new.inp", template=file)
+    file.write_text("*NGEN\n1, 2\n")
+    refused("job.inp:1: ", tl.read, file)
+    rows = {row["ending"]: row for row in tl.formats()}
+    assert rows[".inp"]["by"] == rows[".bdf"]["by"] == "Tautline" and rows[".bdf"]["read"]
 
 
 def test_views():

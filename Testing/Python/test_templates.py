@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that come back with new coordinates and are otherwise the same, byte by byte: write(template=...), the shell."""
+"""Files that come back with new coordinates and are otherwise the same, byte by byte: write(template), the shell."""
 
 import re
 import shutil
 import subprocess
+import sys
 import warnings
 from importlib.util import find_spec
 
@@ -158,7 +159,9 @@ PSHELL  1       1       0.1
 MAT1    1       2.1+5           0.3
 ENDDATA
 """
-FILES = {"v2.msh": MSH2, "v41.msh": MSH41, "a.mesh": MEDIT, "a.su2": SU2, "a.off": OFF, "a.inp": ABAQUS, "a.bdf": NASTRAN}
+FILES = {
+    "v2.msh": MSH2, "v41.msh": MSH41, "a.mesh": MEDIT, "a.su2": SU2, "a.off": OFF, "a.inp": ABAQUS, "a.bdf": NASTRAN,
+}  # fmt: skip
 #: What stands where the coordinates of the inner point were: patterns, with a group for each.
 INNER = {
     "v2.msh": r"\n5 (\S+) (\S+) 0\n\$EndNodes", "v41.msh": r"\n5\n(\S+) (\S+) 0\n", "a.mesh": r"\n(\S+) (\S+) 0\nTri",
@@ -214,8 +217,8 @@ def test_layout():
 
 
 def test_nastran_numbers():
-    for value, width, text in ((1 / 3, 8, ".3333333"), (-1 / 3, 8, "-.333333"), (1e-7 / 3, 8, "3.3333-8"), (1.0, 8, "1."),
-                               (-123456.7, 8, "-123457."), (1.25e300, 8, "1.25+300"), (2 / 3, 16, ".666666666666667"),
+    for value, width, text in ((1 / 3, 8, ".3333333"), (-1 / 3, 8, "-.333333"), (1e-7 / 3, 8, "3.3333-8"),
+                               (1.0, 8, "1."), (-123456.7, 8, "-123457."), (1.25e300, 8, "1.25+300"), (2 / 3, 16, ".666666666666667"),
                                (-2.5e-9, 16, "-2.5-9")):  # fmt: skip
         found = _nastran(value, b" " * width).decode()
         assert len(found) == width and np.isclose(_value(found.encode()), value, rtol=1e-4), (value, found)
@@ -241,8 +244,10 @@ def test_gmsh():
     """Files of Gmsh itself, text and binary, of versions 2 and 4.1, with a solid of several entities."""
     if not shutil.which("gmsh"):
         return
-    (FOLDER / "part.geo").write_text('SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {1, 0, 0, 1, 1, 1};'
-                                     "Coherence; Mesh.MeshSizeMax = 0.4; Physical Volume(\"solid\") = {1};\n")  # fmt: skip
+    (FOLDER / "part.geo").write_text(
+        'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 1}; Box(2) = {1, 0, 0, 1, 1, 1}; Coherence;'
+        'Mesh.MeshSizeMax = 0.4; Physical Volume("solid") = {1};\n'
+    )
     for version in ("22", "41"):
         for binary in ([], ["-bin"]):
             file = FOLDER / "part.msh"
@@ -269,7 +274,7 @@ def test_refused():
     refused(wording("no-other-options"), tl.write, mesh, target, template=source, binary=True)
     refused("v2.msh", tl.write, tl.domain("square"), target, template=source)
     mesh.GetPoints().SetPoint(4, np.nan, 0, 0)
-    refused("not finite", tl.write, mesh, target, template=source)
+    refused(wording("coordinate-is-not-finite"), tl.write, mesh, target, template=source)
     source.write_text(MSH2.replace("8 2 2 2 1 40 1 5", "8 2 2 2 1 1 5 40"))
     refused(wording("has-other-cells"), tl.write, moved(source), target, template=FOLDER / "v41.msh")
     refused(wording("cannot-be-templates"), tl.write, mesh, FOLDER / "a.ply", template=FOLDER / "b.ply")
@@ -303,6 +308,16 @@ def test_shell():
             for word in ("wall", "RequiredVertices", "*MATERIAL", "PSHELL", "# inside", "kept"):
                 assert (word in text) == (word in target.read_text()), (command, name, word)
         assert np.allclose(points(tl.read(FOLDER / f"optimize-{name}"))[4], (0.5, 0.5, 0), atol=1e-3), name
+
+
+def test_losses():
+    """Improve changes cells: the file is written anew, and what it lacks is listed."""
+    source = FOLDER / "improve.msh"
+    source.write_text(MSH2)
+    command = [sys.executable, "-m", "tautline", "improve", source, "-o", FOLDER / "improved.msh"]
+    done = subprocess.run(command, capture_output=True, text=True)
+    assert done.returncode == 0 and f"lacks 4 boundary cells and their groups of {source}" in done.stderr, done
+    assert '"fluid"' in (FOLDER / "improved.msh").read_text()
 
 
 run_tests(globals())

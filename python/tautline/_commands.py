@@ -19,7 +19,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendFilter
 from ._errors import Error, run as update
 from ._files import check_stream_or_target, replace_bytes, replace_text
 from ._groups import Groups
-from ._io import as_mesh, can_be_template, check_output, write
+from ._io import as_mesh, can_be_template, check_output, losses, write
 from ._names import find_name, nearest_name
 from ._results import Result
 from ._tables import csv_text, json_text
@@ -33,6 +33,7 @@ _HELP_WIDTH = 100
 #: Arguments that are meshes to read.
 _INPUTS = ("mesh", "input", "before", "after", "reference", "target", "geometry", "outline", "surface")
 _STANDARD_INPUT = "standard-input.vtu"
+_IMPROVE = "improve"  # the command that changes cells
 
 EXIT_CODES = """exit codes:
   0    done
@@ -254,6 +255,10 @@ def _write(arguments: argparse.Namespace, result: Any, options: dict[str, Any]) 
             return write(result, output, template=source)
         except Error as error:
             warnings.warn(f"{error}; {output} is written anew", stacklevel=2)
+    elif isinstance(source, str) and arguments.command == _IMPROVE and can_be_template(source, output):
+        lost = losses(source)
+        if lost:
+            warnings.warn(f"{output}: points and cells changed, so it lacks {lost} of {source}", stacklevel=2)
     return write(result, output, **options)
 
 

@@ -46,7 +46,7 @@ def _facts(ending: str) -> dict[str, Any]:
         if meshio:  # which writes what is read here
             facts |= {"format": MESHIO_FORMATS[ending], "write": installed(ending)}
         if ending == ".inp":  # of two formats: AVS UCD is read by VTK
-            facts["format"] += ", AVS UCD"
+            facts["format"] = f"{facts['format']}, AVS UCD"
     elif ending == SU2:
         facts |= {"format": "SU2", "write": True, "by": "Tautline"}
     elif ending == SERIES:

@@ -29,7 +29,17 @@ from ._reading import answer, read_apart
 from ._su2 import read_su2, write_su2
 from ._surfaces import check_surface
 from ._template import LOCATORS, rewrite
-from ._vtk_readers import SERIES, SOLVER_FORMATS, SolverFormat, check_content, is_ucd, read_series, read_solver, series, times_of
+from ._vtk_readers import (
+    SERIES,
+    SOLVER_FORMATS,
+    SolverFormat,
+    check_content,
+    is_ucd,
+    read_series,
+    read_solver,
+    series,
+    times_of,
+)
 from ._vtk_writers import block_files, write_composite, write_data
 
 #: What every function takes as a mesh: a vtkDataSet, a composite data set, a file name, the result of another function,
@@ -63,6 +73,9 @@ SU2 = ".su2"
 _UNSAFE = (".ply", ".obj")
 # Formats of VTK that are templates by their data.
 _VTK_TEMPLATES = (".vtk", ".vtu")
+# Formats with cells that are only read on demand, and with more than a mesh.
+_WITH_LOWER_CELLS = (".msh", ".mesh", ".su2", ".inp", ".bdf", ".nas", ".fem")
+_MODELS = (".inp", ".bdf", ".nas", ".fem")
 # Of the extent of a mesh: coordinates that are rounded by more are worth a warning.
 _ROUNDING = 1e-9
 # Of one file; a damaged one may have thousands.
@@ -100,12 +113,13 @@ def read(
 
     file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was
         built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++
-        (.msh), OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2, Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD
-        (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam), Gambit (.neu), Fluent (.cas), Tecplot (.tec); .pvd; and
-        where meshio is installed MED, Netgen (.vol) and others, see formats().
+        (.msh), OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2,
+        Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam),
+        Gambit (.neu), Fluent (.cas), Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen (.vol) and
+        others, see formats().
     options: lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the
-        formats of mesh generators, Abaqus, Nastran and SU2. time: the time step to read, the nearest to this number, see times(); the default is
-        the first. Of the formats of solvers and .pvd.
+        formats of mesh generators, Abaqus, Nastran and SU2. time: the time step to read, the nearest to this number,
+        see times(); the default is the first. Of the formats of solvers and .pvd.
 
     Returns a vtkDataSet; of .vtm and some .vtk files a composite data set. The pieces of a .pvtu or .pvtp file come one
     after the other, without their ghost cells and with the points of each: every function treats the points on their
@@ -190,8 +204,9 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
             return read_su2(name, **options)
         check_installed(name)
         return read_apart(name, {}, lambda: read_meshio(name))
-    check_content(name, form)  # before a process is started for it
-    return read_apart(name, {"time": time}, lambda: _read_with(name, form, time))
+    known = form
+    check_content(name, known)  # before a process is started for it
+    return read_apart(name, {"time": time}, lambda: _read_with(name, known, time))
 
 
 def _read_with(name: str, form: SolverFormat, time: float | None) -> vtkDataObject:
@@ -303,6 +318,19 @@ def can_be_template(source: str, target: str) -> bool:
     """
     ending = Path(target).suffix.lower()
     return ending in LOCATORS and ending == Path(source).suffix.lower()
+
+
+def losses(source: str) -> str:
+    """What a file holds beside the mesh that is read from it, in words; "" if nothing."""
+    ending = Path(source).suffix.lower()
+    found = []
+    if ending in _WITH_LOWER_CELLS:
+        all_, own = (read(source, lower_cells=lower).GetNumberOfCells() for lower in (True, False))
+        if all_ > own:
+            found.append(f"{all_ - own} boundary cells and their groups")
+    if ending in _MODELS:
+        found.append("materials, properties, loads and comments")
+    return " and ".join(found)
 
 
 def _write_like(data: vtkDataSet, name: str, source: str) -> list[str]:

@@ -58,8 +58,16 @@ def read_apart(name: str, request: dict[str, Any], here: Callable[[], Any]) -> A
                 "seconds": int(seconds) + 1, **request}  # fmt: skip
         command = [python, "-c", "from tautline._io import read_for_another; read_for_another()", json.dumps(task)]
         try:
-            done = subprocess.run(command, env=_environment(), stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                  stderr=subprocess.PIPE, timeout=seconds, check=False, start_new_session=True)  # fmt: skip
+            done = subprocess.run(
+                command,
+                env=_environment(),
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
+                timeout=seconds,
+                check=False,
+                start_new_session=True,
+            )
         except subprocess.TimeoutExpired:
             raise Error(f"{name}: reading takes more than {seconds:.0f} s: the file is damaged or too large") from None
         except OSError:
