@@ -335,6 +335,23 @@ def test_su2():
     assert (FOLDER / "markers.su2").read_text() == text
 
 
+def test_kratos():
+    """The names of elements give their cells; meshio takes three nodes for a line of second order."""
+    if not find_spec("meshio"):
+        return
+    text = "Begin Nodes\n1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\nEnd Nodes\n"
+    text += "Begin Elements Element2D3N\n1 0 1 2 3\n2 0 1 3 4\n"
+    file = FOLDER / "plane.mdpa"
+    file.write_text(text + "End Elements\n")
+    assert tl.quality(file, "size").values["size"].tolist() == [0.5, 0.5]
+    file.write_text(text + "End Elements\nBegin Conditions LineCondition2D2N\n1 0 1 2\nEnd Conditions\n")
+    mesh = tl.read(file)
+    assert [mesh.GetCellType(i) for i in range(3)] == [5, 5, 3]
+    for old, new, place in (("Element2D3N", "Something", 7), ("2D3N", "2D5N", 7), ("\n3 1 1 0", "\n7 1 1 0", 4)):
+        file.write_text(text.replace(old, new) + "End Elements\n")
+        refused(f"plane.mdpa:{place}: ", tl.read, file)
+
+
 def test_abaqus():
     """Parts and instances, by every route of Python."""
     part = "*Part, name={0}\n*Node\n1, 0., 0.\n2, {1}, 0.\n3, {1}, {1}\n4, 0., {1}\n"

@@ -218,8 +218,8 @@ def test_layout():
 
 def test_nastran_numbers():
     for value, width, text in ((1 / 3, 8, ".3333333"), (-1 / 3, 8, "-.333333"), (1e-7 / 3, 8, "3.3333-8"),
-                               (1.0, 8, "1."), (-123456.7, 8, "-123457."), (1.25e300, 8, "1.25+300"), (2 / 3, 16, ".666666666666667"),
-                               (-2.5e-9, 16, "-2.5-9")):  # fmt: skip
+                               (1.0, 8, "1."), (-123456.7, 8, "-123457."), (1.25e300, 8, "1.25+300"),
+                               (2 / 3, 16, ".666666666666667"), (-2.5e-9, 16, "-2.5-9")):  # fmt: skip
         found = _nastran(value, b" " * width).decode()
         assert len(found) == width and np.isclose(_value(found.encode()), value, rtol=1e-4), (value, found)
         assert abs(_value(found.encode()) - value) <= abs(_value(text.encode()) - value), (value, found)

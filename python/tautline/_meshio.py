@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 import sys
 import warnings
 from contextlib import redirect_stderr, redirect_stdout
@@ -47,6 +48,14 @@ MESHIO_FORMATS = {
     ".f3grid": "FLAC3D",
     ".xml": "DOLFIN",
 }
+#: Kratos' names end with the dimension of the space and the number of nodes.
+_KRATOS_NAME = re.compile(r"([123])D(\d+)N?$")
+_KRATOS_SURFACE = re.compile("Shell|Membrane|Plate|Surface", re.IGNORECASE)
+_KRATOS_CELLS = {
+    (1, 2): "line", (1, 3): "line3", (2, 3): "triangle", (2, 4): "quad", (2, 6): "triangle6", (2, 8): "quad8",
+    (2, 9): "quad9", (3, 4): "tetra", (3, 5): "pyramid", (3, 6): "wedge", (3, 8): "hexahedron", (3, 10): "tetra10",
+    (3, 15): "wedge15", (3, 20): "hexahedron20", (3, 27): "hexahedron27",
+}  # fmt: skip
 #: Formats as text without counts, of which a cut line can be read as a whole one.
 _LINES_ONLY = (".f3grid",)
 #: Formats with one label for each cell, and the cell arrays it is taken from.
@@ -91,11 +100,48 @@ def read_meshio(name: str) -> vtkUnstructuredGrid:
             file.seek(-1, os.SEEK_END)
             if file.read() != b"\n":
                 raise Error(f"{name}: the file ends within a line: it is truncated")
+    if name.lower().endswith(".mdpa"):
+        _name_kratos_elements(name)
     mesh = _quietly(name, "read", lambda: meshio.read(name))
     try:
         return from_meshio(mesh)
     except Error as error:
         raise Error(f"{name}: {error}") from None
+
+
+def _name_kratos_elements(name: str) -> None:
+    """Tell meshio the cells of the elements of Kratos in a file: by their nodes it takes Element2D3N for a line.
+
+    Raises Error, with the line, for elements whose name does not give their cell, and for nodes that are not numbered
+    from 1 on, because meshio takes their numbers for places.
+    """
+    known = import_module("meshio.mdpa._mdpa")._mdpa_to_meshio_type
+    nodes = None
+    with open(name, encoding="latin-1") as file:
+        for number, line in enumerate(file, 1):
+            words = line.split()
+            if words[:2] == ["Begin", "Nodes"]:
+                nodes = 0
+            elif words[:2] == ["End", "Nodes"]:
+                nodes = None
+            elif nodes is not None and words and not words[0].startswith("//"):
+                nodes += 1
+                if words[0] != str(nodes):
+                    raise Error(f"{name}:{number}: node {words[0]} where {nodes} is expected: number them from 1 on")
+            elif len(words) > 2 and words[0] == "Begin" and words[1] in ("Elements", "Conditions"):
+                if not any(key in words[2] for key in known):
+                    known[words[2]] = _kratos_cell(f"{name}:{number}", words[1] == "Conditions", words[2])
+
+
+def _kratos_cell(place: str, boundary: bool, entity: str) -> str:
+    found = _KRATOS_NAME.search(entity)
+    if not found:
+        raise Error(f"{place}: the cell of '{entity}' is not known: its name does not end like Element3D4N")
+    dimension = int(found[1]) - (1 if boundary or _KRATOS_SURFACE.search(entity) else 0)
+    kind = _KRATOS_CELLS.get((dimension, int(found[2])))
+    if kind is None:
+        raise Error(f"{place}: there is no cell of {dimension} dimensions and {found[2]} nodes for '{entity}'")
+    return kind
 
 
 def write_meshio(data: vtkDataSet, name: str, groups: Groups | None = None) -> list[str]:
