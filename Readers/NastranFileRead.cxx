@@ -45,6 +45,7 @@ constexpr ElementCard NastranElements[] = {
   { "CSHEAR", 2, 4, FileQuadrilateral, nullptr, 0, 0, nullptr },
   { "CQUAD8", 2, 4, FileQuadrilateral, nullptr, 8, FileQuadrilateral8, nullptr },
   { "CQUAD", 2, 4, FileQuadrilateral, nullptr, 9, FileQuadrilateral9, nullptr },
+  { "CQUAD9", 2, 4, FileQuadrilateral, nullptr, 9, FileQuadrilateral9, nullptr }, // of meshio
   { "CTETRA", 2, 4, FileTetrahedron, nullptr, 10, FileTetrahedron10, nullptr },
   { "CPYRAM", 2, 5, FilePyramid, nullptr, 13, FilePyramid13, nullptr },
   { "CPYRA", 2, 5, FilePyramid, nullptr, 13, FilePyramid13, nullptr },

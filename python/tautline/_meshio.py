@@ -31,8 +31,8 @@ _CELLS = {
     "hexahedron20": (25, 20), "wedge15": (26, 15), "pyramid13": (27, 13), "quad9": (28, 9), "hexahedron27": (29, 27),
     "triangle7": (34, 7),
 }  # fmt: skip
-#: meshio's linear wedge is that of Gmsh: the normal of its first triangle points inwards. Its own inverse.
-_ORDERS = {"wedge": [0, 2, 1, 3, 5, 4]}
+#: meshio's wedges are those of Gmsh: the normal of their first triangle points inwards. Their own inverses.
+_ORDERS = {"wedge": [0, 2, 1, 3, 5, 4], "wedge15": [0, 2, 1, 3, 5, 4, 8, 7, 6, 11, 10, 9, 12, 14, 13]}
 _BY_NUMBER = {number: (name, size) for name, (number, size) in _CELLS.items()}
 #: Formats that meshio reads and VTK or Tautline do not, by ending: what they are.
 MESHIO_FORMATS = {
@@ -69,6 +69,8 @@ _HDF5_PACKAGE = "h5py (Debian: apt-get install python3-h5py)"
 _ONLY_CELLS = {
     ".f3grid": ("FLAC3D", {"tetra", "pyramid", "wedge", "hexahedron", "triangle", "quad"}, 3),
     ".xml": ("DOLFIN", {"triangle", "tetra"}, 2),
+    # meshio writes line3 as B33H, which has two nodes
+    ".inp": ("Abaqus", set(_CELLS) - {"line3", "vertex", "pyramid", "pyramid13", "triangle7", "hexahedron27"}, 0),
 }
 
 
