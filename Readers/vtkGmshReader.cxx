@@ -20,7 +20,7 @@ int vtkGmshReader::CanReadFile(const char* name)
 {
   const std::string extension = tautline::splitExtension(name).second;
   const std::string start = tautline::firstWord(name);
-  return extension == "msh" &&
+  return (extension == "msh" || extension == "msh2" || extension == "msh4") &&
     (start == "$MeshFormat" || start == "$NOD" ||
       (!start.empty() && start[0] >= '0' && start[0] <= '9'));
 }

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of solvers through VTK's readers and meshio, time steps, meshio's objects, the table of formats."""
 
+import gzip
 import sys
 import warnings
 from importlib.util import find_spec
@@ -349,6 +350,23 @@ def test_kratos():
     for old, new, place in (("Element2D3N", "Something", 7), ("2D3N", "2D5N", 7), ("\n3 1 1 0", "\n7 1 1 0", 4)):
         file.write_text(text.replace(old, new) + "End Elements\n")
         refused(f"plane.mdpa:{place}: ", tl.read, file)
+
+
+def test_endings():
+    """Gmsh's other endings, and files that gzip has compressed."""
+    text = (DATA / "part.msh").read_bytes()
+    for ending in (".msh2", ".msh4"):
+        (FOLDER / f"part{ending}").write_bytes(text)
+        same(tl.read(FOLDER / f"part{ending}"), tl.read(DATA / "part.msh"))
+    file = FOLDER / "part.msh.gz"
+    file.write_bytes(gzip.compress(text))
+    same(tl.read(file), tl.read(DATA / "part.msh"))
+    assert tl.read(file, lower_cells=True).GetNumberOfCells() >= tl.read(file).GetNumberOfCells()
+    for content in (file.read_bytes()[:-30], b"nonsense", gzip.compress(text[:300])):
+        file.write_bytes(content)
+        refused(str(file), tl.read, file)
+    (FOLDER / "part.ele.gz").write_bytes(gzip.compress(b"1 4 0"))
+    refused(wording("compressed-files-are-read-of"), tl.read, FOLDER / "part.ele.gz")
 
 
 def test_abaqus():

@@ -17,7 +17,7 @@ from ._vtk_readers import SERIES, SOLVER_FORMATS
 _OWN = {
     ".node": "TetGen, Triangle", ".ele": "TetGen, Triangle", ".face": "TetGen, Triangle", ".edge": "TetGen, Triangle",
     ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit", ".sol": "Medit", ".msh": "Gmsh, FreeFem++",
-    ".pos": "Gmsh's views",
+    ".pos": "Gmsh's views", ".msh2": "Gmsh", ".msh4": "Gmsh",
     ".off": "OFF", ".coff": "OFF", ".noff": "OFF", ".cnoff": "OFF", ".ply": "PLY", ".stl": "STL",
     ".obj": "Wavefront OBJ",
 }  # fmt: skip

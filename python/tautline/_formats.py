@@ -56,6 +56,7 @@ _OWN_FORMATS = {
     ".mesh": Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet"),
     ".sol": Format("vtkMeditReader", None, "vtkDataSet"),
     ".msh": Format("vtkGmshReader", "vtkGmshWriter", "vtkDataSet"),
+    **dict.fromkeys((".msh2", ".msh4"), Format("vtkGmshReader", None, "vtkDataSet")),
     ".inp": Format("vtkAbaqusReader", None, "vtkDataSet"),
     **dict.fromkeys((".bdf", ".nas", ".fem"), Format("vtkNastranReader", None, "vtkDataSet")),
     ".pos": Format(None, "vtkGmshWriter", "vtkDataSet"),

@@ -3,10 +3,14 @@
 
 from __future__ import annotations
 
+import gzip
 import os
+import shutil
 import warnings
+import zlib
 from os import PathLike
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, Callable, Union
 
 import numpy as np
@@ -69,6 +73,12 @@ _CONVERTERS = {
     ".ans": "save it as Nastran .bdf in ANSYS",
 }
 SU2 = ".su2"
+# Files compressed by gzip, of formats whose meshes are in one file.
+_COMPRESSED = ".gz"
+_OF_ONE_FILE = (
+    ".msh", ".msh2", ".msh4", ".mesh", ".inp", ".bdf", ".nas", ".fem", ".su2", ".off", ".vtk", ".vtu", ".vtp", ".stl",
+    ".ply", ".obj",
+)  # fmt: skip
 # Formats whose readers in VTK crash on damaged files.
 _UNSAFE = (".ply", ".obj")
 # Formats of VTK that are templates by their data.
@@ -116,7 +126,7 @@ def read(
         (.msh), OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2,
         Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam),
         Gambit (.neu), Fluent (.cas), Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen (.vol) and
-        others, see formats().
+        others, see formats(). Formats of one file also with .gz behind their ending.
     options: lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the
         formats of mesh generators, Abaqus, Nastran and SU2. time: the time step to read, the nearest to this number,
         see times(); the default is the first. Of the formats of solvers and .pvd.
@@ -130,10 +140,29 @@ def read(
     >>> mesh = tautline.read("part.msh", lower_cells=True)
     """
     name = file_name(file)
-    mesh = _read(name, options)
+    mesh = _read_compressed(name, options) if name.lower().endswith(_COMPRESSED) else _read(name, options)
     for leaf in leaves(mesh):
         check_grid(leaf, name)
     return mesh
+
+
+def _read_compressed(name: str, options: dict[str, Any]) -> vtkDataObject:
+    """Read a file of one of the formats of a single file, compressed by gzip."""
+    inner = os.path.basename(name[: -len(_COMPRESSED)])
+    if Path(inner).suffix.lower() not in _OF_ONE_FILE:
+        raise Error(f"{name}: compressed files are read of {' '.join(_OF_ONE_FILE)}; decompress it with gunzip")
+    check_input(name)
+    with TemporaryDirectory(prefix="tautline-") as folder:
+        expanded = os.path.join(folder, inner)
+        try:
+            with gzip.open(name, "rb") as source, open(expanded, "wb") as target:
+                shutil.copyfileobj(source, target)
+        except (OSError, EOFError, zlib.error) as error:
+            raise Error(f"{name}: cannot be decompressed: {error}") from None
+        try:
+            return _read(expanded, options)
+        except Error as error:
+            raise Error(str(error).replace(expanded, name)) from None
 
 
 def _read(name: str, options: dict[str, Any]) -> vtkDataObject:

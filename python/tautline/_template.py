@@ -41,7 +41,7 @@ def rewrite(source: str, target: str, before: Array, after: Array) -> float:
     """
     content = Path(source).read_bytes()
     ending = Path(source).suffix.lower()
-    if ending == ".msh" and (place := _binary_msh(source, content)) is not None:
+    if ending in _GMSH and (place := _binary_msh(source, content)) is not None:
         replace_bytes(target, _with_doubles(source, content, place, before, after))
         return 0.0
     try:
@@ -373,9 +373,10 @@ def _free_grid(line: bytes, place: int) -> Iterator[list[_Span]]:
 
 
 _NASTRAN = (".bdf", ".nas", ".fem")
+_GMSH = (".msh", ".msh2", ".msh4")
 #: How the coordinates of each format are found.
 LOCATORS: dict[str, Callable[[bytes], Iterator[list[_Span]]]] = {
-    ".msh": _msh,
+    **dict.fromkeys(_GMSH, _msh),
     ".mesh": _medit,
     ".su2": _su2,
     ".off": _off,
