@@ -33,7 +33,7 @@ for row, facts in zip(rows, result.statistics.values()):
     assert row.pop("label") == facts["label"]
     for key, value in row.items():
         assert float(value) == facts[key], key
-assert wording("no-metric-nope") in run("quality", MESH, "--metrics", "nope", code=1)
+assert wording("no-metric-nope") in run("quality", MESH, "--metrics", "nope", code=2)
 assert run("quality", "absent.vtu", code=1) == "tautline: absent.vtu: there is no such file\n"
 assert wording("cannot-be-written") in run("quality", PLATE, "--csv", OUT / "absent" / "x.csv", code=1)
 run("quality", PLATE, "--metrics", "mu_size", "--size", "0.03")
@@ -53,7 +53,7 @@ loose["criteria"] = [{"metric": "equiangle_skew", "limits": {"all": dict(ideal=0
 rules.write_text(json.dumps(loose))
 assert wording("passed-by-the-criteria") in run("quality", PLATE, "--criteria", rules)
 assert wording("neither-a-file") in run("quality", PLATE, "--criteria", "absent.json", code=1)
-assert wording("did-you-mean-fem") in run("criteria", "fen", code=1)
+assert wording("did-you-mean-fem") in run("criteria", "fen", code=2)
 
 # perturb, compare, field
 moved = OUT / "cli-perturbed.vtu"

@@ -20,12 +20,14 @@ PARTS = tuple(path.stem for path in PACKAGE.glob("_*_parts.py"))
 FLOORS = (
     ("_build", "_start"),
     ("_choices", "_vtk"),
-    ("_classes", "_interrupts", "_names"),
+    ("_cell_names", "_classes", "_interrupts", "_names"),
     ("_errors",),
     ("_arrays", "_files", "_formats", "_tables"),
-    ("_grid_checks", "_packing"),
-    ("_arguments", "_groups", "_legacy", "_mesh", "_pictures", "_reading", "_surfaces", "_vtk_readers", "_vtk_writers"),
+    ("_grid_checks", "_views"),
+    ("_packing",),
+    ("_arguments", "_groups", "_legacy", "_pictures", "_reading", "_surfaces", "_vtk_readers", "_vtk_writers"),
     ("_meshio", "_su2", "_template"),
+    ("_mesh",),
     ("_io", "_results"),
     ("_commands",),
     ("_html", "_metrics", "_state", "_state_runner"),  # the runner is a script that imports the whole package

@@ -405,7 +405,7 @@ def test_commands():
     assert wording("all-elements-are-valid-41-were-not") in run("untangle", TANGLED, "-o", mesh)
     run("untangle", TANGLED, "-o", mesh, "--method", "simultaneous")
     assert (points(tl.read(mesh)) == points(tl.untangle(TANGLED, method="simultaneous").mesh)).all()
-    assert wording("no-metric-nope") in run("optimize", PLATE, "-o", mesh, "--objective", "nope", code=1)
+    assert wording("no-metric-nope") in run("optimize", PLATE, "-o", mesh, "--objective", "nope", code=2)
     assert wording("is-not-key-value") in run("optimize", PLATE, "-o", mesh, "--objective", "imr,x", code=2)
     assert wording("invalid-choice-x") in run("untangle", PLATE, "-o", mesh, "--effort", "x", code=2)
 

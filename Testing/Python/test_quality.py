@@ -179,7 +179,7 @@ def test_errors():
     refused("m x 3 or 4", tl.quality, (SQUARE, [[0, 1, 2, 3, 0]]))
     refused(wording("use-the-points-0-to-9-there"), tl.quality, (TET, [[0, 1, 2, 9]]))
     refused(wording("whole-numbers-are-expected"), tl.quality, (TET, [[0.0, 1, 2, 3]]))
-    refused(wording("there-are-no-cells-line"), tl.quality, (TET, {"line": [[0, 1]]}))
+    refused(wording("there-are-no-cells-line"), tl.quality, (TET, {"lime": [[0, 1]]}))
     refused("n x 2 or n x 3", tl.quality, (np.zeros((4, 4)), [[0, 1, 2]]))
     refused(wording("points-are-not-an-array-of-numbers"), tl.quality, (["a", "b"], [[0, 1, 2]]))
 

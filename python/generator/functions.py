@@ -148,7 +148,7 @@ class Function:
         """The function, and the command of the shell."""
         inner = self.hint.get("filter")
         more = [f"{argument.name}={argument.name}" for argument in self.parts.result(self.name).arguments]
-        values = ", ".join(["filter_", "filter_.GetOutputDataObject(0)", *more])
+        values = ", ".join(["filter_", "viewed(filter_.GetOutputDataObject(0))", *more])
         made = f"    return {self.name}_result({values})\n"
         head = self.signature(self.name, self.result, True)
         if not inner:
@@ -208,7 +208,7 @@ class Function:
 
     def names(self) -> set[str]:
         """What the code has to import."""
-        found = {"Any", "interruptible", "run", "watch", "Progress", self.result, f"{self.name}_result"}
+        found = {"Any", "interruptible", "run", "viewed", "watch", "Progress", self.result, f"{self.name}_result"}
         found |= {f"finish_{self.name}"} | {setter.name for setter in self.setters}
         found |= {self.own_input.name} if self.own_input else set()
         found |= {n for n in (f"add_{self.name}_options", f"{self.name}_options") if n in self.parts.functions}

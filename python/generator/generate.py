@@ -72,6 +72,8 @@ PACKAGE = {
     "Progress": "._interrupts",
     "Mesh": "._io",
     "as_mesh": "._io",
+    "metric_name": "._metrics",
+    "viewed": "._views",
 }
 HEAD = '''# SPDX-License-Identifier: BSD-3-Clause
 # Written by python/generator from {sources}.

@@ -123,9 +123,9 @@ class Property:
             return self._choice(self.choices)
         if self.element.find("EnumerationDomain") is not None:
             name, setter = self.argument_name, self.element.get("command")
-            code = f"    if {name} is not None:\n        filter_.{setter}ByName({name})"
+            code = f'    if {name} is not None:\n        filter_.{setter}ByName(metric_name({name}, "{name}"))'
             text = re.sub(r'"automatic":', "None:", self.text)
-            return Argument(name, "str | None", "None", f"the name of a metric. {text}", code)
+            return Argument(name, "str | None", "None", f"the name of a metric. {text}", code, names={"metric_name"})
         if self.kind == "String":
             default = f'"{self.element.get("default_values", "")}"'
             return Argument(self.argument_name, "str", default, self.text, self._set(self.argument_name))

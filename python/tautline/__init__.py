@@ -27,7 +27,7 @@ from . import _vtk
 from ._comparison import compare
 from ._comparison_parts import CompareResult
 from ._conversion import formats
-from ._errors import Aborted, Error
+from ._errors import Aborted, Error, MissingKey
 from ._io import Mesh, read, times, to_meshio, write
 from ._mesh import from_arrays
 from ._metric_field import metric_field
@@ -42,7 +42,7 @@ from ._state import StateResult, run_state
 __version__ = _build.VERSION
 
 __all__ = [
-    "CompareResult", "compare", "Aborted", "Error", "Mesh", "read", "write", "from_arrays", "MetricFieldResult",
+    "CompareResult", "compare", "Aborted", "Error", "MissingKey", "Mesh", "read", "write", "from_arrays", "MetricFieldResult",
     "metric_field", "load_metrics", "metrics", "register_metric", "unregister_metric", "QualityResult", "criteria",
     "quality", "report", "StepsResult", "run_steps", "StateResult", "run_state",
     "formats", "times", "to_meshio",

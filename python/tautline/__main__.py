@@ -79,7 +79,7 @@ def main(arguments: list[str] | None = None) -> int:
             return parsed.run(parsed) or 0
     except Error as error:
         print(f"tautline: {error}", file=sys.stderr)
-        return 1
+        return error.exit_code
     except KeyboardInterrupt:
         print("tautline: interrupted", file=sys.stderr)
         return _start.INTERRUPTED

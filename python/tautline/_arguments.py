@@ -7,7 +7,7 @@ from typing import Any, Callable, Sequence, TypeVar
 
 import numpy as np
 
-from ._errors import Error
+from ._errors import Error, wrong_name
 from ._names import find_name, nearest_name
 
 Name = TypeVar("Name", bound=str)
@@ -19,7 +19,7 @@ def pick(option: str, value: Any, allowed: Sequence[str]) -> int:
     found = find_name(value, allowed)
     if found is None:
         listed = ", ".join(map(repr, allowed))
-        raise Error(f"{option} is {value!r}{nearest_name(value, allowed)}; there are {listed}")
+        raise wrong_name(f"{option} is {value!r}{nearest_name(value, allowed)}; there are {listed}")
     return allowed.index(found)
 
 

@@ -13,7 +13,7 @@ from . import _commands
 from ._arguments import sets
 from ._arrays import Array, cell_array, columns, point_array, snake
 from ._io import Mesh, as_mesh
-from ._metrics import Metrics, choose
+from ._metrics import Metrics, by_metric, choose
 from ._results import Result
 from ._tables import comparison_rows, comparison_text
 
@@ -69,8 +69,8 @@ def compare_result(filter_: Any, mesh: vtkDataObject) -> CompareResult:
     rows = {name: row for row, name in enumerate(table.pop("Metric"))}
     return CompareResult(
         mesh=mesh,
-        statistics={n: {snake(key): table[key][row].item() for key in table} for n, row in rows.items()},
-        difference={name: cell_array(mesh, f"{name}_difference") for name in rows},
+        statistics=by_metric({n: {snake(key): table[key][row].item() for key in table} for n, row in rows.items()}),
+        difference=by_metric({name: cell_array(mesh, f"{name}_difference") for name in rows}),
         change=cell_array(mesh, "Change"),
         displacement=point_array(mesh, "Displacement"),
         summary=filter_.GetSummary(),

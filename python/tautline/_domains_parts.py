@@ -11,6 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 from . import _commands, _vtk
 from ._errors import checked
 from ._names import find_name
+from ._views import viewed
 
 
 @checked
@@ -33,7 +34,7 @@ def domain_result(filter_: Any, mesh: vtkDataSet, deformed_boundary: bool = Fals
 
     deformed_boundary: return the moved boundary instead of the mesh.
     """
-    return filter_.GetOutputDataObject(1) if deformed_boundary else mesh
+    return viewed(filter_.GetOutputDataObject(1)) if deformed_boundary else mesh
 
 
 # --- the shell ----------------------------------------------------------------------------------------------

@@ -19,6 +19,9 @@ _PREAMBLE = re.compile(r"^(ERROR|Warning): In .*?, line \d+\s*\n?\w+ \(.*?\): ",
 # Parts of the executive's message that follows the message of a filter.
 _CONSEQUENCE = ("returned failure for request", "Algorithm vtk")
 
+#: Exit code of the shell for wrong usage.
+WRONG_USAGE = 2
+
 _MEMORY_REMEDY = "take a smaller mesh, or a higher limit on the memory of the process"
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -27,17 +30,51 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 class Error(RuntimeError):
     """Raised by every function of the package: wrong arguments, unreadable files, errors of a filter."""
 
+    #: That of the shell.
+    exit_code = 1
+
 
 class Aborted(Error):
     """Raised where a progress callback has returned False."""
 
 
+class MissingKey(Error, KeyError):
+    """Raised by dicts of results and meshes for a key that they do not have."""
+
+    def __init__(self, what: str, key: Any, known: Iterable[str]) -> None:
+        names = list(known)
+        hint = nearest(str(key), names) + (f"; there are {', '.join(names)}" if names else "")
+        super().__init__(f"there is no {what} {key!r}{hint}")
+        self._arguments = (what, key, names)
+
+    def __str__(self) -> str:
+        return RuntimeError.__str__(self)  # that of KeyError has quotation marks
+
+    def __reduce__(self) -> Any:
+        return type(self), self._arguments
+
+
+# As tracebacks show them, and as users write them in `except`.
+Error.__module__ = Aborted.__module__ = MissingKey.__module__ = __package__
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """What to add to the message for an unknown name: the nearest one, or nothing."""
+    found = get_close_matches(name, list(known), 1)
+    return f"; did you mean {found[0]!r}?" if found else ""
+
+
+def wrong_name(text: str) -> Error:
+    """The error for a name that does not exist, which is wrong usage on the shell."""
+    error = Error(text)
+    error.exit_code = WRONG_USAGE
+    return error
+
+
 def unknown(what: str, name: str, known: Iterable[str]) -> Error:
     """The error for an unknown name: with the nearest one, and all of them."""
     names = list(known)
-    nearest = get_close_matches(name, names, 1)
-    hint = f"; did you mean {nearest[0]!r}?" if nearest else ""
-    return Error(f"there is no {what} {name!r}{hint}; there are {', '.join(names)}")
+    return wrong_name(f"there is no {what} {name!r}{nearest(name, names)}; there are {', '.join(names)}")
 
 
 def checked(function: Function) -> Function:

@@ -33,6 +33,7 @@ from ._reading import answer, read_apart
 from ._su2 import read_su2, write_su2
 from ._surfaces import check_surface
 from ._template import LOCATORS, rewrite
+from ._views import MeshViews, viewed
 from ._vtk_readers import (
     SERIES,
     SOLVER_FORMATS,
@@ -95,6 +96,8 @@ _MOST_MESSAGES = 5
 def as_mesh(mesh: Mesh) -> vtkDataObject:
     """The VTK data object of a mesh given in any way; a file is read. Raises Error for anything that is not a mesh."""
     if isinstance(mesh, (vtkDataSet, vtkCompositeDataSet)):
+        if isinstance(mesh, MeshViews):
+            mesh.refresh()
         return mesh
     if isinstance(mesh, (str, PathLike)):
         return read(mesh)
@@ -106,7 +109,7 @@ def as_mesh(mesh: Mesh) -> vtkDataObject:
         return grid
     inner = getattr(mesh, "mesh", None)  # of a result
     if isinstance(inner, (vtkDataSet, vtkCompositeDataSet)):
-        return inner
+        return as_mesh(inner)
     if hasattr(mesh, "IsA") and mesh.IsA("vtkDataSet"):
         raise Error(f"this {type(mesh).__name__} is of another VTK than Tautline's; save it as .vtu and read that")
     raise Error(f"a mesh is a vtkDataSet, a file name or (points, cells), not {type(mesh).__name__}")
@@ -131,7 +134,8 @@ def read(
         formats of mesh generators, Abaqus, Nastran and SU2. time: the time step to read, the nearest to this number,
         see times(); the default is the first. Of the formats of solvers and .pvd.
 
-    Returns a vtkDataSet; of .vtm and some .vtk files a composite data set. The pieces of a .pvtu or .pvtp file come one
+    Returns a vtkDataSet with the attributes points, cells, point_data and cell_data, numpy arrays; of .vtm and some
+    .vtk files a composite data set. The pieces of a .pvtu or .pvtp file come one
     after the other, without their ghost cells and with the points of each: every function treats the points on their
     seams as one (merge_coincident_points). Raises Error, with file and line where they are known, if the file cannot be
     read, is truncated or damaged. Only a .vtk file that ends between two sections, or inside the last number of one,
@@ -143,7 +147,7 @@ def read(
     mesh = _read_compressed(name, options) if name.lower().endswith(_COMPRESSED) else _read(name, options)
     for leaf in leaves(mesh):
         check_grid(leaf, name)
-    return mesh
+    return viewed(mesh)
 
 
 def _read_compressed(name: str, options: dict[str, Any]) -> vtkDataObject:

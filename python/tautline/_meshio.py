@@ -283,6 +283,13 @@ def _ordered(name: str, cells: Array) -> Array:
     return cells[:, _ORDERS[name]] if name in _ORDERS and cells.size else cells
 
 
+def in_vtk_order(name: str, cells: Any) -> Any:
+    """The points of cells of meshio, by the name of the cell, in the order of VTK; what is no such array as it is."""
+    if name not in _ORDERS or np.ndim(cells) != 2 or np.shape(cells)[1] != len(_ORDERS[name]):
+        return cells
+    return _ordered(name, np.asarray(cells))
+
+
 def _membership(mesh: Any, chosen: Any) -> Array:
     """Per cell 1 in a set of cells, else 0."""
     parts = []

@@ -15,7 +15,7 @@ from ._arguments import pick, sets
 from ._arrays import Array, point_array
 from ._choices import METRIC_FIELD_CELLS
 from ._errors import Error
-from ._metrics import Metrics, choose
+from ._metrics import Metrics, by_metric, choose
 from ._results import Result
 
 
@@ -89,7 +89,7 @@ def metric_field_result(filter_: Any, image: vtkImageData) -> MetricFieldResult:
     names = [arrays.GetArrayName(i) for i in range(arrays.GetNumberOfArrays())]
     grids = {name: point_array(image, name).reshape(shape) for name in names}
     validity = grids.pop("Validity")
-    return MetricFieldResult(mesh=image, values=grids, validity=validity)
+    return MetricFieldResult(mesh=image, values=by_metric(grids), validity=validity)
 
 
 def _numbers(option: str, values: Any, shapes: list[tuple[int, ...]]) -> Array:

@@ -8,8 +8,9 @@ import os
 import re
 import sys
 import warnings
+from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, Callable, Iterable, Union
+from typing import Any, Callable, Iterable, Mapping, Union
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -17,8 +18,10 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from . import _vtk
 from ._arrays import Array
 from ._commands import add_command
-from ._errors import Error, Messages, checked, unknown, watch
+from ._errors import Error, Messages, checked, unknown, watch, wrong_name
+from ._names import folded
 from ._tables import json_text, metrics_markdown, metrics_text
+from ._views import NamedDict
 
 #: Metrics of a function: a name, label, symbol or alias, or several of them.
 Metrics = Union[str, Iterable[str]]
@@ -311,16 +314,56 @@ def _load_on_server(server: Any, path: str, script: str | None) -> str:
     return ""
 
 
+def find_metric(name: str, known: Iterable[str]) -> str | None:
+    """The one of the known metrics that a name, label, symbol or alias means, in any case; None if there is none."""
+    wanted, among = folded(name), set(known)
+    for facts in metrics():
+        if facts["name"] in among and wanted in map(folded, _names_of(facts)):
+            return str(facts["name"])
+    return None
+
+
+def by_metric(values: dict[str, Any]) -> NamedDict[Any]:
+    """A dict by metrics, whose other names are found as well."""
+    return NamedDict(values, find_metric, "metric")
+
+
+def _names_of(facts: dict[str, Any]) -> list[str]:
+    return [name for name in (facts["name"], facts["label"], facts["symbol"], *facts["aliases"]) if name]
+
+
+def metric_name(name: Any, option: str = "a metric") -> str:
+    """The name of the metric that a name, label, symbol or alias means. Raises Error, with the nearest one, for others.
+
+    option: the argument, for the message.
+    """
+    if not isinstance(name, str):
+        raise Error(f"{option} is given by its name, not {name!r}")
+    known = metrics()
+    found = find_metric(name, [facts["name"] for facts in known])
+    if found is None:
+        names = {folded(other): (facts["name"], other) for facts in reversed(known) for other in _names_of(facts)}
+        near = get_close_matches(folded(name), names, 1)
+        found, other = names[near[0]] if near else ("", "")
+        if near:
+            hint = f"did you mean {found!r}{'' if folded(found) == folded(other) else f' ({other})'}?"
+        else:
+            hint = f"there are {', '.join(facts['name'] for facts in known)}"
+        problems = str(_vtk.vtkUserMetric.GetLoadErrors()).strip()  # of libraries that may have it
+        raise wrong_name(f"There is no metric {name!r}; {hint}" + (f"\n{problems}" if problems else ""))
+    return found
+
+
 def choose(algorithm: Any, chosen: Metrics) -> Messages:
     """Add metrics to a filter by name; returns the filter's messages. Raises Error for none or unknown ones."""
+    if not isinstance(chosen, (str, Iterable)) or isinstance(chosen, (bytes, Mapping)):
+        raise Error(f"metrics is {chosen!r}; the name of a metric, or a list of names, is expected")
     names = [chosen] if isinstance(chosen, str) else list(chosen)
     if not names:
         raise Error("no metric is chosen")
     messages = watch(algorithm)
     for name in names:
-        if not isinstance(name, str):
-            raise Error(f"a metric is given by its name, not {name!r}")
-        algorithm.AddMetricByName(name)
+        algorithm.AddMetricByName(metric_name(name))
     messages.raise_errors()
     return messages
 

@@ -27,7 +27,9 @@ from ._arrays import (
     table_rows,
 )
 from ._choices import OPTIMIZE_PRESETS, TARGETS, TEMPLATES, OptimizePreset
-from ._errors import Error
+from ._errors import Error, wrong_name
+from ._metrics import by_metric, find_metric, metric_name, metrics
+from ._names import find_name, nearest_name
 from ._results import Result
 
 _SIZE, _LIMITS = 0, 3  # input arrays of vtkMeshOptimizer
@@ -94,13 +96,16 @@ def choose_preset(
     objectives: what to optimize: names of metrics, or pairs of a name and a dict with any of "template" (how the values
         of the elements are aggregated: "default", "sum of squares", "sum of squared reciprocals", "sum of
         reciprocals", "sum", "power mean", "maximum"), "weight" (above 0; 1) and "target" ("ideal", "reference", "size",
-        "tensor"; the default is the one given below, if it is one, else "ideal"). The default is ["imr"].
+        "tensor"; the default is the one given below, if it is one, else "ideal"). The default is ["imr"]. The name of a
+        preset is taken as the preset.
     preset: "fast clean-up", "best shape", "uniform size", "low interpolation error", "untangle then improve", "preserve
         shape" (of the reference), "worst element" or "custom". "best shape" is the default if no objectives, no target
         and no argument that a preset replaces are given.
     """
     given = {"reference": reference, "size": size, "tensor": tensor}
     targets = [name for name, value in given.items() if value is not None]
+    if isinstance(objectives, str):
+        objectives, preset = _preset_of(objectives, preset)
     chosen = {name: value for name, value in {"objectives": objectives, **custom}.items() if value is not None}
     if preset is None:
         preset = "custom" if chosen or targets else "best shape"
@@ -112,11 +117,26 @@ def choose_preset(
         if preset == "preserve shape" and "reference" not in targets:
             raise Error("the preset 'preserve shape' needs a reference mesh")
         return
+    if not isinstance(objectives, (str, Iterable, type(None))) or isinstance(objectives, (bytes, dict)):
+        raise Error(f"objectives is {objectives!r}; the name of a metric, a list of names or a preset is expected")
     listed: Any = ["imr"] if objectives is None else [objectives] if isinstance(objectives, str) else list(objectives)
     if not listed:
         raise Error("no objective is given")
     for objective in listed:
         _add_objective(filter_, objective, targets)
+
+
+def _preset_of(name: str, preset: OptimizePreset | None) -> tuple[str | None, OptimizePreset | None]:
+    """The objective and the preset that one name means, which may be that of either."""
+    found = find_name(name, OPTIMIZE_PRESETS)
+    if found is not None:
+        if preset is not None:
+            raise Error(f"two presets are given, {name!r} and {preset!r}")
+        return None, picked("preset", found, OPTIMIZE_PRESETS)
+    near = nearest_name(name, OPTIMIZE_PRESETS)
+    if near and find_metric(name, [facts["name"] for facts in metrics()]) is None:
+        raise wrong_name(f"there is no metric and no preset {name!r}{near}")
+    return name, preset
 
 
 def _add_objective(filter_: Any, objective: Any, targets: list[str]) -> None:
@@ -132,7 +152,7 @@ def _add_objective(filter_: Any, objective: Any, targets: list[str]) -> None:
         raise Error(f"objective {name!r}: the target is {target!r} but {target!r} is not given")
     template = pick("template", facts.get("template", "default"), TEMPLATES) - 1
     weight = within("weight", facts.get("weight", 1.0), np.nextafter(0, 1), np.inf)
-    filter_.AddObjectiveByName(name, template, weight, TARGETS.index(target))
+    filter_.AddObjectiveByName(metric_name(name), template, weight, TARGETS.index(target))
 
 
 @sets("optimize", "Utopia")
@@ -186,7 +206,7 @@ def optimize_result(filter_: Any, output: vtkDataObject) -> OptimizeResult:
     return OptimizeResult(
         mesh=output,
         history=history_of(filter_),
-        statistics=_statistics(columns(filter_.GetStatistics())),
+        statistics=by_metric(_statistics(columns(filter_.GetStatistics()))),
         reason=filter_.GetReason(),
         inverted_before=filter_.GetInvertedBefore(),
         inverted=filter_.GetInvertedAfter(),

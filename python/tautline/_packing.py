@@ -9,6 +9,7 @@ from vtkmodules.vtkParallelCore import vtkCommunicator
 
 from ._arrays import leaves
 from ._errors import Error
+from ._views import viewed
 
 
 class Packed:
@@ -34,7 +35,7 @@ class Packed:
         for image, (origin, spacing) in zip(_images(data), self.grids):
             image.SetOrigin(origin)
             image.SetSpacing(spacing)
-        return data
+        return viewed(data)
 
 
 def _images(data: vtkDataObject) -> list[vtkImageData]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 from dataclasses import dataclass
 from os import PathLike
 from typing import Any, ClassVar
@@ -16,11 +17,11 @@ from . import _commands, _vtk
 from ._arguments import picked, sets
 from ._arrays import Array, InputArrays, Values, cell_array, columns, is_number, point_array, snake
 from ._choices import TARGETS, Target
-from ._errors import Error, checked, unknown
+from ._errors import Error, checked, unknown, wrong_name
 from ._files import file_name, replace_text
 from ._html import html_report
-from ._metrics import Metrics, choose, metrics as known_metrics
-from ._names import find_name
+from ._metrics import Metrics, by_metric, choose, metrics as known_metrics
+from ._names import find_name, nearest_name
 from ._results import Result
 from ._tables import quality_json, quality_rows, quality_text
 
@@ -36,7 +37,8 @@ _MAX_WORST = 10  # elements listed per metric
 
 @dataclass(frozen=True, repr=False, eq=False)
 class QualityResult(Result):
-    """The result of quality(). Dicts are by the names of the metrics, in the order in which they were given.
+    """The result of quality(). Dicts are by the names of the metrics, in the order in which they were given; labels,
+    symbols and aliases of metrics are found, too.
 
     mesh: the mesh with a cell array per metric and `Validity`; shares the other arrays with the input.
     values: per metric its value on each cell, m; of composite data the blocks concatenated. 0 where it is not defined.
@@ -188,7 +190,20 @@ def _criteria_text(chosen: str | PathLike[str] | dict[str, Any] | None) -> str:
             return json.dumps(chosen, allow_nan=False)
         except (TypeError, ValueError) as error:
             raise Error(f"the criteria cannot be written as JSON: {error}") from None
-    return "" if chosen is None else find_name(chosen, criteria_presets()) or file_name(chosen)
+    if chosen is None:
+        return ""
+    if not isinstance(chosen, (str, PathLike)):
+        raise Error(f"criteria is {chosen!r}; the name of a preset, a JSON file or a dict is expected")
+    preset = find_name(chosen, criteria_presets())
+    if preset is not None:
+        return preset
+    found = file_name(chosen)
+    if isinstance(chosen, str) and not chosen.lstrip().startswith("{") and not os.path.exists(chosen):
+        listed = f"{nearest_name(chosen, criteria_presets())}; there are {', '.join(criteria_presets())}"
+        is_name = not os.path.splitext(chosen)[1] and not os.path.dirname(chosen)
+        text = f"the criteria {chosen!r} are neither a file that can be read nor a preset{listed}"
+        raise wrong_name(text) if is_name else Error(text)
+    return found
 
 
 def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
@@ -201,11 +216,11 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
     graded = bool(filter_.GetVerdict())
     return QualityResult(
         mesh=mesh,
-        values={name: cell_array(mesh, name) for name in statistics},
+        values=by_metric({name: cell_array(mesh, name) for name in statistics}),
         validity=cell_array(mesh, "Validity"),
-        statistics=statistics,
-        distribution={n: {"value": bins[f"{n} value"], "count": bins[f"{n} count"]} for n in statistics},
-        histogram={n: {key: ranges[f"{n} {key}"] for key in ("from", "to", "count")} for n in statistics},
+        statistics=by_metric(statistics),
+        distribution=by_metric({n: {"value": bins[f"{n} value"], "count": bins[f"{n} count"]} for n in statistics}),
+        histogram=by_metric({n: {key: ranges[f"{n} {key}"] for key in ("from", "to", "count")} for n in statistics}),
         angles={name.lower(): column for name, column in columns(filter_.GetAngles()).items()},
         worst=worst,
         inverted=totals["inverted"],
@@ -214,7 +229,7 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
         index=filter_.GetQualityIndex() if graded else None,
         indices=cell_array(mesh, "QualityIndex") if graded else None,
         grades=cell_array(mesh, "Grade") if graded else None,
-        criteria=_by_metric(columns(filter_.GetCriteriaTable())) if graded else {},
+        criteria=by_metric(_by_metric(columns(filter_.GetCriteriaTable())) if graded else {}),
         notice=filter_.GetNotice(),
         summary=filter_.GetSummary(),
     )

@@ -15,6 +15,7 @@ from ._arguments import number, pick, picked, sets, within
 from ._arrays import POINTS, Array, InputArrays, Values, cell_array, columns, is_number, table_rows
 from ._choices import IMPROVE_PRESETS, ImprovePreset
 from ._errors import Error
+from ._metrics import metric_name
 from ._results import Result
 
 #: In the filter's numbering, but for the last one.
@@ -99,7 +100,7 @@ def set_objective(filter_: Any, objective: Objective = "angles and shape", metri
         if chosen != 0:
             raise Error("give either an objective or a metric")
         filter_.SetObjective(filter_.METRIC)
-        filter_.SetMetricByName(metric)
+        filter_.SetMetricByName(metric_name(metric, "metric"))
 
 
 @sets("improve", "EdgeLengths", "EdgeLength", "SizeArray")

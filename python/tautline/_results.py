@@ -8,7 +8,7 @@ from dataclasses import fields
 from html import escape
 from os import PathLike
 from textwrap import shorten
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, Callable, ClassVar
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -25,14 +25,22 @@ from ._files import file_name, replace_text
 from ._packing import Packed
 from ._pictures import picture_html
 from ._tables import csv_text, json_text
+from ._views import MeshViews, NamedDict, cell_data_of, cells_of, point_data_of, points_of, viewed
 
 _MAX_WIDTH = 110  # characters of a line that is printed
 _SUMMARY_LINES = 3
+#: Attributes of the mesh that are also those of a result, unless it has a field of this name.
+_VIEWS: dict[str, Callable[[Any], Any]] = {
+    "points": points_of, "cells": cells_of, "point_data": point_data_of, "cell_data": cell_data_of,
+}  # fmt: skip
 _TIMES = "seconds"  # the end of the names of measured times, which differ from run to run
 
 
 class Result:
     """What a function returns. It prints in five lines, and in a notebook with a picture of the mesh.
+
+    A result with a mesh has the numpy arrays of it: points, n x 3; cells, m x k by the name of the cell; point_data and
+    cell_data, by the name of the array. They share memory with the mesh.
 
     copy.copy() shares meshes and arrays, copy.deepcopy() and pickle do not. Two results are equal if all their fields
     are, apart from measured times and the summary.
@@ -40,6 +48,26 @@ class Result:
 
     #: Fields with an array per point or cell, which to_dict() leaves out.
     _per_element: ClassVar[tuple[str, ...]] = ()
+
+    if TYPE_CHECKING:
+        # Not for results that have fields of these names.
+        points: Any
+        cells: Any
+        point_data: Any
+        cell_data: Any
+    else:
+
+        def __getattr__(self, name: str) -> Any:
+            """The arrays of the mesh; see _VIEWS. Fields are found before this is called."""
+            data = self.__dict__.get("mesh")
+            if name not in _VIEWS or data is None:
+                raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'")
+            if not isinstance(data, vtkDataSet):
+                raise Error(f"a {data.GetClassName()} has no {name} of its own; take one of its blocks")
+            return getattr(data, name) if isinstance(data, MeshViews) else _VIEWS[name](data)
+
+        def __dir__(self) -> list[str]:
+            return sorted({*super().__dir__(), *(_VIEWS if "mesh" in self.__dict__ else ())})
 
     def __repr__(self) -> str:
         lines = [type(self).__name__ + (f": {_size(data)}" if (data := getattr(self, "mesh", None)) else "")]
@@ -131,7 +159,8 @@ def _size(data: vtkDataObject) -> str:
 def _map(value: Any, function: Any) -> Any:
     """A function on the values in dicts, lists and tuples."""
     if isinstance(value, dict):
-        return {key: function(inner) for key, inner in value.items()}
+        made = {key: function(inner) for key, inner in value.items()}
+        return value.like(made) if isinstance(value, NamedDict) else made
     if isinstance(value, (list, tuple)):
         return type(value)(function(inner) for inner in value)
     return None
@@ -155,7 +184,7 @@ def _deep(value: Any, memo: dict[int, Any]) -> Any:
     if isinstance(value, vtkDataObject):
         made = value.NewInstance()
         made.DeepCopy(value)
-        return made
+        return viewed(made)
     inner = _map(value, lambda part: _deep(part, memo))
     return copy.deepcopy(value, memo) if inner is None else inner
 
