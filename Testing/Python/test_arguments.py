@@ -3,10 +3,12 @@
 
 import os
 import time
+import warnings
 from inspect import Parameter, isfunction, signature
 
+import numpy as np
 import tautline as tl
-from checks import DATA, OUT, refused, run_tests, shell, square, wording
+from checks import DATA, OUT, refused, run_tests, shell, slow, square, wording
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkTable, vtkUnstructuredGrid
 
 FUNCTIONS = {name: value for name, value in vars(tl).items() if isfunction(value) and not name.startswith("_")}
@@ -113,6 +115,77 @@ def test_sizes_of_domains() -> None:
     source.Update()
     assert messages and source.GetOutput().GetNumberOfCells() == 0
     assert time.monotonic() - start < 10.0
+
+
+#: Values of types that an argument may not have.
+WRONG = (None, object(), "text", 1.5, -3, [], {}, b"x", float("nan"), [1, "a"], True, np.zeros((2, 2)), [None], 10**30,
+         1 + 2j, np.array("x"), "", [[1], [2, 3]])  # fmt: skip
+#: What functions take first, where it is not a mesh.
+FIRST = {"domain": ("square",), "silhouette": (DATA / "fish.png",), "match": (DATA / "fish.png",) * 2,
+         "retrieval": ([DATA / "fish.png", DATA / "fish-bent.png"],), "read": (DATA / "plate.vtu",),
+         "times": (DATA / "plate.vtu",), "write": (square(2), "wrong.vtu"), "compare": (square(2),) * 2,
+         "triangle_mesh": (DATA / "plate.poly",), "tet_mesh": (DATA / "cube.smesh",), "criteria": ("fem",),
+         "from_arrays": ([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]]), "load_metrics": ("absent.py",),
+         "register_metric": ("wrong_value", lambda corners, kind: corners[:, 0, 0]), "run_state": ("absent.pvsm",),
+         "unregister_metric": ("absent",), "run_steps": ({},), "read_silhouettes": ("absent",)}  # fmt: skip
+OPTIONS = {"warp": {"transform": {"rotate": 3}}, "metric_field": {"dimensions": (3, 3, 3)}, "match": {"grid": (5, 5)},
+           "retrieval": {"grid": (5, 5)}}  # fmt: skip
+
+
+@slow
+def test_wrong_values() -> None:
+    """Every argument of every function with values of wrong types: tautline.Error, or the value is taken."""
+    folder = OUT / "wrong-values"
+    folder.mkdir(exist_ok=True)
+    calls = 0
+    here = os.getcwd()
+    os.chdir(folder)
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            for name, function in FUNCTIONS.items():
+                parameters = signature(function).parameters
+                layered = name in ("peridynamics", "horizon_neighbors")
+                mesh = tl.interaction_layer(square(2), 0.3) if layered else square(2)
+                first = FIRST.get(name, (mesh,) if "mesh" in parameters else ())
+                for place, parameter in enumerate(parameters.values()):
+                    if parameter.kind is Parameter.VAR_KEYWORD:
+                        continue
+                    for wrong in WRONG:
+                        given = list(first)
+                        options = {key: value for key, value in OPTIONS.get(name, {}).items() if key != parameter.name}
+                        if place < len(given):
+                            given[place] = wrong
+                        else:
+                            options[parameter.name] = wrong
+                        outcome(function, *given, **options)
+                        calls += 1
+    finally:
+        os.chdir(here)
+    assert calls > 6000, calls
+
+
+def test_types() -> None:
+    """Wrong types are errors that say what is expected; they are not taken for something else."""
+    for options, text in (
+        ({"boundary": None}, "boundary is None"),
+        ({"hold_worst": "no"}, wording("true-or-false-is-expected")),
+        ({"hold_worst": None}, wording("true-or-false-is-expected")),
+        ({"threads": 1.5}, wording("a-whole-number-is-expected")),
+        ({"time_limit": "soon"}, wording("it-must-be-a-number")),
+        ({"time_limit": None}, wording("it-must-be-a-number")),
+        ({"limits": [[1], [2, 3]]}, "limits: not an array"),
+        ({"utopia": "text"}, "utopia"),
+        ({"objectives": 3}, "objectives is 3"),
+    ):
+        refused(text, tl.optimize, square(2), **options)
+    refused(wording("rows-of-different-lengths"), tl.warp, square(2), transform={"rotate": 3}, moved=[[1], [2, 3]])
+    for wrong in (None, 3, b"imr", {"imr": 1}):
+        refused(wording("a-list-is-expected"), tl.quality, square(2), wrong)
+        refused("criteria", tl.quality, square(2), criteria=wrong or 3)
+    refused(wording("a-text-is-expected"), tl.solve, square(2), solution_name=None)
+    assert tl.optimize(square(2), threads=np.int64(1), hold_worst=np.True_, time_limit=np.float32(9)).inverted == 0
+    assert tl.optimize(square(2), hold_worst=1, maximum_iterations=3.0).inverted == 0
 
 
 run_tests(globals())

@@ -54,7 +54,7 @@ def check_list():
     assert set(STUDIES) <= set(names())
     listed = shell("study", "list")
     assert all(name in listed and import_module(f"tautline.studies.{name}").__doc__ for name in STUDIES)
-    refused_command("there is no study 'nonsense'", "study", "nonsense")
+    refused_command("there is no study 'nonsense'", "study", "nonsense", code=2)
 
 
 def check_toy():

@@ -149,7 +149,7 @@ def test_commands():
     text = shell("peridynamics", OUT / "square.vtu", "--add-layer", "--model", "state-based", "--poisson-ratio", 0.4,
                  "--plane", "stress", "--no-cut-bonds", "--tolerance", 1e-3)  # fmt: skip
     assert wording("condition-number") in text, text
-    assert wording("there-is-no-study") in shell("study", "absent", code=1)
+    assert wording("there-is-no-study") in shell("study", "absent", code=2)
 
 
 def printed(calls):

@@ -2,6 +2,7 @@
 """The function and the command report: the numbers, what the file has, and that it needs no other file."""
 
 import base64
+import pickle
 import re
 from html.parser import HTMLParser
 from pathlib import Path
@@ -50,6 +51,12 @@ def test_one():
     mesh = DATA / "bracket-tangled.vtu"
     file = OUT / "report-one.html"
     html = tl.report(mesh, file, metrics=["imr", "scaled_jacobian"], criteria="fem")
+    for shown in (repr(html), str(html), html._repr_html_()):
+        assert len(shown) < 2000 and str(file) in shown and "8099 valid elements" in shown, shown
+    assert html.file == str(file) and html.html == html and html.quality.verdict == "failed" and html.before is None
+    assert pickle.loads(pickle.dumps(html)).title == html.title
+    html.save(OUT / "report-saved.html")
+    assert (OUT / "report-saved.html").read_text() == file.read_text()
     assert file.read_text(encoding="utf-8") == html
     outline = Outline(html)
     expected = ["Mesh", "Result", "Histogram", "Statistics", "Distribution", "Angles", "Criteria", "Settings"]

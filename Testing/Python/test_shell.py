@@ -14,7 +14,7 @@ from checks import DATA, OUT, points, run_tests, shell, slow, square, wording
 from tautline.__main__ import _parser
 
 FOLDER = OUT / "shell"
-COMMANDS = [name for name in _parser()._subparsers._group_actions[0].choices if name not in ("study", "field")]
+COMMANDS = [name for name in _parser()._subparsers._group_actions[0].choices if name not in ("study", "field", "help")]
 BAR = re.compile(r"\[#*\.*\] +\d+% \d+ s ")
 
 
@@ -97,7 +97,7 @@ def test_json_and_quiet():
         "--combinations", "1"], "peridynamics": ["square.vtu"], "interaction-layer": ["triangles.vtu", "-o", "l.vtu"],
         "domain": ["rectangle", "--cells", "100", "-o", "d.vtu"], "convert": ["plate.vtu", "c.vtk"],
         "triangle-mesh": ["plate.poly", "-o", "t.vtu"], "tet-mesh": ["cube.smesh", "-o", "te.vtu"],
-        "horizon-neighbors": ["square.vtu"], "run": ["steps.toml"], "formats": [],
+        "horizon-neighbors": ["square.vtu"], "run": ["steps.toml"], "formats": [], "info": ["plate.vtu"],
     }  # fmt: skip
     for command in COMMANDS:
         arguments = lines[command]

@@ -204,12 +204,20 @@ class Function:
         if "finish" in self.hint.attrib:  # which needs the filter
             made = f"{self.hint.get('filter')}({first}**options)"
             lines[-1] = f"    {give}finish_{self.name}(arguments, {made}, options)"
+            if self._several in self.parts.functions:
+                made = f"lambda file: {self.hint.get('filter')}(file, **options)"
+                lines.insert(-1, f"    if arguments.more:\n        {give}{self._several}(arguments, {made})")
         return "\n".join(lines) + "\n"
+
+    @property
+    def _several(self) -> str:
+        return f"finish_{self.name}_of_several"
 
     def names(self) -> set[str]:
         """What the code has to import."""
         found = {"Any", "interruptible", "run", "viewed", "watch", "Progress", self.result, f"{self.name}_result"}
         found |= {f"finish_{self.name}"} | {setter.name for setter in self.setters}
+        found |= {self._several} if self._several in self.parts.functions else set()
         found |= {self.own_input.name} if self.own_input else set()
         found |= {n for n in (f"add_{self.name}_options", f"{self.name}_options") if n in self.parts.functions}
         found |= {"Mesh", "as_mesh", "InputArrays"} if self.input else set()

@@ -32,6 +32,8 @@ to be compiled before.
 
     NAME_result(filter, output)     the result of a filter that has run; further parameters are arguments of NAME()
     finish_NAME(arguments, result)  prints it for the shell
+    finish_NAME_of_several(arguments, measured)
+                                    the same of several meshes, where finish="filter"; measured(file) is the filter
     NAME_input(filter, ...)         sets an input that is no mesh; its parameters are the first arguments
     @sets("NAME", "Property", ...)  a setter: its parameters with a default, and their docstring, become arguments of
                                     NAME(). Keyword-only ones are arguments that others declare; `custom` is a dict of
@@ -60,7 +62,10 @@ PACKAGE = {
     "get_args": "typing",
     "within": "._arguments",
     "pick": "._arguments",
+    "flag": "._arguments",
     "flagged": "._arguments",
+    "text": "._arguments",
+    "whole": "._arguments",
     "InputArrays": "._arrays",
     "Values": "._arrays",
     "POINTS": "._arrays",

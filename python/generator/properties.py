@@ -128,7 +128,8 @@ class Property:
             return Argument(name, "str | None", "None", f"the name of a metric. {text}", code, names={"metric_name"})
         if self.kind == "String":
             default = f'"{self.element.get("default_values", "")}"'
-            return Argument(self.argument_name, "str", default, self.text, self._set(self.argument_name))
+            name = self.argument_name
+            return Argument(name, "str", default, self.text, self._set(f'text("{name}", {name})'), names={"text"})
         return self._number()
 
     def _set(self, value: str) -> str:
@@ -155,7 +156,8 @@ class Property:
     def _flag(self) -> Argument:
         name, default = self.argument_name, self.element.get("default_values") == "1"
         default = bool(int(self.element.get("python_default", default)))
-        return Argument(name, "bool", str(default), self.text, self._set(f"bool({name})"))
+        code = self._set(f'flag("{name}", {name})')
+        return Argument(name, "bool", str(default), self.text, code, names={"flag"})
 
     def _choice(self, choices: Choices) -> Argument:
         name, default = self.argument_name, self.default
@@ -184,11 +186,11 @@ class Property:
         if above := self.element.get("python_above"):
             low = f"np.nextafter({above}, np.inf)"
         default = self.element.get("python_default", self.element.get("default_values", "0"))
-        value = f'within("{name}", {name}, {low}, {high})'
         whole = self.kind != "Double"
+        check = "whole" if whole else "within"
         default = default if whole or re.search(r"[.en]", default) else f"{default}.0"
-        used = {"within"} | ({"np"} if "np." in low + high else set())
-        code = self._set(f"int({value})" if whole else value)
+        used = {check} | ({"np"} if "np." in low + high else set())
+        code = self._set(f'{check}("{name}", {name}, {low}, {high})')
         return Argument(name, "int" if whole else "float", default, text, code, names=used)
 
     def _option(self, made: Argument) -> str:

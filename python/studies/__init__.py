@@ -11,7 +11,7 @@ from __future__ import annotations
 from importlib import import_module
 from pkgutil import iter_modules
 
-from tautline._errors import Error
+from tautline._errors import unknown
 
 
 def names() -> list[str]:
@@ -31,5 +31,5 @@ def main(arguments: list[str]) -> int:
             print(f"{name:22} {described(name)}")
         return 0
     if arguments[0] not in names():
-        raise Error(f"there is no study '{arguments[0]}'; there are {', '.join(names())}")
+        raise unknown("study", arguments[0], names())
     return import_module(f"{__name__}.{arguments[0]}").main(arguments[1:]) or 0

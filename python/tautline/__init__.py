@@ -36,7 +36,7 @@ from ._metrics import load_metrics, metrics, register_metric, unregister_metric
 from ._pipeline import StepsResult, run_steps
 from ._quality import quality
 from ._quality_parts import QualityResult, criteria
-from ._report import report
+from ._report import ReportResult, report
 from ._state import StateResult, run_state
 
 __version__ = _build.VERSION
@@ -44,7 +44,7 @@ __version__ = _build.VERSION
 __all__ = [
     "CompareResult", "compare", "Aborted", "Error", "MissingKey", "Mesh", "read", "write", "from_arrays", "MetricFieldResult",
     "metric_field", "load_metrics", "metrics", "register_metric", "unregister_metric", "QualityResult", "criteria",
-    "quality", "report", "StepsResult", "run_steps", "StateResult", "run_state",
+    "quality", "ReportResult", "report", "StepsResult", "run_steps", "StateResult", "run_state",
     "formats", "times", "to_meshio",
 ]
 

@@ -3,11 +3,12 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, Sequence, TypeVar
+from numbers import Real
+from typing import Any, Callable, Iterable, Mapping, Sequence, TypeVar
 
 import numpy as np
 
-from ._errors import Error, wrong_name
+from ._errors import Error, wrong_usage
 from ._names import find_name, nearest_name
 
 Name = TypeVar("Name", bound=str)
@@ -19,7 +20,7 @@ def pick(option: str, value: Any, allowed: Sequence[str]) -> int:
     found = find_name(value, allowed)
     if found is None:
         listed = ", ".join(map(repr, allowed))
-        raise wrong_name(f"{option} is {value!r}{nearest_name(value, allowed)}; there are {listed}")
+        raise wrong_usage(f"{option} is {value!r}{nearest_name(value, allowed)}; there are {listed}")
     return allowed.index(found)
 
 
@@ -40,22 +41,52 @@ def sets(_functions: str, *_properties: str) -> Callable[[Function], Function]:
 
 def within(option: str, value: float, low: float, high: float) -> float:
     """The value. Raises Error if it is not a number from low to high; the filter would keep the older one."""
-    try:
-        if low <= value <= high:
-            return value
-    except TypeError:
-        pass
+    if isinstance(value, (np.ndarray, np.generic)) and value.ndim == 0:
+        value = value.item()
+    if isinstance(value, Real) and low <= float(value) <= high:
+        return value
     positive = low == np.nextafter(0, 1)
     least = "above 0" if positive else f"from {low:g}"
     most = "" if high == np.inf else f" and at most {high:g}" if positive else f" to {high:g}"
     raise Error(f"{option} is {value!r}; it must be a number {least}{most}")
 
 
+def whole(option: str, value: float, low: float, high: float) -> int:
+    """The value. Raises Error if it is not a whole number from low to high."""
+    found = within(option, value, low, high)
+    if found != int(found):
+        raise Error(f"{option} is {value!r}; a whole number is expected")
+    return int(found)
+
+
+def flag(option: str, value: Any) -> bool:
+    """The value. Raises Error if it is neither True nor False, nor 1 or 0."""
+    if isinstance(value, (bool, np.bool_)) or (isinstance(value, (int, np.integer)) and value in (0, 1)):
+        return bool(value)
+    raise Error(f"{option} is {value!r}; True or False is expected")
+
+
+def text(option: str, value: Any) -> str:
+    """The value. Raises Error if it is not a text."""
+    if not isinstance(value, str):
+        raise Error(f"{option} is {value!r}; a text is expected")
+    return value
+
+
+def sequence(option: str, values: Any) -> list[Any]:
+    """The values as a list. Raises Error for a text, a number and other things that are not several values."""
+    if isinstance(values, np.ndarray) and values.ndim == 0:
+        values = values.item()
+    if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):
+        raise Error(f"{option} is {values!r}; a list is expected")
+    return list(values)
+
+
 def number(option: str, value: Any) -> float:
     """The value as a float. Raises Error if it is not a finite number."""
     try:
         result = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise Error(f"{option} is {value!r}; a number is expected") from None
     if not np.isfinite(result):
         raise Error(f"{option} is {result}; it must be finite")

@@ -97,7 +97,9 @@ def _array(found: Iterator[Any]) -> Array:
 
 def is_number(value: Any) -> bool:
     """Whether a value is one number, not an array nor the name of one."""
-    return value is not None and not isinstance(value, str) and np.ndim(value) == 0
+    if value is None or isinstance(value, (str, list, tuple)):
+        return False
+    return np.ndim(value) == 0
 
 
 def has_array(data: vtkDataObject, name: str, on: str = ANY) -> bool:

@@ -9,14 +9,15 @@ import shutil
 import sys
 import warnings
 from contextlib import contextmanager
+from difflib import get_close_matches
 from tempfile import TemporaryDirectory
 from textwrap import fill
-from typing import Any, Callable, Iterable, Iterator, Mapping
+from typing import Any, Callable, Iterable, Iterator, Mapping, NoReturn
 
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet, vtkUnstructuredGrid
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
-from ._errors import Error, run as update
+from ._errors import WRONG_USAGE, Error, run as update
 from ._files import check_stream_or_target, replace_bytes, replace_text
 from ._groups import Groups
 from ._io import as_mesh, can_be_template, check_output, losses, write
@@ -43,8 +44,125 @@ EXIT_CODES = """exit codes:
   130  interrupted by Ctrl-C"""
 
 
+#: The options that --help shows, by command, besides those of ALWAYS; --help-all shows all. Other commands show all.
+BASIC = {
+    "quality": ("output", "csv", "metrics", "worst", "criteria", "groups", "report"),
+    "optimize": ("output", "csv", "preset", "objectives", "boundary", "fixed", "limits", "maximum_iterations"),
+    "untangle": ("output", "csv", "preset", "boundary", "fixed"),
+    "improve": ("output", "csv", "preset", "target_angle", "edge_length", "boundary", "fixed"),
+    "warp": ("output", "csv", "displacement", "target", "rotate", "translate", "scale", "bend", "axis", "center",
+             "moved", "method", "amount", "fixed"),
+    "solve": ("output", "csv", "pde", "source", "fixed", "given", "solver", "preconditioner", "relative_tolerance"),
+    "condition": ("output", "csv", "pde", "preconditioner"),
+    "solver-study": ("csv", "pde", "combinations"),
+    "peridynamics": ("output", "delta", "p", "basis", "model", "kernel", "add_layer"),
+    "match": ("output", "csv", "method", "locations"),
+    "retrieval": ("output", "csv", "sheet", "labels", "method"),
+    "domain": ("output", "cells", "element_size"),
+}  # fmt: skip
+_ALWAYS = ("help", "help_all", "time_limit", "threads", "json", "quiet")
+#: The destinations of the file that a command writes.
+_OUTPUTS = ("output", "report")
+
+
 class Parser(argparse.ArgumentParser):
-    """A parser whose choices are found in any case, and whose messages name the nearest one."""
+    """A parser whose choices are found in any case, and whose messages name the nearest one.
+
+    Errors come with one line of usage. The file to write may be the last argument, in the place of -o; `more` are
+    further files to read. Both may stand between options.
+    """
+
+    def __init__(self, *arguments: Any, **options: Any) -> None:
+        super().__init__(*arguments, **options)
+        self.takes_more = False
+        self._shows_all = False
+        self._needs_output = False  # while arguments are parsed
+
+    def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
+        output = self.output_action()
+        self._needs_output = output is not None and output.required
+        try:
+            if output is not None:
+                output.required = False  # it may be the last argument
+            found, extra = super().parse_known_args(args, namespace)
+        finally:
+            if output is not None:
+                output.required = self._needs_output
+        self._check_options(extra)
+        files = list(extra)
+        if self.takes_more:
+            found.more, extra = files, []
+        elif output is not None and len(files) == 1 and getattr(found, output.dest) is None:
+            setattr(found, output.dest, files[0])
+            extra = []
+        if extra:
+            self.error(f"unrecognized arguments: {' '.join(extra)}")
+        if output is not None and self._needs_output and getattr(found, output.dest) is None:
+            self.error(f"the following arguments are required: {'/'.join(output.option_strings)}")
+        return found, extra
+
+    def _check_options(self, extra: list[str]) -> None:
+        """End with an error, with the nearest option, if an option is unknown."""
+        known = [name for action in self._actions for name in action.option_strings if name.startswith("--")]
+        for text in extra:
+            if text.startswith("-") and text != STREAM:
+                near = get_close_matches(text.partition("=")[0], known, 1)
+                self.error(f"unrecognized arguments: {text}" + (f" (did you mean {near[0]!r}?)" if near else ""))
+
+    def output_action(self) -> argparse.Action | None:
+        """The option of the file to write."""
+        return next((a for a in self._actions if a.dest in _OUTPUTS and "-o" in a.option_strings), None)
+
+    def short_usage(self) -> str:
+        """The usage in one line."""
+        words, output = [self.prog], self.output_action()
+        for action in self._actions:
+            if not action.option_strings:
+                name = str(action.metavar or action.dest)
+                words.append(f"{name}..." if self.takes_more and action.dest == "mesh" else name)
+            elif action.required and action is not output:
+                words.append(f"{action.option_strings[0]} {action.metavar or action.dest.upper()}")
+        if output is not None and not self.takes_more:
+            words.append("OUTPUT" if output.required or self._needs_output else "[OUTPUT]")
+        return " ".join([*words, "[OPTION...]"])
+
+    def format_usage(self) -> str:
+        return f"usage: {self.short_usage()}\n"
+
+    def error(self, message: str) -> NoReturn:
+        """Print the usage and the message, and end with exit code 2."""
+        self.exit(WRONG_USAGE, f"{self.format_usage()}{self.prog}: error: {message} (see {self.prog} --help)\n")
+
+    def format_help(self) -> str:
+        shown = BASIC.get(self.prog.split()[-1])
+        hidden = []
+        if shown is not None and not self._shows_all:
+            hidden = [a for a in self._actions if a.option_strings and a.dest not in (*shown, *_ALWAYS)]
+            hidden = [action for action in hidden if action.help != argparse.SUPPRESS]
+        texts = [action.help for action in hidden]
+        try:
+            for action in hidden:
+                action.help = argparse.SUPPRESS
+            text = self._help_text()
+        finally:
+            for action, words in zip(hidden, texts):
+                action.help = words
+        more = f"\n{len(hidden)} more options: {self.prog} --help-all\n" if hidden else ""
+        return text.rstrip("\n") + "\n" + more
+
+    def _help_text(self) -> str:
+        """The help, with the usage in one line."""
+        kept, self.usage = self.usage, self.short_usage()
+        try:
+            return super().format_help()
+        finally:
+            self.usage = kept
+
+    def show_all(self) -> None:
+        """Print the help with all options."""
+        self._shows_all = True
+        self.print_help()
+        self.exit()
 
     def _get_value(self, action: argparse.Action, arg_string: str) -> Any:
         value = super()._get_value(action, arg_string)
@@ -55,9 +173,15 @@ class Parser(argparse.ArgumentParser):
         names = list(action.choices or ())
         if action.choices is not None and value not in action.choices:
             near = nearest_name(value, [name for name in names if isinstance(name, str)])
-            raise argparse.ArgumentError(
-                action, f"invalid choice: {value!r}{near} (choose from {', '.join(map(repr, names))})"
-            )
+            choose = near or f" (choose from {', '.join(map(repr, names))})"
+            raise argparse.ArgumentError(action, f"invalid choice: {value!r}{choose}")
+
+
+class _HelpAll(argparse.Action):
+    """--help-all."""
+
+    def __call__(self, parser: Any, *_: Any) -> None:
+        parser.show_all()
 
 
 def _choices(action: argparse.Action) -> list[str]:
@@ -95,6 +219,7 @@ def add_command(
     parser.set_defaults(run=run)
     if threads:
         parser.add_argument("--threads", type=int, default=0, help="number of threads; 0, the default, is all cores")
+    parser.add_argument("--help-all", action=_HelpAll, nargs=0, default=argparse.SUPPRESS, help="show all options")
     parser.add_argument("--json", action="store_true", help="print the result as JSON, and nothing else")
     parser.add_argument("-q", "--quiet", action="store_true", help="print errors only")
     return parser
@@ -105,8 +230,15 @@ def add_mesh(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("mesh", metavar="FILE", help="mesh to read; - is a .vtu from the standard input")
 
 
+def take_more(parser: argparse.ArgumentParser) -> None:
+    """Let the command take further meshes, the argument `more`, a list."""
+    assert isinstance(parser, Parser)
+    parser.takes_more = True
+    parser.set_defaults(more=[])
+
+
 def add_output(parser: argparse.ArgumentParser, text: str = "mesh to write", required: bool = True) -> None:
-    """Add the option of the mesh to write."""
+    """Add the option of the mesh to write, which may also be the last argument; see Parser."""
     parser.add_argument("-o", "--output", metavar="FILE", required=required,
                         help=f"{text}; its ending decides on the format, - is the standard output")  # fmt: skip
 

@@ -71,8 +71,8 @@ def add_commands(commands: Any) -> None:
         example="part.vtu part.msh",
         details="Formats are found by the endings of the file names.",
     )
-    parser.add_argument("input", help="mesh to read; - is a .vtu from the standard input")
-    parser.add_argument("output", help="mesh to write; - is a .vtu to the standard output")
+    parser.add_argument("input", metavar="FILE", help="mesh to read; - is a .vtu from the standard input")
+    _commands.add_output(parser)
     parser.add_argument("--lower-cells", action="store_true", help="keep boundary faces and edges")
     parser.add_argument("--time", type=float, help="the time step to read, the nearest to this number")
     parser.add_argument("--binary", action="store_true", help="write .msh as bytes")

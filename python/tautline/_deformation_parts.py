@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkCommonTransforms import vtkLinearTransform, vtkTransform
 
 from . import _commands
-from ._arguments import pick, sets
+from ._arguments import number, pick, sequence, sets
 from ._arrays import ANY, POINTS, Array, InputArrays, Values, cell_array, columns, point_array, table_rows, with_array
 from ._errors import Error
 from ._io import Mesh, as_mesh
@@ -189,8 +189,8 @@ def set_moved(
         boundary parts, of which 1 is the largest; the name of a point or cell array; or one value per point.
     values: values of the array `moved` on the moved part; the default is all but 0.
     """
-    for value in values:
-        filter_.AddValue(float(value))
+    for value in sequence("values", values):
+        filter_.AddValue(number("values", value))
     _set_part(filter_, inputs, moved)
 
 
@@ -206,10 +206,11 @@ def _set_part(filter_: Any, inputs: InputArrays, moved: Any) -> None:
         inputs.use(_MOVED, moved, "moved", ANY)
         return
     filter_.SetMovedPart(_NUMBERED_PARTS)
-    for number in np.atleast_1d(moved):
-        if not np.issubdtype(type(number), np.integer):
-            raise Error(f"moved is {moved!r}; numbers of boundary parts, a value per point or a name are expected")
-        filter_.AddPart(int(number))
+    parts = np.atleast_1d(moved)
+    if parts.dtype.kind not in "iu" or parts.ndim != 1 or (abs(parts) > np.iinfo(np.int32).max).any():
+        raise Error(f"moved is {moved!r}; numbers of boundary parts, a value per point or a name are expected")
+    for part_number in parts:
+        filter_.AddPart(int(part_number))
 
 
 @sets("warp", "Coefficients", "Tensor", "CellTensors", "RegionArray", "Regions")

@@ -9,6 +9,7 @@ from typing import Any
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from . import _commands, _vtk
+from ._arguments import flag
 from ._errors import checked
 from ._names import find_name
 from ._views import viewed
@@ -34,7 +35,7 @@ def domain_result(filter_: Any, mesh: vtkDataSet, deformed_boundary: bool = Fals
 
     deformed_boundary: return the moved boundary instead of the mesh.
     """
-    return viewed(filter_.GetOutputDataObject(1)) if deformed_boundary else mesh
+    return viewed(filter_.GetOutputDataObject(1)) if flag("deformed_boundary", deformed_boundary) else mesh
 
 
 # --- the shell ----------------------------------------------------------------------------------------------

@@ -11,10 +11,10 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands, _vtk
-from ._arguments import picked, sets
+from ._arguments import flag, number, picked, sequence, sets
 from ._arrays import POINTS, Array, InputArrays, Values, cell_array, columns, has_array, point_array, table_rows
 from ._choices import PDES, SOLVE_TIME_SCHEMES
-from ._errors import Error, checked
+from ._errors import Error, checked, wrong_usage
 from ._results import Result
 from ._tables import align
 
@@ -192,8 +192,9 @@ def _set_function(filter_: Any, inputs: InputArrays, pde: str, name: str, value:
 
 def _set_scalar_function(filter_: Any, inputs: InputArrays, name: str, value: Function, index: int) -> None:
     """Set `source` or `given` of a scalar equation."""
+    _check_function(name, value)
     if not isinstance(value, str) and np.size(value) == 1 and np.ndim(value) < 2:
-        getattr(filter_, f"Set{name.capitalize()}Value")(float(np.asarray(value).item()))
+        getattr(filter_, f"Set{name.capitalize()}Value")(number(name, np.asarray(value).item()))
     else:
         _set_variable_function(filter_, inputs, name, value, index)
 
@@ -205,6 +206,7 @@ _VECTOR_SETTERS = {"source": "SetBodyForce", "given": "SetGivenDisplacement", "i
 
 def _set_vector_function(filter_: Any, inputs: InputArrays, name: str, value: Function, index: int) -> None:
     """Set `source` or `given` of elasticity: a constant vector by a setter of its own; the number 0 is the vector 0."""
+    _check_function(name, value)
     if isinstance(value, str) or np.size(value) > 3 or np.ndim(value) > 1:
         _set_variable_function(filter_, inputs, name, value, index)
         return
@@ -212,7 +214,17 @@ def _set_vector_function(filter_: Any, inputs: InputArrays, name: str, value: Fu
         value = (0.0, 0.0, 0.0)
     if np.size(value) not in (2, 3):
         raise Error(f"{name} is {value!r}; of elasticity it is a vector of two or three numbers")
-    getattr(filter_, _VECTOR_SETTERS[name])(*(float(v) for v in [*np.ravel(value), 0.0][:3]))
+    getattr(filter_, _VECTOR_SETTERS[name])(*(number(name, v) for v in [*np.ravel(value), 0.0][:3]))
+
+
+def _check_function(name: str, value: Any) -> None:
+    """Raise Error for what is neither a text nor numbers."""
+    try:
+        if isinstance(value, str) or np.asarray(value).dtype.kind in "iufb":
+            return
+    except ValueError:  # rows of different lengths
+        pass
+    raise Error(f"{name} is {value!r}; a number, a vector, an expression or an array is expected")
 
 
 def _set_variable_function(filter_: Any, inputs: InputArrays, name: str, value: Function, index: int) -> None:
@@ -240,13 +252,13 @@ def choose_combinations(filter_: Any, combinations: Iterable[int | str] | None =
     combinations: numbers or names, see solver_combinations(). None: 1 to 16, those of the dissertation's Table 2.5.
     """
     known = solver_combinations()
-    for chosen in known if combinations is None else combinations:
-        number = {name.lower(): key for key, name in known.items()}.get(str(chosen).lower(), chosen)
-        if number not in known:
+    for chosen in known if combinations is None else sequence("combinations", combinations):
+        found = {name.lower(): key for key, name in known.items()}.get(str(chosen).lower(), chosen)
+        if not isinstance(found, (int, np.integer)) or found not in known:
             listed = ", ".join(f"{k}: {v}" for k, v in known.items())
-            raise Error(f"there is no combination {chosen!r}; there are {listed}")
-        if combinations is not None or int(number) <= _TABLE_2_5:
-            filter_.AddCombination(number)
+            raise wrong_usage(f"there is no combination {chosen!r}; there are {listed}")
+        if combinations is not None or int(found) <= _TABLE_2_5:
+            filter_.AddCombination(int(found))
 
 
 def solve_result(filter_: Any, output: vtkDataObject, series: bool = False) -> SolveResult:
@@ -268,7 +280,7 @@ def solve_result(filter_: Any, output: vtkDataObject, series: bool = False) -> S
         solution=point_array(output, name),
         gradient=cell_array(output, fields) if filter_.GetComputeGradient() else np.zeros(0),
         times=times,
-        series=_series(filter_, name, times) if series and times is not None else None,
+        series=_series(filter_, name, times) if flag("series", series) and times is not None else None,
         history={names[name]: values for name, values in history.items()},
         converged=bool(filter_.GetConverged()),
         reason=filter_.GetReason(),

@@ -22,6 +22,8 @@ _CONSEQUENCE = ("returned failure for request", "Algorithm vtk")
 #: Exit code of the shell for wrong usage.
 WRONG_USAGE = 2
 
+_RAGGED = "inhomogeneous shape"
+
 _MEMORY_REMEDY = "take a smaller mesh, or a higher limit on the memory of the process"
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -64,8 +66,8 @@ def nearest(name: str, known: Iterable[str]) -> str:
     return f"; did you mean {found[0]!r}?" if found else ""
 
 
-def wrong_name(text: str) -> Error:
-    """The error for a name that does not exist, which is wrong usage on the shell."""
+def wrong_usage(text: str) -> Error:
+    """The error for a name that does not exist and for other wrong usage, by which the shell ends with 2."""
     error = Error(text)
     error.exit_code = WRONG_USAGE
     return error
@@ -74,7 +76,7 @@ def wrong_name(text: str) -> Error:
 def unknown(what: str, name: str, known: Iterable[str]) -> Error:
     """The error for an unknown name: with the nearest one, and all of them."""
     names = list(known)
-    return wrong_name(f"there is no {what} {name!r}{nearest(name, names)}; there are {', '.join(names)}")
+    return wrong_usage(f"there is no {what} {name!r}{nearest(name, names)}; there are {', '.join(names)}")
 
 
 def checked(function: Function) -> Function:
@@ -129,6 +131,10 @@ def _checked(function: Callable[..., Any], known: Signature) -> Callable[..., An
             raise Error(f"{function.__name__}(): {error}") from None
         try:
             return function(*arguments, **options)
+        except ValueError as error:
+            if _RAGGED in str(error):  # of numpy, wherever an argument is seen as an array
+                raise Error(f"{function.__name__}(): an argument has rows of different lengths") from None
+            raise
         except MemoryError:
             raise Error(f"Not enough memory: {_MEMORY_REMEDY}.") from None
 

@@ -23,6 +23,8 @@ _LONGEST_NAME = 80  # of Abaqus and MED
 
 def masks(groups: Groups, cells: int) -> dict[str, Array]:
     """Per group 1 for its cells, else 0. Raises Error for a wrong name or number."""
+    if not isinstance(groups, Mapping):
+        raise Error(f"groups is {groups!r}; a dict of numbers of cells, or masks, by name is expected")
     return {_checked_name(name): _mask(name, members, cells) for name, members in groups.items()}
 
 

@@ -10,15 +10,16 @@ import sys
 import warnings
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any, Callable, Iterable, Mapping, Union
+from typing import Any, Callable, Iterable, Union
 
 import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 from . import _vtk
+from ._arguments import flag, number, sequence
 from ._arrays import Array
 from ._commands import add_command
-from ._errors import Error, Messages, checked, unknown, watch, wrong_name
+from ._errors import Error, Messages, checked, unknown, watch, wrong_usage
 from ._names import folded
 from ._tables import json_text, metrics_markdown, metrics_text
 from ._views import NamedDict
@@ -130,7 +131,7 @@ def register_metric(
     if not callable(function):
         raise Error(f"the function of the metric {name} is {function!r}; a function is expected")
     if direction not in _DIRECTIONS:
-        raise unknown("direction", direction, _DIRECTIONS)
+        raise unknown("direction", str(direction), _DIRECTIONS)
     metric = _vtk.vtkUserMetric()
     messages = Messages(metric)
     for setter, text in zip(
@@ -140,14 +141,16 @@ def register_metric(
             raise Error(f"{setter.lower()} is {text!r}; a text is expected")
         getattr(metric, f"Set{setter}")(text)
     metric.SetDirection(_DIRECTIONS.index(direction))
-    metric.SetFullRange(*full)
-    metric.SetAcceptableRange(*acceptable)
-    metric.SetIdeal(float("nan") if ideal is None else ideal)
-    metric.SetInvariances(scale_invariant, rotation_invariant)
+    metric.SetFullRange(*_range("full", full))
+    metric.SetAcceptableRange(*_range("acceptable", acceptable))
+    metric.SetIdeal(float("nan") if ideal is None else number("ideal", ideal))
+    metric.SetInvariances(
+        flag("scale_invariant", scale_invariant), flag("rotation_invariant", rotation_invariant)
+    )
     metric.ClearCellTypes()
-    for cell in [cell_types] if isinstance(cell_types, str) else cell_types:
-        if cell not in _CELLS:
-            raise unknown("cell type", cell, _CELLS)
+    for cell in [cell_types] if isinstance(cell_types, str) else sequence("cell_types", cell_types):
+        if not isinstance(cell, str) or cell not in _CELLS:
+            raise unknown("cell type", str(cell), _CELLS)
         metric.AddCellType(_CELLS[cell][0])
     metric.AddObserver("UserEvent", _evaluator(function))
     replaced = _REGISTERED.pop(name, None)
@@ -171,6 +174,14 @@ def register_metric(
             stacklevel=3,
         )
     return next(int(facts["number"]) for facts in metrics() if facts["name"] == name)
+
+
+def _range(option: str, ends: Any) -> tuple[float, float]:
+    """The lower and the upper end of a range, which may be infinite."""
+    found = sequence(option, ends)
+    if len(found) != 2 or not all(isinstance(end, (int, float, np.number)) for end in found):
+        raise Error(f"{option} is {ends!r}; two numbers, the lower and the upper end, are expected")
+    return float(found[0]), float(found[1])
 
 
 #: The names of arguments in C++, in messages.
@@ -350,15 +361,13 @@ def metric_name(name: Any, option: str = "a metric") -> str:
         else:
             hint = f"there are {', '.join(facts['name'] for facts in known)}"
         problems = str(_vtk.vtkUserMetric.GetLoadErrors()).strip()  # of libraries that may have it
-        raise wrong_name(f"There is no metric {name!r}; {hint}" + (f"\n{problems}" if problems else ""))
+        raise wrong_usage(f"There is no metric {name!r}; {hint}" + (f"\n{problems}" if problems else ""))
     return found
 
 
 def choose(algorithm: Any, chosen: Metrics) -> Messages:
     """Add metrics to a filter by name; returns the filter's messages. Raises Error for none or unknown ones."""
-    if not isinstance(chosen, (str, Iterable)) or isinstance(chosen, (bytes, Mapping)):
-        raise Error(f"metrics is {chosen!r}; the name of a metric, or a list of names, is expected")
-    names = [chosen] if isinstance(chosen, str) else list(chosen)
+    names = [chosen] if isinstance(chosen, str) else sequence("metrics", chosen)
     if not names:
         raise Error("no metric is chosen")
     messages = watch(algorithm)

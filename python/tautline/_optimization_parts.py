@@ -11,7 +11,7 @@ import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands
-from ._arguments import number, pick, picked, sets, within
+from ._arguments import number, pick, picked, sequence, sets, within
 from ._arrays import (
     ANY,
     POINTS,
@@ -27,7 +27,7 @@ from ._arrays import (
     table_rows,
 )
 from ._choices import OPTIMIZE_PRESETS, TARGETS, TEMPLATES, OptimizePreset
-from ._errors import Error, wrong_name
+from ._errors import Error, wrong_usage
 from ._metrics import by_metric, find_metric, metric_name, metrics
 from ._names import find_name, nearest_name
 from ._results import Result
@@ -117,9 +117,8 @@ def choose_preset(
         if preset == "preserve shape" and "reference" not in targets:
             raise Error("the preset 'preserve shape' needs a reference mesh")
         return
-    if not isinstance(objectives, (str, Iterable, type(None))) or isinstance(objectives, (bytes, dict)):
-        raise Error(f"objectives is {objectives!r}; the name of a metric, a list of names or a preset is expected")
-    listed: Any = ["imr"] if objectives is None else [objectives] if isinstance(objectives, str) else list(objectives)
+    listed: Any = ["imr"] if objectives is None else objectives
+    listed = [listed] if isinstance(listed, str) else sequence("objectives", listed)
     if not listed:
         raise Error("no objective is given")
     for objective in listed:
@@ -135,7 +134,7 @@ def _preset_of(name: str, preset: OptimizePreset | None) -> tuple[str | None, Op
         return None, picked("preset", found, OPTIMIZE_PRESETS)
     near = nearest_name(name, OPTIMIZE_PRESETS)
     if near and find_metric(name, [facts["name"] for facts in metrics()]) is None:
-        raise wrong_name(f"there is no metric and no preset {name!r}{near}")
+        raise wrong_usage(f"there is no metric and no preset {name!r}{near}")
     return name, preset
 
 
@@ -161,9 +160,9 @@ def set_utopia(filter_: Any, utopia: float | Iterable[float] | None = None) -> N
 
     utopia: the best value of each objective, one number per objective. The default is 0.
     """
-    values: Any = [] if utopia is None else utopia
-    for value in np.atleast_1d(values):
-        filter_.AddUtopia(within("utopia", float(value), -np.inf, np.inf))
+    values: Any = [] if utopia is None else [utopia] if is_number(utopia) else sequence("utopia", utopia)
+    for value in values:
+        filter_.AddUtopia(within("utopia", value, -np.inf, np.inf))
 
 
 @sets("optimize", "UseBestKnown", "BestKnown")

@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkDataSet, vtkPolyData
 
 from . import _commands, _vtk
-from ._arguments import number, pick, picked, sets
+from ._arguments import number, pick, picked, sequence, sets
 from ._arrays import Array, InputArrays, Values, cell_array, columns, is_number, snake, table_rows
 from ._errors import Error, run
 from ._io import as_mesh
@@ -84,8 +84,8 @@ def set_values(filter_: Any, values: Sequence[float] = ()) -> None:
 
     values: of the kernel "table", at equal distances from 0 to delta.
     """
-    for value in values:
-        filter_.AddKernelValue(float(value))
+    for value in sequence("values", values):
+        filter_.AddKernelValue(number("values", value))
 
 
 @sets("peridynamics", "Elastic", "StateBased")
@@ -207,7 +207,7 @@ def set_center(filter_: Any, center: Sequence[float] = (0.5, 0.5, 0.0)) -> None:
 
     center: the point, 2 or 3 coordinates; one off the plane is projected to it.
     """
-    numbers = np.asarray([number("center", value) for value in np.ravel(center)])
+    numbers = np.asarray([number("center", value) for value in sequence("center", center)])
     if len(numbers) not in (2, 3):
         raise Error(f"center is {center!r}; 2 or 3 numbers are expected")
     filter_.SetCenter(*numbers, *[0.0] * (3 - len(numbers)))

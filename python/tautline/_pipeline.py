@@ -123,7 +123,7 @@ def _content(steps: Any) -> tuple[Mapping[str, Any], Path]:
 def _check(content: Mapping[str, Any], folder: Path) -> list[_Step]:
     for key in content:
         if key != "step":
-            raise unknown("key of the file of steps", key, ["step"])
+            raise Error(str(unknown("key of the file of steps", key, ["step"])))
     listed = content.get("step")
     if not isinstance(listed, list) or not listed or not all(isinstance(step, Mapping) for step in listed):
         raise Error("there are no steps: begin each with a line [[step]]")

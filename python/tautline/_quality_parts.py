@@ -6,9 +6,10 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import sys
 from dataclasses import dataclass
 from os import PathLike
-from typing import Any, ClassVar
+from typing import Any, Callable, ClassVar
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
@@ -17,13 +18,13 @@ from . import _commands, _vtk
 from ._arguments import picked, sets
 from ._arrays import Array, InputArrays, Values, cell_array, columns, is_number, point_array, snake
 from ._choices import TARGETS, Target
-from ._errors import Error, checked, unknown, wrong_name
+from ._errors import Aborted, Error, checked, unknown, wrong_usage
 from ._files import file_name, replace_text
 from ._html import html_report
 from ._metrics import Metrics, by_metric, choose, metrics as known_metrics
 from ._names import find_name, nearest_name
 from ._results import Result
-from ._tables import quality_json, quality_rows, quality_text
+from ._tables import align, quality_json, quality_rows, quality_text
 
 #: Exit code of the command for a mesh that fails its criteria.
 FAILED = 3
@@ -202,7 +203,7 @@ def _criteria_text(chosen: str | PathLike[str] | dict[str, Any] | None) -> str:
         listed = f"{nearest_name(chosen, criteria_presets())}; there are {', '.join(criteria_presets())}"
         is_name = not os.path.splitext(chosen)[1] and not os.path.dirname(chosen)
         text = f"the criteria {chosen!r} are neither a file that can be read nor a preset{listed}"
-        raise wrong_name(text) if is_name else Error(text)
+        raise wrong_usage(text) if is_name else Error(text)
     return found
 
 
@@ -269,6 +270,7 @@ def _plain(value: Any) -> Any:
 
 def add_quality_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of these arguments, and those of the output."""
+    _commands.take_more(parser)
     _commands.add_metrics(parser)
     parser.add_argument("--worst", type=int, choices=range(_MAX_WORST + 1), default=0, metavar=f"0..{_MAX_WORST}",
                         help="list this many of the worst elements (default: 0)")  # fmt: skip
@@ -297,6 +299,49 @@ def finish_quality(arguments: argparse.Namespace, filter_: Any, options: dict[st
     sets_ = {"groups": result.groups()} if arguments.groups else {}
     _commands.finish(arguments, result, quality_text(result, arguments.worst), rows, texts, facts, **sets_)
     return FAILED if result.verdict in ("failed", "none") else 0
+
+
+def finish_quality_of_several(arguments: argparse.Namespace, measured: Callable[[str], Any]) -> int:
+    """Print a table of several meshes, a row for each; measured() returns the filter that has run for a file.
+
+    Returns 1 if a file could not be measured, else 3 if a mesh fails its criteria.
+    """
+    for name in ("output", "report"):
+        if getattr(arguments, name):
+            raise wrong_usage(f"--{name} is for one mesh, {1 + len(arguments.more)} are given")
+    rows: list[dict[str, Any]] = []
+    facts: list[dict[str, Any]] = []
+    code = 0
+    for file in (arguments.mesh, *arguments.more):
+        try:
+            filter_ = measured(file)
+            result = quality_result(filter_, filter_.GetOutputDataObject(0))
+        except Aborted:
+            raise
+        except Error as error:
+            if error.exit_code != 1:  # wrong usage, which is that of every file
+                raise
+            print(f"tautline: {error}", file=sys.stderr)
+            code = 1
+            continue
+        rows.append(_row_of(file, result))
+        facts.append({"file": file, **json.loads(quality_json(result))})
+        if result.verdict in ("failed", "none"):
+            code = code or FAILED
+    text = align([list(row.values()) for row in rows], list(rows[0])) if rows else ""
+    _commands.finish(arguments, None, text, rows, facts={"meshes": facts})
+    return code
+
+
+def _row_of(file: str, result: QualityResult) -> dict[str, Any]:
+    row: dict[str, Any] = {"file": file}
+    if result.verdict is not None:
+        row |= {"verdict": result.verdict, "index": result.index}
+    row |= {"cells": len(result.validity), "inverted": result.inverted, "degenerate": result.degenerate}
+    for name, facts in result.statistics.items():
+        row |= {f"{name} {key}": facts[key] for key in ("worst", "mean")}
+        row[f"{name} unacceptable"] = facts["outside_acceptable"]
+    return row
 
 
 def add_own_commands(commands: Any) -> None:

@@ -4,17 +4,62 @@
 from __future__ import annotations
 
 import argparse
+import os
+from html import escape
 from os import PathLike
 from typing import Any
 
 from . import _commands
+from ._arguments import text
 from ._errors import interruptible
-from ._files import check_stream_or_target, replace_text
+from ._files import check_stream_or_target, file_name, replace_text
 from ._html import html_report
 from ._interrupts import Progress
 from ._io import Mesh
 from ._metrics import Metrics
 from ._quality import measure
+from ._quality_parts import QualityResult, quality_result
+from ._views import viewed
+
+_KILOBYTE = 1000
+
+
+class ReportResult(str):
+    """What report() returns: the HTML as a text, which prints in a few lines.
+
+    html: the HTML.
+    file: the name of the file written; None if there is none.
+    title: the title.
+    quality: the result of quality() for the mesh.
+    before: that for the mesh before it was changed, or None.
+    """
+
+    html: str
+    file: str | None
+    title: str  # type: ignore[assignment]
+    quality: QualityResult
+    before: QualityResult | None
+
+    @classmethod
+    def make(cls, html: str, **facts: Any) -> ReportResult:
+        """A result with these attributes."""
+        made = cls(html)
+        made.__dict__.update(facts, html=html)
+        return made
+
+    def __repr__(self) -> str:
+        place = f", {self.file}" if self.file else "; save(FILE) writes it"
+        return f"ReportResult: {self.title}, {len(self) / _KILOBYTE:.0f} kB of HTML{place}\n{self.quality.summary}"
+
+    __str__ = __repr__
+
+    def _repr_html_(self) -> str:
+        """For notebooks."""
+        return f"<pre>{escape(repr(self))}</pre>"
+
+    def save(self, file: str | PathLike[str]) -> None:
+        """Replace a file by the HTML."""
+        replace_text(file, self.html)
 
 
 @interruptible
@@ -30,7 +75,7 @@ def report(
     time_limit: float = 0.0,
     threads: int = 0,
     progress: Progress | bool | None = None,
-) -> str:
+) -> ReportResult:
     """Report the quality of a mesh as one HTML file that needs no other file.
 
     It has what Save Report in ParaView's panel has: mesh, result, picture, histogram, tables and settings. The picture
@@ -47,7 +92,7 @@ def report(
     time_limit: seconds for each mesh; 0 is no limit.
     threads: number of threads; 0 is all cores. The result does not depend on it.
 
-    Returns the HTML. Raises Error for wrong arguments, for meshes that quality() refuses and if the file cannot be
+    Returns the HTML, a str with further attributes that prints in a few lines. Raises Error for wrong arguments, for meshes that quality() refuses and if the file cannot be
     written.
 
     >>> better = tautline.optimize("part.vtu")
@@ -55,6 +100,8 @@ def report(
     """
     if file is not None:
         check_stream_or_target(file)
+    if title is not None:
+        text("title", title)
     options: dict[str, Any] = {
         "criteria": criteria, "histogram_bins": histogram_bins, "time_limit": time_limit, "threads": threads,
     }  # fmt: skip
@@ -65,7 +112,18 @@ def report(
     html = html_report(measured, mesh, settings, first, title)
     if file is not None:
         replace_text(file, html)
-    return html
+    named = os.path.basename(mesh) if isinstance(mesh, (str, PathLike)) else measured.GetOutputDataObject(0).GetClassName()
+    return ReportResult.make(
+        html,
+        file=None if file is None else file_name(file),
+        title=title or named,
+        quality=_result(measured),
+        before=None if first is None else _result(first),
+    )
+
+
+def _result(filter_: Any) -> QualityResult:
+    return quality_result(filter_, viewed(filter_.GetOutputDataObject(0)))
 
 
 # --- the shell ----------------------------------------------------------------------------------------------
@@ -94,4 +152,4 @@ def _run(arguments: argparse.Namespace) -> None:
     ))  # fmt: skip
     html = report(arguments.mesh, **options)
     facts: dict[str, Any] = {"title": options["title"] or str(arguments.mesh)}
-    _commands.finish(arguments, None, "", texts={arguments.report: html}, facts=facts)
+    _commands.finish(arguments, None, "", texts={arguments.report: html.html}, facts=facts)

@@ -24,7 +24,7 @@ from vtkmodules.vtkCommonDataModel import (
 from vtkmodules.vtkIOImage import vtkPNGWriter
 
 from . import _commands, _vtk
-from ._arguments import number, sets
+from ._arguments import number, sequence, sets
 from ._arrays import Array, cell_array, columns, point_array, table_rows
 from ._errors import Error, interruptible, run
 from ._files import check_input, check_target, file_name, replace_bytes
@@ -311,14 +311,16 @@ def _as_set(shapes: Any, labels: Iterable[Any] | None) -> vtkMultiBlockDataSet:
     if not isinstance(shapes, vtkMultiBlockDataSet):
         if not isinstance(shapes, Iterable):
             raise Error(f"a set of shapes is a folder, a list of images or blocks, not {type(shapes).__name__}")
-        images = [as_image(image) for image in shapes]
+        images = [as_image(image) for image in sequence("shapes", shapes)]
+        if not images:
+            raise Error("shapes has no images")
         shapes = vtkMultiBlockDataSet()
         for i, image in enumerate(images):
             shapes.SetBlock(i, image)
             shapes.GetMetaData(i).Set(vtkCompositeDataSet.NAME(), f"shape {i}")
     if labels is None:
         return shapes
-    labels = list(labels)
+    labels = sequence("labels", labels)
     if len(labels) != shapes.GetNumberOfBlocks():
         raise Error(f"{len(labels)} labels for {shapes.GetNumberOfBlocks()} shapes")
     labelled = vtkMultiBlockDataSet()

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from ._quality_parts import QualityResult
 
 _STATISTICS = ("minimum", "mean", "maximum", "standard_deviation", "outside_acceptable", "worst")
+_KILO = 1000
 _HEADINGS = {"standard_deviation": "std dev", "outside_acceptable": "unacceptable"}
 
 
@@ -152,6 +153,23 @@ def finite(value: Any) -> Any:
     if isinstance(value, (list, tuple)):
         return [finite(inner) for inner in value]
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def file_size(count: float) -> str:
+    """A number of bytes in words."""
+    for unit in ("bytes", "kB", "MB"):
+        if count < _KILO:
+            return f"{count:.3g} {unit}"
+        count /= _KILO
+    return f"{count:.3g} GB"
+
+
+def many(noun: str, count: int) -> str:
+    """A noun in the plural, unless there is one."""
+    if count == 1:
+        return noun
+    ends = {"tetrahedron": "tetrahedra", "hexahedron": "hexahedra", "vertex": "vertices", "polyhedron": "polyhedra"}
+    return ends.get(noun, noun if noun[-1].isdigit() else f"{noun}s")
 
 
 def _range(pair: tuple[float, float] | None) -> str:

@@ -23,6 +23,7 @@ MODULES = frozenset(
 
 #: The files with functions and commands, in the order of the command line's help, and the compiled module of each.
 CAPABILITIES = {
+    "_information": "TautlineQuality",
     "_quality": "TautlineQuality",
     "_perturbation": "TautlinePerturbation",
     "_comparison": "TautlineQuality",
