@@ -30,6 +30,25 @@ def test_functions():
     assert tl.domain("Rectangle", 100).GetNumberOfCells() == tl.domain("rectangle", 100).GetNumberOfCells()
 
 
+def test_second_argument():
+    """The second argument of functions that have presets is the preset; the older meanings are found by their type."""
+    assert tl.optimize(PLATE, "worst element") == tl.optimize(PLATE, preset="worst element")
+    assert tl.optimize(PLATE, objectives="Worst Element") == tl.optimize(PLATE, preset="worst element")
+    for objectives in ("mu_2", ["mu_2"], [("mu_2", {"weight": 1})]):
+        assert tl.optimize(PLATE, objectives) == tl.optimize(PLATE, objectives=objectives)
+        assert list(tl.optimize(PLATE, objectives).statistics) == ["mu_shape"]
+    thorough = tl.untangle(TANGLED, "thorough")
+    assert thorough == tl.untangle(TANGLED, preset="thorough") == tl.untangle(TANGLED, effort="thorough")
+    refused(wording("two-presets-are-given"), tl.optimize, PLATE, "best shape", objectives="worst element")
+    refused(wording("objectives-are-given-twice"), tl.optimize, PLATE, ["imr"], objectives=["imr"])
+    refused(wording("no-preset-and-no-metric"), tl.optimize, PLATE, "imrr")
+    refused(wording("preset-is-best-shpae-did-you-mean"), tl.optimize, PLATE, "best shpae")
+    refused(wording("mean-the-same"), tl.untangle, TANGLED, "local", effort="local")
+    refused(wording("is-a-preset-of-criteria"), tl.quality, PLATE, "fem")
+    for name in ("optimize", "untangle", "improve"):
+        assert list(inspect.signature(getattr(tl, name)).parameters)[1] == "preset", name
+
+
 def test_wrong_names():
     refused(wording("preset-is-best-shpae-did-you-mean"), tl.optimize, PLATE,
             preset="best shpae")  # fmt: skip

@@ -320,7 +320,7 @@ def test_signatures() -> None:
         function = getattr(tl, name)
         for parameter in inspect.signature(function).parameters.values():
             assert parameter.kind not in (parameter.VAR_KEYWORD, parameter.VAR_POSITIONAL), (name, parameter)
-            entry = re.compile(rf"^    (\w+, )*{parameter.name}(, \w+)*: ", re.MULTILINE)
+            entry = re.compile(rf"^(    )?(\w+, )*{parameter.name}(, \w+)* : \S", re.MULTILINE)
             assert entry.search(function.__doc__), (name, parameter)
 
 

@@ -6,14 +6,18 @@ from __future__ import annotations
 import re
 import xml.etree.ElementTree as ElementTree
 from functools import cached_property
-from textwrap import indent
+from textwrap import dedent, indent
 
+from numpydoc import numpydoc, quoted_lines, type_of
 from parts import Argument, Parts, Setter
 from properties import Property
 from texts import Failure, call, quoted, wrapped
 
 #: The last arguments of every function that has them.
 COMMON = ("time_limit", "threads", "merge_coincident_points", "reproducible_order", "redistribute")
+PROGRESS = """progress: True: a bar on the terminal, if there is one. Else a function, called ten times a second with the
+    fraction done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises
+    KeyboardInterrupt."""
 MESH = "Given as {kind}, a composite data set, a file name or (points, cells). It is not changed."
 
 
@@ -117,10 +121,20 @@ class Function:
             kind = MESH.format(kind="a vtkDataSet" if grid else "a vtkDataSet with explicit points")
             text = self.translated(self.input.element.findtext("Documentation", "")).removeprefix("The mesh: ")
             entries.insert(0, wrapped(f"mesh: {text} {kind}", 4, 8))
-        blocks = [indent(block, "    ") for block in blocks]
-        parts = [f'    """{head.get("short_help", "") if head is not None else ""}']
-        parts += [*blocks[:after], "\n".join(entries), *blocks[after:]]
-        return "\n\n".join(part.rstrip() for part in parts) + '\n    """\n'
+        entries.append(indent(PROGRESS, "    "))
+        parts = [head.get("short_help", "") if head is not None else ""]
+        parts += [*blocks[:after], dedent("\n".join(entries)), *blocks[after:]]
+        types = {a.name: type_of(a.type, a.default, self.choice_types) for a in self.arguments}
+        types |= {"mesh": "Mesh", "progress": "bool or callable, optional"}
+        return quoted_lines(numpydoc("\n\n".join(part.rstrip() for part in parts), types, self.result))
+
+    @cached_property
+    def choice_types(self) -> set[str]:
+        """The names of the types of enumerations, whose values are texts."""
+        own = {name for name, origin in self.parts.origin.items() if origin == "._choices"}
+        literals = set(re.findall(r"^(\w+) = Literal\[", self.parts.source, re.MULTILINE))
+        literals |= set(re.findall(r"^(\w+): \w+ = Literal\[", self.parts.source, re.MULTILINE))
+        return own | literals | {prop.choices.type for prop in self.properties if prop.choices}
 
     def body(self) -> str:
         """The code that makes the filter, sets and runs it."""

@@ -173,8 +173,9 @@ class Parser(argparse.ArgumentParser):
         names = list(action.choices or ())
         if action.choices is not None and value not in action.choices:
             near = nearest_name(value, [name for name in names if isinstance(name, str)])
-            choose = near or f" (choose from {', '.join(map(repr, names))})"
-            raise argparse.ArgumentError(action, f"invalid choice: {value!r}{choose}")
+            is_command = near and action.option_strings == []
+            choose = "" if is_command else f" (choose from {', '.join(map(repr, names))})"
+            raise argparse.ArgumentError(action, f"invalid choice: {value!r}{near}{choose}")
 
 
 class _HelpAll(argparse.Action):

@@ -22,14 +22,22 @@ from ._tables import comparison_rows, comparison_text
 class CompareResult(Result):
     """The result of compare().
 
-    mesh: the second mesh with the cell arrays `<metric>_before`, `_after`, `_difference`, `Validity_before`,
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The second mesh with the cell arrays `<metric>_before`, `_after`, `_difference`, `Validity_before`,
         `Validity_after`, `Change`, and the point array `Displacement`.
-    statistics: per metric: better, worse, equal (numbers of elements), inverted_before, inverted_after, minimum_before,
+    statistics : dict[str, dict[str, Any]]
+        Per metric: better, worse, equal (numbers of elements), inverted_before, inverted_after, minimum_before,
         minimum_after, mean_before, mean_after, maximum_before, maximum_after, largest_displacement.
-    difference: per metric the value after minus the value before on each cell, m.
-    change: per cell, m: 1 better by some metric and worse by none, -1 the opposite, else 0.
-    displacement: second minus first position, n x 3.
-    summary: the result in words.
+    difference : dict[str, Array]
+        Per metric the value after minus the value before on each cell, m.
+    change : Array
+        Per cell, m: 1 better by some metric and worse by none, -1 the opposite, else 0.
+    displacement : Array
+        Second minus first position, n x 3.
+    summary : str
+        The result in words.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("difference", "change", "displacement")

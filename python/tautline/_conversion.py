@@ -25,11 +25,16 @@ _OWN = {
 
 @checked
 def formats() -> list[dict[str, Any]]:
-    """The formats of mesh files, made by asking the readers: a dict each.
+    """The formats of mesh files, made by asking the readers.
 
-    ending; format (its name); read, write (whether it is possible here); times (whether files have time steps); by
-    ("Tautline", "VTK" or "meshio", which reads it).
+    Returns
+    -------
+    list[dict[str, Any]]
+        A dict for each: ending; format (its name); read, write (whether it is possible here); times (whether files have
+        time steps); by ("Tautline", "VTK" or "meshio", which reads it).
 
+    Examples
+    --------
     >>> [form["ending"] for form in tautline.formats() if form["write"]]
     """
     return [_facts(ending) for ending in sorted({*readable(), *FORMATS})]

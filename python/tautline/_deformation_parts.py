@@ -50,20 +50,29 @@ Transform = Union[Mapping[str, Any], Sequence[Any], vtkLinearTransform]
 class WarpResult(Result):
     """The result of warp(). Of composite data, numbers are of all blocks.
 
-    mesh: the mesh with the new points, `Displacement`, `TMP shape` and `Validity`.
-    inverted, inverted_after_warp, impossible: number of inverted or degenerate elements at the end, and after the
-        deformation without the final optimization; and of those that no positions of interior points make valid, since
-        the moved boundary itself is invalid.
-    history: per stage: amount, inverted, worst_shape, mean_shape, stage (list of str), iterations, seconds; of
-        composite data also block.
-    statistics: elements, boundary_points, moved_points, largest_displacement, amount, inverted_after_warp, inverted,
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The mesh with the new points, `Displacement`, `TMP shape` and `Validity`.
+    inverted, inverted_after_warp, impossible : int
+        Number of inverted or degenerate elements at the end, and after the deformation without the final optimization;
+        and of those that no positions of interior points make valid, since the moved boundary itself is invalid.
+    history : dict[str, Any]
+        Per stage: amount, inverted, worst_shape, mean_shape, stage (list of str), iterations, seconds; of composite
+        data also block.
+    statistics : dict[str, Any]
+        elements, boundary_points, moved_points, largest_displacement, amount, inverted_after_warp, inverted,
         impossible, crossings, worst_shape, mean_shape, worst_imr_before, mean_imr_before, worst_imr, mean_imr, cxx to
         cxz, decoupled, regularization, reused, and assemble_, set_up_, solve_, improve_ and total_seconds. Of composite
         data a dict of these per block.
-    displacement: new minus old position, n x 3.
-    shape: TMP shape metric per cell, m; 0 where the shape is that of the undeformed element.
-    validity: per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured.
-    summary: the result in words.
+    displacement : Array
+        New minus old position, n x 3.
+    shape : Array
+        TMP shape metric per cell, m; 0 where the shape is that of the undeformed element.
+    validity : Array
+        Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured.
+    summary : str
+        The result in words.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("displacement", "shape", "validity")

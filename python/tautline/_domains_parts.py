@@ -17,7 +17,12 @@ from ._views import viewed
 
 @checked
 def domains() -> list[str]:
-    """The names of the domains, for domain()."""
+    """The names of the domains, for domain().
+
+    Returns
+    -------
+    list[str]
+    """
     source = _vtk.vtkDomainSource
     return [source.GetDomainName(i) for i in range(source.GetNumberOfDomains())]
 

@@ -47,18 +47,28 @@ Function = Union[float, Values]
 class SolveResult(Result):
     """The result of solve(). Of composite data, numbers are of all blocks; the reason is that of the last one.
 
-    mesh: the mesh with the solution on the points and, on the cells, `Gradient`, or `Stress` and `VonMises`.
-    solution: the solution per point, n; of elasticity the displacement, n x 3.
-    gradient: per cell the gradient, m x 3; of elasticity the stress, m x 6 (xx yy zz xy yz xz). Empty if not computed.
-    times, series: the times of the steps and the solution at each of them, (steps + 1) x n or n x 3; None of stationary
-        problems, and the solutions also unless asked for.
-    history: with time steps, per step `time`, `iterations`, `residual`. Else per iteration (0 is the start) `residual`,
-        the norm that the method uses, and `log10_residual`, relative to the first one. Of composite data also `block`.
-    converged, reason, iterations: whether the method converged, and the stopping criterion that ended it.
-    unknowns: number of unknowns.
-    assembly_seconds, setup_seconds, solve_seconds: times of the assembly, of the set-up of the preconditioner or
-        factorization, and of the solution.
-    summary: the result in words.
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The mesh with the solution on the points and, on the cells, `Gradient`, or `Stress` and `VonMises`.
+    solution : Array
+        The solution per point, n; of elasticity the displacement, n x 3.
+    gradient : Array
+        Per cell the gradient, m x 3; of elasticity the stress, m x 6 (xx yy zz xy yz xz). Empty if not computed.
+    times, series : Array | None
+        The times of the steps and the solution at each of them, (steps + 1) x n or n x 3; None of stationary problems,
+        and the solutions also unless asked for.
+    history : dict[str, Any]
+        With time steps, per step `time`, `iterations`, `residual`. Else per iteration (0 is the start) `residual`, the
+        norm that the method uses, and `log10_residual`, relative to the first one. Of composite data also `block`.
+    converged, reason, iterations : bool, str, int
+        Whether the method converged, and the stopping criterion that ended it.
+    unknowns : int
+        Number of unknowns.
+    assembly_seconds, setup_seconds, solve_seconds : float
+        Times of the assembly, of the set-up of the preconditioner or factorization, and of the solution.
+    summary : str
+        The result in words.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("solution", "gradient", "series")
@@ -82,15 +92,22 @@ class SolveResult(Result):
 class ConditionResult(Result):
     """The result of condition().
 
-    mesh: the mesh with the cell arrays `LargestEigenvalue`, `Excess` (its log10 over the geometric mean) and `Share`.
-    condition, preconditioned_condition: condition numbers of A and of P^-1 A, of composite data the largest; nan where
-        they are unknown.
-    spectrum: A row (dict) for A and one for P^-1 A: matrix, smallest, largest, condition, smallest_error, largest_error
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The mesh with the cell arrays `LargestEigenvalue`, `Excess` (its log10 over the geometric mean) and `Share`.
+    condition, preconditioned_condition : float
+        Condition numbers of A and of P^-1 A, of composite data the largest; nan where they are unknown.
+    spectrum : list[dict[str, Any]]
+        A row (dict) for A and one for P^-1 A: matrix, smallest, largest, condition, smallest_error, largest_error
         (relative bounds; nan: unknown), converged, iterations, seconds, method, message; of composite data also block.
-    largest_eigenvalue, share: per cell, m: the largest eigenvalue of its matrix, and its share of the largest
-        eigenvalue of A; the shares add up to 1. `share` is empty if not computed, for lack of time, too.
-    unknowns: number of unknowns.
-    summary: the result in words.
+    largest_eigenvalue, share : Array
+        Per cell, m: the largest eigenvalue of its matrix, and its share of the largest eigenvalue of A; the shares add
+        up to 1. `share` is empty if not computed, for lack of time, too.
+    unknowns : int
+        Number of unknowns.
+    summary : str
+        The result in words.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("largest_eigenvalue", "share")
@@ -108,14 +125,20 @@ class ConditionResult(Result):
 class SolverStudyResult(Result):
     """The result of solver_study().
 
-    rows: A row (dict) per combination: name, number (1 to 16 are those of Table 2.5), seconds (total; nan if it
-        failed), result (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds,
-        cpu_seconds (of the process for both), iterations, condition (of P^-1 A; nan: unknown), true_residual,
-        converged, reason; of composite data also block.
-    recommended, why: the name of the recommended combination and the reason for it; "" if none converged or the times
-        of the fastest do not differ by more than a tenth or a millisecond.
-    unknowns: number of unknowns.
-    summary: the result in words.
+    Attributes
+    ----------
+    rows : list[dict[str, Any]]
+        A row (dict) per combination: name, number (1 to 16 are those of Table 2.5), seconds (total; nan if it failed),
+        result (the same as text; "*" if it failed, "-" if no time was left), setup_seconds, solve_seconds, cpu_seconds
+        (of the process for both), iterations, condition (of P^-1 A; nan: unknown), true_residual, converged, reason; of
+        composite data also block.
+    recommended, why : str
+        The name of the recommended combination and the reason for it; "" if none converged or the times of the fastest
+        do not differ by more than a tenth or a millisecond.
+    unknowns : int
+        Number of unknowns.
+    summary : str
+        The result in words.
     """
 
     rows: list[dict[str, Any]]
@@ -240,7 +263,12 @@ def _set_variable_function(filter_: Any, inputs: InputArrays, name: str, value: 
 
 @checked
 def solver_combinations() -> dict[int, str]:
-    """The combinations of solver and preconditioner of solver_study() by number; 1 to 16 are those of Table 2.5."""
+    """The combinations of solver and preconditioner of solver_study() by number; 1 to 16 are those of Table 2.5.
+
+    Returns
+    -------
+    dict[int, str]
+    """
     study = _vtk.vtkSolverStudy
     return {number: study.GetCombinationName(number) for number in range(1, study.GetNumberOfCombinations() + 1)}
 

@@ -101,18 +101,7 @@ def interruptible(function: Function) -> Function:
         except Cancelled:
             raise Aborted("cancelled") from None
 
-    call.__doc__ = _with_progress(function.__doc__ or "")
     return cast(Function, _checked(call, signature(function)))
-
-
-def _with_progress(text: str) -> str:
-    """The documentation of a function with progress, in the paragraph before that of what it raises."""
-    place = text.rfind("\n\n", 0, text.find("Raises Error"))
-    entry = """    progress: True: a bar on the terminal, if there is one. Else a function, called ten times a second
-        with the fraction done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises
-        KeyboardInterrupt.
-"""
-    return text[: place + 1] + entry + text[place + 1 :]
 
 
 def _checked(function: Callable[..., Any], known: Signature) -> Callable[..., Any]:

@@ -124,23 +124,39 @@ def read(
 ) -> vtkDataObject:
     """Read a mesh. The ending of the file name decides on the format.
 
-    file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was
-        built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++
-        (.msh), OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2,
-        Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam),
-        Gambit (.neu), Fluent (.cas), Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen (.vol) and
-        others, see formats(). Formats of one file also with .gz behind their ending.
-    options: lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the
-        formats of mesh generators, Abaqus, Nastran and SU2. time: the time step to read, the nearest to this number,
-        see times(); the default is the first. Of the formats of solvers and .pvd.
+    Parameters
+    ----------
+    file : str or path
+        VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was built,
+        TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++ (.msh), OFF
+        (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2, Exodus (.e
+        .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam), Gambit (.neu),
+        Fluent (.cas), Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen (.vol) and others, see formats().
+        Formats of one file also with .gz behind their ending.
+    **options
+        lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the formats
+        of mesh generators, Abaqus, Nastran and SU2. time: the time step to read, the nearest to this number, see
+        times(); the default is the first. Of the formats of solvers and .pvd.
+    progress : bool or callable, optional
+        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
+        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
-    Returns a vtkDataSet with the attributes points, cells, point_data and cell_data, numpy arrays; of .vtm and some
-    .vtk files a composite data set. The pieces of a .pvtu or .pvtp file come one
-    after the other, without their ghost cells and with the points of each: every function treats the points on their
-    seams as one (merge_coincident_points). Raises Error, with file and line where they are known, if the file cannot be
-    read, is truncated or damaged. Only a .vtk file that ends between two sections, or inside the last number of one,
-    cannot be told from a complete file.
+    Returns
+    -------
+    vtkDataObject
+        A vtkDataSet with the attributes points, cells, point_data and cell_data, numpy arrays; of .vtm and some .vtk
+        files a composite data set. The pieces of a .pvtu or .pvtp file come one after the other, without their ghost
+        cells and with the points of each: every function treats the points on their seams as one
+        (merge_coincident_points).
 
+    Raises
+    ------
+    Error
+        With file and line where they are known, if the file cannot be read, is truncated or damaged. Only a .vtk file
+        that ends between two sections, or inside the last number of one, cannot be told from a complete file.
+
+    Examples
+    --------
     >>> mesh = tautline.read("part.msh", lower_cells=True)
     """
     name = file_name(file)
@@ -270,6 +286,17 @@ def _tool(ending: str) -> str:
 def times(file: str | PathLike[str]) -> list[float]:
     """The time steps of a file (Exodus, CGNS, XDMF, EnSight, OpenFOAM, .pvd), for the option `time` of read().
 
+    Parameters
+    ----------
+    file : str or path
+        The file; of other formats there are none.
+
+    Returns
+    -------
+    list[float]
+
+    Examples
+    --------
     >>> [tautline.quality(tautline.read("run.e", time=t)).inverted for t in tautline.times("run.e")]
     """
     name = file_name(file)
@@ -297,24 +324,42 @@ def write(
 ) -> list[str]:
     """Write a mesh. The ending of the file name decides on the format.
 
-    mesh: a vtkDataSet, a composite data set, the result of another function, a file name or (points, cells).
-    file: VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl), always binary and compressed where the format can be; or,
+    Parameters
+    ----------
+    mesh : Mesh
+        A vtkDataSet, a composite data set, the result of another function, a file name or (points, cells).
+    file : str or path
+        VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl), always binary and compressed where the format can be; or,
         where the module of readers was built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh),
         Gmsh (.msh, and .pos: a view for each array), OFF (.off).
-    groups: sets of cells by name: numbers of cells from 0, or a mask of one value per cell; see
-        QualityResult.groups(). They are element sets in Abaqus's .inp and groups in Salome's .med, in other files cell
-        arrays of 0 and 1.
-    template: the file that the mesh was read from, of the same format. The output is a copy of it in which only the
+    groups : Groups, optional
+        Sets of cells by name: numbers of cells from 0, or a mask of one value per cell; see QualityResult.groups().
+        They are element sets in Abaqus's .inp and groups in Salome's .med, in other files cell arrays of 0 and 1.
+    template : str or path, optional
+        The file that the mesh was read from, of the same format. The output is a copy of it in which only the
         coordinates are those of the mesh: markers, sets, materials, types of elements, comments and the format of the
         numbers stay. The mesh must have the cells of that file, in its order, as after untangle(), optimize(), warp()
         and perturb(); its arrays are not written. For .msh, .mesh, .su2, .inp, .bdf .nas .fem, .off, .vtk and .vtu.
-    options: binary (False): write .msh as bytes. Not for formats of VTK.
+    **options
+        binary (False): write .msh as bytes. Not for formats of VTK.
+    progress : bool or callable, optional
+        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
+        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
-    A file is replaced as a whole: whatever happens, there is the older file or the complete new one. Where `file` is
-    a link, the file it points to is replaced. The blocks of a .vtm file are in a directory beside it.
+    Returns
+    -------
+    list[str]
+        The names of the files written.
 
-    Returns the names of the files written. Raises Error if the format cannot hold the mesh, or if a file cannot be
-    written.
+    Raises
+    ------
+    Error
+        If the format cannot hold the mesh, or if a file cannot be written.
+
+    Notes
+    -----
+    A file is replaced as a whole: whatever happens, there is the older file or the complete new one. Where `file` is a
+    link, the file it points to is replaced. The blocks of a .vtm file are in a directory beside it.
     """
     name = file_name(file)
     ending = Path(name).suffix.lower()
@@ -401,10 +446,22 @@ def _write_like(data: vtkDataSet, name: str, source: str) -> list[str]:
 def to_meshio(mesh: Mesh) -> Any:
     """The mesh of meshio of a mesh, with its point and cell arrays.
 
-    mesh: a vtkDataSet, a file name, the result of another function, or (points, cells).
+    Parameters
+    ----------
+    mesh : Mesh
+        A vtkDataSet, a file name, the result of another function, or (points, cells).
 
-    Raises Error if meshio is not installed, and for cells that it lacks. Functions take meshes of meshio as they are.
+    Returns
+    -------
+    Any
 
+    Raises
+    ------
+    Error
+        If meshio is not installed, and for cells that it lacks. Functions take meshes of meshio as they are.
+
+    Examples
+    --------
     >>> tautline.to_meshio(tautline.untangle("part.vtu")).write("part.xdmf")
     """
     return meshio_of(as_data_set(mesh))

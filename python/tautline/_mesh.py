@@ -27,16 +27,29 @@ _SOLID = {3: "triangle", 4: "tetrahedron", 5: "pyramid", 6: "wedge", 8: "hexahed
 def from_arrays(points: Any, cells: Any) -> vtkUnstructuredGrid:
     """Make a mesh from numpy arrays.
 
-    points: coordinates, n x 2 or n x 3. Single precision is kept; other types are converted to double.
-    cells: point numbers from 0, m x k, in VTK's order. k = 3 are triangles, 4 tetrahedra (with n x 2 points:
+    Parameters
+    ----------
+    points : Any
+        Coordinates, n x 2 or n x 3. Single precision is kept; other types are converted to double.
+    cells : Any
+        Point numbers from 0, m x k, in VTK's order. k = 3 are triangles, 4 tetrahedra (with n x 2 points:
         quadrilaterals), 5 pyramids, 6 wedges, 8 hexahedra. For mixed cells a dict of such arrays by the name of the
         cell: "triangle", "quadrilateral", "tetrahedron", "hexahedron", "wedge", "pyramid" or a name of meshio ("tetra",
         "tetra10"), "polygon" with a list of lists; or, as meshio has them, a list of pairs (name, array), whose wedges
         are in meshio's order.
 
-    Returns a vtkUnstructuredGrid with the attributes points, cells, point_data and cell_data. Raises Error if a shape,
-    a type or a point number is wrong.
+    Returns
+    -------
+    vtkUnstructuredGrid
+        A vtkUnstructuredGrid with the attributes points, cells, point_data and cell_data.
 
+    Raises
+    ------
+    Error
+        If a shape, a type or a point number is wrong.
+
+    Examples
+    --------
     >>> mesh = tautline.from_arrays([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]])
     """
     xyz, flat = _coordinates(points)

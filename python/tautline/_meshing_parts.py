@@ -21,11 +21,16 @@ _SIZES = 0  # input array of vtkBoundaryMesher
 class MeshResult(Result):
     """The result of triangle_mesh() and tet_mesh().
 
-    mesh: the triangles or tetrahedra; the points of the boundary come first. Point array `BoundaryMarker`: the lowest
+    Attributes
+    ----------
+    mesh : vtkUnstructuredGrid
+        The triangles or tetrahedra; the points of the boundary come first. Point array `BoundaryMarker`: the lowest
         marker of the segments or facets a point is on, 0 inside; tetrahedra of regions also have the cell array
         `Reference`.
-    boundary: the segments or facets, subdivided, on the same points, with the cell array `BoundaryMarker`.
-    summary: the result in words.
+    boundary : vtkPolyData
+        The segments or facets, subdivided, on the same points, with the cell array `BoundaryMarker`.
+    summary : str
+        The result in words.
     """
 
     mesh: vtkUnstructuredGrid

@@ -23,9 +23,14 @@ from ._results import Result
 class MetricFieldResult(Result):
     """The result of metric_field(). The arrays have the axes [z, y, x]; of a triangle [y, x].
 
-    mesh: an image with a point array per metric and `Validity`.
-    values: per metric its value with the free vertex at each grid point.
-    validity: with the free vertex at each grid point: 1 valid, 0 degenerate, -1 inverted.
+    Attributes
+    ----------
+    mesh : vtkImageData
+        An image with a point array per metric and `Validity`.
+    values : dict[str, Array]
+        Per metric its value with the free vertex at each grid point.
+    validity : Array
+        With the free vertex at each grid point: 1 valid, 0 degenerate, -1 inverted.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("values", "validity")

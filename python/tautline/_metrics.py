@@ -34,14 +34,20 @@ _FLAGS = {"yes": True, "no": False}
 
 @checked
 def metrics() -> list[dict[str, Any]]:
-    """List all metrics, each a dict of facts; None where a fact does not apply.
+    """List all metrics.
 
-    number (int); name (str, also the name of the cell array); label, symbol, formula, source, unit (str); aliases
-    (list of str); dimensions (list of 2 and 3); cell_types (list of str); full_2d, full_3d (range on valid elements,
-    a tuple of two floats); acceptable_2d, acceptable_3d (range that most solvers accept); ideal_2d, ideal_3d (float);
-    direction ("smaller is better", "larger is better", "neutral"); inverted (value on an inverted element: "negative",
-    "larger", "unsigned"); barrier, differentiable, scale_invariant, rotation_invariant (bool).
+    Returns
+    -------
+    list[dict[str, Any]]
+        A dict of facts for each, None where a fact does not apply: number (int); name (str, also the name of the cell
+        array); label, symbol, formula, source, unit (str); aliases (list of str); dimensions (list of 2 and 3);
+        cell_types (list of str); full_2d, full_3d (range on valid elements, a tuple of two floats); acceptable_2d,
+        acceptable_3d (range that most solvers accept); ideal_2d, ideal_3d (float); direction ("smaller is better",
+        "larger is better", "neutral"); inverted (value on an inverted element: "negative", "larger", "unsigned");
+        barrier, differentiable, scale_invariant, rotation_invariant (bool).
 
+    Examples
+    --------
     >>> [facts["name"] for facts in tautline.metrics() if facts["barrier"]]
     """
     known = _vtk.vtkElementQuality
@@ -102,26 +108,51 @@ def register_metric(
     scale_invariant: bool = False,
     rotation_invariant: bool = True,
 ) -> int:
-    """Register a metric of one's own, for measuring, colouring, statistics and criteria; returns its number.
+    """Register a metric of one's own, for measuring, colouring, statistics and criteria.
 
     The metric is then known by its name to quality, compare, metric_field, criteria and, in pvpython and in ParaView's
     Python shell, to the menus of filters that are made afterwards. It has no derivatives and cannot be optimized: for
     that, register one in C++ (tautline/Quality/UserMetric.h). A metric that was registered in Python under the same
-    name is replaced. With a server of ParaView, or several processes of pvbatch, it is registered in this process
-    only: put the registration into a file then, for load_metrics.
+    name is replaced. With a server of ParaView, or several processes of pvbatch, it is registered in this process only:
+    put the registration into a file then, for load_metrics.
 
-    name: lower case letters, digits and underscores; the name of the cell array.
-    function: takes x y z of the corners, shape (cells, corners, 3), read-only, and the type of the cells, a name of
+    Parameters
+    ----------
+    name : str
+        Lower case letters, digits and underscores; the name of the cell array.
+    function : MetricFunction
+        Takes x y z of the corners, shape (cells, corners, 3), read-only, and the type of the cells, a name of
         cell_types; returns a value per cell, shape (cells,). It is called once per cell type. A planar mesh is seen in
         its plane (z is 0, valid cells counter-clockwise); what is not finite becomes 0.
-    label, symbol: for menus (default: the name); aliases: other names, comma separated; formula, source, unit: text.
-    cell_types: names of the cells it is defined on (default: all six).
-    direction: "smaller is better", "larger is better" or "neutral".
-    full, acceptable: the ranges of valid cells, and of those that most solvers accept. ideal: of the ideal cell.
-    scale_invariant, rotation_invariant: whether size and orientation of a cell do not matter; both are checked.
+    label, symbol : str, default ""
+        For menus; the default is the name.
+    aliases : str, default ""
+        Other names, with commas between them.
+    formula, source, unit : str, default ""
+        Texts.
+    cell_types : Iterable[str], default tuple(_CELLS)
+        Names of the cells it is defined on; the default is all six.
+    direction : str, default "smaller is better"
+        "smaller is better", "larger is better" or "neutral".
+    full, acceptable : tuple[float, float], default (0.0, float("inf"))
+        The ranges of valid cells, and of those that most solvers accept.
+    ideal : float, optional
+        The value of the ideal cell.
+    scale_invariant, rotation_invariant : bool, default False, bool, default True
+        Whether size and orientation of a cell do not matter; both are checked.
 
-    Raises Error if the name is taken, or the function fails on cells near the ideal ones.
+    Returns
+    -------
+    int
+        The number of the metric.
 
+    Raises
+    ------
+    Error
+        If the name is taken, or the function fails on cells near the ideal ones.
+
+    Examples
+    --------
     >>> def elongation(corners, cell_type):
     ...     extent = np.ptp(corners, axis=1)
     ...     return extent.max(axis=1) / extent[:, :2].min(axis=1)
@@ -214,7 +245,18 @@ def _evaluator(function: MetricFunction) -> Callable[[Any, str], None]:
 
 @checked
 def unregister_metric(name: str) -> None:
-    """Remove a metric that was registered in Python. Raises Error if there is none of the name."""
+    """Remove a metric that was registered in Python.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+
+    Raises
+    ------
+    Error
+        If no metric was registered under this name.
+    """
     if not isinstance(name, str) or name not in _REGISTERED:
         raise Error(f"no metric {name!r} was registered in Python")
     _REGISTERED.pop(name).RemoveFromRegistry(name)
@@ -222,17 +264,30 @@ def unregister_metric(name: str) -> None:
 
 @checked
 def load_metrics(library: str | os.PathLike[str]) -> list[str]:
-    """Load a file that registers metrics; returns their names.
+    """Load a file that registers metrics.
 
-    library: a shared library (tautline/Quality/UserMetric.h), or a Python file (.py) that calls register_metric. The
-        shell and ParaView load the shared libraries named in the environment variable TAUTLINE_METRICS, separated by
-        colons, when they start.
+    Parameters
+    ----------
+    library : str or path
+        A shared library (tautline/Quality/UserMetric.h), or a Python file (.py) that calls register_metric. The shell
+        and ParaView load the shared libraries named in the environment variable TAUTLINE_METRICS, separated by colons,
+        when they start.
 
+    Returns
+    -------
+    list[str]
+        The names of the metrics that were registered.
+
+    Raises
+    ------
+    Error
+        If the file cannot be loaded or a registration in it fails, on any process.
+
+    Notes
+    -----
     In pvpython, pvbatch and ParaView's Python shell all processes of the server load it, too: a Python file as it is
     here, a library from the path on the computer of the server. Filters that are made afterwards have the metrics in
     their menus. The server needs the package tautline.
-
-    Raises Error if the file cannot be loaded or a registration in it fails, on any process.
     """
     if not isinstance(library, (str, os.PathLike)):
         raise Error(f"the library is {library!r}; a file name is expected")
@@ -325,11 +380,11 @@ def _load_on_server(server: Any, path: str, script: str | None) -> str:
     return ""
 
 
-def find_metric(name: str, known: Iterable[str]) -> str | None:
-    """The one of the known metrics that a name, label, symbol or alias means, in any case; None if there is none."""
-    wanted, among = folded(name), set(known)
+def find_metric(name: str, known: Iterable[str] | None = None) -> str | None:
+    """The one of the known metrics, by default of all, that a name, label, symbol or alias means, in any case; None if there is none."""
+    wanted, among = folded(name), None if known is None else set(known)
     for facts in metrics():
-        if facts["name"] in among and wanted in map(folded, _names_of(facts)):
+        if (among is None or facts["name"] in among) and wanted in map(folded, _names_of(facts)):
             return str(facts["name"])
     return None
 
@@ -350,19 +405,24 @@ def metric_name(name: Any, option: str = "a metric") -> str:
     """
     if not isinstance(name, str):
         raise Error(f"{option} is given by its name, not {name!r}")
-    known = metrics()
-    found = find_metric(name, [facts["name"] for facts in known])
+    known = [facts["name"] for facts in metrics()]
+    found = find_metric(name)
     if found is None:
-        names = {folded(other): (facts["name"], other) for facts in reversed(known) for other in _names_of(facts)}
-        near = get_close_matches(folded(name), names, 1)
-        found, other = names[near[0]] if near else ("", "")
-        if near:
-            hint = f"did you mean {found!r}{'' if folded(found) == folded(other) else f' ({other})'}?"
-        else:
-            hint = f"there are {', '.join(facts['name'] for facts in known)}"
+        near = nearest_metric(name)
+        hint = f"did you mean {near}?" if near else f"there are {', '.join(known)}"
         problems = str(_vtk.vtkUserMetric.GetLoadErrors()).strip()  # of libraries that may have it
         raise wrong_usage(f"There is no metric {name!r}; {hint}" + (f"\n{problems}" if problems else ""))
     return found
+
+
+def nearest_metric(name: str) -> str:
+    """The metric with the nearest name, label, symbol or alias, for a message; "" if there is none."""
+    names = {folded(other): (facts["name"], other) for facts in reversed(metrics()) for other in _names_of(facts)}
+    near = get_close_matches(folded(name), names, 1)
+    if not near:
+        return ""
+    found, other = names[near[0]]
+    return f"{found!r}" + ("" if folded(found) == folded(other) else f" ({other})")
 
 
 def choose(algorithm: Any, chosen: Metrics) -> Messages:

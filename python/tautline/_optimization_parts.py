@@ -28,7 +28,7 @@ from ._arrays import (
 )
 from ._choices import OPTIMIZE_PRESETS, TARGETS, TEMPLATES, OptimizePreset
 from ._errors import Error, wrong_usage
-from ._metrics import by_metric, find_metric, metric_name, metrics
+from ._metrics import by_metric, find_metric, metric_name, nearest_metric
 from ._names import find_name, nearest_name
 from ._results import Result
 
@@ -42,21 +42,32 @@ Objective = Union[str, "tuple[str, dict[str, Any]]"]
 class OptimizeResult(Result):
     """The result of optimize(). Of composite data, numbers are of all blocks; the reason is that of the last one.
 
-    mesh: the mesh with the new points, `Displacement`, `Validity`, and per metric its value after (`imr`) and before
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The mesh with the new points, `Displacement`, `Validity`, and per metric its value after (`imr`) and before
         (`imr_before`).
-    history: per iteration (0 is the input): iteration, objective, <metric>_mean, <metric>_worst, of several objectives
-        also <metric>_objective; inverted, gradient_norm, moving, seconds; of composite data also block.
-    statistics: per metric: label, and with the suffixes _before and _after: minimum, mean, maximum, rms,
-        standard_deviation, worst, outside_acceptable, inverted, degenerate. Of composite data the keys are "block n
-        metric".
-    reason: the stopping criterion that ended the run.
-    inverted_before, inverted, iterations: number of inverted or degenerate elements before and after.
-    free: number of points that were free to move.
-    displacement: new minus old position, n x 3.
-    validity: per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
-    surface_error: largest distance between the facets of a surface in space (of the boundary, where its points slide)
-        and those of the input, measured from either to the other, or from them to the geometry; in the mesh's unit.
-    summary: the result in words.
+    history : dict[str, Any]
+        Per iteration (0 is the input): iteration, objective, <metric>_mean, <metric>_worst, of several objectives also
+        <metric>_objective; inverted, gradient_norm, moving, seconds; of composite data also block.
+    statistics : dict[str, dict[str, Any]]
+        Per metric: label, and with the suffixes _before and _after: minimum, mean, maximum, rms, standard_deviation,
+        worst, outside_acceptable, inverted, degenerate. Of composite data the keys are "block n metric".
+    reason : str
+        The stopping criterion that ended the run.
+    inverted_before, inverted, iterations : int
+        Number of inverted or degenerate elements before and after.
+    free : int
+        Number of points that were free to move.
+    displacement : Array
+        New minus old position, n x 3.
+    validity : Array
+        Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
+    surface_error : float
+        Largest distance between the facets of a surface in space (of the boundary, where its points slide) and those of
+        the input, measured from either to the other, or from them to the geometry; in the mesh's unit.
+    summary : str
+        The result in words.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("displacement", "validity")
@@ -83,8 +94,8 @@ class OptimizeResult(Result):
 )  # fmt: skip
 def choose_preset(
     filter_: Any,
+    preset: OptimizePreset | list[Objective] | list[str] | tuple[Objective, ...] | None = None,
     objectives: str | Iterable[Objective] | None = None,
-    preset: OptimizePreset | None = None,
     *,
     custom: dict[str, Any],
     reference: Any,
@@ -93,19 +104,18 @@ def choose_preset(
 ) -> None:
     """Set the preset, or the objectives.
 
+    preset: "fast clean-up", "best shape", "uniform size", "low interpolation error", "untangle then improve", "preserve
+        shape" (of the reference), "worst element" or "custom". "best shape" is the default if no objectives, no target
+        and no argument that a preset replaces are given. The name of a metric, or a list, is taken as objectives.
     objectives: what to optimize: names of metrics, or pairs of a name and a dict with any of "template" (how the values
         of the elements are aggregated: "default", "sum of squares", "sum of squared reciprocals", "sum of
         reciprocals", "sum", "power mean", "maximum"), "weight" (above 0; 1) and "target" ("ideal", "reference", "size",
         "tensor"; the default is the one given below, if it is one, else "ideal"). The default is ["imr"]. The name of a
         preset is taken as the preset.
-    preset: "fast clean-up", "best shape", "uniform size", "low interpolation error", "untangle then improve", "preserve
-        shape" (of the reference), "worst element" or "custom". "best shape" is the default if no objectives, no target
-        and no argument that a preset replaces are given.
     """
     given = {"reference": reference, "size": size, "tensor": tensor}
     targets = [name for name, value in given.items() if value is not None]
-    if isinstance(objectives, str):
-        objectives, preset = _preset_of(objectives, preset)
+    preset, objectives = _preset_and_objectives(preset, objectives)
     chosen = {name: value for name, value in {"objectives": objectives, **custom}.items() if value is not None}
     if preset is None:
         preset = "custom" if chosen or targets else "best shape"
@@ -125,17 +135,21 @@ def choose_preset(
         _add_objective(filter_, objective, targets)
 
 
-def _preset_of(name: str, preset: OptimizePreset | None) -> tuple[str | None, OptimizePreset | None]:
-    """The objective and the preset that one name means, which may be that of either."""
-    found = find_name(name, OPTIMIZE_PRESETS)
-    if found is not None:
+def _preset_and_objectives(preset: Any, objectives: Any) -> tuple[Any, Any]:
+    """The preset and the objectives; each may have been given as the other: the type and the name decide."""
+    if isinstance(objectives, str) and find_name(objectives, OPTIMIZE_PRESETS) is not None:
         if preset is not None:
-            raise Error(f"two presets are given, {name!r} and {preset!r}")
-        return None, picked("preset", found, OPTIMIZE_PRESETS)
-    near = nearest_name(name, OPTIMIZE_PRESETS)
-    if near and find_metric(name, [facts["name"] for facts in metrics()]) is None:
-        raise wrong_usage(f"there is no metric and no preset {name!r}{near}")
-    return name, preset
+            raise Error(f"two presets are given, {objectives!r} and {preset!r}")
+        return objectives, None
+    is_metric = isinstance(preset, str) and not find_name(preset, OPTIMIZE_PRESETS) and find_metric(preset) is not None
+    if is_metric or isinstance(preset, (list, tuple)):
+        if objectives is not None:
+            raise Error(f"objectives are given twice, {preset!r} and {objectives!r}")
+        return None, preset
+    if isinstance(preset, str) and find_name(preset, OPTIMIZE_PRESETS) is None and (near := nearest_metric(preset)):
+        if not nearest_name(preset, OPTIMIZE_PRESETS):
+            raise wrong_usage(f"there is no preset and no metric {preset!r}; did you mean {near}?")
+    return preset, objectives
 
 
 def _add_objective(filter_: Any, objective: Any, targets: list[str]) -> None:

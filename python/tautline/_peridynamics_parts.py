@@ -31,27 +31,40 @@ _LINEAR = 1  # its basis
 class PeridynamicsResult(Result):
     """The result of peridynamics().
 
-    mesh: the mesh with `Unknown`, `Neighbors`, `RowSum`, `Diagonal`, the extreme eigenvectors and `Solution`, on the
+    Attributes
+    ----------
+    mesh : vtkDataSet
+        The mesh with `Unknown`, `Neighbors`, `RowSum`, `Diagonal`, the extreme eigenvectors and `Solution`, on the
         points (linear basis) or the cells.
-    condition: largest over smallest eigenvalue; nan where the matrix is not positive definite or no spectrum was
-        computed.
-    smallest, largest, smallest_bound, largest_bound: the extreme eigenvalues and their absolute error bounds.
-    definite, converged: whether the smallest eigenvalue is positive beyond its bound, and whether both bounds are
-        within the tolerance.
-    rows, nonzeros: number of unknowns, and of nonzero entries of the matrix.
-    asymmetry: of the dissertation's discretization: norm of the skew-symmetric part, which is dropped, over that of the
+    condition : float
+        Largest over smallest eigenvalue; nan where the matrix is not positive definite or no spectrum was computed.
+    smallest, largest, smallest_bound, largest_bound : float
+        The extreme eigenvalues and their absolute error bounds.
+    definite, converged : bool
+        Whether the smallest eigenvalue is positive beyond its bound, and whether both bounds are within the tolerance.
+    rows, nonzeros : int
+        Number of unknowns, and of nonzero entries of the matrix.
+    asymmetry : float
+        Of the dissertation's discretization: norm of the skew-symmetric part, which is dropped, over that of the
         matrix.
-    layer_deficit: horizon minus width of the interaction layer, where the layer is narrower; else 0.
-    statistics: all columns of the table `Spectrum` by name in snake case.
-    solution: the solution per point (linear basis) or cell, elastic with 3 components; None if not computed.
-    dilatation, energy_density: of the solution of an elastic model, per cell at the centroid, 0 in the layer; None if
-        not computed.
-    iterations: of the solution; 0 if not computed.
-    residual: relative, of the solution.
-    preconditioned_condition: condition number of the preconditioned matrix, estimated from the iterations, from below;
-        nan if not computed.
-    sparsity: number of entries of the matrix per pixel, with the first row on top; None if not computed.
-    summary: the result in words.
+    layer_deficit : float
+        Horizon minus width of the interaction layer, where the layer is narrower; else 0.
+    statistics : dict[str, Any]
+        All columns of the table `Spectrum` by name in snake case.
+    solution : Array | None
+        The solution per point (linear basis) or cell, elastic with 3 components; None if not computed.
+    dilatation, energy_density : Array | None
+        Of the solution of an elastic model, per cell at the centroid, 0 in the layer; None if not computed.
+    iterations : int
+        Of the solution; 0 if not computed.
+    residual : float
+        relative, of the solution.
+    preconditioned_condition : float
+        Condition number of the preconditioned matrix, estimated from the iterations, from below; nan if not computed.
+    sparsity : Array | None
+        Number of entries of the matrix per pixel, with the first row on top; None if not computed.
+    summary : str
+        The result in words.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("solution", "dilatation", "energy_density", "sparsity")
@@ -178,13 +191,22 @@ def peridynamics_result(filter_: Any, output: vtkDataSet) -> PeridynamicsResult:
 class HorizonResult(Result):
     """The result of horizon_neighbors().
 
-    mesh: the triangles that meet the disc, with the cell arrays `Case`, `CellId`, `Area`, `ChordArea` and `Missed`.
-    case: per triangle of it, k: 1 all three corners are inside, 2 two, 3 one, 0 none.
-    cells: per triangle, k: its number in the input.
-    area: per triangle, k: area of its part in the disc.
-    missed: per triangle, k: area minus that which the dissertation approximates.
-    horizon: the circle, as a closed line.
-    pieces: the one or two triangles that replace each (Figure 4.5), with `Case` and `CellId`.
+    Attributes
+    ----------
+    mesh : vtkPolyData
+        The triangles that meet the disc, with the cell arrays `Case`, `CellId`, `Area`, `ChordArea` and `Missed`.
+    case : Array
+        Per triangle of it, k: 1 all three corners are inside, 2 two, 3 one, 0 none.
+    cells : Array
+        Per triangle, k: its number in the input.
+    area : Array
+        Per triangle, k: area of its part in the disc.
+    missed : Array
+        Per triangle, k: area minus that which the dissertation approximates.
+    horizon : vtkPolyData
+        The circle, as a closed line.
+    pieces : vtkPolyData
+        The one or two triangles that replace each (Figure 4.5), with `Case` and `CellId`.
     """
 
     mesh: vtkPolyData

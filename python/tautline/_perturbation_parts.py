@@ -18,13 +18,20 @@ from ._results import Result
 class PerturbResult(Result):
     """The result of perturb(). Of composite data, the numbers are those of all blocks.
 
-    mesh: the mesh with the new points and the point array `Displacement`; shares the rest with the input.
-    displacement: new minus old position, n x 3.
-    movable, moved: number of interior points that were free to move, and of those that moved.
-    inverted_before, inverted, tangled: number of inverted elements before and after, and the latter as a fraction of
-        all elements.
-    largest_displacement: the largest displacement, in the mesh's unit.
-    summary: the result in words.
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The mesh with the new points and the point array `Displacement`; shares the rest with the input.
+    displacement : Array
+        New minus old position, n x 3.
+    movable, moved : int
+        Number of interior points that were free to move, and of those that moved.
+    inverted_before, inverted, tangled : int, float
+        Number of inverted elements before and after, and the latter as a fraction of all elements.
+    largest_displacement : float
+        The largest displacement, in the mesh's unit.
+    summary : str
+        The result in words.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("displacement",)

@@ -57,11 +57,18 @@ class _Step(NamedTuple):
 class StepsResult(Result):
     """The result of run_steps().
 
-    mesh: the mesh after the last step.
-    results: the result of each step that has one, in order.
-    passed: whether no step `criteria` failed.
-    files: the files written.
-    summary: a line per step.
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The mesh after the last step.
+    results : list[Any]
+        The result of each step that has one, in order.
+    passed : bool
+        Whether no step `criteria` failed.
+    files : list[str]
+        The files written.
+    summary : str
+        A line per step.
     """
 
     mesh: vtkDataObject
@@ -85,16 +92,36 @@ def run_steps(
 ) -> StepsResult | None:
     """Run the steps of a TOML file one after the other, each on the mesh of the one before.
 
-    steps: the file, or its content as a dict. It has a table [[step]] per step with the key `do`: "read" (file),
+    Parameters
+    ----------
+    steps : str or path or Mapping[str, Any]
+        The file, or its content as a dict. It has a table [[step]] per step with the key `do`: "read" (file),
         "criteria" (criteria, stop), "write" (file), "report" (file), "quality", "perturb", "untangle", "improve",
         "optimize" or "warp". The other keys are the arguments of the function of this name. "criteria" measures, and
         ends the run if the mesh fails, unless stop is false. The argument "before" of a report, and reference, geometry
         and target of others, may be "input", the mesh that was read last. File names are relative to the file's folder.
-    check_only: check the steps, do not run them.
+    check_only : bool, default False
+        Check the steps, do not run them.
+    progress : bool or callable, optional
+        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
+        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
-    Everything is checked before the first step runs: keys, names, numbers, files to read and to write. Returns None
-    with check_only. Raises Error, with the number of the step.
+    Returns
+    -------
+    StepsResult | None
+        The result, None with check_only.
 
+    Raises
+    ------
+    Error
+        With the number of the step.
+
+    Notes
+    -----
+    Everything is checked before the first step runs: keys, names, numbers, files to read and to write.
+
+    Examples
+    --------
     >>> tautline.run_steps("steps.toml").mesh
     """
     content, folder = _content(steps)

@@ -21,7 +21,7 @@ from ._choices import TARGETS, Target
 from ._errors import Aborted, Error, checked, unknown, wrong_usage
 from ._files import file_name, replace_text
 from ._html import html_report
-from ._metrics import Metrics, by_metric, choose, metrics as known_metrics
+from ._metrics import Metrics, by_metric, choose, find_metric, metrics as known_metrics
 from ._names import find_name, nearest_name
 from ._results import Result
 from ._tables import align, quality_json, quality_rows, quality_text
@@ -41,28 +41,44 @@ class QualityResult(Result):
     """The result of quality(). Dicts are by the names of the metrics, in the order in which they were given; labels,
     symbols and aliases of metrics are found, too.
 
-    mesh: the mesh with a cell array per metric and `Validity`; shares the other arrays with the input.
-    values: per metric its value on each cell, m; of composite data the blocks concatenated. 0 where it is not defined.
-    validity: per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
-    statistics: per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to
-        quantile_99, worst (nan if nothing was measured), outside_acceptable, acceptable_low, acceptable_high, inverted,
-        degenerate, not_measured, non_finite. All are over the measured elements: the valid and the inverted ones on
-        which the metric is defined. The worst value is that of an inverted element if there are any, else the maximum
-        or minimum, by the direction of the metric. Of the k elements to repair first, at most ten: worst_cells (k),
-        worst_values (k), worst_positions (k x 3); inverted elements come first, then degenerate ones, then the worst of
-        the others.
-    distribution: per metric the histogram of the measured elements: value (centers of the bins) and count.
-    histogram: per metric the histogram over its acceptable range: from, to and count; the first row has the elements
-        below the range, the last row those above it.
-    angles: angles (of volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
-    worst: A point at the center of each of the worst elements, with the arrays Metric, Rank, CellId, Value, Validity.
-    inverted, degenerate: number of inverted elements, and of elements without area or volume.
-    verdict: by the criteria, if any were given: "passed", "warning", "failed", or "none" if no element could be graded.
-    index, indices: quality index of the mesh, 0 (ideal) to 1 (worst), and of each cell, m; None without criteria.
-    grades: grade of each cell, m: 0 passed, 1 warning, 2 failed, -1 none; None without criteria.
-    criteria: per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
-    notice: A note on the mesh (reversed orientation, cells left out), or "".
-    summary: the result in a few lines.
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The mesh with a cell array per metric and `Validity`; shares the other arrays with the input.
+    values : dict[str, Array]
+        Per metric its value on each cell, m; of composite data the blocks concatenated. 0 where it is not defined.
+    validity : Array
+        Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
+    statistics : dict[str, dict[str, Any]]
+        Per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to quantile_99, worst
+        (nan if nothing was measured), outside_acceptable, acceptable_low, acceptable_high, inverted, degenerate,
+        not_measured, non_finite. All are over the measured elements: the valid and the inverted ones on which the
+        metric is defined. The worst value is that of an inverted element if there are any, else the maximum or minimum,
+        by the direction of the metric. Of the k elements to repair first, at most ten: worst_cells (k), worst_values
+        (k), worst_positions (k x 3); inverted elements come first, then degenerate ones, then the worst of the others.
+    distribution : dict[str, dict[str, Array]]
+        Per metric the histogram of the measured elements: value (centers of the bins) and count.
+    histogram : dict[str, dict[str, Array]]
+        Per metric the histogram over its acceptable range: from, to and count; the first row has the elements below the
+        range, the last row those above it.
+    angles : dict[str, Array]
+        angles (of volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
+    worst : vtkPolyData
+        A point at the center of each of the worst elements, with the arrays Metric, Rank, CellId, Value, Validity.
+    inverted, degenerate : int
+        Number of inverted elements, and of elements without area or volume.
+    verdict : str | None
+        By the criteria, if any were given: "passed", "warning", "failed", or "none" if no element could be graded.
+    index, indices : float | None, Array | None
+        Quality index of the mesh, 0 (ideal) to 1 (worst), and of each cell, m; None without criteria.
+    grades : Array | None
+        Grade of each cell, m: 0 passed, 1 warning, 2 failed, -1 none; None without criteria.
+    criteria : dict[str, dict[str, Any]]
+        Per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
+    notice : str
+        A note on the mesh (reversed orientation, cells left out), or "".
+    summary : str
+        The result in a few lines.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("values", "validity", "indices", "grades")
@@ -114,6 +130,8 @@ def choose_metrics(filter_: Any, metrics: Metrics = ("imr",)) -> None:
 
     metrics: names, labels, symbols or aliases, see metrics(). The default is the inverse mean ratio.
     """
+    if isinstance(metrics, str) and find_name(metrics, criteria_presets()) and find_metric(metrics) is None:
+        raise wrong_usage(f"there is no metric {metrics!r}, which is a preset of criteria: give criteria={metrics!r}")
     choose(filter_, metrics).raise_errors()
 
 
@@ -164,11 +182,19 @@ def set_target(
 def criteria(name: str) -> dict[str, Any]:
     """The preset quality criteria of a name, to be used by quality() as they are or after a change.
 
-    name: "fem", "skewness", "optistruct", "hypermesh", "nastran" or "ansys".
+    Parameters
+    ----------
+    name : str
+        "fem", "skewness", "optistruct", "hypermesh", "nastran" or "ansys".
 
-    A dict with name, source, and criteria, a list: metric, weight, and limits by cell type or "all", each a dict of
-    ideal, good, warn, fail and worst. An element beyond warn gets a warning, one beyond fail fails.
+    Returns
+    -------
+    dict[str, Any]
+        A dict with name, source, and criteria, a list: metric, weight, and limits by cell type or "all", each a dict of
+        ideal, good, warn, fail and worst. An element beyond warn gets a warning, one beyond fail fails.
 
+    Examples
+    --------
     >>> mine = tautline.criteria("fem")
     >>> mine["criteria"][0]["limits"]["all"]["fail"] = 5
     >>> tautline.quality("part.vtu", criteria=mine).verdict

@@ -28,22 +28,36 @@ _SIZES = 2  # input array of vtkMeshImprover
 class ImproveResult(Result):
     """The result of improve(). Of composite data, numbers are of all blocks.
 
-    mesh: the new mesh with the data of the input, `OriginalCellId`, `min_angle` and `imr`.
-    history: per pass (0 is the input): smallest_angle, largest_angle, worst_imr, elements, below_target, edge_removals
-        (of triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite
-        data also block.
-    remaining: the elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z,
-        quality (of the objective; of triangles the sine of the smallest angle), quality_bound (what facets or angles on
-        the boundary and between regions allow), reason; of composite data also block. Empty if there are none.
-    original_cell: per cell the cell of the input that it has its data from, m.
-    min_angle, imr: per cell, m: smallest angle in degrees (of tetrahedra dihedral), inverse mean ratio.
-    elements_before, elements: number of elements before and after.
-    smallest_angle_before, smallest_angle: smallest angle in degrees before and after.
-    worst_before, worst: worst inverse mean ratio before and after.
-    worst_metric_before, worst_metric: worst value of the metric before and after; 0 without one.
-    boundary_distance: largest distance between the boundary and that of the input; 0 unless it is "on surface".
-    reason: the stopping criterion that ended the run.
-    summary: the result in words.
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The new mesh with the data of the input, `OriginalCellId`, `min_angle` and `imr`.
+    history : dict[str, Any]
+        Per pass (0 is the input): smallest_angle, largest_angle, worst_imr, elements, below_target, edge_removals (of
+        triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite data
+        also block.
+    remaining : dict[str, Any]
+        The elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z, quality (of
+        the objective; of triangles the sine of the smallest angle), quality_bound (what facets or angles on the
+        boundary and between regions allow), reason; of composite data also block. Empty if there are none.
+    original_cell : Array
+        Per cell the cell of the input that it has its data from, m.
+    min_angle, imr : Array
+        Per cell, m: smallest angle in degrees (of tetrahedra dihedral), inverse mean ratio.
+    elements_before, elements : int
+        Number of elements before and after.
+    smallest_angle_before, smallest_angle : float
+        Smallest angle in degrees before and after.
+    worst_before, worst : float
+        Worst inverse mean ratio before and after.
+    worst_metric_before, worst_metric : float
+        Worst value of the metric before and after; 0 without one.
+    boundary_distance : float
+        Largest distance between the boundary and that of the input; 0 unless it is "on surface".
+    reason : str
+        The stopping criterion that ended the run.
+    summary : str
+        The result in words.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("original_cell", "min_angle", "imr")

@@ -27,11 +27,18 @@ _KILOBYTE = 1000
 class ReportResult(str):
     """What report() returns: the HTML as a text, which prints in a few lines.
 
-    html: the HTML.
-    file: the name of the file written; None if there is none.
-    title: the title.
-    quality: the result of quality() for the mesh.
-    before: that for the mesh before it was changed, or None.
+    Attributes
+    ----------
+    html : str
+        The HTML.
+    file : str | None
+        The name of the file written; None if there is none.
+    title : str
+        The title.
+    quality : QualityResult
+        The result of quality() for the mesh.
+    before : QualityResult | None
+        That for the mesh before it was changed, or None.
     """
 
     html: str
@@ -81,20 +88,43 @@ def report(
     It has what Save Report in ParaView's panel has: mesh, result, picture, histogram, tables and settings. The picture
     is coloured by the first metric, and inverted elements inside are visible; it needs no display.
 
-    mesh: a vtkDataSet, a composite data set, a file name or (points, cells). It is not changed.
-    file: the HTML file to write; the default writes none.
-    before: the mesh before it was changed: pictures, histograms and statistics of both are in the report and, if the
-        cells are the same, how many elements became better and worse.
-    metrics: see quality().
-    criteria: see quality().
-    title: the default is the name of the file of the mesh.
-    histogram_bins: number of bins, 1 to 100000.
-    time_limit: seconds for each mesh; 0 is no limit.
-    threads: number of threads; 0 is all cores. The result does not depend on it.
+    Parameters
+    ----------
+    mesh : Mesh
+        A vtkDataSet, a composite data set, a file name or (points, cells). It is not changed.
+    file : str or path, optional
+        The HTML file to write; the default writes none.
+    before : Mesh, optional
+        The mesh before it was changed: pictures, histograms and statistics of both are in the report and, if the cells
+        are the same, how many elements became better and worse.
+    metrics : Metrics, default ("imr",)
+        See quality().
+    criteria : str or path or dict[str, Any], optional
+        See quality().
+    title : str, optional
+        The default is the name of the file of the mesh.
+    histogram_bins : int, default 32
+        Number of bins, 1 to 100000.
+    time_limit : float, default 0.0
+        Seconds for each mesh; 0 is no limit.
+    threads : int, default 0
+        Number of threads; 0 is all cores. The result does not depend on it.
+    progress : bool or callable, optional
+        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
+        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
-    Returns the HTML, a str with further attributes that prints in a few lines. Raises Error for wrong arguments, for meshes that quality() refuses and if the file cannot be
-    written.
+    Returns
+    -------
+    ReportResult
+        The HTML, a str with further attributes that prints in a few lines.
 
+    Raises
+    ------
+    Error
+        For wrong arguments, for meshes that quality() refuses and if the file cannot be written.
+
+    Examples
+    --------
     >>> better = tautline.optimize("part.vtu")
     >>> tautline.report(better, "report.html", before="part.vtu", criteria="fem")
     """

@@ -64,13 +64,18 @@ def as_image(image: Any) -> vtkImageData:
 class SilhouetteResult(Result):
     """The result of silhouette().
 
-    mesh: the triangulated polygon, with `BoundaryOrder`, `EliminationOrder` and `EliminationStep`.
-    outline: the traced outline.
-    centre, max_distance: center of mass of the area inside the outline, 3, and the largest distance of the outline from
-        it, pixels.
-    components, holes: number of components of the foreground, of which the largest is taken, and of its holes, which
-        are ignored.
-    summary: the result in words.
+    Attributes
+    ----------
+    mesh : vtkUnstructuredGrid
+        The triangulated polygon, with `BoundaryOrder`, `EliminationOrder` and `EliminationStep`.
+    outline : vtkPolyData
+        The traced outline.
+    centre, max_distance : Array, float
+        Center of mass of the area inside the outline, 3, and the largest distance of the outline from it, pixels.
+    components, holes : int
+        Number of components of the foreground, of which the largest is taken, and of its holes, which are ignored.
+    summary : str
+        The result in words.
     """
 
     mesh: vtkUnstructuredGrid
@@ -121,13 +126,20 @@ def silhouette_result(mesher: Any, mesh: vtkUnstructuredGrid) -> SilhouetteResul
 class MatchResult(Result):
     """The result of match().
 
-    mesh: the triangles of the source in the target, with `Displacement` and, per triangle, the terms of the energy.
-    points, displacement: positions of the vertices in the target, n x 3, and these minus their positions in the source,
-        n x 3.
-    energy, statistics: the least energy, and all columns of the filter's table by name (see vtkShapeMatcher).
-    triangles: per triangle, m, without weights: edge_cost, deformation, distortion; and their weighted sum, energy.
-    rank, exact: rank of the solution by its energy (1: the least), and whether no placement of the vertices is better.
-    summary: the result in words.
+    Attributes
+    ----------
+    mesh : vtkUnstructuredGrid
+        The triangles of the source in the target, with `Displacement` and, per triangle, the terms of the energy.
+    points, displacement : Array
+        Positions of the vertices in the target, n x 3, and these minus their positions in the source, n x 3.
+    energy, statistics : float, dict[str, float]
+        The least energy, and all columns of the filter's table by name (see vtkShapeMatcher).
+    triangles : dict[str, Array]
+        Per triangle, m, without weights: edge_cost, deformation, distortion; and their weighted sum, energy.
+    rank, exact : int, bool
+        Rank of the solution by its energy (1: the least), and whether no placement of the vertices is better.
+    summary : str
+        The result in words.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("points", "displacement", "triangles")
@@ -193,17 +205,26 @@ def match_result(matcher: Any, mesh: vtkUnstructuredGrid) -> MatchResult:
 class RetrievalResult(Result):
     """The result of retrieval().
 
-    names, labels: names and classes of the n shapes.
-    distances: distance of each query (row) to each target (column), n x n; -1 where the run ended before.
-    ranking: per query the numbers of the other shapes, the nearest first, n x (n - 1).
-    rate, correct_at: percentage of the best matches that have the class of the query, and per rank the number of
-        queries for which the match has their class.
-    classes, confusion: percentage of the best matches of each class (row) that have each class (column), in the order
-        of `classes`.
-    tables: the filter's tables by name: Distances, Ranking, Statistics, Confusion.
-    sheet: a picture of each query, in a grey frame, with its best matches (at most 10), in a green frame if they are of
+    Attributes
+    ----------
+    names, labels : list[str]
+        Names and classes of the n shapes.
+    distances : Array
+        Distance of each query (row) to each target (column), n x n; -1 where the run ended before.
+    ranking : Array
+        Per query the numbers of the other shapes, the nearest first, n x (n - 1).
+    rate, correct_at : float, Array
+        Percentage of the best matches that have the class of the query, and per rank the number of queries for which
+        the match has their class.
+    classes, confusion : list[str], Array
+        Percentage of the best matches of each class (row) that have each class (column), in the order of `classes`.
+    tables : dict[str, vtkTable]
+        The filter's tables by name: Distances, Ranking, Statistics, Confusion.
+    sheet : Array
+        A picture of each query, in a grey frame, with its best matches (at most 10), in a green frame if they are of
         its class, in a red one if not: size x size x 3 bytes, the top row first. save_sheet() writes it.
-    summary: the result in words.
+    summary : str
+        The result in words.
     """
 
     names: list[str]
@@ -239,13 +260,27 @@ def read_silhouettes(
 ) -> vtkMultiBlockDataSet:
     """Read a set of images with their classes.
 
-    folder: a folder with a list labels.csv; a folder of images without one, whose classes are their file names up to
-        the first digit or blank; or another list (.csv). A list has the columns file (relative to the list, or to the
-        folder images beside it) and class. Images are PNG, JPEG, TIFF, BMP, binary PGM and PPM files; other files of
-        a folder are skipped.
+    Parameters
+    ----------
+    folder : str or path
+        A folder with a list labels.csv; a folder of images without one, whose classes are their file names up to the
+        first digit or blank; or another list (.csv). A list has the columns file (relative to the list, or to the
+        folder images beside it) and class. Images are PNG, JPEG, TIFF, BMP, binary PGM and PPM files; other files of a
+        folder are skipped.
+    progress : bool or callable, optional
+        True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
+        0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
 
-    Returns a block per image, with the field arrays `Label` and `File`; the images are placed side by side, by their
-    origins. Raises Error for a list or an image that cannot be read.
+    Returns
+    -------
+    vtkMultiBlockDataSet
+        A block per image, with the field arrays `Label` and `File`; the images are placed side by side, by their
+        origins.
+
+    Raises
+    ------
+    Error
+        For a list or an image that cannot be read.
     """
     path = Path(file_name(folder))
     if path.is_dir() and (path / "labels.csv").is_file():

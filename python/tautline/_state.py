@@ -37,9 +37,14 @@ _FILE_PROPERTIES = ("FileName", "FileNames")
 class StateResult(Result):
     """The result of run_state().
 
-    mesh: the output of the chosen filter.
-    filters: name, label and summary (empty for filters without one) of each filter, in the order of their run.
-    summary: a line per filter.
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The output of the chosen filter.
+    filters : list[dict[str, str]]
+        name, label and summary (empty for filters without one) of each filter, in the order of their run.
+    summary : str
+        A line per filter.
     """
 
     mesh: vtkDataObject
@@ -51,16 +56,33 @@ class StateResult(Result):
 def run_state(state: str | PathLike[str], *, mesh: str | PathLike[str] | None = None, filter: str = "") -> StateResult:
     """Run the filters of a ParaView state one after the other, without a window or a display.
 
-    state: a .pvsm file that ParaView saved (File > Save State). Views, colours and animations are left out. Files that
-        it reads are searched where it says, then beside it.
-    mesh: another file, in the place of the one that the state reads.
-    filter: the filter whose output is the mesh of the result, by its name in the Pipeline Browser or its label. It may
-        be left out where the state has one end.
+    Parameters
+    ----------
+    state : str or path
+        A .pvsm file that ParaView saved (File > Save State). Views, colours and animations are left out. Files that it
+        reads are searched where it says, then beside it.
+    mesh : str or path, optional
+        Another file, in the place of the one that the state reads.
+    filter : str, default ""
+        The filter whose output is the mesh of the result, by its name in the Pipeline Browser or its label. It may be
+        left out where the state has one end.
 
-    Needs ParaView with the plugin: pvpython is run, and finds the plugin by itself or in PV_PLUGIN_PATH. Raises Error
-    if it does not, if the state reads several files and another is given, if it has several ends and no filter is
-    chosen, and for every error of a filter.
+    Returns
+    -------
+    StateResult
 
+    Raises
+    ------
+    Error
+        If it does not, if the state reads several files and another is given, if it has several ends and no filter is
+        chosen, and for every error of a filter.
+
+    Notes
+    -----
+    Needs ParaView with the plugin: pvpython is run, and finds the plugin by itself or in PV_PLUGIN_PATH.
+
+    Examples
+    --------
     >>> tautline.run_state("analysis.pvsm", mesh="part2.vtu").summary
     """
     name = file_name(state)

@@ -10,7 +10,10 @@ from typing import Any, ClassVar
 from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands
+from ._arguments import pick, sets
 from ._arrays import Array, cell_array, history_of, point_array, table_rows
+from ._choices import UNTANGLE_EFFORTS, UntangleEffort
+from ._errors import Error
 from ._results import Result
 
 
@@ -18,17 +21,26 @@ from ._results import Result
 class UntangleResult(Result):
     """The result of untangle(). Of composite data, numbers are of all blocks.
 
-    mesh: the mesh with the new points, `Displacement`, `Validity` and `Obstacle`.
-    history: per iteration (0 is the input): iteration, objective (the energy), inverted, gradient_norm, moving,
-        seconds; of composite data also block.
-    validity: per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
-    obstacle: per cell, m, why it is not valid: 0 it is valid, 1 the iterations ended, 2 all its points are fixed, 3 no
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The mesh with the new points, `Displacement`, `Validity` and `Obstacle`.
+    history : dict[str, Any]
+        Per iteration (0 is the input): iteration, objective (the energy), inverted, gradient_norm, moving, seconds; of
+        composite data also block.
+    validity : Array
+        Per cell, m: 1 valid, 0 degenerate, -1 inverted, -2 not measured, -3 not finite.
+    obstacle : Array
+        Per cell, m, why it is not valid: 0 it is valid, 1 the iterations ended, 2 all its points are fixed, 3 no
         position between the fixed points around makes it valid, 4 a fixed point is not finite.
-    inverted_before, inverted, impossible: number of inverted or degenerate elements before and after, and of those that
-        fixed points make infeasible.
-    reason: the stopping criterion that ended the run.
-    displacement: new minus old position, n x 3.
-    summary: the result in words: which elements remain invalid, where and why.
+    inverted_before, inverted, impossible : int
+        Number of inverted or degenerate elements before and after, and of those that fixed points make infeasible.
+    reason : str
+        The stopping criterion that ended the run.
+    displacement : Array
+        New minus old position, n x 3.
+    summary : str
+        The result in words: which elements remain invalid, where and why.
     """
 
     _per_element: ClassVar[tuple[str, ...]] = ("validity", "obstacle", "displacement")
@@ -42,6 +54,19 @@ class UntangleResult(Result):
     reason: str
     displacement: Array
     summary: str
+
+
+@sets("untangle", "Effort")
+def choose_effort(filter_: Any, preset: UntangleEffort = "normal", effort: UntangleEffort | None = None) -> None:
+    """Choose the effort.
+
+    preset: "local", "normal" or "thorough": points around the inverted elements only; then all points; or
+        longer, from several starts.
+    effort: another name of the preset.
+    """
+    if effort is not None and preset != "normal":
+        raise Error(f"preset and effort mean the same, {preset!r} and {effort!r} are given")
+    filter_.SetEffort(pick("preset" if effort is None else "effort", effort or preset, UNTANGLE_EFFORTS))
 
 
 def untangle_result(filter_: Any, output: vtkDataObject) -> UntangleResult:
@@ -58,6 +83,21 @@ def untangle_result(filter_: Any, output: vtkDataObject) -> UntangleResult:
         displacement=point_array(output, "Displacement"),
         summary=filter_.GetSummary(),
     )
+
+
+# --- the shell ----------------------------------------------------------------------------------------------
+
+
+def add_untangle_options(parser: argparse.ArgumentParser) -> None:
+    """Add the option of the effort."""
+    parser.add_argument("--preset", choices=UNTANGLE_EFFORTS, default="normal",
+                        help="points around the inverted elements only; then all points; or longer (default: normal)")  # fmt: skip
+    parser.add_argument("--effort", choices=UNTANGLE_EFFORTS, help=argparse.SUPPRESS)
+
+
+def untangle_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The values of these options."""
+    return _commands.given(arguments, ("preset", "effort"))
 
 
 def finish_untangle(arguments: argparse.Namespace, result: UntangleResult) -> int:
