@@ -23,11 +23,12 @@ tautline \- measure, repair, deform and match meshes, and solve equations on the
 .RI [ ARGUMENT ...]
 .SH DESCRIPTION
 Every command reads meshes from files and writes files; none changes a file that it reads.
-\fBtautline\fP \fICOMMAND\fP \fB\-\-help\fP describes the options of a command.
+\fBtautline\fP \fICOMMAND\fP \fB\-\-help\fP describes the options of a command that most need,
+\fB\-\-help\-all\fP all of them. The file to write is the option \fB\-o\fP or the last argument.
 .SH COMMANDS
 """
 TAIL = r""".SH EXIT STATUS
-0 after success, 1 after an error, which is printed on standard error, 2 after wrong usage, 3 if a mesh does not meet
+0 after success, 1 after an error, which is printed on standard error, 2 after wrong usage or an unknown name, 3 if a mesh does not meet
 the criteria of \fBquality \-\-criteria\fP, 130 after Ctrl\-C.
 .SH ENVIRONMENT
 .TP
@@ -113,7 +114,7 @@ def completion(commands: dict) -> str:
                 words = " ".join(map(str, action.choices))
                 choose = f"""COMPREPLY=($(IFS=' ' compgen -W "{words}" -- "$current"))"""
                 choices.append(f"  {patterns}) {choose}; return ;;")
-    made = COMPLETION.replace("@COMMANDS@", " ".join([*commands, "--help", "--version"]))
+    made = COMPLETION.replace("@COMMANDS@", " ".join([*commands, "--help", "--version", "-V"]))
     return made.replace("@OPTIONS@", "\n".join(options)).replace("@CHOICES@", "\n".join(choices or ["  :) ;;"]))
 
 

@@ -1,16 +1,36 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What users of a shell expect: help, version, info, several files, the output as the last argument, exit codes."""
 
+import contextlib
+import io
 import json
+import os
 import re
 
 import tautline as tl
-from checks import DATA, OUT, run_tests, shell, wording
-from tautline.__main__ import _parser
+from checks import DATA, OUT, run_tests, wording
+from checks import shell as process
+from tautline.__main__ import _parser, main
 
 PLATE, TANGLED = DATA / "plate.vtu", DATA / "bracket-tangled.vtu"
 FOLDER = OUT / "habits"
 FOLDER.mkdir(exist_ok=True)
+
+
+def shell(*arguments, code: int = 0, folder=None) -> str:
+    """The output of a command in this process; checks the exit code, and that stderr is empty after success."""
+    here = os.getcwd()
+    with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.redirect_stderr(io.StringIO()) as errors:
+        os.chdir(folder or here)
+        try:
+            found = main(list(map(str, arguments)))
+        except SystemExit as end:
+            found = end.code or 0
+        finally:
+            os.chdir(here)
+    assert found == code, (arguments, found, out.getvalue(), errors.getvalue())
+    assert code or not errors.getvalue(), (arguments, errors.getvalue())
+    return out.getvalue() + errors.getvalue()
 
 
 def commands() -> dict:
@@ -20,6 +40,7 @@ def commands() -> dict:
 def test_help() -> None:
     """help and -V; the commands in groups, the five main ones first; every command is in one group."""
     text = shell("help")
+    assert process("-V") == f"tautline {tl.__version__}\n" and process("help", "quality").startswith("usage: ")
     assert shell("-V") == shell("--version") and text == shell("--help")
     assert shell("help", "QUALITY") == shell("quality", "--help")
     listed = re.findall(r"^    ([a-z-]+) ", text, re.MULTILINE)
@@ -65,6 +86,7 @@ def test_errors() -> None:
                  ["quality", PLATE, TANGLED, "-o", "x.vtu"], ["quality", PLATE, TANGLED, "--metrics", "imrr"]):  # fmt: skip
         text = shell(*line, code=2, folder=FOLDER)
         assert "Traceback" not in text and len(text.splitlines()) <= 2, text
+    assert process("quality", code=2) == shell("quality", code=2).replace("test_habits.py", "python3 -m tautline")
     shell("quality", "absent.vtu", code=1)
     shell("quality", PLATE, "--criteria", "absent.json", code=1)
 

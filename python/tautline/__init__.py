@@ -4,10 +4,12 @@
 >>> import tautline as tl
 >>> worse = tl.perturb("part.vtu", fraction=0.5, seed=1)
 >>> tl.quality(worse, ["imr", "radius_ratio"]).statistics["imr"]["worst"]
+>>> worse.points, worse.cells["triangle"], worse.point_data["Displacement"]
 
 The functions take a mesh as a vtkDataSet, a file name, (points, cells) numpy arrays or the result of another function,
-and never change it. They return a result; where it has a mesh, this is its attribute `mesh`. Errors raise
-tautline.Error. Functions that can take long have the arguments time_limit and progress, and end soon after Ctrl-C.
+and never change it. They return a result; where it has a mesh, this is its attribute `mesh`. Meshes and results have
+the numpy arrays points, cells (by the name of the cell), point_data and cell_data. Errors raise tautline.Error.
+Functions that can take long have the arguments time_limit and progress, and end soon after Ctrl-C.
 The compiled VTK classes (vtkElementQuality, ...) are attributes of the package. Those that solve linear systems load
 PETSc when they are first used.
 `python3 -m tautline --help` shows the same functions as commands of the shell.

@@ -39,7 +39,7 @@ _IMPROVE = "improve"  # the command that changes cells
 EXIT_CODES = """exit codes:
   0    done
   1    an error, whose cause is on stderr; or the aim was missed: elements remain inverted, a solver did not converge
-  2    wrong usage
+  2    wrong usage, or the name of a command, metric, preset or method that does not exist
   3    the mesh fails the criteria (quality --criteria)
   130  interrupted by Ctrl-C"""
 
