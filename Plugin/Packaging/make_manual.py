@@ -28,8 +28,8 @@ Every command reads meshes from files and writes files; none changes a file that
 .SH COMMANDS
 """
 TAIL = r""".SH EXIT STATUS
-0 after success, 1 after an error, which is printed on standard error, 2 after wrong usage or an unknown name, 3 if a mesh does not meet
-the criteria of \fBquality \-\-criteria\fP, 130 after Ctrl\-C.
+0 after success, 1 after an error, which is printed on standard error, 2 after wrong usage or an unknown name, 3
+if a mesh does not meet the criteria of \fBquality \-\-criteria\fP, 130 after Ctrl\-C.
 .SH ENVIRONMENT
 .TP
 .B TAUTLINE_METRICS

@@ -80,10 +80,12 @@ def test_errors() -> None:
     assert wording("did-you-mean-boundary") in shell("optimize", PLATE, "x.vtu", "--boundry", "free", code=2)
     for line in (["quality", PLATE, "--metrics", "imrr"], ["quality", PLATE, "--criteria", "fen"], ["criteria", "fen"],
                  ["optimize", PLATE, "x.vtu", "--objective", "imrr"], ["improve", TANGLED, "x.vtu", "--metric", "nope"],
-                 ["optimize", PLATE, "x.vtu", "--worst-metric", "imrr"], ["study", "nope"], ["domain", "sqare", "x.vtu"],
+                 ["optimize", PLATE, "x.vtu", "--worst-metric", "imrr"], ["study", "nope"],
+                 ["domain", "sqare", "x.vtu"],
                  ["solver-study", PLATE, "--combinations", "nope"], ["solve", PLATE, "--solver", "gc"],
                  ["metric-field", "f.vti", "--metrics", "nope"], ["report", PLATE, "r.html", "--criteria", "fen"],
-                 ["quality", PLATE, TANGLED, "-o", "x.vtu"], ["quality", PLATE, TANGLED, "--metrics", "imrr"]):  # fmt: skip
+                 ["quality", PLATE, TANGLED, "-o", "x.vtu"],
+                 ["quality", PLATE, TANGLED, "--metrics", "imrr"]):  # fmt: skip
         text = shell(*line, code=2, folder=FOLDER)
         assert "Traceback" not in text and len(text.splitlines()) <= 2, text
     assert process("quality", code=2) == shell("quality", code=2).replace("test_habits.py", "python3 -m tautline")
@@ -128,7 +130,7 @@ def test_several_files() -> None:
     text = shell("quality", good, TANGLED, "--criteria", "skewness", code=3)
     assert "failed" in text and "verdict" in text and shell("quality", TANGLED, "--criteria", "skewness", code=3)
     text = shell("quality", PLATE, "absent.vtu", TANGLED, "--criteria", "fem", code=1)
-    assert str(TANGLED) in text and "there is no such file" in text
+    assert str(TANGLED) in text and wording("there-is-no-such-file") in text
     facts = json.loads(shell("quality", PLATE, TANGLED, "--json"))["meshes"]
     assert [mesh["inverted"] for mesh in facts] == [0, 41] and facts[1]["file"] == str(TANGLED)
 
@@ -152,7 +154,7 @@ def test_info() -> None:
         text = shell("info", DATA / name)
         assert len(text.splitlines()) <= 10 and "points" in text, text
     text = shell("info", PLATE, "absent.vtu", TANGLED, code=1)
-    assert "absent.vtu: there is no such file" in text and "8140" in text and "1913" in text
+    assert wording("there-is-no-such-file") in text and "8140" in text and "1913" in text
     assert len(json.loads(shell("info", PLATE, TANGLED, "--json"))["meshes"]) == 2
 
 

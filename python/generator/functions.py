@@ -15,8 +15,8 @@ from texts import Failure, call, quoted, wrapped
 
 #: The last arguments of every function that has them.
 COMMON = ("time_limit", "threads", "merge_coincident_points", "reproducible_order", "redistribute")
-PROGRESS = """progress: True: a bar on the terminal, if there is one. Else a function, called ten times a second with the
-    fraction done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises
+PROGRESS = """progress: True: a bar on the terminal, if there is one. Else a function, called ten times a second with
+    the fraction done, 0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises
     KeyboardInterrupt."""
 MESH = "Given as {kind}, a composite data set, a file name or (points, cells). It is not changed."
 

@@ -16,8 +16,8 @@ from ._commands import EXIT_CODES, Parser, check_outputs, standard_input
 from ._errors import Error
 from ._interrupts import reporting
 
-_EPILOG = """COMMAND --help explains a command, with an example; --help-all shows all its options. The file to write is the
-option -o or the last argument. Names of methods and presets are found in any case.
+_EPILOG = """COMMAND --help explains a command, with an example; --help-all shows all its options. The file to write is
+the option -o or the last argument. Names of methods and presets are found in any case.
 The file name - is a .vtu mesh from the standard input or to the standard output:
   python3 -m tautline untangle part.vtu -o - | python3 -m tautline optimize - -o better.vtu
 On a terminal, commands that take long show a progress bar, on stderr.

@@ -84,7 +84,7 @@ def _described(values: Any) -> str:
 
 
 def _quality(mesh: Any) -> dict[str, Any]:
-    """Inverted and degenerate elements, and the range of the inverse mean ratio; the reason where it is not measured."""
+    """Inverted and degenerate elements, and the range of the inverse mean ratio; or why it is not measured."""
     try:
         result: QualityResult = quality(mesh)
     except Error as error:

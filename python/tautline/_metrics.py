@@ -381,7 +381,10 @@ def _load_on_server(server: Any, path: str, script: str | None) -> str:
 
 
 def find_metric(name: str, known: Iterable[str] | None = None) -> str | None:
-    """The one of the known metrics, by default of all, that a name, label, symbol or alias means, in any case; None if there is none."""
+    """The one of the known metrics that a name, label, symbol or alias means, in any case; None if there is none.
+
+    The default are all metrics.
+    """
     wanted, among = folded(name), None if known is None else set(known)
     for facts in metrics():
         if (among is None or facts["name"] in among) and wanted in map(folded, _names_of(facts)):

@@ -20,7 +20,7 @@ from ._errors import Error, interruptible, unknown
 from ._files import check_input, check_target, file_name
 from ._interrupts import Progress
 from ._io import check_output, read, write
-from ._metrics import choose
+from ._metrics import choose, find_metric
 from ._names import find_name, nearest_name
 from ._quality_parts import criteria_presets
 from ._results import Result
@@ -227,6 +227,8 @@ def _check_value(key: str, value: Any, hint: Any) -> None:
     kinds = [kind for kind in get_args(hint) if kind is not type(None)]
     if len(kinds) == 1 and get_origin(hint) in (Union, UnionType):
         hint = kinds[0]  # of `Preset | None`
+    elif isinstance(value, str) and str not in kinds and find_metric(value) is None:
+        hint = next((kind for kind in kinds if get_origin(kind) is Literal), hint)  # of `Preset | list[...]`
     if get_origin(hint) is Literal and find_name(value, get_args(hint)) is None:
         listed = ", ".join(map(repr, get_args(hint)))
         raise Error(f"{key} is {value!r}{nearest_name(value, get_args(hint))}; there are {listed}")

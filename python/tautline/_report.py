@@ -142,11 +142,12 @@ def report(
     html = html_report(measured, mesh, settings, first, title)
     if file is not None:
         replace_text(file, html)
-    named = os.path.basename(mesh) if isinstance(mesh, (str, PathLike)) else measured.GetOutputDataObject(0).GetClassName()
+    named = isinstance(mesh, (str, PathLike))
+    label = os.path.basename(mesh) if named else measured.GetOutputDataObject(0).GetClassName()
     return ReportResult.make(
         html,
         file=None if file is None else file_name(file),
-        title=title or named,
+        title=title or label,
         quality=_result(measured),
         before=None if first is None else _result(first),
     )

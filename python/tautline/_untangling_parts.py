@@ -91,7 +91,7 @@ def untangle_result(filter_: Any, output: vtkDataObject) -> UntangleResult:
 def add_untangle_options(parser: argparse.ArgumentParser) -> None:
     """Add the option of the effort."""
     parser.add_argument("--preset", choices=UNTANGLE_EFFORTS, default="normal",
-                        help="points around the inverted elements only; then all points; or longer (default: normal)")  # fmt: skip
+                        help="points around the inverted elements; then all; or longer (default: normal)")  # fmt: skip
     parser.add_argument("--effort", choices=UNTANGLE_EFFORTS, help=argparse.SUPPRESS)
 
 
