@@ -99,7 +99,7 @@ def test_help():
     assert len(RESULTS) >= 12, RESULTS
     for kind in RESULTS:
         text = pydoc.render_doc(kind, renderer=pydoc.plaintext)
-        listed = re.findall(r"^ \|  ((?:\w+, )*\w+): \S", text, re.MULTILINE)
+        listed = re.findall(r"^ \|  ((?:\w+, )*\w+) : \S", text, re.MULTILINE)
         explained = [name for line in listed for name in line.split(", ")]
         names = [field.name for field in fields(kind)]
         assert sorted(explained) == sorted(names), (kind, set(explained) ^ set(names))

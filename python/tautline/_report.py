@@ -142,8 +142,9 @@ def report(
     html = html_report(measured, mesh, settings, first, title)
     if file is not None:
         replace_text(file, html)
-    named = isinstance(mesh, (str, PathLike))
-    label = os.path.basename(mesh) if named else measured.GetOutputDataObject(0).GetClassName()
+    label = measured.GetOutputDataObject(0).GetClassName()
+    if isinstance(mesh, (str, PathLike)):
+        label = os.path.basename(file_name(mesh))
     return ReportResult.make(
         html,
         file=None if file is None else file_name(file),

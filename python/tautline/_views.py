@@ -22,6 +22,7 @@ from vtkmodules.vtkFiltersCore import vtkAppendFilter
 from ._arrays import Array, cell_types
 from ._cell_names import CELLS, CELLS_BY_NUMBER, find_cell
 from ._errors import Error, MissingKey, run
+from ._tables import many
 
 Value = TypeVar("Value")
 
@@ -256,7 +257,7 @@ class MeshViews:
 
     def __repr__(self) -> str:
         mesh: Any = self
-        kinds = ", ".join(f"{len(cells)} {name}" for name, cells in self.cells.items())
+        kinds = ", ".join(f"{len(cells)} {many(name, len(cells))}" for name, cells in self.cells.items())
         lines = [f"{mesh.GetClassName()}: {mesh.GetNumberOfPoints()} points, {mesh.GetNumberOfCells()} cells"]
         lines[0] += f" ({kinds})" if kinds else ""
         for what, fields in (("point arrays", self.point_data), ("cell arrays", self.cell_data)):
