@@ -126,7 +126,7 @@ def test_commands():
     assert len(rows) == 6 and rows[0]["QueryLabel"] == "disc"
     assert wording("no-such-file") in run("match", "a.png", "b.png", code=1)
     assert "shapes" in run("study", "list")
-    assert wording("no-study-x") in run("study", "x", code=1)
+    assert wording("no-study-x") in run("study", "x", code=2)
 
 
 def test_study():
