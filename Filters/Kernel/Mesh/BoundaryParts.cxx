@@ -10,7 +10,7 @@ namespace tautline
 {
 namespace
 {
-struct Box
+struct PartBox
 {
   Vec3 low = { std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
     std::numeric_limits<double>::infinity() };
@@ -33,9 +33,9 @@ struct Part
 };
 
 /// Replaces the boxes of the parts by those of all ranks.
-void uniteBoxes(RankGroup& group, std::vector<Box>& boxes)
+void uniteBoxes(RankGroup& group, std::vector<PartBox>& boxes)
 {
-  for (const std::vector<Box>& list : group.gatherItems(boxes))
+  for (const std::vector<PartBox>& list : group.gatherItems(boxes))
   {
     for (std::size_t i = 0; i < list.size(); ++i)
     {
@@ -83,7 +83,7 @@ BoundaryParts boundaryParts(const Mesh& mesh, const Ranks& ranks)
   Index count = 0, components = 0;
   const std::vector<Index> setOf = ranks.numberSets(facets, onBoundary, count);
   const std::vector<Index> componentOf = ranks.numberSets(pieces, used, components);
-  std::vector<Box> boxes(count);
+  std::vector<PartBox> boxes(count);
   std::vector<Index> componentOfSet(count, 0);
   for (Index p = 0; p < n; ++p)
   {

@@ -187,7 +187,7 @@ Places findPlaces(const Mesh& mesh, int threads)
 using FacetNodes = std::array<Index, MaxFaceNodes>;
 
 /// A use of a facet with a point that has others at its place.
-struct SeamFacet
+struct SidedFacet
 {
   FacetNodes places; ///< in increasing order; a missing one is -1 and first
   FacetNodes nodes;  ///< in the order of their places
@@ -197,9 +197,9 @@ struct SeamFacet
 };
 
 /// The facet of a cell, and the sense of walking, by places.
-SeamFacet seamFacet(const Index* nodes, int size, Index cell, const Places& places)
+SidedFacet seamFacet(const Index* nodes, int size, Index cell, const Places& places)
 {
-  SeamFacet facet;
+  SidedFacet facet;
   facet.places.fill(-1);
   facet.nodes.fill(-1);
   facet.cell = cell;
@@ -232,12 +232,12 @@ SeamFacet seamFacet(const Index* nodes, int size, Index cell, const Places& plac
 
 /// The facets of cells of the mesh's dimension with a point that has others at its place, but for
 /// ghosts; marks the places where a cell has two points.
-std::vector<SeamFacet> seamFacets(
+std::vector<SidedFacet> seamFacets(
   const Mesh& mesh, const Places& places, const unsigned char* ghosts, std::vector<char>& collapses)
 {
   const MeshView& view = mesh.view();
   const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
-  std::vector<SeamFacet> facets;
+  std::vector<SidedFacet> facets;
   for (const CellBlock& block : mesh.blocks())
   {
     const CellTopology& t = topology(block.type);
@@ -346,10 +346,10 @@ public:
   }
 
   /// Joins the points of two boundary facets at the same place, or counts why they stay apart.
-  void visit(const SeamFacet* uses, Index count)
+  void visit(const SidedFacet* uses, Index count)
   {
     // Uses of the same nodes stand together: two are a facet inside of the mesh.
-    std::array<const SeamFacet*, 2> boundary = {};
+    std::array<const SidedFacet*, 2> boundary = {};
     Index facets = 0;
     for (Index i = 0; i < count;)
     {
@@ -500,15 +500,15 @@ CoincidentPoints findCoincidentPoints(
     return {};
   }
   std::vector<char> collapses(mesh.view().numberOfPoints, 0);
-  std::vector<SeamFacet> facets = seamFacets(mesh, places, ghosts, collapses);
-  for (SeamFacet& facet : facets)
+  std::vector<SidedFacet> facets = seamFacets(mesh, places, ghosts, collapses);
+  for (SidedFacet& facet : facets)
   {
     facet.collapsing = std::any_of(facet.places.begin(), facet.places.end(),
       [&collapses](Index place) { return place >= 0 && collapses[place]; });
     facet.forward = facet.forward != (reversed && reversed[facet.cell]);
   }
   std::sort(facets.begin(), facets.end(),
-    [](const SeamFacet& a, const SeamFacet& b)
+    [](const SidedFacet& a, const SidedFacet& b)
     {
       return a.places != b.places ? a.places < b.places
         : a.nodes != b.nodes      ? a.nodes < b.nodes

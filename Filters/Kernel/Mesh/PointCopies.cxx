@@ -35,7 +35,7 @@ struct Moved
 };
 
 /// Low x y z and high x y z of the points of a rank; empty at first.
-struct Box
+struct RankBox
 {
   std::array<double, 3> low = { HUGE_VAL, HUGE_VAL, HUGE_VAL };
   std::array<double, 3> high = { -HUGE_VAL, -HUGE_VAL, -HUGE_VAL };
@@ -86,7 +86,7 @@ std::vector<unsigned char> repeatedIds(const MeshView& view, const Index* ids)
 
 /// The points that may have copies, by the rank that compares those with their id.
 std::vector<std::vector<Copy>> candidates(RankGroup& group, const MeshView& view, const Index* ids,
-  const std::vector<double>& shortest, const std::vector<Box>& boxes)
+  const std::vector<double>& shortest, const std::vector<RankBox>& boxes)
 {
   std::vector<std::vector<Copy>> sent(group.size());
   if (view.numberOfPoints == 0)
@@ -222,7 +222,7 @@ JoinedCopies joinCopies(RankGroup& group, const MeshView& view, const Index* ids
   }
   Index together = 0;
   std::vector<double> shortest;
-  std::vector<Box> boxes(1);
+  std::vector<RankBox> boxes(1);
   std::vector<std::vector<Copy>> sent;
   std::vector<std::vector<Moved>> moved;
   shortest = shortestEdges(view);
