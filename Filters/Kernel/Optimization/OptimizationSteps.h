@@ -23,8 +23,8 @@ constexpr double manyCorners = 0.01;
 class OptimizationSteps
 {
 public:
-  OptimizationSteps(OptimizationProblem& problem, const StoppingTest& watch,
-    std::vector<IterationRecord>& history)
+  OptimizationSteps(
+    OptimizationProblem& problem, const StoppingTest& watch, std::vector<IterationRecord>& history)
     : Problem(problem)
     , Watch(watch)
     , History(history)
