@@ -42,13 +42,17 @@ them for loading the libraries. Some examples are C++ programs, too, in `python/
 these.
 """
 LABEL = re.compile(r"^(Shell|Look at|State|Picture): (.*)$", re.MULTILINE)
+CONTINUED = re.compile(r"\\\n *")
 STATE = """# {title}
 from paraview.simple import *
 
 before = OpenDataFile("before.vtu")  # which the script below writes
 after = {call}
 Show(after)
-Render()
+{last}Render()
+"""
+LAST_STEP = """GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
+GetAnimationScene().GoToLast()
 """
 WIDTH = 80  # of a signature in one line
 OUTSIDE = re.compile(r"[a-z]+:|//")
@@ -141,6 +145,21 @@ def help_page(title: str, *pages: str) -> str:
     return f"# {title}\n\nThe pages of ParaView's help:\n\n{links}\n"
 
 
+def parts_of(script: str) -> tuple[str, str, dict[str, list[str]]]:
+    """The title, the text and the labelled lines of an example; a backslash continues a line."""
+    title, _, rest = script.split('"""')[1].partition("\n")
+    joined = CONTINUED.sub("", rest)
+    lines: dict[str, list[str]] = {}
+    for key, value in LABEL.findall(joined):
+        lines.setdefault(key, []).append(value)
+    return title, LABEL.sub("", joined).strip(), lines
+
+
+def state_of(title: str, call: str) -> str:
+    """The Python state file of an example, which Testing/Docs/gallery_states.py runs."""
+    return STATE.format(title=title, call=call, last=LAST_STEP if "TimeScheme" in call else "")
+
+
 def gallery_page(source: Path) -> str:
     """The examples: title, picture and text of the docstring, cost, and the script. A test runs each of them."""
     folder = source / GALLERY
@@ -148,22 +167,21 @@ def gallery_page(source: Path) -> str:
     parts = [GALLERY_HEAD]
     for script in sorted(folder.glob("[0-9]*.py")):
         text = script.read_text(encoding="utf-8")
-        title, _, rest = text.split('"""')[1].partition("\n")
+        title, rest, lines = parts_of(text)
         code = text.split('"""', 2)[2].strip()
-        lines = {key: value for key, value in LABEL.findall(rest)}
         parts.append(f"## {title.rstrip('.')}\n")
         if (folder / "pictures" / f"{script.stem}.png").exists():
             name = html.escape(f"{title.rstrip('.')}: before and after")
             parts.append(f'<img src="{GALLERY}/pictures/{script.stem}.png" alt="{name}">\n')
-        parts.append(LABEL.sub("", rest).strip() + "\n")
+        parts.append(rest + "\n")
         if "Look at" in lines:
-            parts.append(f"**What to look at.** {lines['Look at'][0].upper()}{lines['Look at'][1:]}\n")
+            look = lines["Look at"][0]
+            parts.append(f"**What to look at.** {look[0].upper()}{look[1:]}\n")
         if "Shell" in lines:
-            found = [line for key, line in LABEL.findall(rest) if key == "Shell"]
-            commands = "\n".join("; ".join(found).split("; "))
+            commands = "\n".join(lines["Shell"])
             parts.append(f"On the shell:\n\n```sh\n{commands}\n```\n")
         if "State" in lines:
-            state = STATE.format(title=title, call=lines["State"])
+            state = state_of(title, lines["State"][0])
             parts.append(f"In ParaView, a file to open with *File > Load State*:\n\n```python\n{state}```\n")
         cost = facts[script.stem]
         parts.append(f"In Python, `{GALLERY}/{script.name}`, {cost['seconds']} s and {cost['memory']} MiB:\n")

@@ -4,10 +4,10 @@
 The inverse mean ratio of an equilateral tetrahedron is 1, large values are bad, and an inverted element is counted by
 itself.
 
-Shell: tautline quality bracket-tangled.vtu --metrics imr,min_angle
-Look at: the elements beyond 3 (red) and inverted ones (blue, on the right) inside the translucent surface.
-State: ElementQuality(Input=before)
-Picture: imr inside
+Shell: tautline quality bracket-tangled.vtu --metrics imr,min_angle -o after.vtu
+Look at: the elements beyond 3 (red) and inverted ones (blue) inside the translucent surface.
+State: ElementQuality(Input=before, Metrics=["Inverse mean ratio", "Minimum angle"])
+Picture: imr inside alone
 """
 
 import sys
@@ -19,6 +19,6 @@ data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
 result = tl.quality(data / "bracket-tangled.vtu", ["imr", "min_angle"])
 print(result.summary)
 print("inverted elements:", result.inverted)
-tl.write(data / "bracket.vtu", "before.vtu")
+tl.write(data / "bracket-tangled.vtu", "before.vtu")
 tl.write(result, "after.vtu")
 assert result.inverted == 41

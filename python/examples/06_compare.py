@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Compare two meshes.
 
-Which elements became worse? The difference is a cell array, to be coloured.
+Which elements became worse? Change is a cell array: 1 is better, 0 equal, -1 worse.
 
-Shell: tautline compare before.vtu after.vtu --csv changes.csv
-Look at: the numbers of better and worse elements.
-Picture: imr clip
+Shell: tautline perturb bracket.vtu --fraction 0.4 --seed 1 -o worse.vtu
+Shell: tautline compare bracket.vtu worse.vtu --csv changes.csv -o after.vtu
+Look at: the elements that became better (blue) and worse (red).
+State: CompareMeshes(Input=before, Other=OpenDataFile("worse.vtu"))
+Picture: Change clip
 """
 
 import sys
@@ -18,5 +20,7 @@ worse = tl.perturb(data / "bracket.vtu", fraction=0.4, seed=1)
 result = tl.compare(data / "bracket.vtu", worse)
 print(result.summary)
 tl.write(data / "bracket.vtu", "before.vtu")
-tl.write(worse, "after.vtu")
+tl.write(worse, "worse.vtu")
+tl.write(result, "after.vtu")
+result.to_csv("changes.csv")
 assert result.difference["imr"].max() > 0

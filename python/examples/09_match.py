@@ -3,6 +3,7 @@
 
 The shape of one fish, triangulated, is deformed to match the picture of another.
 
+Shell: tautline silhouette fish.png --spacing 12 -o before.vtu
 Shell: tautline match fish.png fish-bent.png --locations contour --spacing 12 -o after.vtu
 Look at: each vertex of the triangulation lies on the other fish.
 Picture: edges

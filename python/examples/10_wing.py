@@ -3,7 +3,7 @@
 
 The mesh around the section follows it: FEMWARP inverts elements at the trailing edge, the hybrid method does not.
 
-Shell: tautline warp before.vtu --rotate 25 -o after.vtu
+Shell: tautline warp before.vtu --rotate=-25 -o after.vtu
 Look at: the elements around the trailing edge, and the wake that turns with it.
 State: WarpMesh(Input=before, Motion="Transform", TransformKind="Rotation", Angle=-25)
 Picture: imr

@@ -3,7 +3,8 @@
 
 The dissertation's planar section of a brain: the boundary moves as measured in images, the mesh follows.
 
-Shell: tautline domain brain -o before.vtu; tautline warp before.vtu --displacement Displacement -o after.vtu
+Shell: tautline domain brain --cells 3000 -o before.vtu
+Shell: tautline warp before.vtu --displacement Displacement -o after.vtu
 Look at: the elements between the ventricles.
 State: WarpMesh(Input=before, Motion="Displacement array", Displacement=["POINTS", "Displacement"])
 Picture: imr

@@ -3,7 +3,8 @@
 
 Ten positions of the cylinder, each deformed from the first mesh; a .pvd file has them as time steps.
 
-Shell: tautline warp cylinder.msh --displacement Displacement --amount 0.5 -o half.vtu
+Shell: tautline warp cylinder.msh --displacement Displacement --amount 0.5 -o step5.vtu
+Shell: tautline warp cylinder.msh --displacement Displacement -o after.vtu
 Look at: ParaView plays run.pvd; no step has an inverted element.
 State: WarpMesh(Input=before, Motion="Displacement array", Displacement=["POINTS", "Displacement"])
 Picture: imr

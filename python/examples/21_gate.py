@@ -4,7 +4,9 @@
 The boundary motion of a gate in a channel is large for its mesh. All methods of deformation, with the inverted elements
 of each.
 
-Shell: tautline warp before.vtu --displacement Displacement --method femwarp -o after.vtu
+Shell: tautline domain gate --cells 1000 -o before.vtu
+Shell: tautline warp before.vtu --displacement Displacement --method femwarp -o femwarp.vtu
+Shell: tautline warp before.vtu --displacement Displacement -o after.vtu
 Look at: the table; which linear methods fail, and that the hybrid one does not.
 State: WarpMesh(Input=before, Motion="Displacement array", Displacement=["POINTS", "Displacement"])
 Picture: imr
@@ -17,6 +19,7 @@ inverted = {}
 for method in ("femwarp", "jacobian stiffening", "inverse distance", "radial basis", "hybrid"):
     result = tl.warp(before, displacement="Displacement", method=method)
     inverted[method] = result.inverted
+    tl.write(result, f"{method.replace(' ', '-')}.vtu")
     print(f"{method:20} {result.inverted:4} inverted")
 tl.write(before, "before.vtu")
 tl.write(result, "after.vtu")

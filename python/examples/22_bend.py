@@ -3,7 +3,8 @@
 
 The bar bends by the domain's displacement; the fluid around it is what is meshed.
 
-Shell: tautline domain bending-bar -o before.vtu; tautline warp before.vtu --displacement Displacement -o after.vtu
+Shell: tautline domain bending-bar --cells 1200 -o before.vtu
+Shell: tautline warp before.vtu --displacement Displacement -o after.vtu
 Look at: the elements at the tip of the bar.
 State: WarpMesh(Input=before, Motion="Displacement array", Displacement=["POINTS", "Displacement"])
 Picture: imr

@@ -3,10 +3,11 @@
 
 Limits of a finite-element program grade every element; the failed ones go to other programs as sets.
 
-Shell: tautline quality bracket-tangled.vtu --criteria fem --groups -o failed.vtu
+Shell: tautline quality bracket-tangled.vtu --criteria fem -o after.vtu
+Shell: tautline quality bracket-tangled.vtu --criteria fem --groups -o groups.vtu
 Look at: Grade, 2 is failed; with meshio the sets also go to Abaqus (.inp) and Salome (.med).
-State: ElementQuality(Input=before)
-Picture: Grade
+State: ElementQuality(Input=before, Criteria="fem")
+Picture: Grade alone
 """
 
 import sys
@@ -20,5 +21,6 @@ result = tl.quality(before, criteria="fem")
 sets = result.groups()
 print(result.verdict, {name: len(members) for name, members in sets.items()})
 tl.write(before, "before.vtu")
-tl.write(result, "after.vtu", groups=sets)
+tl.write(result, "after.vtu")
+tl.write(result, "groups.vtu", groups=sets)
 assert result.verdict == "failed" and len(sets["Inverted"]) == 41

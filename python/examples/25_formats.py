@@ -4,6 +4,7 @@
 Gmsh's mesh with its regions to Medit, TetGen and VTK, and the metric as a view for Gmsh.
 
 Shell: tautline convert part.msh part.mesh
+Shell: tautline quality part.msh --metrics imr -o after.vtu
 Look at: the regions, Reference, are kept.
 Picture: Reference
 """

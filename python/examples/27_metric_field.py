@@ -3,7 +3,7 @@
 
 The inverse mean ratio over the position of one corner of a triangle: flat near the ideal, infinite at the inversion.
 
-Shell: tautline metric-field --metrics imr -o after.vti
+Shell: tautline metric-field --metrics imr --bounds -1 2 0.05 2 0 0 --dimensions 121 79 1 -o after.vti
 Look at: the level sets around the corner of the equilateral triangle.
 Picture: imr
 """

@@ -5,9 +5,12 @@ Linear elasticity: one face is held, the weight acts downwards; the displacement
 of ParaView's
 Warp By Vector.
 
-Shell: tautline solve bracket.vtu --pde elasticity --source=-1e-6*kHat --fixed "x < 1" -o after.vtu
+Shell: tautline optimize bracket.vtu -o before.vtu
+Shell: tautline solve before.vtu --pde elasticity --source=0,0,-1e-6 --fixed "x < 0.01" \
+  --solution-name Deflection -o after.vtu
 Look at: Deflection, largest at the free end.
-State: SolvePDE(Input=before)
+State: SolvePDE(Input=before, Equation="Linear Elasticity", BodyForce=[0, 0, -1e-6], \
+  FixedPart="Part of the Boundary", FixedWhere="x < 0.01", SolutionName="Deflection")
 Picture: Deflection
 """
 

@@ -4,9 +4,10 @@
 The condition number of the stiffness matrix, and the share of each element in the largest eigenvalue: a flat element
 stands out.
 
-Shell: tautline condition before.vtu -o after.vtu
+Shell: tautline perturb plate.vtu --fraction 0.98 --percentage 100 --seed 9 -o before.vtu
+Shell: tautline condition before.vtu --preconditioner jacobi -o after.vtu
 Look at: the few elements with a large share.
-State: ConditionEstimator(Input=before)
+State: ConditionEstimator(Input=before, Preconditioner="Jacobi")
 Picture: Share
 """
 

@@ -3,9 +3,9 @@
 
 Four combinations of solver and preconditioner solve the same problem; the fastest one that converges is recommended.
 
-Shell: tautline solver-study plate.vtu --combinations 1,4,13,16
+Shell: tautline solver-study plate.vtu --combinations 1,4,13,16 --no-conditions --csv study.csv
 Look at: the table that is printed.
-State: SolverStudy(Input=before)
+State: SolverStudy(Input=before, Combinations=[1, 4, 13, 16], EstimateConditions=0)
 Picture: edges
 """
 
@@ -20,5 +20,6 @@ study = tl.solver_study(before, combinations=[1, 4, 13, 16], conditions=False)
 for row in study.table():
     print(row)
 print("recommended:", study.recommended, study.why)
+study.to_csv("study.csv")
 tl.write(before, "before.vtu")
 assert len(study.table()) == 4 and all(row["converged"] for row in study.table())

@@ -3,9 +3,10 @@
 
 The matrix of a peridynamic model on a square with its interaction layer, its condition number and the solution.
 
-Shell: tautline domain square -o before.vtu; tautline peridynamics before.vtu --solve -o after.vtu
+Shell: tautline domain square --element-size 0.1 --layer-width 0.2 -o before.vtu
+Shell: tautline peridynamics before.vtu --delta 0.2 --p 1 --solve -o after.vtu
 Look at: the solution is given in the whole layer, not only on the boundary.
-State: PeridynamicCondition(Input=before)
+State: PeridynamicCondition(Input=before, Horizon=0.2, Exponent=1, Solve=1)
 Picture: Solution
 """
 

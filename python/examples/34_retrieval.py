@@ -3,6 +3,8 @@
 
 Each silhouette of a list is matched with every other one; the most similar one is of the same class.
 
+Shell: tautline silhouette fish.png --spacing 10 -o before.vtu
+Shell: tautline silhouette clover.png --spacing 10 -o after.vtu
 Shell: tautline retrieval silhouettes.csv --best 1
 Look at: the rate, the percentage of queries whose nearest shape is of their class.
 Picture: edges

@@ -3,7 +3,7 @@
 
 TetGen fills the facets of a file, and Improve Mesh removes the slivers that are left.
 
-Shell: tautline tet-mesh cube.smesh --volume 0.002 -o before.vtu
+Shell: tautline tet-mesh cube.smesh --volume 0.002 --radius-edge-ratio 1.6 --minimum-dihedral-angle 0 -o before.vtu
 Shell: tautline improve before.vtu --preset aggressive -o after.vtu
 Look at: the smallest dihedral angle.
 State: ImproveMesh(Input=before, Preset="Aggressive")

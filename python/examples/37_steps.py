@@ -14,10 +14,10 @@ from pathlib import Path
 import tautline as tl
 
 data = Path(sys.argv[1] if len(sys.argv) > 1 else "Data")
-steps = f"""
+steps = """
 [[step]]
 do = "read"
-file = "{(data / "bracket-tangled.vtu").resolve()}"
+file = "before.vtu"
 
 [[step]]
 do = "untangle"
@@ -35,8 +35,8 @@ stop = false
 do = "write"
 file = "after.vtu"
 """
+tl.write(data / "bracket-tangled.vtu", "before.vtu")
 Path("steps.toml").write_text(steps)
 result = tl.run_steps("steps.toml")
 print(result.summary if hasattr(result, "summary") else result)
-tl.write(data / "bracket-tangled.vtu", "before.vtu")
 assert tl.quality("after.vtu").inverted == 0

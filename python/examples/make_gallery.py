@@ -3,7 +3,8 @@
 
 Each example writes before.vtu and after.vtu (or .vti), which the picture pictures/NAME.png shows side by side, coloured
 by the array that the line "Picture:" of its docstring names; "edges" has no colours, "clip" shows the half behind the
-middle, "inside" the elements that fail (invalid, or beyond the range of the colours) inside a translucent surface.
+middle, "inside" the elements that fail (invalid, or beyond the range of the colours) inside a translucent surface, and
+"alone" does not show the mesh before.
 measured.json has the CPU seconds and the memory, MiB, of the process. Needs a display; Testing/headless.sh gives one.
 """
 
@@ -42,6 +43,7 @@ print(next(line for line in open("/proc/self/status") if line.startswith("VmHWM"
 VALID = 1  # of the array Validity
 TRANSLUCENT = 0.12  # opacity of the surface around the elements inside
 HUES = (0.62, 0.0)  # blue is good, red is bad
+UPWARD = ("Validity", "Change")  # arrays whose large values are good
 
 
 def measured(mesh, array: str):
@@ -91,11 +93,11 @@ def failing(mesh, array: str, most: float):
     return cells
 
 
-def draw(window, mesh, array: str, how: str, span, place) -> None:
+def draw(window, mesh, array: str, how: list[str], span, place) -> None:
     renderer = vtkRenderer()
     renderer.SetBackground(1, 1, 1)
     renderer.SetViewport(*place)
-    if how == "inside":
+    if "inside" in how:
         inside = failing(mesh, array, span[1])
         if inside.GetNumberOfCells():
             renderer.AddActor(actor_of(inside, surface(inside, False), array, span))
@@ -104,7 +106,7 @@ def draw(window, mesh, array: str, how: str, span, place) -> None:
         whole.GetProperty().EdgeVisibilityOff()
         renderer.AddActor(whole)
     else:
-        renderer.AddActor(actor_of(mesh, surface(mesh, how == "clip"), array, span))
+        renderer.AddActor(actor_of(mesh, surface(mesh, "clip" in how), array, span))
     bounds = mesh.GetBounds()
     camera = renderer.GetActiveCamera()
     camera.ParallelProjectionOn()
@@ -122,7 +124,7 @@ def actor_of(mesh, shown, array: str, span) -> vtkActor:
     mapper.SetInputData(shown)
     if span and array_of(mesh, array):
         table = vtkLookupTable()
-        table.SetHueRange(*(HUES[::-1] if array == "Validity" else HUES))
+        table.SetHueRange(*(HUES[::-1] if array in UPWARD else HUES))
         table.SetVectorModeToMagnitude()
         table.SetSaturationRange(0.55, 0.75)
         table.Build()
@@ -148,7 +150,9 @@ def actor_of(mesh, shown, array: str, span) -> vtkActor:
 
 def make_picture(folder: Path, what: str, file: Path) -> None:
     array, _, how = what.partition(" ")
-    files = [folder / name for name in ("before.vtu", "after.vtu", "after.vti")]
+    how = how.split()
+    names = ("after.vtu", "after.vti") if "alone" in how else ("before.vtu", "after.vtu", "after.vti")
+    files = [folder / name for name in names]
     meshes = [measured(tl.read(name), array) for name in files if name.exists()]
     arrays = [array_of(mesh, array) for mesh in meshes]
     ranges = [values.GetRange(-1 if values.GetNumberOfComponents() > 1 else 0) for values in arrays if values]
