@@ -37,7 +37,7 @@ def table_differences(study, file: Path) -> list[str]:
 
 def shown(source):
     """The data of a filter at the time of the view."""
-    source.UpdatePipeline(simple.GetAnimationScene().AnimationTime)
+    source.UpdatePipeline(simple.GetTimeKeeper().Time)
     return servermanager.Fetch(source)
 
 

@@ -184,4 +184,86 @@ def test_errors():
     refused(wording("points-are-not-an-array-of-numbers"), tl.quality, (["a", "b"], [[0, 1, 2]]))
 
 
+def dihedral_angles(corners):
+    """The six angles of tetrahedra, in degrees, n x 6, of corners n x 4 x 3, from the normals of the faces."""
+    outward = []
+    for i in range(4):
+        a, b, c = (corners[:, j] for j in range(4) if j != i)
+        normal = np.cross(b - a, c - a)
+        normal *= -np.sign(np.sum(normal * (corners[:, i] - a), axis=1))[:, None]
+        outward.append(normal / np.linalg.norm(normal, axis=1)[:, None])
+    pairs = [(i, j) for i in range(4) for j in range(i)]
+    return np.degrees([np.arccos(-np.sum(outward[i] * outward[j], axis=1)) for i, j in pairs]).T
+
+
+def verdict(mesh, kind: str, metric: str):
+    """The values of ParaView's and VTK's Mesh Quality, of the elements of one type."""
+    from vtkmodules.vtkFiltersVerdict import vtkMeshQuality
+
+    quality = vtkMeshQuality()
+    getattr(quality, f"Set{kind}QualityMeasureTo{metric}")()
+    quality.SetInputData(mesh)
+    quality.Update()
+    return vtk_to_numpy(quality.GetOutput().GetCellData().GetArray("Quality"))
+
+
+def test_verdict():
+    """The rows "verdict" of Plugin/Site/coming-from.md."""
+    from vtkmodules.vtkCommonCore import vtkVersion
+
+    mesh = tl.read(BRACKET)
+    points = vtk_to_numpy(mesh.GetPoints().GetData())
+    corners = points[vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 4)]
+    smallest = dihedral_angles(corners).min(axis=1)
+    ours = tl.quality(mesh, "min_angle").values["min_angle"]
+    assert np.abs(ours - smallest).max() < 1e-9
+    if vtkVersion.GetVTKVersion().startswith("9.2."):
+        theirs = verdict(mesh, "Tet", "MinAngle")
+        differs = np.abs(theirs - ours)
+        assert (np.count_nonzero(differs > 1e-3), len(ours)) == (2375, 8140)
+        assert 55.5 < differs.max() < 56 and theirs.max() > 81 > 70.53 > ours.max()
+    same = {
+        "Tet": ["ScaledJacobian", "Condition", "MeanRatio", "RadiusRatio"],
+        "Triangle": ["ScaledJacobian", "Condition", "RadiusRatio", "MinAngle"],
+        "Quad": ["ScaledJacobian", "MinAngle", "Condition"],
+    }
+    names = {"ScaledJacobian": "scaled_jacobian", "Condition": "condition_number", "MeanRatio": "mean_ratio",
+             "RadiusRatio": "rr_normalized", "MinAngle": "min_angle"}  # fmt: skip
+    for kind, metrics in same.items():
+        mesh = tl.read(BRACKET if kind == "Tet" else PLATE)
+        chosen = vtk_to_numpy(mesh.GetCellTypesArray()) == {"Tet": 10, "Triangle": 5, "Quad": 9}[kind]
+        for metric in metrics:
+            worst = (kind, metric) == ("Quad", "Condition")
+            result = tl.quality(mesh, names[metric], combination="worst" if worst else "mean")
+            expected = verdict(mesh, kind, metric)[chosen]
+            assert np.allclose(result.values[names[metric]][chosen], expected, rtol=1e-9), (kind, metric)
+
+
+def square_sum(matrix):
+    return np.sum(matrix * matrix)
+
+
+def test_mfem():
+    """The metrics of the rows "MFEM" of Plugin/Site/coming-from.md, by the formulas of MFEM's tmop.hpp."""
+    jacobian = np.array([[1.1, 0.2, -0.1], [0.1, 0.9, 0.15], [-0.2, 0.1, 1.2]])
+    for dimension in (2, 3):
+        t = jacobian[:dimension, :dimension]
+        det, inverse, norm, gram = np.linalg.det(t), np.linalg.inv(t), square_sum(t), square_sum(t.T @ t)
+        shape_size, size = square_sum(t - inverse.T), 0.5 * (det**2 + det**-2) - 1
+        if dimension == 2:
+            expected = {"mu_2": 0.5 * norm / det - 1, "mu_7": shape_size, "mu_9": det * shape_size,
+                        "mu_50": 0.5 * gram / det**2 - 1, "mu_58": gram / det**2 - 2 * norm / det + 2,
+                        "mu_77": size}  # fmt: skip
+        else:
+            both = norm * square_sum(inverse)
+            expected = {"mu_301": both**0.5 / 3 - 1, "mu_302": both / 9 - 1, "mu_303": norm / 3 / det ** (2 / 3) - 1,
+                        "mu_304": norm**1.5 / 27**0.5 / det - 1, "mu_318": size, "mu_321": shape_size,
+                        "mu_322": square_sum(t - det * inverse.T) / 6 / det,
+                        "mu_323": norm**1.5 - 27**0.5 * (np.log(det) + 1)}  # fmt: skip
+        corners = TET[: dimension + 1, :dimension] @ t.T
+        for name, value in expected.items():
+            found = list(tl.quality((corners, [list(range(dimension + 1))]), name).values.values())[0][0]
+            assert abs(found - value) < 1e-12, (name, found, value)
+
+
 run_tests(globals())
