@@ -147,15 +147,6 @@ void Ranks::exchange(unsigned char* flags) const
 }
 
 //------------------------------------------------------------------------------
-void Ranks::exchange(unsigned char* flags) const
-{
-  if (this->Spread)
-  {
-    this->Spread->exchange(flags);
-  }
-}
-
-//------------------------------------------------------------------------------
 void Ranks::either(unsigned char* flags) const
 {
   if (this->Spread)

@@ -43,12 +43,6 @@ public:
   {
   }
 
-  /// With the numbers of the points as ids, and the communicator of the mesh's group.
-  explicit Ranks(DistributedMesh& mesh)
-    : Ranks(mesh, mesh.numbers(), mesh.group().communicator())
-  {
-  }
-
   bool several() const { return this->Spread != nullptr; }
   /// Of several ranks.
   DistributedMesh& mesh() const { return *this->Spread; }
