@@ -2,7 +2,7 @@
 """The C++ reference of the site, made from the public headers, which are the manual: a page for each module and room.
 
 A page has, for each header, its text and its public declarations with their comments. Public are the classes of VTK
-modules in Filters and Readers, and the headers of the kernel that Filters/Kernel/CMakeLists.txt lists.
+modules in Filters and Readers, and the headers of the kernel without the line "Internal: not installed."
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ COMMON = re.compile(r"^ *(static \w+\* New\(\);|vtk\w*TypeMacro\(.*\);|void Prin
 GUARD = re.compile(r"^#(ifndef|define|endif|include).*\n", re.MULTILINE)
 FORWARD = re.compile(r"^(?:class|struct) \w+;\n", re.MULTILINE)
 GROUP = re.compile(r"^ *///@[{}]\n", re.MULTILINE)
-LISTED = re.compile(r"^set\(public_(\w+)([^)]*)\)", re.MULTILINE)
+INTERNAL = " * Internal: not installed.\n"
 INTRODUCTION = """# C++
 
 The classes of the filters, readers and writers, and below them the libraries of numerics, which need no VTK. How to
@@ -75,13 +75,13 @@ def vtk_class(header: Path) -> tuple[str, str, str] | None:
     return name, prose(comment[1])[0], section(name, comment[1], declarations)
 
 
-def kernel_header(header: Path, room: str) -> tuple[str, str, str]:
+def kernel_header(header: Path, kernel: Path) -> tuple[str, str, str]:
     """Name, brief and section of a public header of the kernel."""
     text = header.read_text(encoding="utf-8").split("\n", 1)[1]
     comment = COMMENT.match(text)
     body = text[comment.end() :] if comment else text
     body = re.sub(r"\n{3,}", "\n\n", GROUP.sub("", FORWARD.sub("", GUARD.sub("", body))))
-    name = f"tautline/{room}/{header.name}"
+    name = f"tautline/{header.relative_to(kernel).as_posix()}"
     words = comment[1] if comment else ""
     return name, prose(words)[0], section(name, words, body)
 
@@ -93,10 +93,10 @@ def cxx_pages(source: Path) -> dict[str, str]:
         if (module / "vtk.module").exists():
             found = [vtk_class(header) for header in sorted(module.glob("vtk*.h"))]
             sections[f"Tautline::{module.name}"] = [item for item in found if item]
-    listed = (source / "Filters/Kernel/CMakeLists.txt").read_text(encoding="utf-8")
-    for room, names in LISTED.findall(listed):
-        folder = source / "Filters/Kernel" / room
-        sections[f"{room} (kernel)"] = [kernel_header(folder / name, room) for name in names.split()]
+    kernel = source / "Filters/Kernel"
+    for room in sorted(folder for folder in kernel.iterdir() if folder.is_dir()):
+        headers = [header for header in sorted(room.rglob("*.h")) if INTERNAL not in header.read_text(encoding="utf-8")]
+        sections[f"{room.name} (kernel)"] = [kernel_header(header, kernel) for header in headers]
     parts, pages, order = [INTRODUCTION], {}, []
     for title, items in sections.items():
         page = "cxx-" + re.sub(r"[^a-z]+", "-", title.lower().replace("tautline::", "")).strip("-")

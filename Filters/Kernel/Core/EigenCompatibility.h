@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EigenCompatibility.h
- * @brief What differs between Eigen 3.4 and 5, in one place. Not a public header.
+ * @brief What differs between Eigen 3.4 and 5, in one place.
+ * Internal: not installed.
  */
 #ifndef tautline_EigenCompatibility_h
 #define tautline_EigenCompatibility_h

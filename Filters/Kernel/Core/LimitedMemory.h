@@ -2,7 +2,8 @@
 /**
  * @file LimitedMemory.h
  * @brief The history and the two-loop recursion of limited-memory BFGS (J. Nocedal and S. J.
- * Wright, "Numerical Optimization", 2nd ed. 2006, section 7.2). Internal: not installed.
+ * Wright, "Numerical Optimization", 2nd ed. 2006, section 7.2).
+ * Internal: not installed.
  */
 #ifndef tautline_LimitedMemory_h
 #define tautline_LimitedMemory_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LineSearch.h
- * @brief What all line searches of the kernel share. Internal: not installed.
+ * @brief What all line searches of the kernel share.
+ * Internal: not installed.
  */
 #ifndef tautline_LineSearch_h
 #define tautline_LineSearch_h

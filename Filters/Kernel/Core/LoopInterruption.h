@@ -2,6 +2,7 @@
 /**
  * @file LoopInterruption.h
  * @brief Whether the thread that waits for a chunk of a parallel loop is interrupted.
+ * Internal: not installed.
  */
 #ifndef tautline_LoopInterruption_h
 #define tautline_LoopInterruption_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LoopProgress.h
- * @brief How far the loops of a computation are, for those that show it. Internal: not installed.
+ * @brief How far the loops of a computation are, for those that show it.
+ * Internal: not installed.
  *
  * Functions of the kernel that take no callback report their loops here; the loops of Parallel.h
  * do so by themselves. It has an effect only on a thread with a LoopProgress.

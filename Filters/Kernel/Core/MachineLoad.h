@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MachineLoad.h
- * @brief How busy the machine is. Internal: not installed.
+ * @brief How busy the machine is.
+ * Internal: not installed.
  */
 #ifndef tautline_MachineLoad_h
 #define tautline_MachineLoad_h

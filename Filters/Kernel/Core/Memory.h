@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Memory.h
- * @brief The memory that is available, and the check before large allocations. Internal: not
- * installed.
+ * @brief The memory that is available, and the check before large allocations.
+ * Internal: not installed.
  *
  * Linux grants memory that it does not have and ends a process that uses it; and libraries that get
  * none often crash. So what needs much memory in proportion to a product of its inputs (a dense

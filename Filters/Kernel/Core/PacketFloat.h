@@ -3,7 +3,7 @@
  * @file PacketFloat.h
  * @brief A packet of floats with the functions shape matching needs; twice as many as of doubles.
  *
- * Internal to the kernel: not installed.
+ * Internal: not installed.
  */
 #ifndef tautline_PacketFloat_h
 #define tautline_PacketFloat_h

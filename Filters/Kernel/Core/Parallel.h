@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Parallel.h
- * @brief Threaded loops whose result does not depend on the number of threads. Internal: not
- * installed.
+ * @brief Threaded loops whose result does not depend on the number of threads.
+ * Internal: not installed.
  *
  * Work is cut into chunks of a fixed size. Which thread takes which chunk varies; what a chunk does
  * and the order in which chunk results are combined do not.

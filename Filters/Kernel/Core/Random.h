@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Random.h
- * @brief Random numbers that are the same everywhere. Internal: not installed.
+ * @brief Random numbers that are the same everywhere.
+ * Internal: not installed.
  *
  * SplitMix64 (Steele, Lea and Flood, 2014): the state is a counter, the number its hash. A
  * generator is made from a seed, a stream and an item (for example a vertex), so that the numbers

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Stopwatch.h
- * @brief Wall time since a start, for time limits and records; CPU time of a thread. Internal: not
- * installed.
+ * @brief Wall time since a start, for time limits and records; CPU time of a thread.
+ * Internal: not installed.
  */
 #ifndef tautline_Stopwatch_h
 #define tautline_Stopwatch_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file VectorAlgebra.h
- * @brief Threaded operations on long vectors, bitwise the same for any number of threads. Internal:
- * not installed.
+ * @brief Threaded operations on long vectors, bitwise the same for any number of threads.
+ * Internal: not installed.
  */
 #ifndef tautline_VectorAlgebra_h
 #define tautline_VectorAlgebra_h

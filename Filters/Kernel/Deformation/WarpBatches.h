@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpBatches.h
- * @brief A loop over many points that reports progress and can be stopped. Internal: not installed.
+ * @brief A loop over many points that reports progress and can be stopped.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpBatches_h
 #define tautline_WarpBatches_h

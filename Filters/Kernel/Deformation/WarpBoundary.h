@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpBoundary.h
- * @brief Where a moved boundary runs into itself. Internal: not installed.
+ * @brief Where a moved boundary runs into itself.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpBoundary_h
 #define tautline_WarpBoundary_h

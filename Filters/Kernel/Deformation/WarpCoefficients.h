@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpCoefficients.h
- * @brief The coefficients of anisotropic FEMWARP, section 4.9.1, from a motion. Internal: not
- * installed.
+ * @brief The coefficients of anisotropic FEMWARP, section 4.9.1, from a motion.
+ * Internal: not installed.
  *
  * The first two functions take one flag per point and 3 displacements per point; only those of
  * flagged points are read, and the own ones counted.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpControl.h
- * @brief The time limit, the observer and the running totals of one deformation. Internal: not
- * installed.
+ * @brief The time limit, the observer and the running totals of one deformation.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpControl_h
 #define tautline_WarpControl_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpElastic.h
- * @brief Deforms a mesh as an elastic body whose small or inverted elements are stiffer. Internal:
- * not installed.
+ * @brief Deforms a mesh as an elastic body whose small or inverted elements are stiffer.
+ * Internal: not installed.
  *
  * IterativeStiffening: that step of "Untangling Before Newton" (S. P. Sastry, S. M. Shontz and S.
  * A. Vavasis) that the dissertation compares with: inverted elements are made stiffer and the

@@ -2,7 +2,8 @@
 /**
  * @file WarpStep.h
  * @brief One step of a motion: from a mesh and the displacements of its prescribed points to the
- * points of all. Internal: not installed.
+ * points of all.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpStep_h
 #define tautline_WarpStep_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file WarpSteps.h
- * @brief A motion in steps, each from the mesh of the one before. Internal: not installed.
+ * @brief A motion in steps, each from the mesh of the one before.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpSteps_h
 #define tautline_WarpSteps_h

@@ -2,7 +2,8 @@
 /**
  * @file WarpSystem.h
  * @brief The partition (4.8) of a matrix by points whose values are given and points whose values
- * are unknown, and solutions of (4.10) for many given values. Internal: not installed.
+ * are unknown, and solutions of (4.10) for many given values.
+ * Internal: not installed.
  */
 #ifndef tautline_WarpSystem_h
 #define tautline_WarpSystem_h

@@ -2,7 +2,8 @@
 /**
  * @file ElementShapes.h
  * @brief Shape functions of the six linear cell types with quadrature, and their gradients in
- * space. Internal: not installed.
+ * space.
+ * Internal: not installed.
  */
 #ifndef tautline_ElementShapes_h
 #define tautline_ElementShapes_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticChecks.h
- * @brief Checks that a boundary value problem has a solution. Internal: not installed.
+ * @brief Checks that a boundary value problem has a solution.
+ * Internal: not installed.
  */
 #ifndef tautline_EllipticChecks_h
 #define tautline_EllipticChecks_h

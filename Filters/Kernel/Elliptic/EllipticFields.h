@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EllipticFields.h
- * @brief Fields derived from the values of a solution: gradients and stresses. Internal: not
- * installed.
+ * @brief Fields derived from the values of a solution: gradients and stresses.
+ * Internal: not installed.
  */
 #ifndef tautline_EllipticFields_h
 #define tautline_EllipticFields_h

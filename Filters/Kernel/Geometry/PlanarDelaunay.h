@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PlanarDelaunay.h
- * @brief A constrained Delaunay triangulation of points in the plane. Internal to the kernel: not
- * installed.
+ * @brief A constrained Delaunay triangulation of points in the plane.
+ * Internal: not installed.
  */
 #ifndef tautline_PlanarDelaunay_h
 #define tautline_PlanarDelaunay_h

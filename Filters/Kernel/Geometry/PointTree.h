@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointTree.h
- * @brief Points in boxes in boxes: a binary tree by medians along the longest side. Internal: not
- * installed.
+ * @brief Points in boxes in boxes: a binary tree by medians along the longest side.
+ * Internal: not installed.
  */
 #ifndef tautline_PointTree_h
 #define tautline_PointTree_h

@@ -2,11 +2,11 @@
 /**
  * @file Predicates.h
  * @brief Signs of the orientation and in-circle determinants, exact for finite doubles.
+ * Internal: not installed.
  *
  * A determinant is computed in doubles first; if it is smaller than the bound of its rounding error
  * (Shewchuk, Discrete & Computational Geometry 18, 1997), it is computed again as an unevaluated
- * sum of doubles, which is exact short of overflow and underflow. Internal to the kernel: not
- * installed.
+ * sum of doubles, which is exact short of overflow and underflow.
  */
 #ifndef tautline_Predicates_h
 #define tautline_Predicates_h

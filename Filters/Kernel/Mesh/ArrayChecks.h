@@ -2,6 +2,7 @@
 /**
  * @file ArrayChecks.h
  * @brief Searches the raw arrays of a mesh for what must not be in them.
+ * Internal: not installed.
  *
  * Linear and threaded: each array is read once. The result is the first place, whatever the number
  * of threads, or -1. Nothing is dereferenced, so that arrays of any content may be given.

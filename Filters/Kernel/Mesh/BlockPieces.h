@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockPieces.h
- * @brief Which blocks in pieces on several ranks have a seam between them. Internal: not installed.
+ * @brief Which blocks in pieces on several ranks have a seam between them.
+ * Internal: not installed.
  */
 #ifndef tautline_BlockPieces_h
 #define tautline_BlockPieces_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryPoints.h
- * @brief The points on the boundary of a mesh, found without sorting its facets. Internal: not
- * installed.
+ * @brief The points on the boundary of a mesh, found without sorting its facets.
+ * Internal: not installed.
  */
 #ifndef tautline_BoundaryPoints_h
 #define tautline_BoundaryPoints_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CellBatch.h
- * @brief The vertices of several cells of one type, gathered into packets. Internal: not installed.
+ * @brief The vertices of several cells of one type, gathered into packets.
+ * Internal: not installed.
  */
 #ifndef tautline_CellBatch_h
 #define tautline_CellBatch_h

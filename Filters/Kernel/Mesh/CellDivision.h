@@ -2,7 +2,8 @@
 /**
  * @file CellDivision.h
  * @brief Cells that ranks send each other so that each has a part, and values that go to the parts
- * and back to the pieces. Internal: not installed.
+ * and back to the pieces.
+ * Internal: not installed.
  */
 #ifndef tautline_CellDivision_h
 #define tautline_CellDivision_h

@@ -2,6 +2,7 @@
 /**
  * @file CellOrder.h
  * @brief Which cells of a mesh to list in the opposite order so that all agree.
+ * Internal: not installed.
  *
  * Many programs write cells whose points run in either sense. The cells then are as good as others;
  * only their order is not that of their neighbours. Neighbours tell by the facet they share,

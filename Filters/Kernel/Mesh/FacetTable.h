@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FacetTable.h
- * @brief The edges of 2D cells, or the faces of 3D cells, with the cells that use each. Internal.
+ * @brief The edges of 2D cells, or the faces of 3D cells, with the cells that use each.
+ * Internal: not installed.
  */
 #ifndef tautline_FacetTable_h
 #define tautline_FacetTable_h

@@ -2,7 +2,8 @@
 /**
  * @file JacobianBounds.h
  * @brief The Jacobian determinant inside hexahedra and wedges: its Bernstein coefficients, its sign
- * and its minimum. Internal: not installed.
+ * and its minimum.
+ * Internal: not installed.
  *
  * The reference elements are the unit cube, the prism over a triangle with two legs of length 1,
  * and the pyramid over the unit square. With x_u, x_v, x_w the derivatives of the linear map of the

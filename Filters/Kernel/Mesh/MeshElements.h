@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshElements.h
- * @brief Which cells of a mesh are its elements. Internal: not installed.
+ * @brief Which cells of a mesh are its elements.
+ * Internal: not installed.
  */
 #ifndef tautline_MeshElements_h
 #define tautline_MeshElements_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PartSign.h
- * @brief The sign of the area or volume of connected cells. Internal: not installed.
+ * @brief The sign of the area or volume of connected cells.
+ * Internal: not installed.
  */
 #ifndef tautline_PartSign_h
 #define tautline_PartSign_h

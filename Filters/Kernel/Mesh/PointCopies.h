@@ -2,6 +2,7 @@
 /**
  * @file PointCopies.h
  * @brief Copies of a point, with the same global id, whose places differ by rounding.
+ * Internal: not installed.
  */
 #ifndef tautline_PointCopies_h
 #define tautline_PointCopies_h

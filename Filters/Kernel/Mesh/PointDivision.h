@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PointDivision.h
- * @brief Divides points among ranks by planes. Internal: not installed.
+ * @brief Divides points among ranks by planes.
+ * Internal: not installed.
  */
 #ifndef tautline_PointDivision_h
 #define tautline_PointDivision_h

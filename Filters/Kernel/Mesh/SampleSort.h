@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SampleSort.h
- * @brief Divides sorted items of ranks into one range per rank. Internal: not installed.
+ * @brief Divides sorted items of ranks into one range per rank.
+ * Internal: not installed.
  */
 #ifndef tautline_SampleSort_h
 #define tautline_SampleSort_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SeamFacets.h
- * @brief What identifies a facet on the boundary of a piece on all ranks. Internal: not installed.
+ * @brief What identifies a facet on the boundary of a piece on all ranks.
+ * Internal: not installed.
  */
 #ifndef tautline_SeamFacets_h
 #define tautline_SeamFacets_h

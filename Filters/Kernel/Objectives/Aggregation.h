@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Aggregation.h
- * @brief Graphs of rows and the aggregates of multigrid. Internal: not installed.
+ * @brief Graphs of rows and the aggregates of multigrid.
+ * Internal: not installed.
  */
 #ifndef tautline_Aggregation_h
 #define tautline_Aggregation_h

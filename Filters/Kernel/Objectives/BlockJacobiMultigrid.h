@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BlockJacobiMultigrid.h
- * @brief Multigrid for a matrix whose rows are spread over ranks. Internal: not installed.
+ * @brief Multigrid for a matrix whose rows are spread over ranks.
+ * Internal: not installed.
  *
  * The aggregates and the coarse matrices are the same however the rows are spread, to rounding: all
  * ranks have the graph of all rows while aggregates are found, and all coarse levels, on which they

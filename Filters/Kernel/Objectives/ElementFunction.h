@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementFunction.h
- * @brief What an objective makes of one element's metric, with its derivative. Internal: not
- * installed.
+ * @brief What an objective makes of one element's metric, with its derivative.
+ * Internal: not installed.
  */
 #ifndef tautline_ElementFunction_h
 #define tautline_ElementFunction_h

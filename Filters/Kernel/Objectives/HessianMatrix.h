@@ -2,7 +2,8 @@
 /**
  * @file HessianMatrix.h
  * @brief The Hessian of objectives over the free points of a mesh, as a sparse matrix of small
- * blocks with preconditioners. Internal: not installed.
+ * blocks with preconditioners.
+ * Internal: not installed.
  *
  * A free point is a row of blocks of hessianAxes() coordinates: 2 x 2 numbers in a planar mesh,
  * 3 x 3 in a volume. Vectors have as many entries a free point. On a surface in space blocks are

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MatrixRows.h
- * @brief The free points of a mesh as rows of a matrix. Internal: not installed.
+ * @brief The free points of a mesh as rows of a matrix.
+ * Internal: not installed.
  */
 #ifndef tautline_MatrixRows_h
 #define tautline_MatrixRows_h

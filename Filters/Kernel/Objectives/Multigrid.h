@@ -2,7 +2,8 @@
 /**
  * @file Multigrid.h
  * @brief A preconditioner for sparse symmetric positive definite matrices of small blocks:
- * algebraic multigrid by aggregation. Internal: not installed.
+ * algebraic multigrid by aggregation.
+ * Internal: not installed.
  *
  * Rows are joined three times in pairs, along their strongest couplings, so that aggregates of up
  * to eight rows follow the directions in which stretched elements couple. The coarse matrix adds

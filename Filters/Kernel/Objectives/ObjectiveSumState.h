@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ObjectiveSumState.h
- * @brief What an ObjectiveSum holds. Internal: not installed.
+ * @brief What an ObjectiveSum holds.
+ * Internal: not installed.
  */
 #ifndef tautline_ObjectiveSumState_h
 #define tautline_ObjectiveSumState_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SmallBlocks.h
- * @brief Arithmetic of the small blocks of a matrix, row by row. Internal: not installed.
+ * @brief Arithmetic of the small blocks of a matrix, row by row.
+ * Internal: not installed.
  */
 #ifndef tautline_SmallBlocks_h
 #define tautline_SmallBlocks_h

@@ -2,7 +2,8 @@
 /**
  * @file AutomaticMethod.h
  * @brief Which methods move the points of a stage, and when Automatic goes over from one to
- * another. Internal: not installed.
+ * another.
+ * Internal: not installed.
  */
 #ifndef tautline_AutomaticMethod_h
 #define tautline_AutomaticMethod_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FlatParts.h
- * @brief Which points of a surface a method that moves all points at once may move. Internal: not
- * installed.
+ * @brief Which points of a surface a method that moves all points at once may move.
+ * Internal: not installed.
  */
 #ifndef tautline_FlatParts_h
 #define tautline_FlatParts_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HarmonicStart.h
- * @brief A start for Newton's method on stretched meshes. Internal: not installed.
+ * @brief A start for Newton's method on stretched meshes.
+ * Internal: not installed.
  */
 #ifndef tautline_HarmonicStart_h
 #define tautline_HarmonicStart_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file HoldingSweeps.h
- * @brief Sweeps that hold the worst element. Internal: not installed.
+ * @brief Sweeps that hold the worst element.
+ * Internal: not installed.
  */
 #ifndef tautline_HoldingSweeps_h
 #define tautline_HoldingSweeps_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ImproveWorst.h
- * @brief Improves the worst element at little cost to the mean. Internal: not installed.
+ * @brief Improves the worst element at little cost to the mean.
+ * Internal: not installed.
  */
 #ifndef tautline_ImproveWorst_h
 #define tautline_ImproveWorst_h

@@ -2,7 +2,8 @@
 /**
  * @file InvariantFunction.h
  * @brief A sum over simplices of a user's metric that depends on |T|^2 and det T alone, as a
- * function of one free vertex. Internal: not installed.
+ * function of one free vertex.
+ * Internal: not installed.
  */
 #ifndef tautline_InvariantFunction_h
 #define tautline_InvariantFunction_h

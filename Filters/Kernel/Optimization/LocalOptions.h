@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LocalOptions.h
- * @brief The terms and the options of the local sweeps. Internal: not installed.
+ * @brief The terms and the options of the local sweeps.
+ * Internal: not installed.
  */
 #ifndef tautline_LocalOptions_h
 #define tautline_LocalOptions_h

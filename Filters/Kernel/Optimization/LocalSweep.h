@@ -2,7 +2,8 @@
 /**
  * @file LocalSweep.h
  * @brief Sweeps over the free vertices that move one after the other, given where the others are by
- * then. Internal: not installed.
+ * then.
+ * Internal: not installed.
  */
 #ifndef tautline_LocalSweep_h
 #define tautline_LocalSweep_h

@@ -2,7 +2,8 @@
 /**
  * @file Minimize.h
  * @brief Minimizes a smooth function of many variables: nonlinear conjugate gradients, L-BFGS,
- * truncated Newton. Internal: not installed.
+ * truncated Newton.
+ * Internal: not installed.
  *
  * Every accepted step reduces the value (Armijo) and satisfies the weak Wolfe condition, for
  * conjugate gradients the strong one, unless largestStep() ends it before. Sources: J. Nocedal and

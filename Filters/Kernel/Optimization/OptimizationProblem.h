@@ -2,7 +2,8 @@
 /**
  * @file OptimizationProblem.h
  * @brief The state of an optimization: the moving points, the objectives on them, and their records
- * in the history. Internal: not installed.
+ * in the history.
+ * Internal: not installed.
  */
 #ifndef tautline_OptimizationProblem_h
 #define tautline_OptimizationProblem_h

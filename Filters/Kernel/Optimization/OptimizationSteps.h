@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptimizationSteps.h
- * @brief What moves the points of an optimization, and its history. Internal: not installed.
+ * @brief What moves the points of an optimization, and its history.
+ * Internal: not installed.
  */
 #ifndef tautline_OptimizationSteps_h
 #define tautline_OptimizationSteps_h

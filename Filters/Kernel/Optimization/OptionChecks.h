@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file OptionChecks.h
- * @brief What is wrong with the options of optimize(). Internal: not installed.
+ * @brief What is wrong with the options of optimize().
+ * Internal: not installed.
  */
 #ifndef tautline_OptionChecks_h
 #define tautline_OptionChecks_h

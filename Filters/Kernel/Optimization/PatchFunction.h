@@ -2,7 +2,8 @@
 /**
  * @file PatchFunction.h
  * @brief What one objective is as a function of one free vertex: in closed form where it is an
- * energy f(N, D), else through the metric's own evaluator. Internal: not installed.
+ * energy f(N, D), else through the metric's own evaluator.
+ * Internal: not installed.
  */
 #ifndef tautline_PatchFunction_h
 #define tautline_PatchFunction_h

@@ -2,7 +2,8 @@
 /**
  * @file QualityGuard.h
  * @brief Holds what an optimization must not make worse: the number of invalid elements, the worst
- * element, and the objective. Internal: not installed.
+ * element, and the objective.
+ * Internal: not installed.
  */
 #ifndef tautline_QualityGuard_h
 #define tautline_QualityGuard_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceLimit.h
- * @brief Keeps a surface whose vertices slide near to where it was. Internal: not installed.
+ * @brief Keeps a surface whose vertices slide near to where it was.
+ * Internal: not installed.
  */
 #ifndef tautline_SurfaceLimit_h
 #define tautline_SurfaceLimit_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceProjection.h
- * @brief The closest point of a surface mesh. Internal: not installed.
+ * @brief The closest point of a surface mesh.
+ * Internal: not installed.
  */
 #ifndef tautline_SurfaceProjection_h
 #define tautline_SurfaceProjection_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SurfaceSlides.h
- * @brief The points of a surface in space, moved all at once: kept on the surface. Internal: not
- * installed.
+ * @brief The points of a surface in space, moved all at once: kept on the surface.
+ * Internal: not installed.
  */
 #ifndef tautline_SurfaceSlides_h
 #define tautline_SurfaceSlides_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SweepControl.h
- * @brief When sweeps and other iterations end. Internal: not installed.
+ * @brief When sweeps and other iterations end.
+ * Internal: not installed.
  */
 #ifndef tautline_SweepControl_h
 #define tautline_SweepControl_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ValidityLevels.h
- * @brief How much of each element is valid. Internal: not installed.
+ * @brief How much of each element is valid.
+ * Internal: not installed.
  */
 #ifndef tautline_ValidityLevels_h
 #define tautline_ValidityLevels_h

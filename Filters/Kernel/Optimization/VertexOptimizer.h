@@ -2,7 +2,8 @@
 /**
  * @file VertexOptimizer.h
  * @brief Moves one free vertex so that the scalarized objective becomes smaller, given where the
- * others are. Internal: not installed.
+ * others are.
+ * Internal: not installed.
  */
 #ifndef tautline_VertexOptimizer_h
 #define tautline_VertexOptimizer_h

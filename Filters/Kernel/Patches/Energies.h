@@ -2,7 +2,8 @@
 /**
  * @file Energies.h
  * @brief Energies f(N, D) of a simplex, N = |T|^2 and D = det T (see SimplexMesh.h): what the fast
- * optimizers minimize. Internal: not installed.
+ * optimizers minimize.
+ * Internal: not installed.
  */
 #ifndef tautline_Energies_h
 #define tautline_Energies_h

@@ -2,7 +2,8 @@
 /**
  * @file SimplexMesh.h
  * @brief A mesh made ready for optimization: the simplices at the corners of its cells, renumbered
- * for the cache, with the patch of simplices around each free vertex. Internal: not installed.
+ * for the cache, with the patch of simplices around each free vertex.
+ * Internal: not installed.
  *
  * With T = A W^-1 of a simplex, N = |T|^2 is the sum of c_kl |x_k - x_l|^2 over its edges, and D =
  * det T a multiple of its volume. In one of its vertices N is quadratic (with a multiple of the

@@ -2,7 +2,8 @@
 /**
  * @file BondCut.h
  * @brief Which triangles interact where the mesh has holes, cracks or a boundary that is not
- * convex. Internal to the kernel: not installed.
+ * convex.
+ * Internal: not installed.
  *
  * A bond, the segment between two points that interact, is cut if it leaves the mesh: material on
  * both sides of a hole does not interact across it. That is decided for pairs of triangles as a

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FunctionSpace.h
- * @brief The basis functions of a nonlocal discretization. Internal to the kernel: not installed.
+ * @brief The basis functions of a nonlocal discretization.
+ * Internal: not installed.
  */
 #ifndef tautline_FunctionSpace_h
 #define tautline_FunctionSpace_h

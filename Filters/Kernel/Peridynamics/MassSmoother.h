@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MassSmoother.h
- * @brief An approximate inverse of a nonlocal matrix on waves shorter than the horizon. Internal to
- * the kernel: not installed.
+ * @brief An approximate inverse of a nonlocal matrix on waves shorter than the horizon.
+ * Internal: not installed.
  */
 #ifndef tautline_MassSmoother_h
 #define tautline_MassSmoother_h

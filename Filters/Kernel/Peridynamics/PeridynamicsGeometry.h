@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsGeometry.h
- * @brief Triangles with boxes around them, and the search for those near another. Internal to the
- * kernel: not installed.
+ * @brief Triangles with boxes around them, and the search for those near another.
+ * Internal: not installed.
  */
 #ifndef tautline_PeridynamicsGeometry_h
 #define tautline_PeridynamicsGeometry_h

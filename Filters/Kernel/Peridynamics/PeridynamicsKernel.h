@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsKernel.h
- * @brief A radial kernel and its radial integrals. Internal to the kernel: not installed.
+ * @brief A radial kernel and its radial integrals.
+ * Internal: not installed.
  */
 #ifndef tautline_PeridynamicsKernel_h
 #define tautline_PeridynamicsKernel_h

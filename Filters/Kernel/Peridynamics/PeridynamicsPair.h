@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsPair.h
- * @brief The bilinear form over one pair of triangles, to a tolerance. Internal to the kernel: not
- * installed.
+ * @brief The bilinear form over one pair of triangles, to a tolerance.
+ * Internal: not installed.
  */
 #ifndef tautline_PeridynamicsPair_h
 #define tautline_PeridynamicsPair_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PeridynamicsRanks.h
- * @brief How ranks share the rows of a nonlocal matrix. Internal to the kernel: not installed.
+ * @brief How ranks share the rows of a nonlocal matrix.
+ * Internal: not installed.
  */
 #ifndef tautline_PeridynamicsRanks_h
 #define tautline_PeridynamicsRanks_h

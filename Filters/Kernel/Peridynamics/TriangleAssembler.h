@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleAssembler.h
- * @brief What the two discretizations of the peridynamic integrals share. Internal to the kernel:
- * not installed.
+ * @brief What the two discretizations of the peridynamic integrals share.
+ * Internal: not installed.
  */
 #ifndef tautline_TriangleAssembler_h
 #define tautline_TriangleAssembler_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Perturber.h
- * @brief The state of a random motion of the points of a mesh. Internal: not installed.
+ * @brief The state of a random motion of the points of a mesh.
+ * Internal: not installed.
  */
 #ifndef tautline_Perturber_h
 #define tautline_Perturber_h

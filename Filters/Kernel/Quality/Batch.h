@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Batch.h
- * @brief Evaluation of one metric on batches of cells of one type. Internal: not installed.
+ * @brief Evaluation of one metric on batches of cells of one type.
+ * Internal: not installed.
  */
 #ifndef tautline_Batch_h
 #define tautline_Batch_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CombineCorners.h
- * @brief The value of a cell from those of its corners. Internal: not installed.
+ * @brief The value of a cell from those of its corners.
+ * Internal: not installed.
  */
 #ifndef tautline_CombineCorners_h
 #define tautline_CombineCorners_h

@@ -2,6 +2,7 @@
 /**
  * @file CriteriaPresets.h
  * @brief The texts of the preset criteria.
+ * Internal: not installed.
  *
  * The limits `warn` and `fail` are those of the source given; `ideal` is the value of the ideal
  * element, and `good` and `worst`, which have an effect on the quality index only, are chosen here.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementSum.h
- * @brief Sums a function of a metric over the elements of a mesh, with its gradient. Internal: not
- * installed.
+ * @brief Sums a function of a metric over the elements of a mesh, with its gradient.
+ * Internal: not installed.
  *
  * The elements are cut into chunks and the chunks coloured: those of one colour share no vertex, so
  * that threads add to the gradient without locks and in an order that depends on the mesh only.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file JudgedValues.h
- * @brief The values of a metric by which the worst element is found. Internal: not installed.
+ * @brief The values of a metric by which the worst element is found.
+ * Internal: not installed.
  */
 #ifndef tautline_JudgedValues_h
 #define tautline_JudgedValues_h

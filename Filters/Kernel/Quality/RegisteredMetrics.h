@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RegisteredMetrics.h
- * @brief The list of all metrics, built-in and registered. Internal: not installed.
+ * @brief The list of all metrics, built-in and registered.
+ * Internal: not installed.
  */
 #ifndef tautline_RegisteredMetrics_h
 #define tautline_RegisteredMetrics_h

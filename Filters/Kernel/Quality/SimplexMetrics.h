@@ -3,6 +3,7 @@
  * @file SimplexMetrics.h
  * @brief Metrics of triangles and tetrahedra that are functions of their edge lengths, face areas
  * and signed size.
+ * Internal: not installed.
  *
  * The invariants are the squared edge lengths (in the order of CellTopology::edgeNodes), in 3D the
  * squared areas of the faces (face i opposite vertex i), and the signed area or volume; a metric is

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TargetCorner.h
- * @brief The Jacobians at the corners of a batch of elements, relative to their targets. Internal:
- * not installed.
+ * @brief The Jacobians at the corners of a batch of elements, relative to their targets.
+ * Internal: not installed.
  */
 #ifndef tautline_TargetCorner_h
 #define tautline_TargetCorner_h

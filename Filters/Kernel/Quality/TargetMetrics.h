@@ -2,6 +2,7 @@
 /**
  * @file TargetMetrics.h
  * @brief Metrics that are functions of T = A W^-1 at the corners of a cell.
+ * Internal: not installed.
  *
  * A is the corner Jacobian, W that of the ideal (or another target) cell: T = I if the corner is
  * that of the target. Every metric here depends on T through four invariants,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file RankExchange.h
- * @brief Lists sent from every MPI rank to every other, and agreement on errors. Not a public
- * header.
+ * @brief Lists sent from every MPI rank to every other, and agreement on errors.
+ * Internal: not installed.
  */
 #ifndef tautline_RankExchange_h
 #define tautline_RankExchange_h

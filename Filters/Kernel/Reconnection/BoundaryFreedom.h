@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file BoundaryFreedom.h
- * @brief What the points of the boundary and of interfaces may do. Internal: not installed.
+ * @brief What the points of the boundary and of interfaces may do.
+ * Internal: not installed.
  */
 #ifndef tautline_BoundaryFreedom_h
 #define tautline_BoundaryFreedom_h

@@ -2,7 +2,8 @@
 /**
  * @file CavityOperations.h
  * @brief The operations of reconnection on a mesh, each accepted only if it improves the
- * tetrahedra it affects. Internal: not installed.
+ * tetrahedra it affects.
+ * Internal: not installed.
  *
  * Qualities of the affected tetrahedra are compared in increasing order, before and after: the
  * first that differs decides. So the smallest quality of the mesh never becomes smaller. Neither do

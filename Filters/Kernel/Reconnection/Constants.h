@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Constants.h
- * @brief What the reconnection of tetrahedra and that of triangles have in common. Internal: not
- * installed.
+ * @brief What the reconnection of tetrahedra and that of triangles have in common.
+ * Internal: not installed.
  */
 #ifndef tautline_ReconnectionConstants_h
 #define tautline_ReconnectionConstants_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file CuttingFrames.h
- * @brief Directions of the planes that cut a mesh into blocks, and where a plane is. Internal: not
- * installed.
+ * @brief Directions of the planes that cut a mesh into blocks, and where a plane is.
+ * Internal: not installed.
  */
 #ifndef tautline_CuttingFrames_h
 #define tautline_CuttingFrames_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file EdgeMetric.h
- * @brief The metric in which edges have the length 1, of each point. Internal: not installed.
+ * @brief The metric in which edges have the length 1, of each point.
+ * Internal: not installed.
  */
 #ifndef tautline_EdgeMetric_h
 #define tautline_EdgeMetric_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FacetBound.h
- * @brief What a facet that stays allows: the best quality of a tetrahedron on it. Internal: not
- * installed.
+ * @brief What a facet that stays allows: the best quality of a tetrahedron on it.
+ * Internal: not installed.
  */
 #ifndef tautline_FacetBound_h
 #define tautline_FacetBound_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MeshBlocks.h
- * @brief A large mesh cut into blocks that are changed independently, and joined again. Internal:
- * not installed.
+ * @brief A large mesh cut into blocks that are changed independently, and joined again.
+ * Internal: not installed.
  *
  * A block is a mesh of its own: its tetrahedra, and as a wall the tetrahedra that they meet in the
  * rest of the mesh (OutsideRegion). The points of the latter are fixed, so that the faces

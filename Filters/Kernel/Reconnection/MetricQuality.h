@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file MetricQuality.h
- * @brief A metric of the registry as the quality that reconnection maximizes. Internal: not
- * installed.
+ * @brief A metric of the registry as the quality that reconnection maximizes.
+ * Internal: not installed.
  */
 #ifndef tautline_MetricQuality_h
 #define tautline_MetricQuality_h

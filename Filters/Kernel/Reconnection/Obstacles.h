@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Obstacles.h
- * @brief Why tetrahedra are still below the target, and what the walls force. Internal: not
- * installed.
+ * @brief Why tetrahedra are still below the target, and what the walls force.
+ * Internal: not installed.
  */
 #ifndef tautline_Obstacles_h
 #define tautline_Obstacles_h

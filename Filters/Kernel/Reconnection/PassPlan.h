@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PassPlan.h
- * @brief Which passes a run of reconnection consists of. Internal: not installed.
+ * @brief Which passes a run of reconnection consists of.
+ * Internal: not installed.
  */
 #ifndef tautline_PassPlan_h
 #define tautline_PassPlan_h

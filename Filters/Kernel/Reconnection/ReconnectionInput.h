@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ReconnectionInput.h
- * @brief Checks the input of reconnection, and converts it. Internal: not installed.
+ * @brief Checks the input of reconnection, and converts it.
+ * Internal: not installed.
  */
 #ifndef tautline_ReconnectionInput_h
 #define tautline_ReconnectionInput_h

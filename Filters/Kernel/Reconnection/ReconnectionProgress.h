@@ -2,7 +2,8 @@
 /**
  * @file ReconnectionProgress.h
  * @brief What runs on tetrahedra and on triangles have in common: the clock, the observer and the
- * history; the queue of the worst cells; the sweeps for the mean. Internal: not installed.
+ * history; the queue of the worst cells; the sweeps for the mean.
+ * Internal: not installed.
  */
 #ifndef tautline_ReconnectionProgress_h
 #define tautline_ReconnectionProgress_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronMesh.h
- * @brief A tetrahedral mesh whose connectivity changes. Internal: not installed.
+ * @brief A tetrahedral mesh whose connectivity changes.
+ * Internal: not installed.
  *
  * Every change replaces the tetrahedra of a cavity by others with the same outer faces. It is
  * checked before anything is touched: a replacement that does not fit leaves the mesh as it was.

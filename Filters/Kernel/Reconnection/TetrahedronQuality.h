@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TetrahedronQuality.h
- * @brief The quality that reconnection maximizes, of one tetrahedron. Internal: not installed.
+ * @brief The quality that reconnection maximizes, of one tetrahedron.
+ * Internal: not installed.
  *
  * q = min(smallest sine of the six dihedral angles, (mean ratio)^(3/2)), 1 for the regular
  * tetrahedron, at most 0 for one that is degenerate or inverted. With d = 6 V, an edge of length l

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleInput.h
- * @brief Checks the input of the reconnection of triangles, and converts it. Internal: not
- * installed.
+ * @brief Checks the input of the reconnection of triangles, and converts it.
+ * Internal: not installed.
  */
 #ifndef tautline_TriangleInput_h
 #define tautline_TriangleInput_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleMesh.h
- * @brief A triangle mesh whose connectivity changes. Internal: not installed.
+ * @brief A triangle mesh whose connectivity changes.
+ * Internal: not installed.
  *
  * Every triangle knows its three neighbours and every point one of its triangles, so that the
  * triangles around an edge are found in constant time, those around a point in their number. Edges

@@ -2,7 +2,8 @@
 /**
  * @file TriangleOperations.h
  * @brief The operations of the reconnection of triangles, each accepted only if it improves the
- * triangles it affects. Internal: not installed.
+ * triangles it affects.
+ * Internal: not installed.
  *
  * Qualities of the affected triangles are compared in increasing order, before and after: the first
  * that differs decides. Operations return whether the mesh changed; changed() then lists the

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleQuality.h
- * @brief The quality that reconnection maximizes, of one triangle. Internal: not installed.
+ * @brief The quality that reconnection maximizes, of one triangle.
+ * Internal: not installed.
  *
  * q is the sine of the smallest angle: with D twice the area and edges of lengths u >= v >= w,
  * q = D / (u v). It is sqrt(3) / 2 for the regular triangle, 0 for a degenerate one, and negative

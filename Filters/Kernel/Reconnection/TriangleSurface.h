@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleSurface.h
- * @brief The surface that a changing triangle mesh stays on: that of the input. Internal: not
- * installed.
+ * @brief The surface that a changing triangle mesh stays on: that of the input.
+ * Internal: not installed.
  */
 #ifndef tautline_TriangleSurface_h
 #define tautline_TriangleSurface_h

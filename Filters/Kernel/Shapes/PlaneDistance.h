@@ -2,6 +2,7 @@
 /**
  * @file PlaneDistance.h
  * @brief The distance of two points of an image.
+ * Internal: not installed.
  */
 #ifndef tautline_PlaneDistance_h
 #define tautline_PlaneDistance_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeDescriptors.h
- * @brief Descriptors of the surroundings of points in a silhouette. Internal to the kernel: not
- * installed.
+ * @brief Descriptors of the surroundings of points in a silhouette.
+ * Internal: not installed.
  */
 #ifndef tautline_ShapeDescriptors_h
 #define tautline_ShapeDescriptors_h

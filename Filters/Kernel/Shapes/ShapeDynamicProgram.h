@@ -2,7 +2,7 @@
 /**
  * @file ShapeDynamicProgram.h
  * @brief The placement of a polygon of minimum energy, by dynamic programming over its triangles.
- * Internal to the kernel: not installed.
+ * Internal: not installed.
  */
 #ifndef tautline_ShapeDynamicProgram_h
 #define tautline_ShapeDynamicProgram_h

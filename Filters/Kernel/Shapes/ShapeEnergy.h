@@ -2,9 +2,9 @@
 /**
  * @file ShapeEnergy.h
  * @brief The energy of one triangle of a shape match, for a packet of places of its last vertex.
- *
- * Internal to the kernel: not installed. triangleEnergy() in ShapeModel.h is the same in doubles
+ * triangleEnergy() in ShapeModel.h is the same in doubles
  * and by another route.
+ * Internal: not installed.
  */
 #ifndef tautline_ShapeEnergy_h
 #define tautline_ShapeEnergy_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ShapeTarget.h
- * @brief The tables that a target prepares for its matches. Internal to the kernel: not installed.
+ * @brief The tables that a target prepares for its matches.
+ * Internal: not installed.
  */
 #ifndef tautline_ShapeTarget_h
 #define tautline_ShapeTarget_h

@@ -2,7 +2,7 @@
 /**
  * @file ExtremeEigenvalues.h
  * @brief The smallest and the largest eigenvalue of A, or of P^-1 A, for a matrix that PETSc holds.
- * Not a public header.
+ * Internal: not installed.
  */
 #ifndef tautline_ExtremeEigenvalues_h
 #define tautline_ExtremeEigenvalues_h

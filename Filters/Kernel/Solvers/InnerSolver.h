@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file InnerSolver.h
- * @brief A cycle of multigrid or a factorization of PETSc inside a method of Tautline's own. Not a
- * public header.
+ * @brief A cycle of multigrid or a factorization of PETSc inside a method of Tautline's own.
+ * Internal: not installed.
  */
 #ifndef tautline_InnerSolver_h
 #define tautline_InnerSolver_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file LinearSolverState.h
- * @brief PETSc's objects and the state of a LinearSolver. Not a public header.
+ * @brief PETSc's objects and the state of a LinearSolver.
+ * Internal: not installed.
  */
 #ifndef tautline_LinearSolverState_h
 #define tautline_LinearSolverState_h

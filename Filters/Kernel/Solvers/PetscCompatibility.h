@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscCompatibility.h
- * @brief What differs between PETSc 3.18 and 3.25, in one place. Not a public header.
+ * @brief What differs between PETSc 3.18 and 3.25, in one place.
+ * Internal: not installed.
  */
 #ifndef tautline_PetscCompatibility_h
 #define tautline_PetscCompatibility_h

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscObjects.h
- * @brief PETSc's matrix of a linear system, how this rank's unknowns map to it, and options. Not a
- * public header.
+ * @brief PETSc's matrix of a linear system, how this rank's unknowns map to it, and options.
+ * Internal: not installed.
  *
  * Whoever uses these objects holds a PetscScope of their database.
  */

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file PetscOptionRules.h
- * @brief Which options of PETSc a user may give as text. Not a public header.
+ * @brief Which options of PETSc a user may give as text.
+ * Internal: not installed.
  *
  * The text is read here, before PETSc sees it. Permitted are the options that choose and tune
  * Krylov methods, preconditioners and eigensolvers: those of a table, for the solver itself or,

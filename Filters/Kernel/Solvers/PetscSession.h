@@ -2,8 +2,8 @@
 /**
  * @file PetscSession.h
  * @brief PETSc inside a process that may use it, too: initialized at first use, one thread at a
- * time, with options and an error handler that leave those of other users alone. Not a public
- * header.
+ * time, with options and an error handler that leave those of other users alone.
+ * Internal: not installed.
  */
 #ifndef tautline_PetscSession_h
 #define tautline_PetscSession_h

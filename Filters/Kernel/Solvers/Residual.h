@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Residual.h
- * @brief What a vector leaves of a linear system. Not a public header.
+ * @brief What a vector leaves of a linear system.
+ * Internal: not installed.
  */
 #ifndef tautline_Residual_h
 #define tautline_Residual_h

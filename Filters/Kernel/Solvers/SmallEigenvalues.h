@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SmallEigenvalues.h
- * @brief Eigenvalues of matrices as small as those of elements. Not a public header.
+ * @brief Eigenvalues of matrices as small as those of elements.
+ * Internal: not installed.
  */
 #ifndef tautline_SmallEigenvalues_h
 #define tautline_SmallEigenvalues_h

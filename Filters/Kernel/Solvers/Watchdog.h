@@ -2,7 +2,8 @@
 /**
  * @file Watchdog.h
  * @brief Work that cannot be interrupted, under a time limit: it runs in a thread of its own while
- * the caller waits for it, and the caller may stop waiting. Not a public header.
+ * the caller waits for it, and the caller may stop waiting.
+ * Internal: not installed.
  *
  * There is one such thread, started at first use; work is done in the order of the calls. Work that
  * nobody waits for any more goes on in the background until it ends by itself; what is given later

@@ -2,7 +2,8 @@
 /**
  * @file GlobalDescent.h
  * @brief Limited-memory BFGS on all free vertices of a tangled mesh, preconditioned by the Hessian
- * blocks of the vertices. Internal: not installed.
+ * blocks of the vertices.
+ * Internal: not installed.
  */
 #ifndef tautline_GlobalDescent_h
 #define tautline_GlobalDescent_h

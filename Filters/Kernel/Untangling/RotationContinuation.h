@@ -2,7 +2,8 @@
 /**
  * @file RotationContinuation.h
  * @brief A start for untangling a mesh around holes that were rotated: there, energies lead into a
- * fold where the elements should wind around the hole. Internal: not installed.
+ * fold where the elements should wind around the hole.
+ * Internal: not installed.
  */
 #ifndef tautline_RotationContinuation_h
 #define tautline_RotationContinuation_h

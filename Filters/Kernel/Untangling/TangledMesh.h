@@ -2,7 +2,8 @@
 /**
  * @file TangledMesh.h
  * @brief A SimplexMesh with the simplices that are not valid, and the moves of one vertex that make
- * more of them valid. Internal: not installed.
+ * more of them valid.
+ * Internal: not installed.
  */
 #ifndef tautline_TangledMesh_h
 #define tautline_TangledMesh_h

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file Unfold.h
- * @brief Makes hexahedra and wedges valid between their corners. Internal: not installed.
+ * @brief Makes hexahedra and wedges valid between their corners.
+ * Internal: not installed.
  *
  * The other phases of untangling see the corners only. Here the smallest determinant of an element
  * that is not valid is raised, along its gradient by the free vertices of the element, with steps

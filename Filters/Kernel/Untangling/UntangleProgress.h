@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file UntangleProgress.h
- * @brief The history, the observer and the time limit of an untangling. Internal: not installed.
+ * @brief The history, the observer and the time limit of an untangling.
+ * Internal: not installed.
  */
 #ifndef tautline_UntangleProgress_h
 #define tautline_UntangleProgress_h

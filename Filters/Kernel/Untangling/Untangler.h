@@ -2,7 +2,8 @@
 /**
  * @file Untangler.h
  * @brief The phases of untangling: sweeps around the inverted simplices; all vertices at once;
- * holes that were rotated. Internal: not installed.
+ * holes that were rotated.
+ * Internal: not installed.
  */
 #ifndef tautline_Untangler_h
 #define tautline_Untangler_h
