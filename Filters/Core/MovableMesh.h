@@ -11,6 +11,7 @@
 
 #include "MeshAdapter.h"
 #include "Redistribution.h"
+#include "tautline/Mesh/Ranks.h"
 
 #include <memory>
 #include <string>

@@ -7,6 +7,8 @@ ParaView or Qt. Of the VTK modules only Core may be a dependency of the others.
 Inside the kernel: a room (a folder of Filters/Kernel) includes rooms of lower floors only, the sources Name.h and
 Name.cxx that include each other form no circle with others, and only the rooms of the library TautlineSolvers include
 PETSc, SLEPc and MPI.
+
+No two headers define a class of the same name in the namespace tautline: a library that has both would mix them up.
 """
 
 import re
@@ -37,6 +39,8 @@ SOLVERS = {"Ranks", "Solvers", "Elliptic", "Peridynamics", "Deformation"}
 PARALLEL = re.compile(r"(petsc|slepc|mpi)", re.IGNORECASE)
 ROOM_INCLUDE = re.compile(r"tautline/(\w+)/(\w+)\.h")
 SHARED_MODULES = {"Tautline::Core"}
+#: A definition outside of classes; specializations of templates have their arguments behind the name.
+DEFINED = re.compile(r"^(?:class|struct|enum class)(?: TAUTLINE\w*_EXPORT)? (\w+)(?: final)?(?: : [^;\n]*)?$", re.MULTILINE)
 
 
 def layer(path: Path) -> str:
@@ -113,12 +117,22 @@ def reachable(graph: dict[str, set[str]], start: str) -> set[str]:
     return found
 
 
+def check_names(top: Path) -> Iterator[str]:
+    found: dict[str, list[str]] = {}
+    for path in (p for d in ("Filters", "Readers", "Plugin") for p in sources(top / d) if p.suffix == ".h"):
+        for name in set(DEFINED.findall(path.read_text())):
+            found.setdefault(name, []).append(path.relative_to(top).as_posix())
+    for name, places in found.items():
+        if len(places) > 1:
+            yield f"{' and '.join(places)} define {name}; give one another name"
+
+
 def main(top: Path) -> int:
     kernel = top / "Filters" / "Kernel"
-    wrong = [*check_layers(top), *check_modules(top), *check_rooms(kernel), *check_circles(kernel)]
+    wrong = [*check_layers(top), *check_modules(top), *check_rooms(kernel), *check_circles(kernel), *check_names(top)]
     print("\n".join(wrong))
     count = len(sources(top / "Filters")) + len(sources(top / "Readers"))
-    print(f"{count} files, {len(wrong)} wrong includes")
+    print(f"{count} files, {len(wrong)} wrong includes or names")
     return 1 if wrong or not count else 0
 
 
