@@ -54,6 +54,7 @@ private:
   DistributedMesh& local() { return this->Whole.distributed(); }
   bool here() const { return this->Piece.input->GetNumberOfPoints() > 0; }
   Index countOwned(const PointFlags& flags) { return tautline::countOwned(this->local(), flags); }
+  Index countInvalid(const std::vector<double>& points);
   void requireElements();
   PointFlags chosenToMove();
   PointFlags staying();

@@ -13,7 +13,7 @@
 namespace tautline
 {
 /// The axes. Places with the same coordinate along one are told apart by their others.
-struct AxisFrame
+struct TAUTLINE_KERNEL_EXPORT AxisFrame
 {
   bool before(int direction, const Vec3& a, const Vec3& b) const;
   double extent(
