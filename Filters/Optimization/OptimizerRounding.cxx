@@ -57,8 +57,10 @@ RoundedResult OptimizerSetup::measureAt(const std::vector<double>& points,
     const Mesh local = this->TheMesh.local();
     Mesh there = local.at(points.data());
     there.setSpace(local.space());
-    return measureRounded(local, validityOf(local, this->Options.threads), this->Options, result,
-      there, this->TheMesh.division());
+    RoundedResult rounded = measureRounded(local, validityOf(local, this->Options.threads),
+      this->Options, result, there, this->TheMesh.division());
+    rounded.elements = {}; // not of the cells of the input
+    return rounded;
   }
   Mesh there = this->start().at(points.data());
   there.setSpace(this->start().space());

@@ -195,9 +195,8 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
     mesh.fixBoundary();
   }
 
-  tautline::UntangleResult result =
-    tautline::untangle(mesh.inPieces() ? mesh.local() : mesh.mesh(),
-      this->GetOptions(mesh.fixed().data(), block.number), mesh.division());
+  tautline::UntangleResult result = tautline::untangle(mesh.inPieces() ? mesh.local() : mesh.mesh(),
+    this->GetOptions(mesh.fixed().data(), block.number), mesh.division());
   this->HaveBest();
   std::string unsettled;
   result.points = mesh.settle(result.points, unsettled);

@@ -5,7 +5,7 @@ pages of ParaView's help with their table of contents.
 python3 make_pages.py BUILD [--write]    checks that the tables of the pages are those of the build tree's XML;
                                          --write inserts them
 python3 make_pages.py --help-pages OUTPUT XML...    the pages for ParaView's help, with the tables of these XML files
-python3 make_pages.py --contents FILE XML...        the table of contents of the help: the pages in the order of index.html
+python3 make_pages.py --contents FILE XML...        the table of contents: the pages in the order of index.html
 
 A page has a table between the comments <!-- properties: filters.ElementQuality --> and <!-- end of properties -->.
 ParaView's button ? opens the page named after the proxy, here filters.ElementQuality.html. So the help has each page
@@ -23,7 +23,9 @@ HERE = Path(__file__).resolve().parent
 PLACE = re.compile(r"(<!-- properties: (\S+) -->\n)(.*?)(<!-- end of properties -->)", re.DOTALL)
 LINK = re.compile(r'(href=")([\w.]+\.html)')
 IN_TREE = re.compile(r'<a href="\.\./\.\./([^"]+)">[^<]*</a>')  # files that the help does not have
-MENU = re.compile(r'<tr><td>(\w+) &gt; Tautline &gt; <a href="([^"]+)">([^<]+)</a></td>\n<td>(.*?)</td></tr>', re.DOTALL)
+MENU = re.compile(
+    r'<tr><td>(\w+) &gt; Tautline &gt; <a href="([^"]+)">([^<]+)</a></td>\n<td>(.*?)</td></tr>', re.DOTALL
+)
 TITLE = re.compile(r"<title>(.*?)(?: - Tautline)?</title>")
 FILTERS = HERE.parent / "Site" / "filters.md"
 ROWS = re.compile(r"(<!-- filters -->\n).*?(?=<!-- end of filters -->)", re.DOTALL)

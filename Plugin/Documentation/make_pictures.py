@@ -367,6 +367,21 @@ def gmsh_files():
     return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
 
 
+def abaqus_files():
+    view = new_view(OBLIQUE)
+    draw(sample("beam.inp"), view, "LOADED", light=LIT)
+    return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
+
+
+def nastran_files():
+    view = new_view()
+    ring = sample("ring.bdf")
+    ring.UpdatePipeline()
+    draw(ring, view, "Reference")
+    values("Reference", *ring.CellData["Reference"].GetRange())
+    return side_by_side(fit(view, 1.1), size=(360, HEIGHT))
+
+
 def medit_files():
     view = new_view(OBLIQUE)
     draw(simple.Shrink(Input=sample("zoo.mesh"), ShrinkFactor=0.9), view, light=LIT)
@@ -390,7 +405,7 @@ PICTURES = (
     element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, untangle_mesh, warp_mesh, perturb_mesh,
     compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde, condition_estimator,
     solver_study, peridynamic_condition, interaction_layer, horizon_neighbors, silhouette_to_mesh, match_shape,
-    shape_retrieval, silhouette_list, gmsh_files, medit_files, off_files, tetgen_files,
+    shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files, medit_files, off_files, tetgen_files,
 )  # fmt: skip
 
 

@@ -3,8 +3,9 @@
 
 The .qch file is an SQLite data base; a file's data are compressed, after four bytes with their length. ParaView's
 button ? opens the page group.name.html of a proxy: each proxy of the XML files has one, made from a page in
-DOCUMENTATION, with every property. HELP is the directory of the made pages, beside the table of contents toc.xml. No page
-of the help has a dead link, and each is in the table of contents, which lists what index.html links. QCH is - where ParaView builds no help of plugins (Qt 6).
+DOCUMENTATION, with every property. HELP is the directory of the made pages, beside the table of contents toc.xml. No
+page of the help has a dead link, and each is in the table of contents, which lists what index.html links. QCH is -
+where ParaView builds no help of plugins (Qt 6).
 """
 
 import html
@@ -69,7 +70,8 @@ def main(documentation: Path, made: Path, help_file: Path, xmls: list) -> int:
         wrong += dead_links(name, text, files)
     listed = {name for name in pages if name.encode("utf-16-be") in contents}
     same = {name: {other for other in pages if pages[other] == text} for name, text in pages.items()}
-    wrong += [f"{name} is not in the table of contents: index.html has no link to it" for name in pages if not same[name] & listed]
+    unlisted = [name for name in pages if not same[name] & listed]
+    wrong += [f"{name} is not in the table of contents: index.html has no link to it" for name in unlisted]
     references = re.findall('ref="([^"]+)"', (made.parent / "toc.xml").read_text())
     wrong += [f"toc.xml: there is no {name}" for name in references if name not in files]
     wrong += [f"{name} is too wide" for name, data in files.items() if name.endswith(".png") and width(data) > WIDEST]

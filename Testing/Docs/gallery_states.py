@@ -14,7 +14,8 @@ import tautline as tl
 from gallery_arrays import differences, parts_of, state_of
 from paraview import servermanager, simple
 
-simple.LoadPlugin(sys.argv[1], remote=False, ns=globals())
+NAMES = dict(vars(simple))  # and those of the plugin's proxies
+simple.LoadPlugin(sys.argv[1], remote=False, ns=NAMES)
 LEAST = 20  # examples that are shown in ParaView
 MOST_BYTES = 40_000  # of a picture
 EXAMPLES = 30  # at least
@@ -44,7 +45,7 @@ def shown(source):
 def check(script: Path, output: Path) -> list[str]:
     """What is wrong with the state of an example."""
     title, _, lines = parts_of(script.read_text(encoding="utf-8"))
-    names = {**vars(simple)}
+    names = {**NAMES}
     os.chdir(output)
     exec(state_of(title, lines["State"][0]), names)
     if (output / "study.csv").exists():

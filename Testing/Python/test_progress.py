@@ -75,6 +75,23 @@ def written(extension, mesh):
     return str(file)
 
 
+def deck(extension, mesh, lines):
+    """A file of cards: `lines` has a format of points and one of tetrahedra, and what stands before each."""
+    data = servermanager.Fetch(mesh)
+    points = [data.GetPoint(p) for p in range(data.GetNumberOfPoints())]
+    cells = [[data.GetCell(c).GetPointId(i) + 1 for i in range(4)] for c in range(data.GetNumberOfCells())]
+    before_points, point, before_cells, cell = lines
+    text = [before_points, *(point.format(i, *x) for i, x in enumerate(points, 1))]
+    text += [before_cells, *(cell.format(i, *nodes) for i, nodes in enumerate(cells, 1))]
+    file = OUT / f"progress{extension}"
+    file.write_text("\n".join(text) + "\n")
+    return str(file)
+
+
+ABAQUS = ("*NODE", "{}, {}, {}, {}", "*ELEMENT, TYPE=C3D4", "{}, {}, {}, {}, {}")
+NASTRAN = ("BEGIN BULK", "GRID,{},,{},{},{}", "$", "CTETRA,{},1,{},{},{},{}")
+
+
 def cases():
     """Inputs that take long enough: group, name, inputs, settings."""
     cube = grid(15)
@@ -90,6 +107,8 @@ def cases():
     for extension, name in {**readers, ".off": "TautlineOffReader"}.items():
         file = written(extension, triangles if extension == ".off" else cube)
         yield "sources", name, {}, {"FileNames": [file]}
+    yield "sources", "ABAQUSReader", {}, {"FileNames": [deck(".inp", cube, ABAQUS)]}
+    yield "sources", "AnyNastranReader", {}, {"FileNames": [deck(".bdf", cube, NASTRAN)]}
     yield "sources", "SilhouetteSetReader", {}, {"FileName": str(DATA / "silhouettes.csv")}
     yield "filters", "ElementQuality", {"Input": cube}, {}
     yield "filters", "MeshComparison", {"Input": cube, "Other": cube}, {}

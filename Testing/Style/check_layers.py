@@ -40,7 +40,9 @@ PARALLEL = re.compile(r"(petsc|slepc|mpi)", re.IGNORECASE)
 ROOM_INCLUDE = re.compile(r"tautline/(\w+)/(\w+)\.h")
 SHARED_MODULES = {"Tautline::Core"}
 #: A definition outside of classes; specializations of templates have their arguments behind the name.
-DEFINED = re.compile(r"^(?:class|struct|enum class)(?: TAUTLINE\w*_EXPORT)? (\w+)(?: final)?(?: : [^;\n]*)?$", re.MULTILINE)
+DEFINED = re.compile(
+    r"^(?:class|struct|enum class)(?: TAUTLINE\w*_EXPORT)? (\w+)(?: final)?(?: : [^;\n]*)?$", re.MULTILINE
+)
 
 
 def layer(path: Path) -> str:

@@ -44,8 +44,9 @@ from ._state import StateResult, run_state
 __version__ = _build.VERSION
 
 __all__ = [
-    "CompareResult", "compare", "Aborted", "Error", "MissingKey", "Mesh", "read", "write", "from_arrays", "MetricFieldResult",
-    "metric_field", "load_metrics", "metrics", "register_metric", "unregister_metric", "QualityResult", "criteria",
+    "CompareResult", "compare", "Aborted", "Error", "MissingKey", "Mesh", "read", "write", "from_arrays",
+    "MetricFieldResult", "metric_field", "load_metrics", "metrics", "register_metric", "unregister_metric",
+    "QualityResult", "criteria",
     "quality", "ReportResult", "report", "StepsResult", "run_steps", "StateResult", "run_state",
     "formats", "times", "to_meshio",
 ]
