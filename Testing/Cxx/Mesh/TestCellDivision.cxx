@@ -2,7 +2,7 @@
 // Cells that ranks send each other: each goes to one rank, with its points, and so do ghosts;
 // values go to the parts and back to the pieces.
 #include "Registry.h"
-#include "MovingOnRanks.h"
+#include "MovingRanks.h"
 
 #include "tautline/Mesh/CellDivision.h"
 

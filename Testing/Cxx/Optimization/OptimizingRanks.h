@@ -6,7 +6,7 @@
 #ifndef tautline_OptimizingRanks_h
 #define tautline_OptimizingRanks_h
 
-#include "MovingOnRanks.h"
+#include "MovingRanks.h"
 #include "Optimizing.h"
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Optimization/Optimize.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file MovingOnRanks.h
+ * @file MovingRanks.h
  * @brief What moves the points of a mesh on ranks that are threads, for tests.
  */
-#ifndef tautline_MovingOnRanks_h
-#define tautline_MovingOnRanks_h
+#ifndef tautline_MovingRanks_h
+#define tautline_MovingRanks_h
 
 #include "Check.h"
 #include "ThreadRanks.h"
