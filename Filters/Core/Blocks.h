@@ -107,7 +107,7 @@ TAUTLINECORE_EXPORT vtkDataArray* chosenArray(vtkAlgorithm* algorithm, int index
 /// cell array. @param array null: none
 TAUTLINECORE_EXPORT void markPoints(
   const MeshView& view, vtkDataArray* array, bool ofCells, std::vector<unsigned char>& flags);
-/// Flags the points that markSelected() found, and those of the cells it found; null: none.
+/// Flags the points that markSelected() found, and the points of the cells it found; null: none.
 TAUTLINECORE_EXPORT void markPoints(
   const MeshView& view, vtkDataSet* selected, std::vector<unsigned char>& flags);
 

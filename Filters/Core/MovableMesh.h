@@ -54,7 +54,7 @@ TAUTLINECORE_EXPORT std::string gatheredSentence(const std::string& why);
  * are copies. Points with the same coordinates are one, or, with mergePoints off, those with the
  * same global id. Copies of a point with the same global id whose places differ by rounding are
  * one, too, and get one place, see joinCopies(). All methods but const accessors are then
- * collective. The reproducible order of one process is that of one piece.
+ * collective. The reproducible order of one process is the order of one piece.
  */
 class TAUTLINECORE_EXPORT MovableMesh
 {
@@ -141,7 +141,7 @@ public:
   /// Marks points with a value other than 0 in a point array, or of cells with one in a cell array.
   /// @param array null: none
   void fix(vtkDataArray* array, bool ofCells);
-  /// Marks the points that markSelected() found, and those of the cells it found; null: none.
+  /// Marks the points that markSelected() found, and the points of the cells it found; null: none.
   void fixSelected(vtkDataSet* selected);
   void fixBoundary();
   /// Marks points of the boundary that cannot slide; see boundaryShape().
@@ -191,10 +191,10 @@ public:
   /// The points of the piece with copies at one place, where the mesh has them.
   const double* joinedPoints() const;
 
-  /// Flags per point of the piece as those of the local points: set on any process.
+  /// Flags per point of the piece as flags of the local points: set on any process.
   std::vector<unsigned char> anyOf(const std::vector<unsigned char>& ofPiece) const;
   /**
-   * @brief Values per cell of the piece, `components` each, as those of the local cells; those of
+   * @brief Values per cell of the piece, `components` each, as values of the local cells;
    * cells that are skipped() do not count. Of cells with the same points the least. Throws Error on
    * all processes if a process has cells but no values.
    * @param ofPiece may be empty where the piece has no cells

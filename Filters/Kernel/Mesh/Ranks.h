@@ -49,7 +49,7 @@ public:
   /// Null: this process alone.
   RankGroup* group() const { return this->Spread ? &this->Spread->group() : nullptr; }
   Communicator communicator() const { return this->Comm; }
-  /// The order of points in sums over few of them, which then are those of one process, bitwise.
+  /// The order of points in sums over few of them, which reproduce the serial sums bitwise.
   Index id(Index point) const { return this->Ids[point]; }
   bool owns(Index point) const { return !this->Spread || this->Spread->owned(point); }
   bool ownsCell(Index cell) const { return !this->Spread || this->Spread->ownedCells()[cell]; }
