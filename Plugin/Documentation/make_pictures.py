@@ -268,7 +268,7 @@ def solver_study():
     view = simple.CreateView("XYBarChartView")
     display = simple.Show(output(study, 1), view)
     display.SeriesVisibility = ["Total time (s)"]
-    display.UseIndexForXAxis = 1
+    display.UseIndexForXAxis, display.XArrayName = 0, "N combination"
     view.LeftAxisTitle, view.BottomAxisTitle, view.ShowLegend = "Total time (s)", "Combination", 0
     return side_by_side(view, size=(WIDE // 2, HEIGHT))
 
