@@ -26,6 +26,7 @@ SOURCES = (".h", ".cxx")
 #: The rooms of the kernel, from the lowest floor up.
 FLOORS = (
     ("Core",),
+    ("Elements",),
     ("Geometry", "Mesh"),
     ("Quality", "Shapes", "Domains", "Perturbation", "Ranks"),
     ("Objectives", "Patches", "Solvers"),

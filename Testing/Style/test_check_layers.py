@@ -16,8 +16,8 @@ import check_layers
 KERNEL = "Filters/Kernel"
 #: The file that is changed, the line that is put in front of it, and what must be reported.
 VIOLATIONS = (
-    (f"{KERNEL}/Mesh/Mesh.h", '#include "tautline/Quality/Metrics.h"', "Mesh is on floor 2 and must not include"),
-    (f"{KERNEL}/Objectives/Objective.h", '#include "tautline/Patches/SimplexMesh.h"', "Objectives is on floor 4"),
+    (f"{KERNEL}/Mesh/Mesh.h", '#include "tautline/Quality/Metrics.h"', "Mesh is on floor 3 and must not include"),
+    (f"{KERNEL}/Objectives/Objective.h", '#include "tautline/Patches/SimplexMesh.h"', "Objectives is on floor 5"),
     (f"{KERNEL}/Mesh/Mesh.h", '#include "FacetTable.h"', "Mesh/FacetTable, Mesh/Mesh include each other in a circle"),
     (f"{KERNEL}/Optimization/Optimize.h", '#include "tautline/Solvers/LinearSolver.h"', "TautlineKernel must not"),
     (f"{KERNEL}/Optimization/Optimize.h", "#include <petscksp.h>", "TautlineKernel must not include petscksp.h"),
