@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file BernsteinSearch.h
+ * @brief The sign and the minimum of a polynomial in Bernstein form, by branch and bound.
+ *
+ * A box of the domain whose smallest coefficient leaves the question open is bisected along the
+ * edge along which the polynomial bends most; the box with the smallest coefficient comes first.
+ * The bounds converge with the square of the size of the boxes.
+ */
+#ifndef tautline_BernsteinSearch_h
+#define tautline_BernsteinSearch_h
+
+#include "BernsteinSpace.h"
+
+#include <limits>
+
+namespace tautline
+{
+enum class BernsteinSign : signed char
+{
+  Negative = -1, ///< somewhere below the negative of the noise
+  Zero = 0,      ///< nowhere below that, but somewhere at most the noise
+  Positive = 1   ///< above the noise everywhere
+};
+
+/// How near to each other the bounds of a minimum are wanted.
+struct MinimumTolerance
+{
+  /// The largest distance of the bounds over the largest absolute coefficient; at least 1e-12.
+  double relative = 1e-4;
+  /// The search also ends where the lower bound is above this level.
+  double level = std::numeric_limits<double>::infinity();
+};
+
+/// Bounds of the minimum of a polynomial.
+struct BernsteinMinimum
+{
+  double lower = 0;
+  double upper = 0;      ///< a value of the polynomial
+  Vec3 at = { 0, 0, 0 }; ///< where it has that value
+};
+
+/**
+ * @class BernsteinSearch
+ * @brief Searches in polynomials of one space.
+ *
+ * Has its own memory, which grows up to a few megabytes in hard cases and is kept: use one object
+ * per thread. The tables must outlive it.
+ */
+class TAUTLINE_KERNEL_EXPORT BernsteinSearch
+{
+public:
+  BernsteinSearch(const BernsteinSpace& space, const std::vector<BernsteinBisection>& bisections,
+    const std::vector<BernsteinCorner>& corners);
+
+  /**
+   * @param coefficients of the polynomial
+   * @param noise bound of the error of each coefficient, at least 0
+   */
+  BernsteinSign sign(const double* coefficients, double noise);
+  BernsteinMinimum minimum(const double* coefficients, const MinimumTolerance& tolerance);
+
+  /// Bisections of the last search.
+  int splits() const { return this->Splits; }
+  /// Whether the last search ended by itself, and not after MaxSplits bisections.
+  bool decided() const { return this->Decided; }
+  static constexpr int MaxSplits = 4000;
+
+private:
+  static constexpr int Lanes = 8;
+  static constexpr int MaxVertexEntries = 12;
+  static constexpr int MaxDirections = 6;
+
+  /// Lines that are halved side by side, one per lane, longest first.
+  struct Group
+  {
+    int length;                  ///< of the longest line
+    std::size_t entries;         ///< in Entries: Lanes per row, positions of coefficients
+    std::size_t mirrored;        ///< in Entries: the same from the other end of each line
+    std::size_t counts;          ///< in Entries: by row, the lines that reach so far
+    std::array<int, Lanes> last; ///< the last row of each line
+  };
+  /// One edge of a factor.
+  struct Direction
+  {
+    const BernsteinBisection* lines;
+    std::vector<Group> groups; ///< where the lines are not wide
+    int vertices;              ///< where the vertices of the factor begin in Box::vertices
+    int dimension;             ///< of the factor
+    int position;              ///< in Directions
+  };
+  struct Box
+  {
+    double least;
+    int slot;                                      ///< in Pool
+    std::array<double, MaxVertexEntries> vertices; ///< by factor, vertex and coordinate
+    /// By direction, about the largest second difference of coefficients.
+    std::array<double, MaxDirections> bends;
+    int age; ///< bisections since the bends were measured
+  };
+
+  void addGroups(Direction& direction);
+  Box begin(const double* coefficients);
+  void push(const Box& box);
+  Box pop();
+  void release(const Box& box) { this->Free.push_back(box.slot); }
+  double* at(const Box& box) { return this->Pool.data() + box.slot * this->Size; }
+  int newSlot();
+  /// Halves a box and returns the other half.
+  Box split(Box& box);
+  void measureBends(Box& box);
+  void estimateBends(Box& box, const Direction& halved, int kept, int moved) const;
+  double bend(const Direction& direction, const double* c) const;
+  static void halveRows(const BernsteinBisection& lines, double* c, double* other);
+  void halveGroup(const Group& group, double* c, double* other) const;
+  Vec3 place(const Box& box, const BernsteinCorner& corner) const;
+  double smallest(const double* c) const;
+
+  const BernsteinSpace& Space;
+  const std::vector<BernsteinCorner>& Corners;
+  std::size_t Size;
+  std::vector<Direction> Directions;
+  std::vector<int> Entries;
+  std::array<double, MaxVertexEntries> Vertices = {};
+  std::vector<int> FirstVertex; ///< by factor
+  std::vector<double> Pool;
+  std::vector<int> Free;
+  std::vector<Box> Heap;
+  int Slots = 0;
+  int Splits = 0;
+  bool Decided = true;
+};
+}
+#endif
