@@ -7,9 +7,9 @@ nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) 
 elements, optimization.json and .csv of the optimizer (see optimization.py), deformation.json and .csv of warping
 (see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py), stiff.json
 and .csv of stretched meshes (see stiff.py), peers.json and .csv of meshes that other programs were run on (see
-peers.py), and user-metric.json and .csv of metrics of one's own to the output
-directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh compares with the program gmsh,
-where that is installed (see gmsh_comparison.py).
+peers.py), user-metric.json and .csv of metrics of one's own, and curved.json and .csv of curved elements (see
+curved.py) to the output directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh
+compares with the program gmsh, where that is installed (see gmsh_comparison.py).
 """
 
 import argparse
@@ -19,6 +19,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import curved
 import deformation
 import optimization
 import peers
@@ -229,6 +230,10 @@ def run_user_metric(build: Path, output: Path, size: int, repeats: int) -> None:
     save(output, "user-metric", times, {what: number for what, number, _ in rows})
 
 
+def run_curved(build: Path, output: Path, repeats: int, quick: bool) -> None:
+    run_table(output, "curved", *curved.run(build / "bin" / "BenchmarkCurved", repeats, quick))
+
+
 def run_stiff(build: Path, output: Path, repeats: int, quick: bool, huge: bool) -> None:
     run_table(output, "stiff", *stiff.run(build / "bin" / "BenchmarkStiff", repeats, quick, huge))
 
@@ -246,7 +251,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
     parts = ("quality", "optimization", "deformation", "reconnection", "reconnection-aims", "stiff", "peers",
-             "user-metric", "gmsh")
+             "user-metric", "curved", "gmsh")
     parser.add_argument("--only", choices=parts, help="one part; all but reconnection-aims otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
@@ -280,6 +285,8 @@ def main() -> int:
         run_peers(options.build, output, options.repeats or 3, options.quick)
     if options.only in (None, "user-metric"):
         run_user_metric(options.build, output, 4 if options.quick else 30, options.repeats or 9)
+    if options.only in (None, "curved"):
+        run_curved(options.build, output, options.repeats or 5, options.quick)
     if options.only in (None, "gmsh"):
         subprocess.run([sys.executable, str(Path(__file__).with_name("gmsh_comparison.py"))], check=False)
     return 0

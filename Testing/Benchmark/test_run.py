@@ -120,6 +120,13 @@ def check_user_metric(output: Path) -> None:
     assert len(ratios) == 2 * (16 + 5) and all(number > 0 for number in (*measured.values(), *ratios.values())), ratios
 
 
+def check_curved(output: Path) -> None:
+    measured, ratios = read(output, "curved")
+    assert all(number > 0 for key, number in measured.items() if key.endswith((" validity", " minimum"))), measured
+    assert all(number == 0 for key, number in measured.items() if key.endswith(" undecided")), measured
+    assert measured["tet10 elements"] == 40 and 0 < ratios["hex27: needed a subdivision"] <= 1, (measured, ratios)
+
+
 def check_arguments(output: Path) -> None:
     """./run bench prints its help, and refuses wrong arguments, before it builds: which would take minutes."""
     script = Path(__file__).parents[2] / "run"
@@ -146,6 +153,7 @@ def main(build: Path, output: Path) -> int:
     check_peers(output)
     check_hexopt()
     check_user_metric(output)
+    check_curved(output)
     return 0
 
 
