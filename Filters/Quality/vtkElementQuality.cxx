@@ -17,6 +17,7 @@
 #include "QualityTotals.h"
 #include "TargetChoice.h"
 #include "tautline/Core/Memory.h"
+#include "tautline/Mesh/CurvedCells.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -33,6 +34,8 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 
 vtkStandardNewMacro(vtkElementQuality);
@@ -52,6 +55,20 @@ enum Ports
   BadPort,
   NumberOfPorts
 };
+
+bool contains(const std::vector<tautline::Metric>& metrics, tautline::Metric metric)
+{
+  return std::find(metrics.begin(), metrics.end(), metric) != metrics.end();
+}
+
+/// Takes the values of cells that have one.
+void replaceCurved(const std::vector<double>& curved, double* values)
+{
+  for (std::size_t cell = 0; cell < curved.size(); ++cell)
+  {
+    values[cell] = std::isnan(curved[cell]) ? values[cell] : curved[cell];
+  }
+}
 }
 
 //------------------------------------------------------------------------------
@@ -320,6 +337,14 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   validity->SetName("Validity");
   validity->SetNumberOfValues(cells);
   this->SettleOrientation(adapter, piece, validity->GetPointer(0), output);
+  // The smallest determinants of curved cells; empty without these or that metric.
+  std::vector<double> curved(contains(metrics, Metric::MinimumJacobian) ? cells : 0);
+  const Index certified = this->CertifyCurved(input, adapter, validity->GetPointer(0), curved);
+  if (certified > 0 && !whole)
+  {
+    this->AddToNotice("Validity and min_jacobian of " + std::to_string(certified) +
+      " curved cells hold for the whole cell.");
+  }
   const std::vector<unsigned char> skip = cellsToSkip(adapter);
   const unsigned char* skipped = skip.empty() ? nullptr : skip.data();
   if (!whole && cells > 0)
@@ -343,6 +368,10 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
     values->SetName(info.name);
     values->SetNumberOfValues(cells);
     requireInRange(info, evaluateMetric(mesh, info.metric, options, values->GetPointer(0)));
+    if (info.metric == Metric::MinimumJacobian)
+    {
+      replaceCurved(curved, values->GetPointer(0));
+    }
     output->GetCellData()->AddArray(values);
     totals.addValues(m, mesh,
       { cells, values->GetPointer(0), validity->GetPointer(0), mesh.view().cellTypes, skipped },
@@ -387,6 +416,38 @@ void vtkElementQuality::SettleOrientation(tautline::MeshAdapter& adapter,
   {
     tautline::flipCells(output, adapter.reversedCells());
   }
+}
+
+//------------------------------------------------------------------------------
+vtkIdType vtkElementQuality::CertifyCurved(vtkDataSet* input, const tautline::MeshAdapter& adapter,
+  signed char* validity, std::vector<double>& minimum)
+{
+  const tautline::Mesh& mesh = adapter.mesh();
+  if (mesh.higherOrderCells() == 0)
+  {
+    minimum.clear();
+    return 0;
+  }
+  tautline::CurvedCellFacts facts;
+  std::vector<double> degrees;
+  vtkDataArray* given = input->GetCellData()->GetHigherOrderDegrees();
+  if (given && given->GetNumberOfComponents() == 3)
+  {
+    degrees.resize(3 * given->GetNumberOfTuples());
+    for (vtkIdType cell = 0; cell < given->GetNumberOfTuples(); ++cell)
+    {
+      given->GetTuple(cell, degrees.data() + 3 * cell);
+    }
+    facts.degrees = degrees.data();
+  }
+  const std::vector<unsigned char>& reversed = adapter.reversedCells();
+  facts.reversed = reversed.empty() ? nullptr : reversed.data();
+  facts.wedgesTurned = true; // by MeshAdapter
+  facts.rational = input->GetPointData()->GetRationalWeights() != nullptr;
+  // What is not replaced is measured at the corners.
+  std::fill(minimum.begin(), minimum.end(), std::numeric_limits<double>::quiet_NaN());
+  return tautline::certifyCurvedCells(
+    mesh, facts, validity, minimum.empty() ? nullptr : minimum.data(), this->Threads);
 }
 
 //------------------------------------------------------------------------------

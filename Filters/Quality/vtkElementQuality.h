@@ -4,7 +4,8 @@
  * @brief Measures every element of a mesh by any number of quality metrics.
  *
  * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from any
- * vtkDataSet or composite data set; cells of higher order are measured on their corners. Whether
+ * vtkDataSet or composite data set; cells of higher order are measured on their corners, except
+ * that their `Validity` and "min_jacobian" hold for the whole curved cell, up to order 6. Whether
  * the mesh is planar, a surface or a volume is detected, and so is its orientation: a mesh that is
  * reversed throughout is reported and, by default, measured as if it were not; one of mixed
  * orientation is reported.
@@ -293,6 +294,10 @@ private:
   /// @param piece what was found of the whole mesh; null: that of this data set is
   void SettleOrientation(tautline::MeshAdapter& adapter, const tautline::OrientedPiece* piece,
     signed char* validity, vtkDataSet* output);
+  /// Validity and smallest determinant of curved cells, NaN for the others; returns how many there
+  /// are.
+  vtkIdType CertifyCurved(vtkDataSet* input, const tautline::MeshAdapter& adapter,
+    signed char* validity, std::vector<double>& minimum);
   void AddToNotice(const std::string& sentences);
   tautline::Targets MakeTargets(
     vtkDataSet* input, vtkDataSet* reference, const tautline::MeshAdapter& adapter);
