@@ -36,7 +36,22 @@ MeshAdapter::MeshAdapter(vtkDataSet* input, int threads)
     this->Ghosts = ghosts->GetPointer(0);
   }
   this->TheMesh = std::make_unique<Mesh>(this->View, threads);
+  this->takeCollapsed();
   this->InputView = this->View;
+}
+
+//------------------------------------------------------------------------------
+/// Replaces cells that list points more than once by what remains of them. They have been checked.
+void MeshAdapter::takeCollapsed()
+{
+  this->Collapsed = findCollapsedCells(*this->TheMesh, this->Threads);
+  if (!this->Collapsed.types.empty())
+  {
+    this->View.cellTypes = this->Collapsed.types.data();
+    this->View.offsets = this->Collapsed.offsets.data();
+    this->View.connectivity = this->Collapsed.connectivity.data();
+    this->TheMesh = std::make_unique<Mesh>(this->View, this->Threads);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -457,6 +472,13 @@ MeshRemarks MeshAdapter::remarks(bool ghosts) const
       ++remarks.notMeasured[type];
     }
   }
+  for (const CollapsedCell& collapsed : this->Collapsed.found)
+  {
+    if (ghosts || !this->Ghosts || !this->Ghosts[collapsed.cell])
+    {
+      ++remarks.collapsed[collapsedKey(collapsed.given, collapsed.remaining)];
+    }
+  }
   remarks.nonFinitePoints = mesh.nonFinitePoints();
   remarks.coarseness = this->coarseness();
   return remarks;
@@ -468,10 +490,37 @@ std::string MeshAdapter::notice() const
   return describe(this->remarks());
 }
 
+namespace
+{
+std::string describeCollapsed(const std::map<int, Index>& collapsed)
+{
+  std::string text;
+  for (const auto& [key, cells] : collapsed)
+  {
+    const CellTopology& given = topology(static_cast<CellType>(key / 100));
+    const auto remaining = static_cast<CellType>(key % 100);
+    const bool one = cells == 1;
+    text += std::to_string(cells) + " " + (one ? given.name : given.plural) +
+      (one ? " that lists points twice " : " that list points twice ");
+    if (remaining == CellType::Unsupported)
+    {
+      text += std::string(one ? "leaves" : "leave") + " no other shape and " +
+        (one ? "counts" : "count") +
+        " as degenerate: replace such cells in the program that made the mesh. ";
+      continue;
+    }
+    const CellTopology& shape = topology(remaining);
+    text += std::string(one ? "is measured as a " : "are measured as ") +
+      (one ? shape.name : shape.plural) + ". ";
+  }
+  return text;
+}
+}
+
 //------------------------------------------------------------------------------
 std::string describe(const MeshRemarks& remarks)
 {
-  std::string text;
+  std::string text = describeCollapsed(remarks.collapsed);
   if (remarks.higherOrderCells > 0)
   {
     text += std::to_string(remarks.higherOrderCells) +
@@ -503,10 +552,62 @@ std::string describe(const MeshRemarks& remarks)
 }
 
 //------------------------------------------------------------------------------
+std::string firstText(RankGroup& group, const std::string& own)
+{
+  for (const std::vector<char>& text : group.gatherItems(std::vector<char>(own.begin(), own.end())))
+  {
+    if (!text.empty())
+    {
+      return { text.begin(), text.end() };
+    }
+  }
+  return "";
+}
+
+namespace
+{
+/// The sums of numbers of cells by a key, on all ranks.
+std::map<int, Index> sumsByKey(RankGroup& group, const std::map<int, Index>& own)
+{
+  struct Count
+  {
+    Index key, cells;
+  };
+  std::vector<Count> counts;
+  for (const auto& [key, cells] : own)
+  {
+    counts.push_back({ key, cells });
+  }
+  std::map<int, Index> sums;
+  for (const std::vector<Count>& list : group.gatherItems(counts))
+  {
+    for (const Count& count : list)
+    {
+      sums[static_cast<int>(count.key)] += count.cells;
+    }
+  }
+  return sums;
+}
+}
+
+//------------------------------------------------------------------------------
+MeshRemarks joinRemarks(RankGroup& group, const MeshRemarks& own)
+{
+  MeshRemarks all;
+  all.higherOrderCells = group.sum(own.higherOrderCells);
+  all.nonFinitePoints = group.sum(own.nonFinitePoints);
+  all.notMeasured = sumsByKey(group, own.notMeasured);
+  all.collapsed = sumsByKey(group, own.collapsed);
+  all.coarseness = firstText(group, own.coarseness);
+  return all;
+}
+
+//------------------------------------------------------------------------------
 std::size_t MeshAdapter::copiedBytes() const
 {
-  return this->Points.size() * sizeof(double) + this->Types.size() +
-    (this->Offsets.size() + this->Connectivity.size() + this->OrientedConnectivity.size()) *
+  return this->Points.size() * sizeof(double) + this->Types.size() + this->Collapsed.types.size() +
+    (this->Offsets.size() + this->Connectivity.size() + this->OrientedConnectivity.size() +
+      this->Collapsed.offsets.size() + this->Collapsed.connectivity.size()) *
     sizeof(Index);
 }
 

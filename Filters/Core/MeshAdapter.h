@@ -6,7 +6,9 @@
  * Point coordinates in double precision and 64-bit cell arrays are used where they are. Float
  * coordinates, 32-bit cell arrays and the implicit cells of image data, rectilinear and structured
  * grids are copied. Pixels and voxels become quadrilaterals and hexahedra; polygons with three or
- * four points become triangles and quadrilaterals. Cell and point ids stay those of the data set.
+ * four points become triangles and quadrilaterals. Hexahedra, wedges, pyramids and quadrilaterals
+ * that list points more than once become what remains of them, see remainingShape() of the kernel.
+ * Cell and point ids stay those of the data set.
  *
  * The data set must outlive the adapter and not change meanwhile.
  */
@@ -16,6 +18,7 @@
 #include "TautlineCoreModule.h" // for export macro
 
 #include "tautline/Mesh/CellOrder.h"
+#include "tautline/Mesh/CollapsedCells.h"
 #include "tautline/Mesh/CoincidentPoints.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/Mesh.h"
@@ -40,8 +43,16 @@ struct MeshRemarks
 {
   Index higherOrderCells = 0, nonFinitePoints = 0;
   std::map<int, Index> notMeasured; ///< the numbers of cells that are left out, by VTK's type
-  std::string coarseness;           ///< see MeshAdapter::coarseness()
+  /// The numbers of cells that list points more than once, by collapsedKey().
+  std::map<int, Index> collapsed;
+  std::string coarseness; ///< see MeshAdapter::coarseness()
 };
+
+/// What a collapsed cell is and becomes as one number: two digits for each type.
+constexpr int collapsedKey(CellType given, CellType remaining)
+{
+  return 100 * static_cast<int>(given) + static_cast<int>(remaining);
+}
 
 class TAUTLINECORE_EXPORT MeshAdapter
 {
@@ -98,8 +109,8 @@ public:
 
   /**
    * @brief Remarks for the user on how the mesh is interpreted, as sentences, or "":
-   * higher-order cells measured on their corners, cells left out (by type and number), points with
-   * NaN coordinates, coarse coordinates.
+   * higher-order cells measured on their corners, collapsed cells, cells left out (by type and
+   * number), points with NaN coordinates, coarse coordinates.
    */
   std::string notice() const;
 
@@ -135,6 +146,7 @@ private:
   void setMirrored(bool mirrored);
   void takePoints(vtkDataSet* input);
   void takeCells(vtkDataSet* input);
+  void takeCollapsed();
   bool acrossY(Index first) const;
 
   std::vector<double> Points, JoinedPoints;
@@ -142,6 +154,7 @@ private:
   std::vector<unsigned char> Types;
   std::vector<Index> Offsets;
   std::vector<Index> Connectivity;
+  CollapsedCells Collapsed;
   std::vector<Index> OrientedConnectivity;
   std::vector<unsigned char> Reversed;
   const unsigned char* Ghosts = nullptr;
@@ -169,6 +182,10 @@ inline std::string describe(const Orientation& orientation, const Mesh& mesh)
 TAUTLINECORE_EXPORT std::string describe(const RankOrder& order, Dimension dimension);
 /// MeshAdapter::notice() of these remarks.
 TAUTLINECORE_EXPORT std::string describe(const MeshRemarks& remarks);
+/// The remarks on all pieces of a mesh, of which each rank gives its own. Collective.
+TAUTLINECORE_EXPORT MeshRemarks joinRemarks(RankGroup& group, const MeshRemarks& own);
+/// The first text of the ranks that is not empty, on all. Collective.
+TAUTLINECORE_EXPORT std::string firstText(RankGroup& group, const std::string& own);
 
 /**
  * @brief Reverses the order of the points of cells in a copy that only this output uses. Throws

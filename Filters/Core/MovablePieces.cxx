@@ -103,6 +103,8 @@ void MovableMesh::checkOrder()
   RankOrder order;
   order.orientation = found;
   this->Notice = describe(order, this->dimension() == 3 ? Dimension::Volume : Dimension::Planar);
+  const std::string remarks = describe(joinRemarks(this->group(), this->Adapter.remarks(false)));
+  this->Notice += (this->Notice.empty() || remarks.empty() ? "" : "\n") + remarks;
   if (found.disagreeing > 0 || (found.reversedParts > 0 && found.reversedParts < found.parts))
   {
     throw OppositeOrders(
@@ -125,7 +127,7 @@ std::string MovableMesh::notice() const
     dividedSentence(this->group(), this->Spread->divided, this->Spread->whyTree);
   std::string text;
   for (const std::string& sentence :
-    { this->Notice, this->Adapter.notice(), describeJoined(this->Spread->copies), division })
+    { this->Notice, describeJoined(this->Spread->copies), division })
   {
     text += (text.empty() || sentence.empty() ? "" : "\n") + sentence;
   }

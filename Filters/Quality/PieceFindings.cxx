@@ -41,48 +41,16 @@ PieceFindings joined(const std::vector<PieceFindings>& pieces)
     {
       all.remarks.notMeasured[type] += cells;
     }
+    for (const auto& [key, cells] : one.remarks.collapsed)
+    {
+      all.remarks.collapsed[key] += cells;
+    }
     first(all.remarks.coarseness, one.remarks.coarseness);
     first(all.firstApart, one.firstApart);
     first(all.firstNear, one.firstNear);
     first(all.text, one.text);
   }
   return all;
-}
-
-/// The first text of the ranks that is not empty, on all.
-std::string firstText(RankGroup& group, const std::string& own)
-{
-  for (const std::vector<char>& text : group.gatherItems(std::vector<char>(own.begin(), own.end())))
-  {
-    if (!text.empty())
-    {
-      return { text.begin(), text.end() };
-    }
-  }
-  return "";
-}
-
-/// The sums of numbers of cells by their type, on all ranks.
-std::map<int, Index> sumsByType(RankGroup& group, const std::map<int, Index>& own)
-{
-  struct Count
-  {
-    Index type, cells;
-  };
-  std::vector<Count> counts;
-  for (const auto& [type, cells] : own)
-  {
-    counts.push_back({ type, cells });
-  }
-  std::map<int, Index> sums;
-  for (const std::vector<Count>& list : group.gatherItems(counts))
-  {
-    for (const Count& count : list)
-    {
-      sums[static_cast<int>(count.type)] += count.cells;
-    }
-  }
-  return sums;
 }
 }
 
@@ -122,14 +90,12 @@ std::string describeFindings(RankGroup& group, const std::vector<PieceFindings>&
   }
   all.dimension =
     static_cast<Dimension>(group.maximum(static_cast<Index>(static_cast<int>(all.dimension))));
-  for (Index* number :
-    { &all.remarks.higherOrderCells, &all.remarks.nonFinitePoints, &all.seams.crowded,
-      &all.seams.overlapping, &all.seams.collapsing, &all.near, &all.duplicates })
+  for (Index* number : { &all.seams.crowded, &all.seams.overlapping, &all.seams.collapsing,
+         &all.near, &all.duplicates })
   {
     *number = group.sum(*number);
   }
-  all.remarks.notMeasured = sumsByType(group, all.remarks.notMeasured);
-  all.remarks.coarseness = firstText(group, all.remarks.coarseness);
+  all.remarks = joinRemarks(group, all.remarks);
   const std::string apart = firstText(group, all.firstApart);
   const std::string near = firstText(group, all.firstNear);
   std::string text = describe(all.remarks);

@@ -2,6 +2,7 @@
 // Optimize Mesh and Untangle Mesh on processes: points, tables and summaries are those of one
 // process, however the mesh is cut.
 #include "Registry.h"
+#include "CollapsedMeshes.h"
 #include "MotionRanks.h"
 #include "tautline/Optimization/Optimize.h"
 #include "vtkMeshOptimizer.h"
@@ -369,6 +370,24 @@ void testUntangler(vtkMPIController* controller)
     });
 }
 
+/// Hexahedra that list points twice are wedges on all processes, which are counted together.
+void testCollapsed(vtkMPIController* controller)
+{
+  const auto check = [](auto* serial, auto* ranks, int)
+  {
+    const std::string sentence = "12 hexahedra that list points twice are measured as wedges.";
+    TAUTLINE_CHECK(contains(serial->GetSummary(), sentence));
+    TAUTLINE_CHECK(contains(ranks->GetSummary(), sentence));
+    TAUTLINE_CHECK_EQUAL(ranks->GetInvertedBefore(), serial->GetInvertedBefore());
+    TAUTLINE_CHECK_EQUAL(ranks->GetInvertedAfter(), 0);
+  };
+  testFilter<vtkMeshOptimizer>(
+    "optimize collapsed", controller, wheel(true, 0.2),
+    [](vtkMeshOptimizer* filter) { filter->AddObjectiveByName("imr"); }, check);
+  testFilter<vtkMeshUntangler>(
+    "untangle collapsed", controller, wheel(true, 0.9), [](vtkMeshUntangler*) {}, check);
+}
+
 /// A mesh with more inverted elements than others is not reversed by that, on processes either.
 void testMostlyInverted(vtkMPIController* controller)
 {
@@ -666,6 +685,7 @@ TAUTLINE_TEST(TestMotionRanks)
   TAUTLINE_RUN(testWholeMeshes(controller));
   TAUTLINE_RUN(testUntangler(controller));
   TAUTLINE_RUN(testAsOneProcess(controller));
+  TAUTLINE_RUN(testCollapsed(controller));
   TAUTLINE_RUN(testMostlyInverted(controller));
   TAUTLINE_RUN(testAnimation(controller));
   TAUTLINE_RUN(testRefusals(controller));
