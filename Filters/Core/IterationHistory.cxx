@@ -84,6 +84,15 @@ std::string summarize(
          << (result.newlyInvalid == 1 ? " element that was" : " elements that were")
          << " valid inverted or degenerate.";
   }
+  if (result.withoutNormal > 0)
+  {
+    text << "\n"
+         << result.withoutNormal
+         << (result.withoutNormal == 1 ? " element has no area: its points stayed"
+                                       : " elements have no area: their points stayed")
+         << ", as nothing determines to which side of the surface it would open. Improve Mesh "
+            "removes such triangles.";
+  }
   if (result.restored > 0)
   {
     text

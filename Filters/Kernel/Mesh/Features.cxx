@@ -94,6 +94,9 @@ private:
   Vec3 normalOf(const Features::Facet& facet) const;
   std::vector<Side> sortedSides() const;
   void judgeSides();
+  void adoptNormals(const std::vector<Side>& sides);
+  bool adopt(const std::vector<Side>& sides, bool overLongest);
+  double longestEdge(const Features::Facet& facet) const;
   void judge(const Side* sides, Index count);
   void obeyKinds();
   void classifyPoints();
@@ -223,6 +226,76 @@ std::vector<Side> FeatureFinder::sortedSides() const
 }
 
 //------------------------------------------------------------------------------
+double FeatureFinder::longestEdge(const Features::Facet& facet) const
+{
+  double longest = 0;
+  for (int k = 0; k < facet.size; ++k)
+  {
+    longest = std::max(longest,
+      norm(pointOf(this->View, facet.nodes[(k + 1) % facet.size]) -
+        pointOf(this->View, facet.nodes[k])));
+  }
+  return longest;
+}
+
+//------------------------------------------------------------------------------
+/// Gives facets without a normal those of neighbors; whether there were any.
+/// @param overLongest only of neighbors at their longest edge
+bool FeatureFinder::adopt(const std::vector<Side>& sides, bool overLongest)
+{
+  constexpr double rounding = 1e-9;
+  struct Choice
+  {
+    double length;
+    Vec3 normal;
+  };
+  std::map<Index, Choice> choices; // by facet
+  const auto consider = [&](const Side& of, const Side& from)
+  {
+    const Vec3 &own = this->Normals[of.facet], &other = this->Normals[from.facet];
+    if (dot(own, own) > 0 || !(dot(other, other) > 0))
+    {
+      return;
+    }
+    const double length = norm(pointOf(this->View, of.b) - pointOf(this->View, of.a));
+    const double longest = this->longestEdge(this->Result.facets[of.facet]);
+    if (overLongest && length < (1 - rounding) * longest)
+    {
+      return;
+    }
+    const auto at = choices.emplace(of.facet, Choice{ -1, other }).first;
+    if (length > at->second.length)
+    {
+      at->second = { length, (of.forward == from.forward ? -1.0 : 1.0) * other };
+    }
+  };
+  for (std::size_t i = 1; i < sides.size(); ++i)
+  {
+    if (sides[i].a == sides[i - 1].a && sides[i].b == sides[i - 1].b)
+    {
+      consider(sides[i], sides[i - 1]);
+      consider(sides[i - 1], sides[i]);
+    }
+  }
+  for (const auto& [facet, choice] : choices)
+  {
+    this->Normals[facet] = choice.normal;
+  }
+  return !choices.empty();
+}
+
+/// A facet without area is a part of the side that its longest edge has: where that is sharp, its
+/// other edges are.
+void FeatureFinder::adoptNormals(const std::vector<Side>& sides)
+{
+  const auto hasNone = [](const Vec3& normal) { return !(dot(normal, normal) > 0); };
+  while (std::any_of(this->Normals.begin(), this->Normals.end(), hasNone) &&
+    (this->adopt(sides, true) || this->adopt(sides, false)))
+  {
+  }
+}
+
+//------------------------------------------------------------------------------
 void FeatureFinder::judgeSides()
 {
   for (const Features::Facet& facet : this->Result.facets)
@@ -230,6 +303,7 @@ void FeatureFinder::judgeSides()
     this->Normals.push_back(this->normalOf(facet));
   }
   const std::vector<Side> sides = this->sortedSides();
+  this->adoptNormals(sides);
   for (std::size_t i = 0; i < sides.size();)
   {
     std::size_t j = i + 1;

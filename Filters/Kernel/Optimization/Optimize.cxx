@@ -362,10 +362,45 @@ void OptimizeResult::keepStart(std::vector<double> start, Index inverted)
 //------------------------------------------------------------------------------
 namespace
 {
-OptimizeResult run(const Mesh& mesh, const OptimizeOptions& options,
+/// Flags the points of the elements of a surface in space that have no normal; counts these.
+Index flagWithoutNormal(
+  const Mesh& mesh, const std::vector<signed char>& validity, std::vector<unsigned char>& flags)
+{
+  const MeshView& view = mesh.view();
+  Index count = 0;
+  for (const CellBlock& block : mesh.blocks())
+  {
+    const CellTopology& t = topology(block.type);
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      if (validity[cell] != Degenerate)
+      {
+        continue;
+      }
+      const Index* node = view.connectivity + view.offsets[cell];
+      Vec3 p[MaxNodes];
+      double length2 = 0;
+      for (int k = 0; k < t.nodes; ++k)
+      {
+        p[k] = pointOf(view, node[k]);
+        length2 = std::max(length2, dot(p[k] - p[0], p[k] - p[0]));
+      }
+      if (t.nodes == 3 || norm(vectorArea(t, p)) <= Mesh::degenerateTolerance() * length2)
+      {
+        ++count;
+        std::for_each(node, node + t.nodes, [&flags](Index point) { flags[point] = 1; });
+      }
+    }
+  }
+  return count;
+}
+
+OptimizeResult run(const Mesh& mesh, const OptimizeOptions& given,
   const std::vector<signed char>& known, const Ranks& ranks)
 {
   const Stopwatch clock;
+  OptimizeOptions options = given;
   OptimizeResult result;
   const MeshView& view = mesh.view();
   result.points.assign(view.points, view.points + 3 * view.numberOfPoints);
@@ -379,6 +414,17 @@ OptimizeResult run(const Mesh& mesh, const OptimizeOptions& options,
   const std::vector<signed char> validity =
     known.empty() ? cellValidity(mesh, options.threads) : known;
   result.invertedBefore = result.invertedAfter = ranks.countInvalid(validity);
+  std::vector<unsigned char> held;
+  if (mesh.dimension() == Dimension::Surface && result.invertedBefore > 0)
+  {
+    held.assign(view.numberOfPoints, 0);
+    result.withoutNormal = flagWithoutNormal(mesh, validity, held);
+    const std::vector<unsigned char> fixed = options.fixed
+      ? std::vector<unsigned char>(options.fixed, options.fixed + view.numberOfPoints)
+      : ranks.boundary(mesh);
+    std::transform(held.begin(), held.end(), fixed.begin(), held.begin(), std::bit_or<>());
+    options.fixed = held.data();
+  }
   const bool repairs =
     std::any_of(options.objectives.begin(), options.objectives.end(), canUntangle);
   if (result.invertedBefore > 0 && !repairs && mesh.dimension() != Dimension::Surface)

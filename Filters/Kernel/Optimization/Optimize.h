@@ -43,7 +43,10 @@ struct OptimizeResult
   double surfaceError = 0;
   /// Points whose last steps surfaceTolerance refused: on the surface, and others on interfaces.
   Index heldOnSurface = 0, heldOnInterfaces = 0;
-  Index leftSurface = 0;  ///< points of OptimizeOptions::leaving that left it
+  Index leftSurface = 0; ///< points of OptimizeOptions::leaving that left it
+  /// Elements of a surface in space without a normal, as those with no area: their points stay,
+  /// since nothing determines to which side of the surface such an element would open.
+  Index withoutNormal = 0;
   bool untangled = false; ///< untangle() was run first
   /// Points that went back to their place in the input, because an element there would otherwise be
   /// worse than the worst one of the input.
