@@ -23,6 +23,20 @@
 namespace
 {
 constexpr int VolumeDimension = 3;
+
+/// Whether the piece of this process has elements without volume.
+bool hasDegenerate(const tautline::MovableMesh& mesh, int threads)
+{
+  std::vector<signed char> validity(mesh.mesh().view().numberOfCells);
+  mesh.mesh().classifyCells(validity.data(), threads);
+  const unsigned char* skipped = mesh.skipped();
+  bool found = false;
+  for (std::size_t cell = 0; cell < validity.size(); ++cell)
+  {
+    found = found || (validity[cell] == tautline::Degenerate && !(skipped && skipped[cell]));
+  }
+  return found;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -59,12 +73,15 @@ bool vtkMeshImprover::TakesPieces(vtkInformationVector** inputs)
     {
       this->Pieces = tautline::MovableMesh::makePiece(
         *this->Group, vtkDataSet::SafeDownCast(input), this->Threads, this->MergeCoincidentPoints);
-      if (this->Pieces && this->Pieces->inverted() == 0)
+      const bool degenerate =
+        this->Group->any(this->Pieces && hasDegenerate(*this->Pieces, this->Threads));
+      if (this->Pieces && this->Pieces->inverted() == 0 && !degenerate)
       {
         return true;
       }
-      why = this->Pieces ? "cells are inverted, or parts list their points in the opposite order"
-                         : tautline::oppositeOrders;
+      why = !this->Pieces ? tautline::oppositeOrders
+        : degenerate      ? "cells have no volume"
+                          : "cells are inverted, or parts list their points in the opposite order";
       this->Pieces.reset();
     }
   }

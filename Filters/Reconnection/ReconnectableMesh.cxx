@@ -5,6 +5,7 @@
 #include "PointMerge.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Reconnection/DegenerateCells.h"
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
@@ -17,6 +18,7 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -46,6 +48,7 @@ void refuseGhosts(vtkDataSet* grid)
 ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int threads)
   : Input(meshOf(input))
   , Taken(this->Input)
+  , Threads(threads)
 {
   refuseGhosts(this->Input);
   this->findKind();
@@ -80,6 +83,7 @@ ReconnectableMesh::ReconnectableMesh(vtkDataSet* input, bool mergePoints, int th
   {
     this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
   }
+  this->Representative = this->Adapter->coincident().representative;
   this->takeLines();
   this->takeFacets();
 }
@@ -126,7 +130,7 @@ void ReconnectableMesh::takeLines()
       continue;
     }
     this->Input->GetCellPoints(cell, points);
-    const std::vector<Index>& one = this->Adapter->coincident().representative;
+    const std::vector<Index>& one = this->Representative;
     const auto id = [&](vtkIdType i)
     { return one.empty() ? points->GetId(i) : one[points->GetId(i)]; };
     for (vtkIdType i = 0; i + 1 < points->GetNumberOfIds(); ++i)
@@ -141,7 +145,7 @@ void ReconnectableMesh::takeLines()
 void ReconnectableMesh::takeFacets()
 {
   vtkNew<vtkIdList> points;
-  const std::vector<Index>& one = this->Adapter->coincident().representative;
+  const std::vector<Index>& one = this->Representative;
   for (vtkIdType cell = 0;
        !this->isTriangles() && !this->Cells.empty() && cell < this->Input->GetNumberOfCells();
        ++cell)
@@ -164,7 +168,7 @@ void ReconnectableMesh::fixPoints(vtkDataArray* ofPoints)
   {
     this->Fixed[i] |= ofPoints->GetComponent(static_cast<vtkIdType>(i), 0) != 0;
   }
-  unite(this->Fixed, this->Adapter->coincident().representative);
+  unite(this->Fixed, this->Representative);
 }
 
 //------------------------------------------------------------------------------
@@ -179,7 +183,7 @@ void ReconnectableMesh::fixCells(vtkDataArray* ofCells)
       std::for_each(points->begin(), points->end(), [this](vtkIdType p) { this->Fixed[p] = 1; });
     }
   }
-  unite(this->Fixed, this->Adapter->coincident().representative);
+  unite(this->Fixed, this->Representative);
 }
 
 //------------------------------------------------------------------------------
@@ -222,6 +226,68 @@ void ReconnectableMesh::setRegions(vtkDataArray* ofCells)
     const double value = regionAt(ofCells, this->inputCell(cell));
     this->Regions.push_back(
       numbers.emplace(value, static_cast<Index>(numbers.size())).first->second);
+  }
+}
+
+//------------------------------------------------------------------------------
+void ReconnectableMesh::removeDegenerate()
+{
+  DegenerateOptions options;
+  options.fixed = this->Fixed.data();
+  options.edges = this->Lines;
+  options.facets = this->Facets;
+  const DegenerateRemoval removal = removeDegenerateCells(this->mesh(), options);
+  if (removal.cells.empty())
+  {
+    return;
+  }
+  const auto count = static_cast<vtkIdType>(removal.originalCells.size());
+  vtkNew<vtkUnstructuredGrid> grid;
+  const MeshView& view = this->mesh().view();
+  grid->SetPoints(
+    makePoints(std::vector<double>(view.points, view.points + 3 * view.numberOfPoints), nullptr));
+  grid->AllocateExact(count, this->Corners * count);
+  std::vector<Index> cells, regions;
+  for (vtkIdType cell = 0; cell < count; ++cell)
+  {
+    std::array<vtkIdType, 4> nodes = {};
+    std::copy_n(removal.cells.begin() + this->Corners * cell, this->Corners, nodes.begin());
+    grid->InsertNextCell(
+      this->isTriangles() ? VTK_TRIANGLE : VTK_TETRA, this->Corners, nodes.data());
+    const Index original = removal.originalCells[cell];
+    cells.push_back(this->inputCell(original));
+    if (!this->Regions.empty())
+    {
+      regions.push_back(this->Regions[original]);
+    }
+  }
+  const bool mirrored = this->mesh().mirrored();
+  this->Taken = grid;
+  this->Adapter = std::make_unique<MeshAdapter>(grid, this->Threads);
+  this->Adapter->mesh().setMirrored(mirrored);
+  this->Cells = std::move(cells);
+  this->Regions = std::move(regions);
+  this->Lines = removal.edges;
+  this->Facets = removal.facets;
+  if (this->Representative.empty())
+  {
+    this->Representative = removal.mergedInto;
+  }
+  else
+  {
+    for (Index& point : this->Representative)
+    {
+      point = removal.mergedInto[point];
+    }
+  }
+  const Index gone = removal.degenerate - removal.left;
+  if (gone > 0)
+  {
+    const bool one = gone == 1;
+    this->Notice += (this->Notice.empty() ? "" : " ") + std::to_string(gone) + " degenerate " +
+      (this->isTriangles() ? (one ? "triangle was" : "triangles were")
+                           : (one ? "tetrahedron was" : "tetrahedra were")) +
+      " removed first.";
   }
 }
 }

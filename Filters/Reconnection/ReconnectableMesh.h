@@ -60,8 +60,7 @@ public:
   /// Whether a point of the input became one with another, which represents it.
   bool isMerged(Index point) const
   {
-    const std::vector<Index>& representative = this->Adapter->coincident().representative;
-    return !representative.empty() && representative[point] != point;
+    return !this->Representative.empty() && this->Representative[point] != point;
   }
 
   /// Marks points with a value other than 0; the array may be null.
@@ -75,6 +74,13 @@ public:
   void setRegions(vtkDataArray* ofCells);
   /// One per cell of mesh(); empty for one region.
   const std::vector<Index>& regions() const { return this->Regions; }
+
+  /**
+   * @brief Removes degenerate cells, see removeDegenerateCells() of the kernel: mesh(), lines(),
+   * facets() and regions() are then those of the cells that remain. To be called when points have
+   * been fixed and regions set.
+   */
+  void removeDegenerate();
 
   /// Remarks for the user on how the mesh is interpreted, as sentences, or "".
   const std::string& notice() const { return this->Notice; }
@@ -93,6 +99,8 @@ private:
   std::vector<std::array<Index, 2>> Lines;
   std::vector<std::array<Index, 3>> Facets;
   std::unique_ptr<MeshAdapter> Adapter;
+  std::vector<Index> Representative; ///< per point; empty if none was merged
+  int Threads;
   std::vector<unsigned char> Fixed;
   std::vector<Index> Regions;
   std::string Notice, LeftOut;

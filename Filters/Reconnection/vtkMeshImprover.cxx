@@ -289,6 +289,7 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
   }
   mesh.setRegions(tautline::chosenArray(
     this, tautline::ImproverArrays::Region, block.input, "of regions", tautline::ArrayOf::Cells));
+  mesh.removeDegenerate();
 
   double targetAngle = 0.0;
   const bool triangles = mesh.isTriangles();

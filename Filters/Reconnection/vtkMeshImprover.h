@@ -67,7 +67,8 @@
  * The mesh is put together on the first process and improved there, and the summary states why,
  * where it has fewer tetrahedra; for triangles and composite data; for a boundary ON_SURFACE, the
  * objective METRIC, ThenBestShape, a CONSERVATIVE transfer, and target lengths SIZE_ARRAY and
- * LENGTH_OF_INPUT; where cells are inverted or list their points in opposite orders; with
+ * LENGTH_OF_INPUT; where cells have no volume, are inverted or list their points in opposite
+ * orders; with
  * MergeCoincidentPoints off for pieces without global ids of points; and for processes that do not
  * communicate by MPI.
  *

@@ -111,8 +111,20 @@ ReconnectionInput convertInput(const Mesh& mesh, const ReconnectionOptions& opti
     "reconnection of this mesh", "take a smaller mesh");
   std::vector<signed char> validity(view.numberOfCells);
   mesh.classifyCells(validity.data(), options.threads);
-  const Index inverted =
-    std::count_if(validity.begin(), validity.end(), [](signed char v) { return v != Valid; });
+  // Flat tetrahedra with four distinct corners are the worst ones, which are improved first.
+  const auto isFlat = [&view](Index cell)
+  {
+    const Index* v = view.connectivity + view.offsets[cell];
+    const CellTopology& t = topology(CellType::Tetrahedron);
+    return std::all_of(t.edgeNodes.begin(), t.edgeNodes.begin() + t.edges,
+      [&](const std::array<int, 2>& edge)
+      { return norm(pointOf(view, v[edge[1]]) - pointOf(view, v[edge[0]])) > 0; });
+  };
+  Index inverted = 0;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    inverted += validity[cell] != Valid && !(validity[cell] == Degenerate && isFlat(cell));
+  }
   if (inverted > 0)
   {
     throw Error(std::to_string(inverted) +

@@ -54,8 +54,8 @@ void requireTriangles(const Mesh& mesh)
     throw Error(std::to_string(bad) +
       (planar ? " inverted or degenerate triangles: run Untangle Mesh first (or reorient the "
                 "cells, if all are reversed)"
-              : " degenerate triangles: run Clean to merge points that coincide, and remesh the "
-                "rest"));
+              : " degenerate triangles that cannot be removed without a change of the surface: "
+                "fix fewer points, or remesh there"));
   }
 }
 
