@@ -778,6 +778,23 @@ std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter)
 }
 
 //------------------------------------------------------------------------------
+std::vector<unsigned char> cellsBesideElements(const MeshAdapter& adapter)
+{
+  std::vector<unsigned char> skip = cellsToSkip(adapter);
+  const MeshView& view = adapter.mesh().view();
+  for (Index i = 0; adapter.mesh().unsupportedCells() > 0 && i < view.numberOfCells; ++i)
+  {
+    const unsigned char type = view.cellTypes[i];
+    if (cornerType(type) == CellType::Unsupported && !hasQuality(type))
+    {
+      skip.resize(view.numberOfCells, 0);
+      skip[i] = 1;
+    }
+  }
+  return skip;
+}
+
+//------------------------------------------------------------------------------
 vtkSmartPointer<vtkPoints> makePoints(const std::vector<double>& coordinates, vtkPoints* like)
 {
   auto points = vtkSmartPointer<vtkPoints>::New();

@@ -197,6 +197,12 @@ TAUTLINECORE_EXPORT void flipCells(vtkDataSet* data, const std::vector<unsigned 
 /// Flags the 2D cells beside 3D ones. Empty if there are none.
 TAUTLINECORE_EXPORT std::vector<unsigned char> facesBesideVolumes(const Mesh& mesh);
 
+/**
+ * @brief Cells that are no elements: ghosts, and cells of lower dimension than others, which are
+ * vertices, lines and 2D cells beside 3D ones. Empty if there are none.
+ */
+TAUTLINECORE_EXPORT std::vector<unsigned char> cellsBesideElements(const MeshAdapter& adapter);
+
 /// Cells to leave out of statistics: ghosts, and 2D cells beside 3D ones. Empty if there are none.
 TAUTLINECORE_EXPORT std::vector<unsigned char> cellsToSkip(const MeshAdapter& adapter);
 

@@ -71,7 +71,7 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
   : Local(mesh)
 {
   this->Adapter = std::make_unique<MeshAdapter>(mesh.input, threads);
-  this->Skip = cellsToSkip(*this->Adapter);
+  this->Skip = cellsBesideElements(*this->Adapter);
   requireDistinctCells(this->Adapter->mesh(), this->Skip.empty() ? nullptr : this->Skip.data());
   const std::string more = this->Adapter->notice();
   this->Notice = mesh.notice + (mesh.notice.empty() || more.empty() ? "" : " ") + more;

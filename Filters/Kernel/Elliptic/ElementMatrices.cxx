@@ -14,45 +14,70 @@ std::string counted(Index n, const CellTopology& t)
 }
 
 //------------------------------------------------------------------------------
-void requireElements(const Mesh& mesh)
+void requireElements(const Mesh& mesh, const unsigned char* skip)
 {
   const MeshView& view = mesh.view();
-  // Names the first cell of a type that is not supported.
-  const auto first = [&](auto wrong)
+  const auto counts = [skip](Index cell) { return !(skip && skip[cell]); };
+  // The cells of a wrong type, and which is the first.
+  const auto find = [&](auto wrong, Index& number)
   {
-    Index cell = 0;
-    while (!wrong(view.cellTypes[cell]))
+    Index first = -1;
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
     {
-      ++cell;
+      if (counts(cell) && wrong(view.cellTypes[cell]))
+      {
+        first = first < 0 ? cell : first;
+        ++number;
+      }
     }
-    return "the first is cell " + std::to_string(cell) + ", VTK cell type " +
-      std::to_string(static_cast<int>(view.cellTypes[cell]));
+    return first < 0 ? ""
+                     : "the first is cell " + std::to_string(first) + ", VTK cell type " +
+        std::to_string(static_cast<int>(view.cellTypes[first]));
   };
+  Index all = 0, unsupported = 0, higherOrder = 0;
   if (mesh.dimension() == Dimension::None)
   {
-    throw Error("The mesh has no cells finite elements are made of: triangles, quadrilaterals, "
-                "tetrahedra, hexahedra, wedges or pyramids.");
+    find([](int) { return true; }, all);
+    if (all > 0 || !skip)
+    {
+      throw Error("The mesh has no cells finite elements are made of: triangles, quadrilaterals, "
+                  "tetrahedra, hexahedra, wedges or pyramids.");
+    }
   }
   if (mesh.unsupportedCells() > 0)
   {
-    throw Error(std::to_string(mesh.unsupportedCells()) +
-      " cells are not triangles, quadrilaterals, tetrahedra, hexahedra, wedges or pyramids (" +
-      first([](int type) { return cornerType(type) == CellType::Unsupported; }) +
-      "). Extract the others, or run Tetrahedralize, which cuts all cells into triangles or "
-      "tetrahedra.");
+    const std::string first =
+      find([](int type) { return cornerType(type) == CellType::Unsupported; }, unsupported);
+    if (unsupported > 0)
+    {
+      throw Error(std::to_string(unsupported) +
+        " cells are not triangles, quadrilaterals, tetrahedra, hexahedra, wedges or pyramids (" +
+        first +
+        "). Extract the others, or run Tetrahedralize, which cuts all cells into triangles or "
+        "tetrahedra.");
+    }
   }
   if (mesh.higherOrderCells() > 0)
   {
-    throw Error(std::to_string(mesh.higherOrderCells()) + " cells are of higher order (" +
-      first([](int type) { return isHigherOrder(type); }) +
-      "). The elements here are linear: run Tessellate first.");
+    const std::string first = find([](int type) { return isHigherOrder(type); }, higherOrder);
+    if (higherOrder > 0)
+    {
+      throw Error(std::to_string(higherOrder) + " cells are of higher order (" + first +
+        "). The elements here are linear: run Tessellate first.");
+    }
   }
   for (const CellBlock& block : mesh.blocks())
   {
     const CellTopology& t = topology(block.type);
-    if (mesh.dimension() == Dimension::Volume && t.dimension == 2)
+    Index flat = 0;
+    for (Index i = 0; mesh.dimension() == Dimension::Volume && t.dimension == 2 && i < block.count;
+         ++i)
     {
-      throw Error("The mesh has " + counted(block.count, t) +
+      flat += counts(block.cell(i));
+    }
+    if (flat > 0)
+    {
+      throw Error("The mesh has " + counted(flat, t) +
         " beside its volume cells. Extract the volume cells: flat elements would stiffen them.");
     }
   }

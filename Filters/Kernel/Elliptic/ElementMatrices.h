@@ -16,8 +16,12 @@
 
 namespace tautline
 {
-/// Throws Error if a mesh has cells there are no elements for: which, how many, and what to do.
-void requireElements(const Mesh& mesh);
+/**
+ * @brief Throws Error if a mesh has cells there are no elements for: which, how many, and what to
+ * do.
+ * @param skip one flag per cell: it does not count; or null
+ */
+void requireElements(const Mesh& mesh, const unsigned char* skip = nullptr);
 
 /// The product C v.
 inline Vec3 applyTensor(const SymmetricTensor& c, const Vec3& v)

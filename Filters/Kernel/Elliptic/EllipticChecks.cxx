@@ -94,7 +94,7 @@ void EllipticChecks::requireCoefficients() const
   const Index cells = this->Input.view().numberOfCells;
   if (cells > 0)
   {
-    requireElements(this->Input);
+    requireElements(this->Input, this->Part.skip);
   }
   if (this->Problem.pde != Pde::Elliptic)
   {
@@ -147,7 +147,8 @@ void EllipticChecks::requireValidElements() const
   }
   if (valid.count + degenerate.count + inverted.count + nonFinite.count == 0)
   {
-    throw Error("The mesh has no cells.");
+    throw Error("The mesh has no cells finite elements are made of: triangles, quadrilaterals, "
+                "tetrahedra, hexahedra, wedges or pyramids.");
   }
   if (nonFinite.count > 0)
   {

@@ -3,6 +3,7 @@
 
 #include "ElementMatrices.h"
 #include "tautline/Core/Parallel.h"
+#include "tautline/Mesh/MeshElements.h"
 
 #include <atomic>
 #include <limits>
@@ -46,17 +47,22 @@ AssemblyPattern::AssemblyPattern(const Mesh& mesh, const AssemblyOptions& option
   : Input(&mesh)
   , Threads(options.threads)
 {
-  requireElements(mesh);
+  requireElements(mesh, options.skip);
   this->Nodes.fill(0);
   for (const CellBlock& block : mesh.blocks())
   {
+    if (!isElement(mesh, block.type))
+    {
+      continue; // all of them are skipped
+    }
     const int nodes = topology(block.type).nodes;
     this->Nodes[static_cast<int>(block.type)] = static_cast<signed char>(nodes);
     this->Stride = std::max(this->Stride, nodes);
   }
   const MeshView& view = mesh.view();
   const Index size = view.offsets[view.numberOfCells] - view.offsets[0];
-  this->Uniform = mesh.blocks().size() == 1 && size == this->Stride * view.numberOfCells;
+  this->Uniform = mesh.blocks().size() == 1 && mesh.unsupportedCells() == 0 &&
+    size == this->Stride * view.numberOfCells;
   this->findUses(options.skip);
   this->findColumns();
 }
@@ -246,6 +252,10 @@ void AssemblyPattern::computeBatch(const Element& element, const MeshView& view,
       for (Index i = begin; i < end; ++i)
       {
         const Index cell = firstCell + i;
+        if (this->nodesOf(cell) == 0)
+        {
+          continue;
+        }
         const Index* node = view.connectivity + this->firstNode(cell);
         const CellType type = static_cast<CellType>(view.cellTypes[cell]);
         withElement(type,
@@ -389,7 +399,8 @@ void AssemblyPattern::assemble(
   {
     for (Index cell = 0; cell < this->Input->view().numberOfCells; ++cell)
     {
-      if (!(pde.stiffening[cell] > 0) || !std::isfinite(pde.stiffening[cell]))
+      const bool positive = pde.stiffening[cell] > 0 && std::isfinite(pde.stiffening[cell]);
+      if (this->nodesOf(cell) > 0 && !positive)
       {
         throw Error("The stiffening factor of cell " + std::to_string(cell) +
           " is not a positive, finite number.");
@@ -435,7 +446,7 @@ int elasticComponents(const Mesh& mesh)
 std::vector<double> loadVector(
   const Mesh& mesh, const double* f, int components, const AssemblyOptions& options)
 {
-  requireElements(mesh);
+  requireElements(mesh, options.skip);
   const MeshView& view = mesh.view();
   std::vector<double> load(components * view.numberOfPoints, 0.0);
   for (const CellBlock& block : mesh.blocks())

@@ -2,6 +2,7 @@
 // Solve PDE: known solutions of problems described in every way, blocks, partitions, refusals.
 #include "Registry.h"
 #include "VtkMeshes.h"
+#include "vtkConditionEstimator.h"
 #include "vtkEllipticSolver.h"
 #include "vtkMultiPieceDataSet.h"
 #include "vtkPartitionedDataSet.h"
@@ -514,6 +515,58 @@ TAUTLINE_PART(testRefusals)
 }
 
 //------------------------------------------------------------------------------
+/// Cells of lower dimension beside the elements, in any order, do not count and stay in the output.
+TAUTLINE_PART(testCellsBeside)
+{
+  for (CellType type : { CellType::Triangle, CellType::Hexahedron, CellType::Tetrahedron })
+  {
+    const Context context(topology(type).name);
+    const MeshData data = block(type, 4);
+    TAUTLINE_LET(MeshData, before, points = data.points);
+    MeshData after = data;
+    const std::vector<Index> first = data.nodes(0);
+    for (MeshData* mixed : { &before, &after })
+    {
+      mixed->addCell(VTK_VERTEX, { first[0] });
+      mixed->addCell(VTK_LINE, { first[0], first[1] });
+      mixed->addCell(VTK_POLY_LINE, { first[0], first[1], first[2], data.numberOfPoints() - 1 });
+      if (topology(type).dimension == 3)
+      {
+        mixed->addCell(VTK_TRIANGLE, { first[0], first[1], first[2] });
+      }
+    }
+    for (Index cell = 0; cell < data.numberOfCells(); ++cell)
+    {
+      before.addCell(data.types[cell], data.nodes(cell));
+    }
+    const auto solve = [](const MeshData& mesh, int pde)
+    {
+      TAUTLINE_NEW(vtkEllipticSolver, filter, SetInputData(toGrid(mesh)), SetEquation(pde),
+        SetSourceValue(1), SetBodyForce(1, 0, 0));
+      vtkDataSet* output = solved(filter);
+      TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), mesh.numberOfCells());
+      return values(output, pde == vtkEllipticSolver::ELASTICITY ? "Displacement" : "Solution");
+    };
+    for (const int pde : { vtkEllipticSolver::POISSON, vtkEllipticSolver::ELASTICITY })
+    {
+      const std::vector<double> expected = solve(data, pde);
+      for (const MeshData* mixed : { &before, &after })
+      {
+        TAUTLINE_CHECK(distance(solve(*mixed, pde), expected) <= 1e-9);
+      }
+    }
+    vtkNew<vtkConditionEstimator> estimator;
+    double conditions[2];
+    for (const bool mixed : { false, true })
+    {
+      TAUTLINE_SET(estimator, SetInputData(toGrid(mixed ? before : data)), Update());
+      conditions[mixed] = estimator->GetCondition();
+    }
+    TAUTLINE_CHECK(conditions[0] > 1);
+    TAUTLINE_CHECK_RELATIVE(conditions[1], conditions[0], 1e-6);
+  }
+}
+
 TAUTLINE_PART(testNotices)
 {
   MeshData data = block(CellType::Triangle, 4);
