@@ -548,7 +548,16 @@ Index MovableMesh::allPoints() const
 //------------------------------------------------------------------------------
 Index MovableMesh::allCells() const
 {
-  return this->inPieces() ? this->distributed().globalCells() : this->mesh().view().numberOfCells;
+  if (this->inPieces())
+  {
+    return this->distributed().globalCells();
+  }
+  Index elements = 0;
+  for (const CellBlock& block : this->mesh().blocks())
+  {
+    elements += topology(block.type).dimension == this->dimension() ? block.count : 0;
+  }
+  return elements;
 }
 
 //------------------------------------------------------------------------------

@@ -126,7 +126,7 @@ public:
   RankGroup* ranks() const { return this->inPieces() ? &this->Spread->group : nullptr; }
   /// Of the whole mesh: 3, or 2 for planes and surfaces.
   int dimension() const;
-  /// The points and cells of the whole mesh.
+  /// The points of the whole mesh, and its elements: the cells of its own dimension.
   Index allPoints() const;
   Index allCells() const;
 

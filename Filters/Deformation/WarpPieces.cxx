@@ -105,7 +105,7 @@ Index PieceWarp::countInvalid(const std::vector<double>& points)
   const Mesh start = localMesh(this->local(), this->Whole.mirrored(), threads);
   std::vector<signed char> validity(start.view().numberOfCells);
   start.at(points.data()).classifyCells(validity.data(), threads);
-  return Ranks(this->local()).countInvalid(validity);
+  return Ranks(this->local()).countInvalid(start, validity);
 }
 
 //------------------------------------------------------------------------------

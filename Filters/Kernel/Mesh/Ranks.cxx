@@ -2,6 +2,7 @@
 #include "Ranks.h"
 
 #include "BoundaryPoints.h"
+#include "MeshElements.h"
 #include "tautline/Core/Memory.h"
 
 #include <algorithm>
@@ -56,12 +57,16 @@ std::vector<unsigned char> rankBoundary(const DistributedMesh& mesh)
 }
 
 //------------------------------------------------------------------------------
-Index Ranks::countInvalid(const std::vector<signed char>& validity) const
+Index Ranks::countInvalid(const Mesh& local, const std::vector<signed char>& validity) const
 {
   Index count = 0;
-  for (std::size_t cell = 0; cell < validity.size(); ++cell)
+  for (const CellBlock& block : local.blocks())
   {
-    count += this->ownsCell(static_cast<Index>(cell)) && isInvalid(validity[cell]);
+    for (Index i = 0; isElement(local, block.type) && i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      count += this->ownsCell(cell) && isInvalid(validity[cell]);
+    }
   }
   return this->sum(count);
 }

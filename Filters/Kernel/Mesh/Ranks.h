@@ -74,9 +74,9 @@ public:
   Dimension dimension(const Mesh& local) const;
   /// One flag per local point: on the boundary of the whole mesh.
   std::vector<unsigned char> boundary(const Mesh& local) const;
-  /// Inverted and degenerate cells of the whole mesh.
+  /// Inverted and degenerate elements of the whole mesh: cells of its own dimension.
   /// @param validity of the local cells, as Mesh::classifyCells() gives it
-  Index countInvalid(const std::vector<signed char>& validity) const;
+  Index countInvalid(const Mesh& local, const std::vector<signed char>& validity) const;
   /// The space of the whole mesh, whose pieces with cells agree on it.
   MeshSpace space(const Mesh& local) const;
   /// Does work that does not communicate; what it throws on one rank is thrown on all.

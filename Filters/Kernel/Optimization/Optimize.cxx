@@ -245,7 +245,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
     }
   }
   result.iterations = result.history.back().iteration;
-  result.invertedAfter = ranks.countInvalid(state.validity);
+  result.invertedAfter = ranks.countInvalid(problem.moving(), state.validity);
   result.elements.validity = std::move(state.validity);
   result.elements.after = std::move(state.values);
   result.surfaceError = problem.surfaceError();
@@ -413,7 +413,7 @@ OptimizeResult run(const Mesh& mesh, const OptimizeOptions& given,
   checkOptions(mesh, options, ranks);
   const std::vector<signed char> validity =
     known.empty() ? cellValidity(mesh, options.threads) : known;
-  result.invertedBefore = result.invertedAfter = ranks.countInvalid(validity);
+  result.invertedBefore = result.invertedAfter = ranks.countInvalid(mesh, validity);
   std::vector<unsigned char> held;
   if (mesh.dimension() == Dimension::Surface && result.invertedBefore > 0)
   {

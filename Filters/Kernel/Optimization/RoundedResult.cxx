@@ -108,7 +108,7 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
       ranks.ownsCell(static_cast<Index>(cell)) && there[cell] == Valid && now[cell] != Valid;
   }
   found.lost = ranks.sum(found.lost);
-  found.inverted = ranks.countInvalid(now);
+  found.inverted = ranks.countInvalid(mesh, now);
   const QualityGuard guard(mesh, validity, options, ranks);
   if (!guard.holdsObjective() || found.lost > 0)
   {

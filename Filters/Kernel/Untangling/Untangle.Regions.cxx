@@ -414,7 +414,7 @@ void RegionUntangler::untangleWithin(int width)
   this->Validity = this->Before;
   this->Local.classifyMovedCells(
     result.points.data(), this->Validity.data(), this->Options.threads);
-  result.invertedAfter = countInvalid(this->Validity, this->TheRanks);
+  result.invertedAfter = countInvalid(this->Local, this->Validity, this->TheRanks);
   if (result.invertedAfter > before)
   {
     result.points.swap(kept);

@@ -138,7 +138,7 @@ void unfoldCells(const Mesh& mesh, const SimplexMesh& simplices, UntangleProgres
     free[simplices.point(v)] = 1;
   }
   unfold(mesh, free, result.points, validity, [&] { return !progress.late(); });
-  result.invertedAfter = countInvalid(validity);
+  result.invertedAfter = countInvalid(mesh, validity);
   progress.record(result.invertedAfter, result.history.back().objective, 1.0,
     [&](double* to) { std::copy(result.points.begin(), result.points.end(), to); });
 }
@@ -173,7 +173,7 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
       break;
     }
   }
-  result.invertedAfter = countInvalid(validity);
+  result.invertedAfter = countInvalid(mesh, validity);
   unfoldCells(mesh, simplices, progress, validity, result);
   if (result.invertedAfter > result.invertedBefore)
   {
@@ -225,7 +225,7 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options, const 
       std::vector<signed char> validity(view.numberOfCells);
       mesh.classifyCells(validity.data(), options.threads);
       const std::vector<signed char> before = validity;
-      result.invertedBefore = result.invertedAfter = countInvalid(validity, ranks);
+      result.invertedBefore = result.invertedAfter = countInvalid(mesh, validity, ranks);
       const Dimension dimension = ranks.dimension(mesh);
       if (result.invertedBefore > 0 && dimension == Dimension::Surface)
       {

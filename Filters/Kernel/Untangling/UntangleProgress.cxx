@@ -7,14 +7,9 @@
 namespace tautline
 {
 //------------------------------------------------------------------------------
-Index countInvalid(const std::vector<signed char>& validity, const Ranks& ranks)
+Index countInvalid(const Mesh& mesh, const std::vector<signed char>& validity, const Ranks& ranks)
 {
-  Index count = 0;
-  for (std::size_t cell = 0; cell < validity.size(); ++cell)
-  {
-    count += isInvalid(validity[cell]) && ranks.ownsCell(static_cast<Index>(cell));
-  }
-  return ranks.sum(count);
+  return ranks.countInvalid(mesh, validity);
 }
 
 //------------------------------------------------------------------------------

@@ -14,7 +14,8 @@
 namespace tautline
 {
 /// Invalid elements of the whole mesh. @param validity of the local cells
-Index countInvalid(const std::vector<signed char>& validity, const Ranks& ranks = {});
+Index countInvalid(
+  const Mesh& mesh, const std::vector<signed char>& validity, const Ranks& ranks = {});
 
 /// The history, the observer and the time limit; starts when it is made.
 class UntangleProgress

@@ -216,6 +216,25 @@ void testUntangling(CellType type, Index n)
   }
 }
 
+/// The elements are counted, and not the facets beside them, of which one has no area here.
+TAUTLINE_PART(testCounts)
+{
+  const MeshData data = perturbedBlock(CellType::Tetrahedron, 3, 0.2);
+  MeshData mixed = withFacets(data, Order::EdgesToo);
+  const Index corner = data.connectivity[0];
+  const Index middle =
+    mixed.addPoint(0.5 * (data.point(corner) + data.point(data.connectivity[1])));
+  mixed.addCell(VTK_TRIANGLE, { corner, data.connectivity[1], middle });
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(mixed)), AddObjectiveByName("imr"),
+    SetMaximumIterations(2), Update());
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedBefore(), 0);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+  TAUTLINE_CHECK(contains(filter->GetSummary(),
+    "Inverted elements: 0 before, 0 after, of " + std::to_string(data.numberOfCells()) + "."));
+  TAUTLINE_NEW(vtkMeshUntangler, untangler, SetInputData(toGrid(mixed)), Update());
+  TAUTLINE_CHECK_EQUAL(untangler->GetInvertedBefore(), 0);
+}
+
 /// A sheet of facets inside, as interfaces are: its points stay, whatever is chosen.
 void testInside(const MeshData& data)
 {
