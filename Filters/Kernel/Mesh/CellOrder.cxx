@@ -380,12 +380,14 @@ OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPa
     of.first = of.first < 0 ? parts[p].first : std::min(of.first, parts[p].first);
   }
   turns.assign(count, Turn::None);
+  Index inverted = 0; // parts that are negative as their cells are inverted, not reversed
   for (Index p = 0; p < count; ++p)
   {
     const PiecePart& of = whole[sets.part(p)];
     const bool one = sets.part(p) == p; // once for each part of the whole
     totals.parts += one;
-    totals.reversedParts += one && haveSigns && of.given.reversed(sign);
+    const bool negative = one && haveSigns && of.given.reversed(sign);
+    totals.reversedParts += negative;
     totals.cells += parts[p].cells;
     if (sets.ambiguous(p))
     {
@@ -399,12 +401,16 @@ OrderTotals decide(const std::vector<PiecePart>& parts, const std::vector<PartPa
     if (haveSigns && of.opposite == 0)
     {
       // Nothing but the sign of the part tells its order. A few cells may be inverted ones.
-      turn = turn && of.cells >= Enough && of.inOrder.majority == -of.cells;
+      const bool many = of.cells >= Enough && of.inOrder.majority == -of.cells;
+      inverted += negative && turn && !many;
+      turn = turn && many;
     }
     turns[p] = turn != sets.opposite(p) ? Turn::Turned : Turn::Stays;
     totals.reversed +=
       turns[p] == Turn::Turned ? parts[p].cells - parts[p].opposite : parts[p].opposite;
   }
+  // Where all parts are negative, the mesh is reversed, however few cells it has.
+  totals.reversedParts -= totals.reversedParts < totals.parts ? inverted : 0;
   return totals;
 }
 

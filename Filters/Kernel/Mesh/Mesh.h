@@ -93,9 +93,11 @@ struct Orientation
   State state = Consistent;
   Index positiveCells = 0;
   Index negativeCells = 0;
-  Index disagreeing = 0;   ///< interior edges (2D) or faces (3D) whose two cells disagree
-  Index parts = 0;         ///< connected parts; 0 when they did not have to be found
-  Index reversedParts = 0; ///< parts whose signed area or volume is negative
+  Index disagreeing = 0; ///< interior edges (2D) or faces (3D) whose two cells disagree
+  Index parts = 0;       ///< connected parts; 0 when they did not have to be found
+  /// Parts whose signed area or volume is negative. Beside others these do not count where some of
+  /// their cells are positive or they are few: then the cells are inverted.
+  Index reversedParts = 0;
 };
 
 /// Vertex-to-cell adjacency in compressed rows: the cells of vertex v are

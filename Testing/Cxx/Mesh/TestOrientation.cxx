@@ -188,6 +188,37 @@ TAUTLINE_PART(testSurfaceOrientation)
   TAUTLINE_CHECK_EQUAL(few.reverse[11], 1);
 }
 
+/// A part of few inverted cells beside a mesh is inverted and not also reversed; one of many is
+/// reversed and not inverted.
+TAUTLINE_PART(testFewBeside)
+{
+  for (const Index n : { 1, 3 })
+  {
+    MeshData data = blockMesh(CellType::Hexahedron, 4, 4, 4);
+    const MeshData other = blockMesh(CellType::Hexahedron, n, n, n);
+    const Index shift = data.numberOfPoints();
+    for (Index p = 0; p < other.numberOfPoints(); ++p)
+    {
+      data.addPoint(other.point(p) + Vec3{ 10, 0, 0 });
+    }
+    for (Index cell = 0; cell < other.numberOfCells(); ++cell)
+    {
+      std::vector<Index> nodes = other.nodes(cell);
+      std::for_each(nodes.begin(), nodes.end(), [shift](Index& p) { p += shift; });
+      data.addCell(CellType::Hexahedron, nodes);
+      flip(data, data.numberOfCells() - 1);
+    }
+    const Mesh mesh(data.view());
+    const Orientation o = orientationOf(mesh);
+    const bool reversed = n == 3;
+    TAUTLINE_CHECK_EQUAL(o.parts, 2);
+    TAUTLINE_CHECK_EQUAL(o.reversedParts, reversed ? 1 : 0);
+    TAUTLINE_CHECK_EQUAL(o.state, reversed ? Orientation::Mixed : Orientation::Consistent);
+    TAUTLINE_CHECK_EQUAL(consistentOrder(mesh, validityOf(mesh).data()).reversed,
+      reversed ? other.numberOfCells() : 0);
+  }
+}
+
 /// Which cells are in which order does not matter for a tangled mesh either: neighbours tell.
 TAUTLINE_PART(testTangledAndMixed)
 {
