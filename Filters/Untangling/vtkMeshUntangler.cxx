@@ -226,6 +226,10 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
     verdict(result, remaining) +
     tautline::surfaceErrorSentence(mesh.frame().unit() * result.surfaceError));
+  this->AddToSummary(!remaining.empty() && !mesh.inPieces() &&
+        mesh.mesh().dimension() == tautline::Dimension::Surface
+      ? "Improve Mesh removes triangles without area."
+      : "");
   this->AddToSummary(result.exceededMemory
       ? "The whole mesh did not fit into the memory of the first process, where the elements that "
         "are left would have been untangled: take fewer cells, or more memory."

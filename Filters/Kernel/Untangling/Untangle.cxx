@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Untangle.h"
 
+#include "SurfaceRegions.h"
 #include "Unfold.h"
 #include "UntangleRegions.h"
 #include "Untangler.h"
 #include "tautline/Mesh/CoordinateFrame.h"
+#include "tautline/Mesh/FoldedCells.h"
 #include "tautline/Mesh/JacobianBounds.h"
 
 namespace tautline
@@ -224,21 +226,33 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options, const 
       result.obstacles.assign(view.numberOfCells, static_cast<signed char>(Obstacle::None));
       std::vector<signed char> validity(view.numberOfCells);
       mesh.classifyCells(validity.data(), options.threads);
+      if (!ranks.several())
+      {
+        markFolded(mesh, validity.data());
+      }
       const std::vector<signed char> before = validity;
       result.invertedBefore = result.invertedAfter = countInvalid(mesh, validity, ranks);
       const Dimension dimension = ranks.dimension(mesh);
-      if (result.invertedBefore > 0 && dimension == Dimension::Surface)
+      const bool onSurface = dimension == Dimension::Surface;
+      if (result.invertedBefore > 0 && onSurface && ranks.several())
       {
         throw Error(
-          "Untangling works on planar and volume meshes: this is a surface in space. Optimize its "
-          "shape, which keeps the tangent planes, or project it to a plane first.");
+          "Untangling on several processes, or in the reproducible order, works on planar "
+          "and volume meshes: this is a surface in space. Gather it on one process.");
       }
-      if (dimension == Dimension::None || dimension == Dimension::Surface)
+      if (dimension == Dimension::None || (onSurface && result.invertedBefore == 0))
       {
         return;
       }
       result.reason = StopReason::NoProgress;
-      if (ranks.several())
+      if (onSurface)
+      {
+        untangleSurface(
+          mesh, options, progress,
+          [](const Mesh& flat, const UntangleOptions& local) { return untangle(flat, local); },
+          validity, result);
+      }
+      else if (ranks.several())
       {
         untangleRegions(mesh, options, ranks, progress, validity, result);
       }

@@ -39,7 +39,9 @@ namespace tautline
  * are.
  * @param mesh oriented consistently (see Mesh::orientation(), setMirrored()); not changed. On
  * several ranks the local mesh, see Ranks.
- * Throws Error for a surface mesh in space with inverted elements.
+ * Of a surface in space, also elements that are folded over their neighbors count as inverted.
+ * Regions around the inverted elements are untangled in their tangent planes and put back on the
+ * surface; sharp edges are kept. Throws Error for such a surface on several ranks.
  */
 TAUTLINE_KERNEL_EXPORT UntangleResult untangle(
   const Mesh& mesh, const UntangleOptions& options, const Ranks& ranks = {});

@@ -6,6 +6,7 @@
  */
 
 #include "Registry.h"
+#include "Surfaces.h"
 #include "VtkMeshes.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Untangling/LinearProgram.h"
@@ -558,10 +559,45 @@ TAUTLINE_PART(testTimeLimitWithinSweep)
 TAUTLINE_PART(testSurface)
 {
   MeshData data = block(CellType::Quadrilateral, 4);
-  data.transform(TAUTLINE_PLACE(p[0], p[1], p[0] * p[0] + p[1]));
+  data.transform(TAUTLINE_PLACE(p[0], p[1], 0.1 * p[0] * p[0] + p[1]));
   TAUTLINE_CHECK(untangle(Mesh(data.view()), {}).reason == StopReason::AllValid);
-  data.setPoint(12, { 3.5, 3.5, 15.75 });
-  TAUTLINE_CHECK_THROWS(untangle(Mesh(data.view()), {}), "surface");
+  // A point that was pulled along the surface goes back, and stays on it.
+  data.setPoint(12, { 3.5, 3.5, 4.725 });
+  UntangleResult result = untangle(Mesh(data.view()), {});
+  TAUTLINE_CHECK(result.invertedBefore > 0);
+  TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
+  TAUTLINE_CHECK(result.reason == StopReason::AllValid);
+  MeshData after = TAUTLINE_CHANGED(data, points = result.points);
+  TAUTLINE_EACH_OF(signed char v, validityOf(after),
+    TAUTLINE_CHECK_EQUAL(static_cast<int>(v), static_cast<int>(Valid)));
+  constexpr double sag = 0.16; // of the longest edges of the point that was pulled
+  for (Index p = 0; p < after.numberOfPoints(); ++p)
+  {
+    const Vec3 x = after.point(p);
+    TAUTLINE_CHECK(std::abs(0.1 * x[0] * x[0] + x[1] - x[2]) <= sag);
+    TAUTLINE_CHECK(p == 12 || norm(x - data.point(p)) < 1.5);
+  }
+  // Folded triangles in a flat side of a cube count; the side stays flat, and the cube as it was.
+  MeshData cube = cubeSurface(CellType::Triangle, 6);
+  TAUTLINE_CHECK_EQUAL(untangle(Mesh(cube.view()), {}).invertedBefore, 0);
+  const MeshData given = cube;
+  Index inside = 0;
+  while (norm(cube.point(inside) - Vec3{ 0.5, 0.5, 1 }) > 0.01)
+  {
+    ++inside;
+  }
+  cube.setPoint(inside, cube.point(inside) + Vec3{ 0.21, 0.03, 0 });
+  result = untangle(Mesh(cube.view()), {});
+  TAUTLINE_CHECK(result.invertedBefore > 0);
+  TAUTLINE_CHECK_EQUAL(result.invertedAfter, 0);
+  for (Index p = 0; p < cube.numberOfPoints(); ++p)
+  {
+    const Vec3 x = { result.points[3 * p], result.points[3 * p + 1], result.points[3 * p + 2] };
+    TAUTLINE_CHECK_NEAR(x[2], given.point(p)[2], 1e-12);
+    TAUTLINE_CHECK(p == inside || norm(x - given.point(p)) < 0.15);
+  }
+  after = TAUTLINE_CHANGED(given, points = result.points);
+  TAUTLINE_CHECK_EQUAL(untangle(Mesh(after.view()), {}).invertedBefore, 0);
 }
 
 //------------------------------------------------------------------------------

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file FoldedCells.h
+ * @brief The elements of a surface in space that are folded over their neighbors.
+ * Internal: not installed.
+ */
+#ifndef tautline_FoldedCells_h
+#define tautline_FoldedCells_h
+
+#include "Mesh.h"
+
+namespace tautline
+{
+/**
+ * @brief Marks the folded elements of a surface in space as Inverted. Elements that are joined by
+ * edges without a fold, of more than 150 degrees, are one group. A group of few elements is folded
+ * if all its other edges are folds, and the groups beyond them have many more elements. So both
+ * sides of a thin plate, and sharp ridges, are not.
+ * @param validity of the cells as Mesh::classifyCells() gives it; only Valid changes
+ * @return the number of elements marked; 0 for other meshes
+ */
+TAUTLINE_KERNEL_EXPORT Index markFolded(const Mesh& mesh, signed char* validity);
+}
+#endif
