@@ -146,10 +146,11 @@ JoinedCopies MeshAdapter::joinCopies(vtkDataArray* globalIds)
 }
 
 //------------------------------------------------------------------------------
-void MeshAdapter::mergeCoincidentPoints(int threads)
+void MeshAdapter::mergeCoincidentPoints(int threads, bool dropCopies)
 {
-  this->Coincident = findCoincidentPoints(*this->TheMesh, nullptr, threads, this->Ghosts);
-  if (this->Coincident.overlapping > 0)
+  std::vector<unsigned char> copies;
+  this->Coincident = findCoincidentPoints(*this->TheMesh, nullptr, threads, this->Ghosts, &copies);
+  if (this->Coincident.overlapping > 0 || this->Coincident.crowded > 0)
   {
     // Cells that list their points in the opposite order seem to be on the wrong side of a facet.
     std::vector<signed char> validity(this->View.numberOfCells);
@@ -157,8 +158,8 @@ void MeshAdapter::mergeCoincidentPoints(int threads)
     const RankOrder found = this->findOrder(validity.data());
     if (found.order.reversed > 0)
     {
-      this->Coincident =
-        findCoincidentPoints(*this->TheMesh, found.reverse[0].data(), threads, this->Ghosts);
+      this->Coincident = findCoincidentPoints(
+        *this->TheMesh, found.reverse[0].data(), threads, this->Ghosts, &copies);
     }
   }
   if (!this->Coincident.any())
@@ -179,6 +180,52 @@ void MeshAdapter::mergeCoincidentPoints(int threads)
   merged.connectivity = this->MergedConnectivity.data();
   this->Given = std::move(this->TheMesh);
   this->TheMesh = std::make_unique<Mesh>(merged, threads);
+  if (dropCopies)
+  {
+    this->dropCells(copies);
+  }
+}
+
+//------------------------------------------------------------------------------
+void MeshAdapter::dropCells(const std::vector<unsigned char>& flags)
+{
+  if (flags.empty())
+  {
+    return;
+  }
+  MeshView view = this->TheMesh->view();
+  // Points of cells that are not supported stay: these have none.
+  std::vector<Index> offsets = { 0 }, connectivity;
+  std::vector<unsigned char> types(view.cellTypes, view.cellTypes + view.numberOfCells);
+  this->Dropped.resize(flags.size(), 0);
+  offsets.reserve(flags.size() + 1);
+  for (std::size_t cell = 0; cell < flags.size(); ++cell)
+  {
+    if (flags[cell])
+    {
+      types[cell] = static_cast<unsigned char>(CellType::Unsupported);
+      this->Dropped[cell] = 1;
+    }
+    else
+    {
+      connectivity.insert(connectivity.end(), view.connectivity + view.offsets[cell],
+        view.connectivity + view.offsets[cell + 1]);
+    }
+    offsets.push_back(static_cast<Index>(connectivity.size()));
+  }
+  if (!this->Given)
+  {
+    this->Given = std::make_unique<Mesh>(*this->TheMesh);
+  }
+  this->MergedConnectivity = std::move(connectivity);
+  this->KeptOffsets = std::move(offsets);
+  this->KeptTypes = std::move(types);
+  view.connectivity = this->MergedConnectivity.data();
+  view.offsets = this->KeptOffsets.data();
+  view.cellTypes = this->KeptTypes.data();
+  const bool mirrored = this->TheMesh->mirrored();
+  *this->TheMesh = Mesh(view, this->Threads); // in place: others refer to it
+  this->setMirrored(mirrored);
 }
 
 //------------------------------------------------------------------------------
@@ -204,9 +251,9 @@ void MeshAdapter::reverseCells(const std::vector<unsigned char>& flags)
     {
       const CellType type = cornerType(this->View.cellTypes[cell]);
       reverseCell(type, turned.data() + offsets[cell]);
-      if (merged)
+      if (merged && (this->Dropped.empty() || !this->Dropped[cell]))
       {
-        reverseCell(type, this->MergedConnectivity.data() + offsets[cell]);
+        reverseCell(type, this->MergedConnectivity.data() + this->TheMesh->view().offsets[cell]);
       }
     }
   }
@@ -218,6 +265,8 @@ void MeshAdapter::reverseCells(const std::vector<unsigned char>& flags)
   {
     *this->Given = Mesh(view, this->Threads);
     view.connectivity = this->MergedConnectivity.data();
+    view.offsets = this->TheMesh->view().offsets; // without the cells that are dropped
+    view.cellTypes = this->TheMesh->view().cellTypes;
   }
   const MeshSpace space = this->TheMesh->space(); // of the whole, where this is a piece
   *this->TheMesh = Mesh(view, this->Threads);     // in place: others refer to it

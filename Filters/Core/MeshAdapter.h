@@ -72,9 +72,16 @@ public:
   JoinedCopies joinCopies(vtkDataArray* globalIds);
   /**
    * @brief Treats coincident points on seams as one, see findCoincidentPoints(): in mesh(), cells
-   * use the representatives, and the other points are of no cell. Ids do not change.
+   * use the representatives, and the other points are of no cell. Ids do not change. So are the
+   * points of cells that are copies of another one, as where pieces overlap.
+   * @param dropCopies whether mesh() is without these copies, see dropCells()
    */
-  void mergeCoincidentPoints(int threads = 0);
+  void mergeCoincidentPoints(int threads = 0, bool dropCopies = false);
+  /// Makes cells of mesh() ones of a type that is not supported, without points; given() keeps
+  /// them. @param flags one per cell, nonzero for those; or empty
+  void dropCells(const std::vector<unsigned char>& flags);
+  /// One flag per cell: dropped; empty if none is.
+  const std::vector<unsigned char>& droppedCells() const { return this->Dropped; }
   /// What was merged; empty before mergeCoincidentPoints().
   const CoincidentPoints& coincident() const { return this->Coincident; }
   /**
@@ -165,6 +172,8 @@ private:
   std::vector<double> FramedPoints;
   CoincidentPoints Coincident;
   std::vector<Index> MergedConnectivity;
+  std::vector<unsigned char> Dropped, KeptTypes; ///< per cell
+  std::vector<Index> KeptOffsets;
   std::unique_ptr<Mesh> Given; ///< null if it is TheMesh
   std::unique_ptr<Mesh> TheMesh;
 };

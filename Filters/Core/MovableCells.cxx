@@ -3,10 +3,12 @@
 #include "MovableMesh.h"
 
 #include "tautline/Mesh/CellTopology.h"
+#include "tautline/Mesh/DistributedMesh.h"
 
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <tuple>
 
 namespace tautline
 {
@@ -56,7 +58,7 @@ std::vector<double> MovableMesh::ofCells(const std::vector<double>& ofPiece, int
   const bool any = this->Spread->dimension > 0 && !ofPiece.empty();
   for (Index cell = 0; any && cell < piece.numberOfCells; ++cell)
   {
-    if (this->Skip[cell])
+    if (this->Skip[cell] && (this->Spread->copied.empty() || !this->Spread->copied[cell]))
     {
       continue;
     }
@@ -102,5 +104,63 @@ std::vector<double> MovableMesh::ofCells(const std::vector<double>& ofPiece, int
     std::copy_n(values.data() + components * *at, components, result.data() + components * cell);
   }
   return result;
+}
+//------------------------------------------------------------------------------
+/// Marks the cells of the piece that are copies of another one, here or on another process, so that
+/// they are counted once: all but the first, by the processes and the ids.
+void MovableMesh::skipCopies()
+{
+  const DistributedMesh& mesh = this->distributed();
+  if (mesh.droppedCells() == 0)
+  {
+    return;
+  }
+  struct Candidate
+  {
+    CellKey key;
+    Index cell, rank;
+    bool operator<(const Candidate& other) const
+    {
+      return std::tie(this->key, this->rank, this->cell) <
+        std::tie(other.key, other.rank, other.cell);
+    }
+  };
+  const MeshView& piece = this->piece();
+  const auto ranks = static_cast<std::size_t>(this->group().size());
+  std::vector<std::vector<Candidate>> sent(ranks);
+  for (Index cell = 0; cell < piece.numberOfCells; ++cell)
+  {
+    const Index begin = piece.offsets[cell], end = piece.offsets[cell + 1];
+    if (!this->Skip[cell] && begin < end)
+    {
+      const auto local = [&](Index p) { return mesh.localOfPiece()[p]; };
+      const Index* least = std::min_element(piece.connectivity + begin, piece.connectivity + end,
+        [&](Index a, Index b) { return local(a) < local(b); }); // in the order of the numbers
+      const CellKey key = keyOf(piece, cell, [&](Index p) { return mesh.numbers()[local(p)]; });
+      sent[mesh.owners()[local(*least)]].push_back({ key, cell, this->group().rank() });
+    }
+  }
+  std::vector<Candidate> all;
+  for (const std::vector<Candidate>& list : this->group().exchangeItems(sent))
+  {
+    all.insert(all.end(), list.begin(), list.end());
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<std::vector<Index>> answers(ranks);
+  for (std::size_t i = 1; i < all.size(); ++i)
+  {
+    if (all[i].key == all[i - 1].key)
+    {
+      answers[static_cast<std::size_t>(all[i].rank)].push_back(all[i].cell);
+    }
+  }
+  this->Spread->copied.assign(piece.numberOfCells, 0);
+  for (const std::vector<Index>& list : this->group().exchangeItems(answers))
+  {
+    for (const Index cell : list)
+    {
+      this->Skip[cell] = this->Spread->copied[cell] = 1;
+    }
+  }
 }
 }

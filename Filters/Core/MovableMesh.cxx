@@ -5,6 +5,7 @@
 #include "PointMerge.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/BoundaryShape.h"
+#include "tautline/Mesh/CellCopies.h"
 #include "tautline/Mesh/DistributedMesh.h"
 #include "tautline/Mesh/Ranks.h"
 
@@ -94,7 +95,7 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
   if (mergePoints)
   {
     const JoinedCopies copies = this->Adapter.joinCopies(input->GetPointData()->GetGlobalIds());
-    this->Adapter.mergeCoincidentPoints(threads);
+    this->Adapter.mergeCoincidentPoints(threads, true);
     this->Notice = describeMerged(this->Adapter.coincident(), this->given());
     const std::string joined = describeJoined(copies);
     this->Notice += (this->Notice.empty() || joined.empty() ? "" : " ") + joined;
@@ -110,17 +111,57 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
   requireLinear(this->mesh());
   this->Validity.resize(this->mesh().view().numberOfCells);
   const std::string oriented = this->Adapter.orient(this->Validity.data());
-  const Mesh& mesh = this->mesh();
-  MeshSkin skin = findSkin(mesh, threads);
-  this->Skin = std::move(skin.boundaryPoints);
+  const std::string duplicates = this->findSkin();
+  const std::vector<unsigned char>& dropped = this->Adapter.droppedCells();
+  const Index copies = std::count(dropped.begin(), dropped.end(), 1);
   for (const std::string& more :
-    { oriented, describeDuplicates(skin.duplicates), this->Adapter.notice() })
+    { oriented, duplicates, describeCopies(copies), this->Adapter.notice() })
   {
     this->Notice += (this->Notice.empty() || more.empty() ? "" : " ") + more;
   }
   this->Skip = cellsToSkip(this->Adapter);
-  this->Fixed.assign(mesh.view().numberOfPoints, 0);
+  this->Fixed.assign(this->mesh().view().numberOfPoints, 0);
   this->fixWhatStays();
+  for (std::size_t cell = 0; cell < dropped.size(); ++cell) // once the points are fixed
+  {
+    this->Skip.resize(dropped.size(), 0);
+    this->Skip[cell] |= dropped[cell];
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Finds the boundary of a mesh of this process alone, whose duplicate cells then count once.
+/// @return a sentence on these, or ""
+std::string MovableMesh::findSkin()
+{
+  const Mesh& mesh = this->mesh();
+  MeshSkin skin = tautline::findSkin(mesh, this->Threads);
+  this->Skin = std::move(skin.boundaryPoints);
+  const MeshView view = mesh.view();
+  std::vector<unsigned char> copies;
+  for (const DuplicateCell& cell : skin.duplicates)
+  {
+    const auto isCopy = [&](bool reversed)
+    {
+      return sameFacets(cornerType(view.cellTypes[cell.cell]),
+        view.connectivity + view.offsets[cell.original],
+        view.connectivity + view.offsets[cell.cell], reversed);
+    };
+    if (isCopy(false) || (mesh.dimension() == Dimension::Surface && isCopy(true)))
+    {
+      copies.resize(view.numberOfCells, 0);
+      copies[cell.cell] = 1;
+      this->Validity[cell.cell] = NotMeasured;
+    }
+  }
+  this->Adapter.dropCells(copies);
+  if (!skin.consistent)
+  {
+    const Overlap overlap = findOverlap(this->mesh(), this->Validity.data());
+    requireNoOverlap(overlap.facets, mesh.dimension(),
+      overlap.facets > 0 ? placeOf(this->Adapter.inputView(), overlap.first) : "");
+  }
+  return describeDuplicates(skin.duplicates);
 }
 
 //------------------------------------------------------------------------------
@@ -183,6 +224,7 @@ MovableMesh::MovableMesh(
     ghosts = elements.ghosts.data();
   }
   this->divide({ joined, mergePoints ? nullptr : ids.data(), ghosts });
+  this->skipCopies();
   this->checkOrder();
   this->fixHeld(held);
 }
@@ -199,8 +241,13 @@ void MovableMesh::fixWhatStays()
   const Mesh& mesh = this->mesh();
   const MeshView& view = mesh.view();
   const bool slide = mesh.dimension() == Dimension::Volume && !this->Skip.empty();
+  const std::vector<unsigned char>& dropped = this->Adapter.droppedCells();
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
+    if (!dropped.empty() && dropped[cell])
+    {
+      continue; // its points are those of the cell that it is a copy of
+    }
     const bool ghost = this->Adapter.ghostCells() && this->Adapter.ghostCells()[cell];
     const bool measured = this->Validity[cell] != NotMeasured;
     if (measured && (this->Skip.empty() || !this->Skip[cell]))

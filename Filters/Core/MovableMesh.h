@@ -234,13 +234,18 @@ private:
     std::string whyTree; ///< the error of PT-Scotch, behind a blank
     int dimension = 0;
     Index inverted = 0;
+    Index dropped = 0;   ///< cells that are copies of others
     JoinedCopies copies; ///< of the points of the pieces
     std::unique_ptr<DistributedMesh> mesh;
     std::vector<unsigned char> marked; ///< per point of the piece
+    std::vector<unsigned char> copied; ///< per cell of the piece: a copy; empty without any
   };
 
   void divide(const MeshPiece& piece);
+  std::string findSkin();
   void checkOrder();
+  void skipCopies();
+  void requireOneLayer(const Mesh* mesh, const std::vector<signed char>& validity) const;
   void fixHeld(const std::vector<unsigned char>& held);
   void fixWhatStays();
   void addFixed(const std::vector<unsigned char>& flags);

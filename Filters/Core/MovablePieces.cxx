@@ -3,6 +3,7 @@
 #include "MovableMesh.h"
 
 #include "PointMerge.h"
+#include "tautline/Mesh/CellCopies.h"
 #include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Mesh/RankPieces.h"
 
@@ -14,6 +15,7 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <sstream>
 
 namespace tautline
 {
@@ -63,6 +65,7 @@ const double* MovableMesh::joinedPoints() const
 void MovableMesh::divide(const MeshPiece& given)
 {
   MeshPiece piece = given;
+  piece.dropCopies = true; // pieces may overlap
   piece.divideAnew = this->Spread->divided != Redistribution::None;
   std::vector<int> owners;
   if (this->Spread->divided == Redistribution::PtScotch)
@@ -72,6 +75,49 @@ void MovableMesh::divide(const MeshPiece& given)
     piece.owners = owners.data();
   }
   this->Spread->mesh = std::make_unique<DistributedMesh>(this->group(), piece);
+  this->Spread->dropped = this->distributed().droppedCells();
+}
+
+//------------------------------------------------------------------------------
+/// Throws Error, on all processes, where parts of the mesh overlap.
+/// @param mesh the local cells, of which all at an own point are here; null without one
+void MovableMesh::requireOneLayer(const Mesh* mesh, const std::vector<signed char>& validity) const
+{
+  const DistributedMesh& all = this->distributed();
+  Overlap overlap;
+  if (mesh && !tautline::findSkin(*mesh, this->Threads).consistent)
+  {
+    std::vector<unsigned char> own(all.localPoints());
+    for (Index p = 0; p < all.localPoints(); ++p)
+    {
+      own[p] = all.owned(p);
+    }
+    overlap = findOverlap(*mesh, validity.data(), own.data());
+  }
+  const Index facets = this->group().sum(overlap.facets);
+  if (facets == 0)
+  {
+    return;
+  }
+  // The first one by the number of its point, which all processes agree on.
+  struct First
+  {
+    Index number;
+    Vec3 place;
+  };
+  std::vector<First> own;
+  if (overlap.facets > 0)
+  {
+    own.push_back({ all.numbers()[overlap.first], pointOf(all.view(), overlap.first) });
+  }
+  const std::vector<First> found = this->group().gatherJoined(own);
+  const First first = *std::min_element(
+    found.begin(), found.end(), [](const First& a, const First& b) { return a.number < b.number; });
+  std::ostringstream place;
+  place << "(" << first.place[0] << ", " << first.place[1] << ", " << first.place[2] << ")";
+  requireNoOverlap(facets, this->dimension() == 3 ? Dimension::Volume : Dimension::Planar,
+    place.str(),
+    ", or switch Reproducible Order off, which keeps parts with points of their own apart");
 }
 
 //------------------------------------------------------------------------------
@@ -96,6 +142,7 @@ void MovableMesh::checkOrder()
     pieces.push_back({ mesh.get(), copies.data(), this->distributed().numbers().data() });
     validities.push_back(validity.data());
   }
+  this->requireOneLayer(mesh.get(), validity);
   const Orientation found = orientation(this->group(), pieces, validities);
   // As on one process: a mesh with more inverted elements than others is not reversed by that.
   this->Adapter.mesh().setMirrored(found.state == Orientation::Reversed);
@@ -126,8 +173,8 @@ std::string MovableMesh::notice() const
   const std::string division =
     dividedSentence(this->group(), this->Spread->divided, this->Spread->whyTree);
   std::string text;
-  for (const std::string& sentence :
-    { this->Notice, describeJoined(this->Spread->copies), division })
+  for (const std::string& sentence : { this->Notice, describeJoined(this->Spread->copies),
+         describeCopies(this->Spread->dropped), division })
   {
     text += (text.empty() || sentence.empty() ? "" : "\n") + sentence;
   }

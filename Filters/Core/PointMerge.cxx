@@ -19,7 +19,9 @@ std::string counted(Index count, const std::string& noun)
 /// Without a seam, where only ghost cells have coincident points.
 std::string onSeams(const CoincidentPoints& points)
 {
-  return points.seams > 0 ? " on " + counted(points.seams, "seam") : " of ghost cells";
+  return points.seams > 0 ? " on " + counted(points.seams, "seam")
+    : points.copies > 0   ? " of overlapping parts"
+                          : " of ghost cells";
 }
 
 /// The duplicates without those of cells that do not count, as a ghost is one of its original.
@@ -112,6 +114,31 @@ std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh)
   }
   const std::string apart = describeApart(points, mesh);
   return text + (text.empty() || apart.empty() ? "" : " ") + apart;
+}
+
+//------------------------------------------------------------------------------
+std::string describeCopies(Index copies)
+{
+  return copies == 0 ? ""
+                     : counted(copies, "cell") + (copies == 1 ? " is a copy" : " are copies") +
+      " of another one, as where parts of the mesh overlap: " +
+      (copies == 1 ? "it counts" : "they count") +
+      " once, and their points move alike. Clean Cells to Grid removes such cells.";
+}
+
+//------------------------------------------------------------------------------
+void requireNoOverlap(
+  Index facets, Dimension dimension, const std::string& place, const std::string& remedy)
+{
+  if (facets == 0)
+  {
+    return;
+  }
+  throw Error(counted(facets, dimension == Dimension::Volume ? "face" : "edge") +
+    (facets == 1 ? " has" : " have") + " two elements on the same side, the first at " + place +
+    ": parts of the mesh overlap, and the boundary between them cannot be found. Remove one of the "
+    "parts, for example by Connectivity and Threshold" +
+    remedy + ".");
 }
 
 //------------------------------------------------------------------------------

@@ -28,6 +28,16 @@ namespace tautline
  */
 TAUTLINECORE_EXPORT std::string describeMerged(const CoincidentPoints& points, const Mesh& mesh);
 
+/// A sentence on cells that are copies of other ones and count once with them, or "".
+TAUTLINECORE_EXPORT std::string describeCopies(Index copies);
+
+/**
+ * @brief Throws Error if two cells are on one side of a facet that no other cell has.
+ * @param place of the first point, as placeOf() gives it
+ */
+TAUTLINECORE_EXPORT void requireNoOverlap(
+  Index facets, Dimension dimension, const std::string& place, const std::string& remedy = "");
+
 /// Sentences on copies of points that were joined by their global ids, and on those that are too
 /// far apart for it; or "".
 TAUTLINECORE_EXPORT std::string describeJoined(const JoinedCopies& copies);

@@ -131,7 +131,7 @@ void vtkMeshPerturbation::Perturb(
   if (this->MergeCoincidentPoints)
   {
     copies = adapter.joinCopies(points->GetPointData()->GetGlobalIds());
-    adapter.mergeCoincidentPoints(this->Threads);
+    adapter.mergeCoincidentPoints(this->Threads, true);
   }
   adapter.enterFrame(false);
   tautline::Mesh& mesh = adapter.mesh();
@@ -187,7 +187,7 @@ void vtkMeshPerturbation::Perturb(
       " a NaN or infinite coordinate: the cells that use them are not measured.";
   for (const std::string& notice :
     { notFinite, tautline::describeMerged(adapter.coincident(), adapter.given()),
-      tautline::describeJoined(copies),
+      tautline::describeJoined(copies), tautline::describeCopies(adapter.coincident().copies),
       tautline::describeDuplicates(tautline::findSkin(mesh).duplicates) })
   {
     notices += (notices.empty() || notice.empty() ? "" : "\n") +

@@ -336,7 +336,7 @@ MeshSkin findSkin(const Mesh& mesh, int threads)
   MeshSkin skin;
   std::vector<char>& boundary = skin.boundaryPoints;
   boundary.resize(mesh.view().numberOfPoints);
-  bool consistent = true;
+  bool& consistent = skin.consistent;
   {
     const std::vector<Mark> marks = marksOf(mesh, threads);
     std::transform(

@@ -38,6 +38,9 @@ struct MeshSkin
   /// In increasing order; of supported types and the mesh's dimension, quadratic ones by their
   /// corners.
   std::vector<DuplicateCell> duplicates;
+  /// Whether at each point the two uses of a facet are in opposite senses. Else there are duplicate
+  /// cells, cells listed in opposite senses, or parts of the mesh overlap, see findOverlap().
+  bool consistent = true;
 };
 
 /**

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "CoincidentPoints.h"
 
+#include "CellCopies.h"
 #include "CornerPoints.h"
 #include "tautline/Core/CountingSort.h"
 #include "tautline/Core/Random.h"
@@ -491,13 +492,31 @@ private:
 }
 
 //------------------------------------------------------------------------------
-CoincidentPoints findCoincidentPoints(
-  const Mesh& mesh, const unsigned char* reversed, int threads, const unsigned char* ghosts)
+CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* reversed, int threads,
+  const unsigned char* ghosts, std::vector<unsigned char>* copies)
 {
   const Places places = findPlaces(mesh, threads);
+  if (copies)
+  {
+    copies->clear();
+  }
   if (!places.any)
   {
     return {};
+  }
+  std::vector<unsigned char> apart; // ghosts and copies
+  if (copies)
+  {
+    *copies = findCopies(mesh, places.of, places.several, reversed, ghosts);
+    if (!copies->empty())
+    {
+      apart = *copies;
+      for (std::size_t cell = 0; ghosts && cell < apart.size(); ++cell)
+      {
+        apart[cell] |= ghosts[cell];
+      }
+      ghosts = apart.data();
+    }
   }
   std::vector<char> collapses(mesh.view().numberOfPoints, 0);
   std::vector<SidedFacet> facets = seamFacets(mesh, places, ghosts, collapses);
@@ -529,7 +548,9 @@ CoincidentPoints findCoincidentPoints(
   {
     joiner.joinGhosts(mesh, places, ghosts);
   }
-  return joiner.finish();
+  CoincidentPoints result = joiner.finish();
+  result.copies = copies ? std::count(copies->begin(), copies->end(), 1) : 0;
+  return result;
 }
 
 //------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ struct CoincidentPoints
   Index facets = 0; ///< pairs of boundary facets that become one interior facet each
   Index seams = 0;  ///< connected sets of these facets
   Index first = -1; ///< the smallest merged point; -1 if there is none
+  Index copies = 0; ///< cells that are copies of another one, where these are asked for
   // Pairs of facets, or more, at the same place that stay apart:
   Index crowded = 0;     ///< three or more cells would share a facet
   Index overlapping = 0; ///< two cells on the same side of the facet, or listed in opposite senses
@@ -47,9 +48,14 @@ struct CoincidentPoints
  * @param ghosts one flag per cell: it is a copy of a cell of another piece and has no facets; may
  * be null. Its points are one with those of a cell at the same place, or of other copies of it;
  * else with the one point, if there is one, that other cells have at the same place.
+ * @param copies if not null, cells at the places of another one, in the same sense, are copies of
+ * it, as where pieces overlap: their points are one with those of the first of them, and they have
+ * no facets, like ghosts. It gets one flag per cell, nonzero for all but the first, or is empty
+ * without copies. Cells with the same points count where other points are at the places of these.
  */
 TAUTLINE_KERNEL_EXPORT CoincidentPoints findCoincidentPoints(const Mesh& mesh,
-  const unsigned char* reversed = nullptr, int threads = 1, const unsigned char* ghosts = nullptr);
+  const unsigned char* reversed = nullptr, int threads = 1, const unsigned char* ghosts = nullptr,
+  std::vector<unsigned char>* copies = nullptr);
 
 /// The number of cells with a flag that have the places of no cell without one: those of other
 /// pieces of the mesh, which is not here as a whole. Only supported cells count.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "DistributedMesh.h"
 
+#include "CellCopies.h"
 #include "PointDivision.h"
 #include "SampleSort.h"
 #include "TakenCells.h"
@@ -482,6 +483,39 @@ std::vector<std::vector<std::int32_t>> DistributedMesh::exchangeCells(
 }
 
 //------------------------------------------------------------------------------
+/// Keeps the first of cells that are copies of each other: which one depends on their points only.
+void DistributedMesh::dropCopies(TakenCells& taken)
+{
+  const std::vector<TakenCells::Cell>& cells = taken.cells();
+  std::vector<char> dropped;
+  Index own = 0;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < cells.size(); ++i)
+  {
+    if (cells[i].least != cells[i - 1].least || !taken.same(cells[i], cells[i - 1]))
+    {
+      begin = i;
+      continue;
+    }
+    const CellType type = cornerType(static_cast<unsigned char>(taken.type(cells[i])));
+    for (std::size_t first = begin; first < i; ++first)
+    {
+      const std::vector<Index> a(taken.begin(cells[first]), taken.end(cells[first])),
+        b(taken.begin(cells[i]), taken.end(cells[i]));
+      if ((dropped.empty() || !dropped[first]) && sameFacets(type, a.data(), b.data()))
+      {
+        dropped.resize(cells.size(), 0);
+        dropped[i] = 1;
+        own += this->owned(cells[i].least);
+        break;
+      }
+    }
+  }
+  this->DroppedCells = this->Group->sum(own);
+  taken.drop(dropped);
+}
+
+//------------------------------------------------------------------------------
 void DistributedMesh::copyCells(const TakenCells& taken)
 {
   this->Offsets.assign(1, 0);
@@ -510,8 +544,12 @@ void DistributedMesh::takeCells(const MeshPiece& piece, const std::vector<char>&
   std::vector<std::vector<std::int32_t>> lists = this->exchangeCells(piece, used);
   std::unique_ptr<TakenCells> taken;
   taken = std::make_unique<TakenCells>(std::move(lists), this->localPoints());
+  if (piece.dropCopies)
+  {
+    this->dropCopies(*taken);
+  }
   const std::vector<TakenCells::Cell>& cells = taken->cells();
-  for (std::size_t i = 1; i < cells.size(); ++i)
+  for (std::size_t i = 1; !piece.dropCopies && i < cells.size(); ++i)
   {
     if (cells[i].rank != cells[i - 1].rank && cells[i].least == cells[i - 1].least &&
       taken->same(cells[i], cells[i - 1]))

@@ -32,6 +32,10 @@ struct MeshPiece
   /// The rank that shall own each point that a cell has which is no ghost, the same on all ranks
   /// for the same point, instead of a division; or null, on all ranks with points.
   const int* owners = nullptr;
+  /// Whether cells that are copies of each other, with the same points in the same sense, count as
+  /// one, as where pieces overlap. Else those of different ranks are an Error. The same on all
+  /// ranks.
+  bool dropCopies = false;
 };
 
 /**
@@ -63,6 +67,8 @@ public:
   RankGroup& group() const { return *this->Group; }
   Index globalPoints() const { return this->GlobalPoints; } ///< those that cells have
   Index globalCells() const { return this->GlobalCells; }   ///< ghosts do not count
+  /// The copies that were dropped, see MeshPiece::dropCopies.
+  Index droppedCells() const { return this->DroppedCells; }
   /// Low x y z and high x y z of all points that cells have; zero without one.
   const std::array<double, 6>& bounds() const { return this->Bounds; }
 
@@ -127,6 +133,7 @@ private:
   void numberPoints(const MeshPiece& piece, const std::vector<char>& used);
   std::vector<PointKey> distribute(const std::vector<PointKey>& keys) const;
   void takeCells(const MeshPiece& piece, const std::vector<char>& used);
+  void dropCopies(TakenCells& taken);
   void copyCells(const TakenCells& taken);
   void takePoints(
     const MeshPiece& piece, const std::vector<char>& used, std::vector<SentPoint>& points);
@@ -137,7 +144,7 @@ private:
   void connect();
 
   RankGroup* Group;
-  Index GlobalPoints = 0, GlobalCells = 0;
+  Index GlobalPoints = 0, GlobalCells = 0, DroppedCells = 0;
   std::array<double, 6> Bounds = { 0, 0, 0, 0, 0, 0 };
   std::vector<Index> PieceNumbers; ///< per point of the piece, -1 without a cell
   std::vector<int> PieceOwners;

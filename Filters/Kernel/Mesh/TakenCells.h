@@ -58,6 +58,19 @@ public:
   }
 
   const std::vector<Cell>& cells() const { return this->Cells; }
+  /// Leaves out the cells with nonzero flags. @param flags one per cell, or empty
+  void drop(const std::vector<char>& flags)
+  {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < this->Cells.size() && !flags.empty(); ++i)
+    {
+      if (!flags[i])
+      {
+        this->Cells[kept++] = this->Cells[i];
+      }
+    }
+    this->Cells.resize(flags.empty() ? this->Cells.size() : kept);
+  }
   std::int32_t type(const Cell& cell) const { return this->list(cell)[0]; }
   const std::int32_t* begin(const Cell& cell) const { return this->list(cell) + 2; }
   const std::int32_t* end(const Cell& cell) const
