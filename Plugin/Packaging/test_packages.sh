@@ -74,7 +74,10 @@ inside 'python3 -c "import tautline; maps = open(\"/proc/self/maps\").read(); as
 for name in "${names[@]}"; do
   inside "grep -q '^License: BSD-3-Clause' /usr/share/doc/$name/copyright" || fail "no copyright of $name"
 done
-inside 'grep -q "^License: AGPL-3+" /usr/share/doc/tautline-meshers/copyright'
+# Debian has no copy of the AGPL in /usr/share/common-licenses.
+for text in "^License: AGPL-3+" "GNU AFFERO GENERAL PUBLIC LICENSE" "END OF TERMS AND CONDITIONS"; do
+  inside "grep -q '$text' /usr/share/doc/tautline-meshers/copyright" || fail "no text of the AGPL with tautline-meshers"
+done
 
 echo "--- every example script runs"
 inside 'shopt -s nullglob; mkdir -p /tmp/examples; cd /tmp/examples

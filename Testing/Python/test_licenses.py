@@ -62,6 +62,15 @@ def test_later():
     assert not hasattr(tautline, "vtkNoSuchClass")
 
 
+def test_text_of_the_agpl():
+    """The meshers go with the whole license, which Debian does not install elsewhere, in the form of its files."""
+    text = (SOURCE / "Plugin" / "Packaging" / "notices" / "meshers").read_text()
+    begin, end = text.index("GNU AFFERO GENERAL PUBLIC LICENSE"), text.index("END OF TERMS AND CONDITIONS")
+    sections = re.findall(r"^ (\d+)\. [A-Z]", text[begin:end], re.MULTILINE)
+    assert sections == [str(number) for number in range(18)], sections
+    assert all(line.startswith(" ") and line.strip() for line in text[begin:].splitlines()[1:])
+
+
 def needed(binary: Path) -> set[str]:
     """The names of the libraries that a binary links."""
     text = subprocess.run(["readelf", "-d", str(binary)], capture_output=True, text=True, check=True).stdout
