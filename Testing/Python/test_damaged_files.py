@@ -307,6 +307,25 @@ def test_limits_of_a_reader() -> None:
         os.chdir(folder)
 
 
+def test_readers_without_a_reason() -> None:
+    """Readers of VTK that fail silently, or do not name the file: the message does, and is none of the executive."""
+    for name, text in (
+        ("silent.xmf", "<Xdmf/>"),
+        ("silent.neu", "        CONTROL INFO 2.3.16\n"),
+        ("silent.e", "CDF\x01"),
+        ("silent.cas", '(0 "x")'),
+        ("silent.case", "FORMAT\ntype: ensight\n"),
+    ):
+        file = FOLDER / name
+        file.write_text(text)
+        for read in (tl.read, tl.times):
+            refused(name, read, file)
+            try:
+                read(file)
+            except tl.Error as error:
+                assert wording("update-piece") not in str(error), error
+
+
 UCD = """# a comment
 5 2 2 1 0
 1 0 0 0

@@ -18,6 +18,9 @@ from ._vtk import CLASSES
 _PREAMBLE = re.compile(r"^(ERROR|Warning): In .*?, line \d+\s*\n?\w+ \(.*?\): ", re.DOTALL)
 # Parts of the executive's message that follows the message of a filter.
 _CONSEQUENCE = ("returned failure for request", "Algorithm vtk")
+# Of its message where a reader has failed before it was asked for data; no help to a user.
+_INTERNAL = "No update piece number has been set"
+_NO_REASON = "a reader or filter of VTK failed without giving a reason: check that its file or input is complete"
 
 #: Exit code of the shell for wrong usage.
 WRONG_USAGE = 2
@@ -145,16 +148,22 @@ class Messages:
             source.AddObserver(vtkCommand.ErrorEvent, _collector(self.errors))
             source.AddObserver(vtkCommand.WarningEvent, _collector(self.warnings))
 
-    def raise_errors(self) -> None:
-        """Raise Error with all messages, if there are any, without the consequential ones of the executive."""
+    def raise_errors(self, without_reason: str = _NO_REASON) -> None:
+        """Raise Error with all messages, if there are any, without the consequential ones of the executive.
+
+        without_reason: the text where no other message is left.
+        """
         if not self.errors:
             return
-        causes = [text for text in self.errors if not all(part in text for part in _CONSEQUENCE)]
-        raise Error("\n".join(dict.fromkeys(causes or self.errors)))
+        errors = [text for text in self.errors if _INTERNAL not in text]
+        causes = [text for text in errors if not all(part in text for part in _CONSEQUENCE)]
+        if not causes and (len(errors) < len(self.errors) or without_reason != _NO_REASON):
+            raise Error(without_reason)
+        raise Error("\n".join(dict.fromkeys(causes or errors)))
 
 
-def run(algorithm: Any, messages: Messages | None = None) -> Messages:
-    """Update a filter; returns its messages. Raises Error with them if it fails.
+def run(algorithm: Any, messages: Messages | None = None, without_reason: str = _NO_REASON) -> Messages:
+    """Update a filter; returns its messages. Raises Error with them if it fails, see raise_errors().
 
     Raises Aborted if a progress callback has cancelled it, and KeyboardInterrupt after Ctrl-C.
     """
@@ -167,7 +176,7 @@ def run(algorithm: Any, messages: Messages | None = None) -> Messages:
         raise Aborted("cancelled") from None
     if failure:
         raise Error(failure)  # VTK's own message comes with it, and says less
-    messages.raise_errors()
+    messages.raise_errors(without_reason)
     return messages
 
 

@@ -5,17 +5,18 @@ from __future__ import annotations
 
 import os
 import xml.etree.ElementTree as ElementTree
+from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
 from math import isfinite
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any, Callable, Iterator
 
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet, vtkMultiBlockDataSet
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from ._arrays import leaves
-from ._errors import Error, run, watch
+from ._errors import Aborted, Error, Messages, run, watch
 
 
 @dataclass(frozen=True)
@@ -124,26 +125,21 @@ def read_solver(name: str, form: SolverFormat, time: float | None) -> vtkDataObj
 
     Raises Error if there is no such reader in this VTK, if it fails, or if the file has no time steps.
     """
-    reader = _reader(name, form)
-    messages = watch(reader)
-    reader.UpdateInformation()
-    messages.raise_errors()
-    steps = _steps(reader)
-    if time is not None:
-        _request(reader, _nearest(name, steps, time))
-    elif steps:
-        _request(reader, steps[0])
-    run(reader, messages)
+    with _named(name):
+        reader, messages = _reader(name, form)
+        steps = _steps(reader)
+        if time is not None:
+            _request(reader, _nearest(name, steps, time))
+        elif steps:
+            _request(reader, steps[0])
+        run(reader, messages, _damaged(name, form))
     return _simplified(name, reader.GetOutputDataObject(0))
 
 
 def times_of(name: str, form: SolverFormat) -> list[float]:
     """The time steps of a file; none where it has no times."""
-    reader = _reader(name, form)
-    messages = watch(reader)
-    reader.UpdateInformation()
-    messages.raise_errors()
-    return _steps(reader)
+    with _named(name):
+        return _steps(_reader(name, form)[0])
 
 
 def series(name: str) -> list[tuple[float, str]]:
@@ -196,16 +192,37 @@ def check_content(name: str, form: SolverFormat) -> None:
             raise Error(f"{name}: {error}") from None
 
 
-def _reader(name: str, form: SolverFormat) -> Any:
+@contextmanager
+def _named(name: str) -> Iterator[None]:
+    """Adds the file to the messages of a reader that do not name it."""
+    try:
+        yield
+    except Aborted:
+        raise
+    except Error as error:
+        text = str(error)
+        raise error if name in text else Error(f"{name}: {text}") from None
+
+
+def _damaged(name: str, form: SolverFormat) -> str:
+    return f"{name}: the file is damaged, or is not {form.title}: its reader fails without giving a reason"
+
+
+def _reader(name: str, form: SolverFormat) -> tuple[Any, Messages]:
+    """The reader of a file, which knows its time steps, and its messages. Raises Error if there are errors."""
     check_content(name, form)
     reader = getattr(import_module(f"vtkmodules.{form.module}"), form.reader)()
     getattr(reader, form.setter)(name)
+    messages = watch(reader)
     if form is _EXODUS:
         reader.SetSqueezePoints(0)  # points keep their numbers
-        reader.UpdateInformation()
+    reader.UpdateInformation()
+    messages.raise_errors(_damaged(name, form))
+    if form is _EXODUS:
         for kind in (reader.NODAL, reader.ELEM_BLOCK):
             reader.SetAllArrayStatus(kind, 1)
-    return reader
+        reader.UpdateInformation()
+    return reader, messages
 
 
 def _steps(reader: Any) -> list[float]:
