@@ -245,9 +245,9 @@ vtkDataArray* chosenArray(
   }
   const bool ofCells =
     of == ArrayOf::Either ? chosenOfCells(algorithm, index) : of == ArrayOf::Cells;
-  if (input->GetNumberOfPoints() == 0)
+  if (input->GetNumberOfPoints() == 0 || input->GetNumberOfCells() == 0)
   {
-    return nullptr;
+    return nullptr; // an empty piece need not have arrays
   }
   vtkDataSetAttributes* data =
     input->GetAttributes(ofCells ? vtkDataObject::CELL : vtkDataObject::POINT);

@@ -223,7 +223,9 @@ MovableMesh::MovableMesh(
     joined.connectivity = elements.connectivity.data();
     ghosts = elements.ghosts.data();
   }
-  this->divide({ joined, mergePoints ? nullptr : ids.data(), ghosts });
+  MeshPiece piece = { joined, mergePoints ? nullptr : ids.data(), ghosts };
+  piece.followers = copies ? held.data() : nullptr;
+  this->divide(piece);
   this->skipCopies();
   this->checkOrder();
   this->fixHeld(held);

@@ -52,7 +52,11 @@ public:
 
 private:
   DistributedMesh& local() { return this->Whole.distributed(); }
-  bool here() const { return this->Piece.input->GetNumberOfPoints() > 0; }
+  /// Whether the piece has cells: another one need not have arrays.
+  bool here() const
+  {
+    return this->Piece.input->GetNumberOfPoints() > 0 && this->Piece.input->GetNumberOfCells() > 0;
+  }
   Index countOwned(const PointFlags& flags) { return tautline::countOwned(this->local(), flags); }
   Index countInvalid(const std::vector<double>& points);
   void requireElements();

@@ -445,6 +445,33 @@ public:
     this->Ghosts = true;
   }
 
+  /// Joins the points of the 2D cells of a volume mesh with those of the 3D cells.
+  void joinSurface(const Mesh& mesh, const Places& places)
+  {
+    const std::vector<char> ofElement = cornerPoints(mesh, 3, 1);
+    constexpr Index None = -1, Ambiguous = -2;
+    const auto count = static_cast<Index>(places.several.size());
+    std::vector<Index> pointAt(places.several.size(), None);
+    for (Index p = 0; p < count; ++p)
+    {
+      Index& point = pointAt[places.of[p]];
+      if (places.several[p] && ofElement[p] && point != Ambiguous)
+      {
+        const bool same = point == None || this->Points.find(point) == this->Points.find(p);
+        point = !same ? Ambiguous : point == None ? p : point;
+      }
+    }
+    for (Index p = 0; p < count; ++p)
+    {
+      const Index point = places.several[p] && !ofElement[p] ? pointAt[places.of[p]] : None;
+      if (point >= 0)
+      {
+        this->Points.join(point, p);
+        this->Ghosts = true;
+      }
+    }
+  }
+
   CoincidentPoints finish()
   {
     const Index points = static_cast<Index>(this->OnSeam.size());
@@ -486,7 +513,7 @@ private:
   bool Sided;
   UnionFind Points, Seams;
   std::vector<char> OnSeam;
-  bool Ghosts = false; ///< their points were joined
+  bool Ghosts = false; ///< points were joined that are on no seam
   CoincidentPoints Found;
 };
 }
@@ -547,6 +574,10 @@ CoincidentPoints findCoincidentPoints(const Mesh& mesh, const unsigned char* rev
   if (ghosts)
   {
     joiner.joinGhosts(mesh, places, ghosts);
+  }
+  if (copies && mesh.dimension() == Dimension::Volume)
+  {
+    joiner.joinSurface(mesh, places);
   }
   CoincidentPoints result = joiner.finish();
   result.copies = copies ? std::count(copies->begin(), copies->end(), 1) : 0;

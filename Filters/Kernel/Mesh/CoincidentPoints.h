@@ -52,6 +52,8 @@ struct CoincidentPoints
  * it, as where pieces overlap: their points are one with those of the first of them, and they have
  * no facets, like ghosts. It gets one flag per cell, nonzero for all but the first, or is empty
  * without copies. Cells with the same points count where other points are at the places of these.
+ * The points of 2D cells beside 3D ones are then also one with the one point, if there is one, that
+ * 3D cells have at the same place.
  */
 TAUTLINE_KERNEL_EXPORT CoincidentPoints findCoincidentPoints(const Mesh& mesh,
   const unsigned char* reversed = nullptr, int threads = 1, const unsigned char* ghosts = nullptr,

@@ -32,6 +32,14 @@ std::uint64_t spreadBits(std::uint64_t x)
   return (x | (x << 2)) & 0x1249249249249249u;
 }
 
+/// Flags of the points of a piece.
+enum Use : char
+{
+  OfCell = 1,    ///< a cell has it, which may be a ghost
+  OfElement = 2, ///< a cell that is no ghost has it
+  Follows = 4    ///< MeshPiece::followers
+};
+
 struct IdAndPlace
 {
   Index id;
@@ -76,6 +84,7 @@ struct DistributedMesh::PointKey
   Index rank;     ///< of the piece
   Index withCell; ///< whether a cell that is no ghost has it there
   Index owner;    ///< that is wanted, or -1
+  Index counts;   ///< whether a cell has it there, and not only a follower
 
   auto place() const { return std::tie(this->curve, this->x[0], this->x[1], this->x[2], this->id); }
   /// By the place alone: keys of one point are equal.
@@ -106,7 +115,7 @@ void DistributedMesh::build(const MeshPiece& piece)
   used.assign(piece.view.numberOfPoints, 0);
   for (Index cell = 0; cell < piece.view.numberOfCells; ++cell)
   {
-    const char mark = piece.ghosts && piece.ghosts[cell] ? 1 : 3;
+    const char mark = piece.ghosts && piece.ghosts[cell] ? OfCell : OfCell | OfElement;
     for (Index n = piece.view.offsets[cell];
          takesPart(piece.view, cell) && n < piece.view.offsets[cell + 1]; ++n)
     {
@@ -139,9 +148,29 @@ void DistributedMesh::build(const MeshPiece& piece)
         std::to_string(piece.owners[p]) + " of " + std::to_string(group.size()) + ".");
     }
   }
+  this->addFollowers(piece, used);
   this->numberPoints(piece, used);
+  for (Index p = 0; p < piece.view.numberOfPoints; ++p)
+  {
+    used[p] = this->PieceNumbers[p] < 0 ? 0 : used[p]; // no element is at a follower
+  }
   this->takeCells(piece, used);
   this->connect();
+}
+
+//------------------------------------------------------------------------------
+void DistributedMesh::addFollowers(const MeshPiece& piece, std::vector<char>& used) const
+{
+  for (Index p = 0; piece.followers && p < piece.view.numberOfPoints; ++p)
+  {
+    const double* x = piece.view.points + 3 * p;
+    const bool named = !piece.globalIds || piece.globalIds[p] >= 0;
+    if (piece.followers[p] && named && std::isfinite(x[0]) && std::isfinite(x[1]) &&
+      std::isfinite(x[2]))
+    {
+      used[p] |= Follows;
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -154,7 +183,7 @@ void DistributedMesh::findBounds(const MeshPiece& piece, const std::vector<char>
   std::vector<double> box = { infinity, infinity, infinity, -infinity, -infinity, -infinity };
   for (Index p = 0; p < n; ++p)
   {
-    for (int c = 0; c < 3 && used[p]; ++c)
+    for (int c = 0; c < 3 && (used[p] & OfCell) != 0; ++c)
     {
       box[c] = std::min(box[c], piece.view.points[3 * p + c]);
       box[3 + c] = std::max(box[3 + c], piece.view.points[3 * p + c]);
@@ -202,8 +231,8 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
   std::vector<IdAndPlace> ids;
   const auto keyOf = [&](Index p)
   {
-    PointKey key = { 0, { 0, 0, 0 }, withIds ? piece.globalIds[p] : 0, p, group.rank(), used[p] > 1,
-      piece.owners ? piece.owners[p] : -1 };
+    PointKey key = { 0, { 0, 0, 0 }, withIds ? piece.globalIds[p] : 0, p, group.rank(),
+      (used[p] & OfElement) != 0, piece.owners ? piece.owners[p] : -1, (used[p] & OfCell) != 0 };
     for (int c = 0; c < 3; ++c)
     {
       key.x[c] = piece.view.points[3 * p + c] + 0.0;                // -0 becomes 0
@@ -222,7 +251,7 @@ std::vector<DistributedMesh::PointKey> DistributedMesh::makeKeys(
   }
   for (const PointKey& key : keys)
   {
-    if (withIds)
+    if (withIds && key.counts)
     {
       ids.push_back({ key.id, { key.x[0], key.x[1], key.x[2] } });
     }
@@ -263,16 +292,38 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
     std::vector<Vec3> places;
     for (const PointKey& key : keys)
     {
-      places.push_back({ key.x[0], key.x[1], key.x[2] });
+      if (key.counts)
+      {
+        places.push_back({ key.x[0], key.x[1], key.x[2] });
+      }
     }
     division = std::make_unique<PointDivision>(group, places);
   }
   const std::vector<PointKey> range = this->distribute(keys);
   keys = std::vector<PointKey>();
-  Index count = 0;
-  for (std::size_t i = 0; i < range.size(); ++i)
+  const auto endOf = [&range](std::size_t begin)
   {
-    count += i == 0 || range[i - 1] < range[i];
+    std::size_t end = begin + 1;
+    while (end < range.size() && !(range[begin] < range[end]))
+    {
+      ++end;
+    }
+    return end;
+  };
+  // The first key of a cell; the end if followers alone are there.
+  const auto firstThatCounts = [&range](std::size_t begin, std::size_t end)
+  {
+    while (begin < end && !range[begin].counts)
+    {
+      ++begin;
+    }
+    return begin;
+  };
+  Index count = 0;
+  for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end)
+  {
+    end = endOf(begin);
+    count += firstThatCounts(begin, end) < end;
   }
   Index first = 0;
   const auto counts = group.gatherItems(std::vector<Index>{ count });
@@ -287,22 +338,32 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
   };
   std::vector<std::vector<Reply>> replies;
   replies.resize(group.size());
-  for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end, ++first)
+  for (std::size_t begin = 0, end = 0; begin < range.size(); begin = end)
   {
-    Index owner = range[begin].rank;
-    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
-    for (end = begin; end < range.size() && !(range[begin] < range[end]); ++end)
+    end = endOf(begin);
+    const std::size_t counted = firstThatCounts(begin, end);
+    if (counted == end)
     {
-      const std::uint64_t hash = ownerHash(first, static_cast<int>(range[end].rank));
-      if (range[end].withCell && hash < least)
+      for (std::size_t i = begin; i < end; ++i)
+      {
+        replies[range[i].rank].push_back({ range[i].source, -1, -1 });
+      }
+      continue;
+    }
+    Index owner = range[counted].rank;
+    std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      const std::uint64_t hash = ownerHash(first, static_cast<int>(range[i].rank));
+      if (range[i].withCell && hash < least)
       {
         least = hash;
-        owner = range[end].rank;
+        owner = range[i].rank;
       }
     }
     if (least < std::numeric_limits<std::uint64_t>::max()) // an element has it
     {
-      const PointKey& key = range[begin];
+      const PointKey& key = range[counted];
       owner = key.owner >= 0 ? key.owner
         : division           ? division->find({ key.x[0], key.x[1], key.x[2] })
                              : owner;
@@ -311,6 +372,7 @@ void DistributedMesh::numberPoints(const MeshPiece& piece, const std::vector<cha
     {
       replies[range[i].rank].push_back({ range[i].source, first, owner });
     }
+    ++first;
   }
   this->PieceNumbers.assign(piece.view.numberOfPoints, -1);
   this->PieceOwners.assign(piece.view.numberOfPoints, -1);

@@ -36,6 +36,10 @@ struct MeshPiece
   /// one, as where pieces overlap. Else those of different ranks are an Error. The same on all
   /// ranks.
   bool dropCopies = false;
+  /// One flag per point, nonzero for one that moves with the point of an element that is one with
+  /// it, of any rank, though no cell given here has it, as the points of a surface whose volume is
+  /// on another rank; or null. Without such an element it does not count.
+  const unsigned char* followers = nullptr;
 };
 
 /**
@@ -128,6 +132,7 @@ private:
   struct PointKey;
   struct SentPoint;
   void build(const MeshPiece& piece);
+  void addFollowers(const MeshPiece& piece, std::vector<char>& used) const;
   void findBounds(const MeshPiece& piece, const std::vector<char>& used);
   std::vector<PointKey> makeKeys(const MeshPiece& piece, const std::vector<char>& used);
   void numberPoints(const MeshPiece& piece, const std::vector<char>& used);

@@ -8,6 +8,7 @@
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
+#include "vtkMeshWarp.h"
 #include "vtkAppendFilter.h"
 
 using namespace tautline;
@@ -201,6 +202,268 @@ void testOneProcess(vtkMPIController* controller)
   vtkMultiProcessController::SetGlobalController(controller);
 }
 
+/// Pieces that overlap, without ghost marks: by a layer of cells, or each is the whole mesh.
+template <class Filter, class Set>
+void testOverlap(
+  const char* name, vtkMPIController* controller, const MeshData& whole, const Set& set)
+{
+  const Context context(name);
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  vtkNew<Filter> serial;
+  const std::vector<double> expected = alone(controller, whole, set, serial.Get());
+  for (const bool all : { false, true })
+  {
+    const Context inner(all ? "all" : "a layer");
+    RankPart part =
+      all ? partOf(whole, 0, allOf) : partOf(whole, rank, cutBy(whole, Cut::Slabs, size), true);
+    part.ghosts.assign(part.ghosts.size(), 0);
+    vtkNew<Filter> filter;
+    checkSame(moved(whole, part, gridOf(part), set, filter.Get()), expected);
+    TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), serial->GetInvertedAfter());
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("they-count-once")));
+    // The counts are those of the mesh without copies.
+    const auto countOf = [](Filter* one)
+    {
+      const std::string summary = one->GetSummary();
+      const std::size_t begin = summary.find("Inverted elements:");
+      return begin == std::string::npos ? std::string()
+                                        : summary.substr(begin, summary.find('\n', begin) - begin);
+    };
+    TAUTLINE_CHECK_EQUAL(countOf(filter), countOf(serial));
+  }
+}
+
+/// Tetrahedra with the triangles of their boundary behind them.
+MeshData withSurface(MeshData data)
+{
+  std::map<std::array<Index, 3>, int> uses;
+  const Index cells = data.numberOfCells();
+  const auto& faces = topology(CellType::Tetrahedron).faceNodes;
+  const auto faceOf = [&](Index cell, int f)
+  {
+    const std::vector<Index> nodes = data.nodes(cell);
+    return std::array<Index, 3>{ nodes[faces[f][0]], nodes[faces[f][1]], nodes[faces[f][2]] };
+  };
+  const auto sorted = [](std::array<Index, 3> face)
+  {
+    std::sort(face.begin(), face.end());
+    return face;
+  };
+  for (Index cell = 0; cell < cells; ++cell)
+  {
+    for (int f = 0; f < 4; ++f)
+    {
+      ++uses[sorted(faceOf(cell, f))];
+    }
+  }
+  for (Index cell = 0; cell < cells; ++cell)
+  {
+    for (int f = 0; f < 4; ++f)
+    {
+      const std::array<Index, 3> face = faceOf(cell, f);
+      if (uses[sorted(face)] == 1)
+      {
+        data.addCell(CellType::Triangle, std::vector<Index>(face.begin(), face.end()));
+      }
+    }
+  }
+  return data;
+}
+
+/// The points of the faces z = 0 and z = 4 moved within them, so that sliding has work to do.
+MeshData slanted(MeshData data)
+{
+  Random random(9);
+  data.transform(
+    [&](const Vec3& p)
+    {
+      const Vec3 d = random.vector(-0.2, 0.2);
+      const bool inside = p[0] > 0 && p[0] < 4 && p[1] > 0 && p[1] < 4;
+      return inside && (p[2] == 0 || p[2] == 4) ? p + Vec3{ d[0], d[1], 0 } : p;
+    });
+  return data;
+}
+
+/// The triangles of the boundary on the last process, without a tetrahedron beside them.
+template <class Filter, class Set>
+void testTorn(
+  const char* name, vtkMPIController* controller, const MeshData& solid, bool byIds, const Set& set)
+{
+  const Context context(name);
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const MeshData whole = withSurface(solid);
+  vtkNew<Filter> serial, filter;
+  const std::vector<double> expected = alone(controller, whole, set, serial.Get());
+  TAUTLINE_CHECK(whole.numberOfCells() > solid.numberOfCells());
+  const auto halves = cutBy(solid, Cut::Slabs, size > 1 ? size - 1 : 1);
+  const RankPart part = partOf(whole, rank,
+    [&](Index cell) { return cell < solid.numberOfCells() ? halves(cell) : size - 1; });
+  const auto grid = byIds ? numberedGridOf(part) : gridOf(part);
+  checkSame(moved(whole, part, grid, set, filter.Get()), expected);
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), serial->GetInvertedAfter());
+  const std::vector<char> boundary = Mesh(solid.view()).boundary().isBoundaryPoint;
+  double slid = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+  {
+    slid = std::max(slid, boundary[i / 3] ? std::abs(expected[i] - whole.points[i]) : 0.0);
+  }
+  TAUTLINE_CHECK(slid > 0.01);
+}
+
+/// The same in one data set whose triangles have points of their own.
+void testTornInOne(vtkMPIController* controller, const MeshData& solid)
+{
+  const Context context("torn in one data set");
+  const MeshData whole = withSurface(solid);
+  const RankPart all = partOf(whole, 0, allOf);
+  RankPart torn = all;
+  std::map<Index, Index> own;
+  for (Index n = whole.offsets[solid.numberOfCells()]; n < whole.offsets.back(); ++n)
+  {
+    const Index point = whole.connectivity[n];
+    if (own.emplace(point, torn.data.numberOfPoints()).second)
+    {
+      torn.data.addPoint(whole.point(point));
+      torn.pointOf.push_back(point);
+    }
+    torn.data.connectivity[n] = own[point];
+  }
+  vtkMultiProcessController::SetGlobalController(nullptr);
+  for (const bool reproducible : { false, true })
+  {
+    vtkNew<vtkMeshOptimizer> filter;
+    const auto set = [&](vtkMeshOptimizer* one)
+    {
+      one->SetBoundary(vtkMeshOptimizer::SLIDING);
+      one->SetReproducibleOrder(reproducible);
+    };
+    vtkNew<vtkMeshOptimizer> shared;
+    const std::vector<double> expected = moved(whole, all, gridOf(all), set, shared.Get());
+    const std::vector<double> points = moved(whole, torn, gridOf(torn), set, filter.Get());
+    TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), shared->GetFreePoints());
+    double far = 0;
+    for (vtkIdType p = 0; p < torn.data.numberOfPoints(); ++p)
+    {
+      Vec3 x;
+      outputOf<vtkUnstructuredGrid>(filter)->GetPoint(p, x.data());
+      const Index of = 3 * torn.pointOf[p];
+      TAUTLINE_CHECK((x == Vec3{ points[of], points[of + 1], points[of + 2] }));
+      far = std::max(far, norm(x - Vec3{ expected[of], expected[of + 1], expected[of + 2] }));
+    }
+    TAUTLINE_CHECK(far <= 1e-10);
+  }
+  vtkMultiProcessController::SetGlobalController(controller);
+}
+
+/// A process without cells needs no arrays: with no point, or with points that no cell has.
+template <class Filter, class Set>
+void testNothing(
+  const char* name, vtkMPIController* controller, const MeshData& whole, const Set& set)
+{
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  for (const int bare : { 0, size - 1 })
+  {
+    for (const bool loose : { false, true })
+    {
+      if (loose && size == 2)
+      {
+        continue; // the mesh of one process is put together, where all points need the arrays
+      }
+      const Context context(
+        std::string(name) + ", process " + std::to_string(bare) + (loose ? ", loose" : ""));
+      auto grid = vtkSmartPointer<vtkUnstructuredGrid>::New();
+      if (size == 1 || rank != bare)
+      {
+        const int pieces = std::max(size - 1, 1);
+        const auto cut = cutBy(whole, Cut::Slabs, pieces);
+        const int own = rank > bare ? rank - 1 : rank;
+        grid = toGrid(partOf(whole, own, cut).data);
+        vtkNew<vtkDoubleArray> push, fixed;
+        TAUTLINE_SET(push, SetName("push"), SetNumberOfComponents(3));
+        fixed->SetName("fixed");
+        for (vtkIdType p = 0; p < grid->GetNumberOfPoints(); ++p)
+        {
+          const double* x = grid->GetPoint(p);
+          push->InsertNextTuple3(0.02 * x[1], 0.01 * x[2], 0);
+          fixed->InsertNextValue(x[0] < 1);
+        }
+        TAUTLINE_SET(grid, GetPointData()->AddArray(push), GetPointData()->AddArray(fixed));
+      }
+      else if (loose)
+      {
+        vtkNew<vtkPoints> points;
+        points->InsertNextPoint(1, 2, 3);
+        grid->SetPoints(points);
+      }
+      vtkNew<Filter> filter;
+      Messages messages(filter);
+      set(filter.Get());
+      TAUTLINE_SET(filter, SetInputData(grid), Update());
+      TAUTLINE_CHECK(!messages.has("ERROR: "));
+      auto* output = outputOf<vtkUnstructuredGrid>(filter);
+      TAUTLINE_CHECK_EQUAL(output->GetNumberOfPoints(), grid->GetNumberOfPoints());
+      TAUTLINE_CHECK_EQUAL(output->GetNumberOfCells(), grid->GetNumberOfCells());
+      double moved = 0;
+      for (vtkIdType p = 0; p < output->GetNumberOfPoints(); ++p)
+      {
+        Vec3 x, from;
+        output->GetPoint(p, x.data());
+        grid->GetPoint(p, from.data());
+        moved = std::max(moved, norm(x - from));
+      }
+      TAUTLINE_CHECK((moved > 0.001) == (grid->GetNumberOfCells() > 0));
+    }
+  }
+}
+
+/// Gathered, in the order of one process.
+void testOverlapGathered(vtkMPIController* controller, const MeshData& whole)
+{
+  const Context context("overlap, gathered");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const auto set = [](vtkMeshOptimizer* filter)
+  { filter->SetPreset(vtkMeshOptimizer::WORST_ELEMENT); };
+  vtkNew<vtkMeshOptimizer> serial, filter;
+  alone(controller, whole, set, serial.Get());
+  RankPart part = partOf(whole, rank, cutBy(whole, Cut::Slabs, size), true);
+  part.ghosts.assign(part.ghosts.size(), 0);
+  const std::vector<double> points = moved(whole, part, gridOf(part), set, filter.Get());
+  TAUTLINE_CHECK_EQUAL(filter->GetFreePoints(), serial->GetFreePoints());
+  TAUTLINE_CHECK(contains(filter->GetSummary(), wording("they-count-once")));
+  const std::vector<char> boundary = Mesh(whole.view()).boundary().isBoundaryPoint;
+  for (const Index p : part.pointOf)
+  {
+    TAUTLINE_CHECK(
+      !boundary[p] || std::equal(&points[3 * p], &points[3 * p] + 3, &whole.points[3 * p]));
+  }
+}
+
+/// The whole mesh on each process, with other points inside: its boundary cannot be found.
+void testOtherCells(vtkMPIController* controller)
+{
+  const Context context("other cells");
+  const int rank = controller->GetLocalProcessId();
+  const MeshData whole = blockMesh(CellType::Tetrahedron, 4, 4, 4);
+  const std::vector<char> boundary = Mesh(whole.view()).boundary().isBoundaryPoint;
+  RankPart part = partOf(whole, 0, allOf);
+  Random random(7 + rank);
+  for (std::size_t p = 0; p < part.pointOf.size(); ++p)
+  {
+    for (std::size_t c = 0; c < 3 && !boundary[part.pointOf[p]]; ++c)
+    {
+      part.data.points[3 * p + c] += random.uniform(-0.15, 0.15);
+    }
+  }
+  for (const bool reproducible : { false, true })
+  {
+    vtkNew<vtkMeshOptimizer> filter;
+    Messages messages(filter);
+    TAUTLINE_SET(filter, SetReproducibleOrder(reproducible), SetInputData(gridOf(part)), Update());
+    TAUTLINE_CHECK(messages.has(wording("two-elements-on-the-same-side")) || rank > 0);
+    TAUTLINE_CHECK_EQUAL(outputOf<vtkUnstructuredGrid>(filter)->GetNumberOfPoints(), 0);
+  }
+}
+
 /// Cells of all processes, and a number that their places give, but for their order.
 std::pair<vtkIdType, double> contentOf(vtkMPIController* controller, vtkMeshImprover* filter)
 {
@@ -275,6 +538,46 @@ TAUTLINE_TEST(TestMotionCopies)
   TAUTLINE_RUN(testFilter<vtkMeshPerturbation>(
     "perturb", controller, tets, true, [](vtkMeshPerturbation*) {}));
   TAUTLINE_RUN(testOwnNumbers(controller));
+  TAUTLINE_RUN(testOverlap<vtkMeshOptimizer>(
+    "overlap", controller, tets, [](vtkMeshOptimizer* filter) { filter->ReproducibleOrderOn(); }));
+  TAUTLINE_RUN(testOverlap<vtkMeshOptimizer>("overlap, sliding", controller, tets,
+    [](vtkMeshOptimizer* filter)
+    {
+      filter->ReproducibleOrderOn();
+      filter->SetBoundary(vtkMeshOptimizer::SLIDING);
+    }));
+  TAUTLINE_RUN(testOverlap<vtkMeshOptimizer>("overlap, in the plane", controller,
+    jittered(CellType::Triangle, 12, 0.25),
+    [](vtkMeshOptimizer* filter) { filter->ReproducibleOrderOn(); }));
+  TAUTLINE_RUN(testOverlap<vtkMeshUntangler>("overlap, untangle", controller,
+    jittered(CellType::Tetrahedron, 5, 0.45),
+    [](vtkMeshUntangler* filter) { filter->ReproducibleOrderOn(); }));
+  const MeshData rough = slanted(tets);
+  for (const bool byIds : { false, true })
+  {
+    TAUTLINE_RUN(testTorn<vtkMeshOptimizer>("torn", controller, rough, byIds,
+      [byIds](vtkMeshOptimizer* filter)
+      {
+        filter->SetBoundary(vtkMeshOptimizer::SLIDING);
+        filter->SetMergeCoincidentPoints(!byIds);
+        filter->ReproducibleOrderOn();
+      }));
+  }
+  TAUTLINE_RUN(testTornInOne(controller, rough));
+  TAUTLINE_RUN(testNothing<vtkMeshWarp>("warp", controller, tets,
+    [](vtkMeshWarp* filter)
+    {
+      filter->SetMotion(vtkMeshWarp::DISPLACEMENT);
+      filter->SetInputArrayToProcess(0, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "push");
+    }));
+  TAUTLINE_RUN(testNothing<vtkMeshOptimizer>("optimize", controller, tets,
+    [](vtkMeshOptimizer* filter)
+    {
+      filter->ReproducibleOrderOn();
+      filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "fixed");
+    }));
+  TAUTLINE_RUN(testOverlapGathered(controller, tets));
+  TAUTLINE_RUN(testOtherCells(controller));
   TAUTLINE_RUN(testApart(controller));
   TAUTLINE_RUN(testImprover(controller));
   TAUTLINE_RUN(testOneProcess(controller));
