@@ -43,9 +43,27 @@ struct ShapeSet
   std::vector<tautline::Thumbnail> pictures;
   std::vector<std::string> classes;     ///< in order of their first shape
   std::vector<tautline::Index> numbers; ///< of the class of each shape
+  std::vector<std::string> leftOut;     ///< "name: why"
 };
 
-ShapeSet takeShapes(vtkMultiBlockDataSet* input, tautline::Foreground foreground)
+/// Names the shapes that are left out; "" without one.
+std::string describeLeftOut(const ShapeSet& set)
+{
+  if (set.leftOut.empty())
+  {
+    return "";
+  }
+  std::string text = std::to_string(set.leftOut.size()) +
+    (set.leftOut.size() == 1 ? " shape was" : " shapes were") + " left out:";
+  for (const std::string& one : set.leftOut)
+  {
+    text += "\n" + one;
+  }
+  return text;
+}
+
+ShapeSet takeShapes(vtkMultiBlockDataSet* input, tautline::Foreground foreground,
+  const tautline::RetrievalOptions& matching)
 {
   ShapeSet set;
   vtkSmartPointer<vtkDataObjectTreeIterator> it;
@@ -54,7 +72,7 @@ ShapeSet takeShapes(vtkMultiBlockDataSet* input, tautline::Foreground foreground
   for (it->InitTraversal(); !it->IsDoneWithTraversal(); it->GoToNextItem())
   {
     vtkDataObject* block = it->GetCurrentDataObject();
-    std::string name = "shape " + std::to_string(set.names.size());
+    std::string name = "shape " + std::to_string(set.names.size() + set.leftOut.size());
     if (it->HasCurrentMetaData() && it->GetCurrentMetaData()->Has(vtkCompositeDataSet::NAME()))
     {
       name = it->GetCurrentMetaData()->Get(vtkCompositeDataSet::NAME());
@@ -70,12 +88,19 @@ ShapeSet takeShapes(vtkMultiBlockDataSet* input, tautline::Foreground foreground
       const tautline::GreyImage image(picture);
       tautline::SilhouetteOptions options;
       options.foreground = foreground;
-      set.shapes.push_back(tautline::traceSilhouette(image.view(), options));
+      tautline::Silhouette shape = tautline::traceSilhouette(image.view(), options);
+      const std::string problem = tautline::problemOf(shape, matching);
+      if (!problem.empty())
+      {
+        throw tautline::Error(problem);
+      }
+      set.shapes.push_back(std::move(shape));
       set.pictures.push_back(tautline::RetrievalSheet::thumbnail(image.view()));
     }
     catch (const tautline::Error& error)
     {
-      throw tautline::Error(name + ": " + error.what());
+      set.leftOut.push_back(name + ": " + error.what());
+      continue;
     }
     set.labels.push_back(label && label->GetNumberOfTuples() > 0
         ? label->GetVariantValue(0).ToString()
@@ -87,6 +112,10 @@ ShapeSet takeShapes(vtkMultiBlockDataSet* input, tautline::Foreground foreground
       set.classes.push_back(set.labels.back());
     }
     set.names.push_back(name);
+  }
+  if (set.shapes.size() < 2 && !set.leftOut.empty())
+  {
+    throw tautline::Error("At least 2 shapes are needed to compare. " + describeLeftOut(set));
   }
   return set;
 }
@@ -252,8 +281,10 @@ int vtkShapeRetrieval::RequestData(
   return this->Attempt(outputVector, "choose fewer shapes, or a larger spacing",
     [&]
     {
-      const ShapeSet set = takeShapes(input, static_cast<tautline::Foreground>(this->Foreground));
       const tautline::RetrievalOptions options = this->GetOptionsOfRun();
+      const ShapeSet set =
+        takeShapes(input, static_cast<tautline::Foreground>(this->Foreground), options);
+      this->Warn(describeLeftOut(set));
       this->Matching = true;
       tautline::RankGroup& group = assistants.call();
       if (group.size() > 1)
@@ -281,7 +312,8 @@ int vtkShapeRetrieval::RequestData(
       {
         text << " Ended early: distances of -1 were not computed.";
       }
-      this->Summary = text.str();
+      const std::string leftOut = describeLeftOut(set);
+      this->Summary = text.str() + (leftOut.empty() ? "" : "\n") + leftOut;
     });
 }
 

@@ -8,6 +8,7 @@
 #include "tautline/Core/PacketFloat.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace tautline
@@ -25,6 +26,11 @@ constexpr double RegionScale = 0.6;
 /// Locations have descriptors in steps of one half.
 constexpr Index DescriptorsPerLocation = 2;
 constexpr int SignatureQuantiles = 8;
+/// Where the smoothed outline meets itself, it is smoothed less and has up to so many points.
+constexpr Index MostCurvePoints = 6400;
+constexpr double SmoothingReduction = 0.25;
+/// A polygon has at most 2 vertices on 3 locations, so that there is a choice of places.
+constexpr std::array<Index, 2> VerticesPerLocations = { 2, 3 };
 
 double fraction(double s)
 {
@@ -75,9 +81,9 @@ std::vector<Vec2> smoothed(const std::vector<Vec2>& points, double sigma)
   return result;
 }
 
-Curve makeCurve(const Silhouette& shape, double smoothing)
+Curve makeCurve(const Silhouette& shape, double smoothing, Index count)
 {
-  constexpr Index n = Oversampling * CurvePoints;
+  const Index n = Oversampling * count;
   std::vector<Vec2> points =
     smoothed(resampleOutline(shape.outline, n), smoothing * static_cast<double>(n));
   Curve curve;
@@ -96,7 +102,7 @@ Curve makeCurve(const Silhouette& shape, double smoothing)
   {
     p = { (p[0] - curve.centre[0]) / curve.length, (p[1] - curve.centre[1]) / curve.length };
   }
-  curve.points = resampleOutline(points, CurvePoints);
+  curve.points = resampleOutline(points, count);
   return curve;
 }
 
@@ -263,6 +269,52 @@ std::vector<float> makeSignature(const std::vector<float>& descriptors)
   return signature;
 }
 
+/// The outline, smoothed, and a polygon that follows it and can be placed on the locations.
+struct OutlinePolygon
+{
+  Curve curve;
+  std::vector<Vec2> points;
+};
+
+OutlinePolygon makePolygon(const Silhouette& shape, const OutlineOptions& options)
+{
+  OutlinePolygon result;
+  double smoothing = options.smoothing;
+  Index count = CurvePoints;
+  for (bool found = false; !found;)
+  {
+    result.curve = makeCurve(shape, smoothing, count);
+    try
+    {
+      result.points = approximateOutline(result.curve.points, options.spacing);
+      found = true;
+    }
+    catch (const Error&)
+    {
+      // Smoothed or sampled so, the sides of a thin part meet.
+      if (count >= MostCurvePoints)
+      {
+        throw;
+      }
+      count *= 2;
+      smoothing *= SmoothingReduction;
+    }
+  }
+  // Thin parts and many corners need many vertices: fewer follow them less closely.
+  const Index most = options.locations * VerticesPerLocations[0] / VerticesPerLocations[1];
+  if (static_cast<Index>(result.points.size()) > most)
+  {
+    if (1.0 / options.spacing > static_cast<double>(most)) // whatever the outline
+    {
+      const std::size_t n = result.points.size();
+      throw Error("The polygon has " + std::to_string(n) + " vertices: " + std::to_string(2 * n) +
+        " locations or more are needed, or a larger spacing.");
+    }
+    result.points = reducePolygon(std::move(result.points), most);
+  }
+  return result;
+}
+
 void check(const OutlineOptions& o)
 {
   const bool sampling = o.spacing >= 0.01 && o.spacing <= 0.25 && o.locations >= 16 &&
@@ -291,17 +343,12 @@ OutlineModel prepareOutline(const Silhouette& shape, const OutlineOptions& optio
   {
     throw Error("The outline has no area.");
   }
-  const Curve curve = makeCurve(shape, options.smoothing);
+  const auto [curve, polygon] = makePolygon(shape, options);
   const Describer describer(shape, curve, options);
   OutlineModel model;
   model.complexity = describer.complexity();
-  model.polygon.mesh = triangulatePolygon(approximateOutline(curve.points, options.spacing));
+  model.polygon.mesh = triangulatePolygon(polygon);
   const Index n = static_cast<Index>(model.polygon.mesh.points.size());
-  if (2 * n > options.locations + n / 2)
-  {
-    throw Error("The polygon has " + std::to_string(n) + " vertices: " + std::to_string(2 * n) +
-      " locations or more are needed, or a larger spacing.");
-  }
   std::vector<double> arcs;
   for (const Vec2& p : model.polygon.mesh.points)
   {

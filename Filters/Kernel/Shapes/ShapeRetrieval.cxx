@@ -443,6 +443,28 @@ void combine(const std::vector<OutlineModel>& models, const RetrievalOptions& op
 }
 }
 
+//------------------------------------------------------------------------------
+std::string problemOf(const Silhouette& shape, const RetrievalOptions& options)
+{
+  try
+  {
+    if (options.method == RetrievalMethod::Outline)
+    {
+      prepareOutline(shape, options.outline);
+    }
+    else
+    {
+      triangulatePolygon(approximateOutline(shape.outline, options.spacing));
+    }
+  }
+  catch (const Error& error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> rerank(const std::vector<double>& distances, Index count, Index neighbours)
 {
   if (count < 2 || neighbours < 1 || static_cast<Index>(distances.size()) != count * count)

@@ -85,6 +85,10 @@ struct Retrieval
   MatchStop stop = MatchStop::Complete;
 };
 
+/// Why a shape cannot be matched with these options, as the message of an error, or "".
+TAUTLINE_SHAPESKERNEL_EXPORT std::string problemOf(
+  const Silhouette& shape, const RetrievalOptions& options);
+
 /**
  * @brief Matches each of the shapes with each other one.
  *

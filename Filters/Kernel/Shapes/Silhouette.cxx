@@ -326,6 +326,36 @@ private:
   int Most;
   std::vector<double> Costs;
 };
+
+/// Vertices that a polygon to reduce may have: the time is quadratic in it.
+constexpr Index MostReducible = 20000;
+/// The share of the vertices to remove that one round removes: one in so many.
+constexpr Index VerticesPerRound = 4;
+
+/// Twice the area of a triangle, positive if it runs counter-clockwise.
+double doubledArea(const Vec2& a, const Vec2& b, const Vec2& c)
+{
+  return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/// Whether a point is in a triangle or on its boundary.
+bool isInside(const std::array<Vec2, 3>& triangle, const Vec2& p)
+{
+  bool left = true, right = true;
+  for (std::size_t k = 0; k < triangle.size(); ++k)
+  {
+    const double side = doubledArea(triangle[k], triangle[(k + 1) % triangle.size()], p);
+    left = left && side >= 0.0;
+    right = right && side <= 0.0;
+  }
+  // On the line of a triangle without an area: within its box.
+  const auto within = [&](int c)
+  {
+    const auto [low, high] = std::minmax({ triangle[0][c], triangle[1][c], triangle[2][c] });
+    return p[c] >= low && p[c] <= high;
+  };
+  return (left || right) && within(0) && within(1);
+}
 }
 
 Silhouette traceSilhouette(const ImageView& image, const SilhouetteOptions& options)
@@ -419,6 +449,61 @@ std::vector<Vec2> resampleOutline(const std::vector<Vec2>& outline, Index count)
   return points;
 }
 
+std::vector<Vec2> reducePolygon(std::vector<Vec2> polygon, Index most)
+{
+  most = std::max<Index>(most, 3);
+  for (bool removed = true; removed && static_cast<Index>(polygon.size()) > most;)
+  {
+    throwIfInterrupted();
+    removed = false;
+    const std::size_t n = polygon.size();
+    const auto triangleAt = [&](std::size_t i) {
+      return std::array<Vec2, 3>{ polygon[(i + n - 1) % n], polygon[i], polygon[(i + 1) % n] };
+    };
+    std::vector<std::pair<double, std::size_t>> order; // the smallest triangles first
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const std::array<Vec2, 3> triangle = triangleAt(i);
+      order.emplace_back(std::abs(doubledArea(triangle[0], triangle[1], triangle[2])), i);
+    }
+    std::sort(order.begin(), order.end());
+    // A part of them in a round, since the triangles beside a vertex that is removed grow.
+    Index left = std::min<Index>(
+      static_cast<Index>(n) - most, 1 + (static_cast<Index>(n) - most) / VerticesPerRound);
+    std::vector<char> gone(n, 0), touched(n, 0);
+    for (auto at = order.begin(); at != order.end() && left > 0; ++at)
+    {
+      const std::size_t i = at->second, before = (i + n - 1) % n, after = (i + 1) % n;
+      if (touched[i])
+      {
+        continue;
+      }
+      const std::array<Vec2, 3> triangle = triangleAt(i);
+      bool empty = true;
+      for (std::size_t j = 0; j < n && empty; ++j)
+      {
+        empty = gone[j] || j == i || j == before || j == after || !isInside(triangle, polygon[j]);
+      }
+      if (empty)
+      {
+        gone[i] = touched[before] = touched[i] = touched[after] = 1;
+        removed = true;
+        --left;
+      }
+    }
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      if (!gone[i])
+      {
+        polygon[kept++] = polygon[i];
+      }
+    }
+    polygon.resize(kept);
+  }
+  return polygon;
+}
+
 std::vector<Vec2> approximateOutline(const std::vector<Vec2>& outline, double spacing)
 {
   if (!(spacing > 0.0) || !std::isfinite(spacing))
@@ -437,6 +522,7 @@ std::vector<Vec2> approximateOutline(const std::vector<Vec2>& outline, double sp
   }
   const double perimeter = lengthOf(line);
   spacing = std::min(spacing, perimeter / 3.0);
+  const double given = spacing;
   for (int attempt = 0; attempt < SpacingAttempts; ++attempt)
   {
     // A smaller spacing follows the outline more closely until the polygon does not meet itself.
@@ -449,6 +535,10 @@ std::vector<Vec2> approximateOutline(const std::vector<Vec2>& outline, double sp
       return polygon;
     }
     spacing *= SpacingReduction;
+  }
+  if (static_cast<Index>(line.size()) <= MostReducible && isSimple(line))
+  {
+    return reducePolygon(std::move(line), std::max<Index>(3, std::llround(perimeter / given)));
   }
   throw Error("No simple polygon was found on the outline: it meets itself.");
 }

@@ -83,7 +83,8 @@ TAUTLINE_SHAPESKERNEL_EXPORT Silhouette traceSilhouette(
  * of (length along the outline / spacing - 1)^2 + (largest distance of the outline from the edge /
  * spacing)^2 is minimal, with lengths from a half to one and a half spacings (dissertation
  * section 5.2.1; the sum is not in it). Where that polygon has less than 3 vertices or meets
- * itself, the spacing is reduced.
+ * itself, the spacing is reduced; where that does not help, as at thin parts, the outline itself is
+ * simplified by reducePolygon().
  *
  * @param outline closed, in either direction; the result runs counter-clockwise
  * @param spacing the ideal distance, above 0; the dissertation's is 25 pixels
@@ -91,6 +92,14 @@ TAUTLINE_SHAPESKERNEL_EXPORT Silhouette traceSilhouette(
  */
 TAUTLINE_SHAPESKERNEL_EXPORT std::vector<Vec2> approximateOutline(
   const std::vector<Vec2>& outline, double spacing);
+
+/**
+ * @brief A simple polygon with fewer vertices: those are removed whose triangle with their
+ * neighbours is small and has no other vertex in it, so that it does not meet itself.
+ * @param polygon simple
+ * @param most vertices that are left at most; at least 3
+ */
+TAUTLINE_SHAPESKERNEL_EXPORT std::vector<Vec2> reducePolygon(std::vector<Vec2> polygon, Index most);
 
 /// Points at equal distances along a closed outline, beginning at its first point.
 TAUTLINE_SHAPESKERNEL_EXPORT std::vector<Vec2> resampleOutline(

@@ -3,6 +3,7 @@
 // program without bounds; a shape is nearest to itself; errors.
 
 #include "Registry.h"
+#include "Meshes.h"
 #include "Shapes.h"
 #include "tautline/Shapes/OutlineMatch.h"
 
@@ -128,6 +129,109 @@ TAUTLINE_PART(testTerms)
   least /= static_cast<double>(model.polygon.advance.size());
   TAUTLINE_CHECK(match.energy >= least - 1e-6);
   TAUTLINE_CHECK(match.energy < 0.4);
+}
+
+/// Thin parts, many corners, lines one pixel wide, several components and holes: each picture has
+/// an outline that can be matched with the default options.
+TAUTLINE_PART(testThinOutlines)
+{
+  constexpr Index size = 120;
+  constexpr double middle = 60.0;
+  const auto star = [](double spikes, double depth)
+  {
+    return [=](double x, double y)
+    {
+      const double t = std::atan2(y - middle, x - middle);
+      return 30.0 * (1.0 + depth * std::cos(spikes * t)) - std::hypot(x - middle, y - middle);
+    };
+  };
+  const auto comb = [](double pitch, double tooth)
+  {
+    return [=](double x, double y)
+    {
+      const bool inTooth = std::fmod(x, pitch) < tooth && y > 10 && y < 110;
+      const bool inSpine = y > 100 && y < 110;
+      return x > 5 && x < 115 && (inTooth || inSpine) ? 1.0 : -1.0;
+    };
+  };
+  const auto spiral = [](double width)
+  {
+    return [=](double x, double y)
+    {
+      const double r = std::hypot(x - middle, y - middle),
+                   t = std::atan2(y - middle, x - middle) / (2 * std::acos(-1.0));
+      return r < 50 && std::abs(std::remainder(r / 10.0 - t, 1.0)) * 10.0 < width ? 1.0 : -1.0;
+    };
+  };
+  const auto line = [](double slope)
+  {
+    return [=](double x, double y)
+    { return x > 4 && x < 116 && std::lround(slope * x) == std::lround(y) - 3 ? 1.0 : -1.0; };
+  };
+  const auto zigzag = [](double x, double y)
+  {
+    const double phase = std::abs(std::remainder(x, 12.0));
+    return x > 4 && x < 116 && std::abs(y - 40.0 - 5.0 * phase) < 1.6 ? 1.0 : -1.0;
+  };
+  const auto rings = [](double x, double y)
+  {
+    const double r = std::hypot(x - 40.0, y - middle), other = std::hypot(x - 100.0, y - middle);
+    return (r < 35 && r > 33.9) || other < 8 ? 1.0 : -1.0;
+  };
+  const auto dots = [](double x, double y)
+  { return std::lround(x + y) % 2 == 0 && std::hypot(x - middle, y - middle) < 30 ? 1.0 : -1.0; };
+  const std::vector<std::function<double(double, double)>> pictures = { star(40, 0.6),
+    star(25, 0.95), star(7, 0.98), comb(4, 2), comb(3, 1), comb(12, 1), spiral(1.5), spiral(0.8),
+    line(0), line(0.9), line(0.37), zigzag, rings, dots,
+    [](double x, double y) { return x == 5 && y == 7 ? 1.0 : -1.0; } };
+  const OutlineOptions options;
+  const OutlineModel plain = prepareOutline(figure(100.0, 0.0, false, 1), options);
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+  {
+    const Context context("picture " + std::to_string(i));
+    const OutlineModel model =
+      prepareOutline(traceSilhouette(paint(size, size, pictures[i]).view()), options);
+    const std::vector<Vec2>& points = model.polygon.mesh.points;
+    TAUTLINE_CHECK(points.size() >= 3 && points.size() <= 42 && isSimple(points));
+    const double itself = matchOutlines(model, model, options).energy;
+    const double there = matchOutlines(model, plain, options).energy;
+    const double back = matchOutlines(plain, model, options).energy;
+    TAUTLINE_CHECK(itself >= 0 && std::isfinite(itself) && itself < there && itself < back);
+  }
+}
+
+/// A polygon with fewer vertices stays simple, and what is small goes first.
+TAUTLINE_PART(testReducePolygon)
+{
+  std::vector<Vec2> square; // 40 points on the sides, every other one a little outside
+  for (int side = 0; side < 4; ++side)
+  {
+    for (int k = 0; k < 10; ++k)
+    {
+      const double t = 0.1 * k, out = k % 2 == 1 ? -0.001 : 0.0;
+      const Vec2 p = side == 0 ? Vec2{ t, out }
+        : side == 1            ? Vec2{ 1 - out, t }
+        : side == 2            ? Vec2{ 1 - t, 1 - out }
+                               : Vec2{ out, 1 - t };
+      square.push_back(p);
+    }
+  }
+  const std::vector<Vec2> corners = reducePolygon(square, 4);
+  TAUTLINE_CHECK_EQUAL(corners.size(), std::size_t(4));
+  TAUTLINE_CHECK_NEAR(signedArea(corners), signedArea(square), 0.02 * signedArea(square));
+  Random random(5);
+  std::vector<Vec2> wild;
+  for (int k = 0; k < 300; ++k)
+  {
+    const double angle = k * std::acos(-1.0) / 150.0, r = random.uniform(0.02, 1.0);
+    wild.push_back({ r * std::cos(angle), r * std::sin(angle) });
+  }
+  for (const Index most : { 299, 150, 42, 10, 3 })
+  {
+    const std::vector<Vec2> fewer = reducePolygon(wild, most);
+    TAUTLINE_CHECK(static_cast<Index>(fewer.size()) <= most && isSimple(fewer));
+    TAUTLINE_CHECK(signedArea(fewer) > 0);
+  }
 }
 
 TAUTLINE_PART(testErrors)

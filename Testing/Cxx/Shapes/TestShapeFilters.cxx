@@ -8,6 +8,7 @@
 #include "vtkCompositeDataSet.h"
 #include "vtkFieldData.h"
 #include "vtkFloatArray.h"
+#include "vtkMultiBlockDataSet.h"
 #include "vtkPNGWriter.h"
 #include "vtkShapeMatcher.h"
 #include "vtkShapeRetrieval.h"
@@ -100,6 +101,36 @@ TAUTLINE_PART(testCellPixels)
   TAUTLINE_CHECK(a->GetNumberOfPoints() > 3 && a->GetNumberOfPoints() == b->GetNumberOfPoints());
   TAUTLINE_EACH(vtkIdType, i, std::min(a->GetNumberOfPoints(), b->GetNumberOfPoints()),
     TAUTLINE_CHECK_NEAR(a->GetPoint(i)[1], b->GetPoint(i)[1], 1e-9));
+}
+
+/// A picture without a shape is left out with a warning that names it; at least two are needed.
+TAUTLINE_PART(testLeftOut)
+{
+  const Picture empty = paint(60, 60, [](double, double) { return -1.0; });
+  const std::vector<Picture> pictures = { blob(100, 50, 50, 25), empty, disc(60, 30, 30, 12),
+    blob(100, 50, 50, 20, 0.5) };
+  for (const int setting : { vtkShapeRetrieval::HIGHEST, vtkShapeRetrieval::FELZENSZWALB })
+  {
+    vtkNew<vtkMultiBlockDataSet> set;
+    for (unsigned int i = 0; i < pictures.size(); ++i)
+    {
+      set->SetBlock(i, makeImage(pictures[i]));
+      set->GetMetaData(i)->Set(vtkCompositeDataSet::NAME(), "picture " + std::to_string(i));
+    }
+    TAUTLINE_NEW(vtkShapeRetrieval, retrieval, SetInputDataObject(0, set), SetSetting(setting));
+    Messages messages(retrieval);
+    retrieval->Update();
+    TAUTLINE_CHECK(!messages.has("ERROR: "));
+    TAUTLINE_CHECK(messages.has(wording("shape-was-left-out")) && messages.has("picture 1: "));
+    TAUTLINE_CHECK(contains(retrieval->GetSummary(), "picture 1: "));
+    auto* distances = vtkTable::SafeDownCast(retrieval->GetOutputDataObject(0));
+    TAUTLINE_CHECK_EQUAL(distances->GetNumberOfRows(), 3);
+    TAUTLINE_CHECK_EQUAL(distances->GetColumnByName("picture 1"), nullptr);
+    set->SetBlock(0, nullptr);
+    set->SetBlock(3, nullptr);
+    TAUTLINE_SET(retrieval, Modified(), Update());
+    TAUTLINE_CHECK(messages.has("ERROR: ") && messages.has("picture 1: "));
+  }
 }
 
 TAUTLINE_PART(testMesherErrors)
