@@ -8,6 +8,7 @@
 #include "pqProxyWidget.h"
 #include "pqRenderView.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
 
 #include "vtkNew.h"
 #include "vtkPVDataInformation.h"
@@ -196,6 +197,7 @@ bool pqTautlineMovingBoundary::bounds(bool wholeMesh, double result[6]) const
 //------------------------------------------------------------------------------
 bool pqTautlineMovingBoundary::find()
 {
+  const pqScopedUndoExclude notUndone;
   vtkSMProxy* warp = this->parentWidget()->proxy();
   double mesh[6];
   if (!this->bounds(true, mesh))
@@ -248,6 +250,7 @@ void pqTautlineMovingBoundary::update()
 //------------------------------------------------------------------------------
 void pqTautlineMovingBoundary::show(pqRenderView* view)
 {
+  const pqScopedUndoExclude notUndone;
   if (view != this->View)
   {
     this->hide();
@@ -280,6 +283,7 @@ void pqTautlineMovingBoundary::show(pqRenderView* view)
 //------------------------------------------------------------------------------
 void pqTautlineMovingBoundary::hide()
 {
+  const pqScopedUndoExclude notUndone;
   if (this->Shown && this->View)
   {
     vtkSMPropertyHelper(this->View->getProxy(), Hidden).Remove(this->Shown);
@@ -293,6 +297,7 @@ void pqTautlineMovingBoundary::hide()
 //------------------------------------------------------------------------------
 void pqTautlineMovingBoundary::placeBox()
 {
+  const pqScopedUndoExclude notUndone;
   this->connectPanel();
   pqBoxPropertyWidget* widget = this->box();
   double around[6];

@@ -8,6 +8,7 @@
 #include "pqSelectionManager.h"
 #include "pqServer.h"
 #include "pqTimeKeeper.h"
+#include "pqUndoStack.h"
 
 #include "vtkDataSetAttributes.h"
 #include "vtkPVDataInformation.h"
@@ -133,6 +134,7 @@ std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& n
   }
   const std::vector<ElementLeaf> leaves =
     composite && !global ? elementLeaves(port) : std::vector<ElementLeaf>();
+  const pqScopedUndoExclude notUndone;
   std::vector<vtkIdType> ids;
   for (const ElementName& name : names)
   {
@@ -163,6 +165,7 @@ vtkTypeInt64 selectWhere(pqOutputPort* port, const std::vector<CellCondition>& c
     pqPVApplicationCore::instance()->selectionManager()->clearSelection();
     return 0;
   }
+  const pqScopedUndoExclude notUndone;
   std::vector<Proxy> sources;
   std::string expression;
   for (const CellCondition& condition : conditions)
@@ -229,6 +232,7 @@ vtkTypeInt64 countSelected(pqOutputPort* port)
   {
     return 0;
   }
+  const pqScopedUndoExclude notUndone;
   extract->UpdatePipeline(port->getServer()->getTimeKeeper()->getTime());
   return extract->GetDataInformation(0)->GetNumberOfCells();
 }

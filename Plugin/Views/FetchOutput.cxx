@@ -4,6 +4,7 @@
 #include "pqPipelineSource.h"
 #include "pqServer.h"
 #include "pqTimeKeeper.h"
+#include "pqUndoStack.h"
 
 #include "vtkAlgorithm.h"
 #include "vtkPVDataInformation.h"
@@ -62,6 +63,8 @@ vtkSmartPointer<vtkDataObject> fetchOutput(pqPipelineSource* source, const char*
 vtkSmartPointer<vtkDataObject> fetchPart(
   vtkSMSourceProxy* source, unsigned int port, int process, double time)
 {
+  // Neither filter is part of what the user has made.
+  const pqScopedUndoExclude notUndone;
   auto reduced = newFilter("ReductionFilter", source, port);
   vtkSMPropertyHelper(reduced, "PassThrough").Set(process);
   reduced->UpdateVTKObjects();

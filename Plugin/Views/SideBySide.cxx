@@ -6,7 +6,6 @@
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
-#include "pqLinksModel.h"
 #include "pqObjectBuilder.h"
 #include "pqOutputPort.h"
 #include "pqPipelineFilter.h"
@@ -14,27 +13,36 @@
 #include "pqRenderView.h"
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
 
 #include "vtkNew.h"
+#include "vtkObjectFactory.h"
 #include "vtkPVDataInformation.h"
+#include "vtkPVXMLElement.h"
+#include "vtkSMCameraLink.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxyManager.h"
 #include "vtkSMSessionProxyManager.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTrace.h"
 #include "vtkSMViewLayoutProxy.h"
 #include "vtkSMViewProxy.h"
 #include "vtkSmartPointer.h"
 #include "vtkTable.h"
 #include "vtkType.h"
 #include "vtkVariant.h"
+#include "vtkWeakPointer.h"
 
 #include <QList>
 #include <QPointer>
 #include <QTimer>
 
+#include <algorithm>
 #include <array>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace tautline
 {
@@ -44,6 +52,60 @@ namespace
 constexpr int MeshPort = 0;
 constexpr double Half = 0.5;
 constexpr int FontSize = 14;
+constexpr std::size_t Sides = 2;
+constexpr const char* Caption = "Text";
+
+/// A link of two views that is not registered: ParaView's model of links clears the undo stack
+/// where it gets or loses one.
+class ViewLink : public vtkSMCameraLink
+{
+public:
+  static ViewLink* New();
+  vtkTypeMacro(ViewLink, vtkSMCameraLink);
+
+  void link(vtkSMProxy* first, vtkSMProxy* second)
+  {
+    for (vtkSMProxy* view : { first, second })
+    {
+      this->AddLinkedProxy(view, INPUT);
+      this->AddLinkedProxy(view, OUTPUT);
+    }
+  }
+  void save(const QString& name, vtkPVXMLElement* links)
+  {
+    this->SaveXMLState(name.toUtf8().data(), links);
+  }
+
+protected:
+  ViewLink() = default;
+  ~ViewLink() override = default;
+};
+vtkStandardNewMacro(ViewLink);
+
+/// What one press has made. What the user deletes, or Undo, becomes null.
+struct Comparison
+{
+  QPointer<pqPipelineSource> filter;
+  bool match = false;
+  /// Those of Match Shape may be sources of the user.
+  std::array<QPointer<pqPipelineSource>, Sides> meshes, texts;
+  std::array<QPointer<pqView>, Sides> views;
+  vtkWeakPointer<ViewLink> link;
+
+  bool isComplete() const
+  {
+    const auto alive = [](const auto& one) { return !one.isNull(); };
+    return std::all_of(meshes.begin(), meshes.end(), alive) &&
+      std::all_of(texts.begin(), texts.end(), alive) &&
+      std::all_of(views.begin(), views.end(), alive);
+  }
+};
+
+std::vector<Comparison>& comparisons()
+{
+  static std::vector<Comparison> all;
+  return all;
+}
 
 pqOutputPort* inputOf(pqPipelineSource* source)
 {
@@ -94,32 +156,86 @@ void hideLegendLater(vtkSMProxy* shown, pqView* view)
   QTimer::singleShot(0, view,
     [representation, view]
     {
+      const pqScopedUndoExclude notUndone;
       tautline::ColorMaps::SetScalarBarVisibility(representation, view->getViewProxy(), false);
       view->render();
     });
 }
 
 /// Shows a text at the top of a view.
-void addText(const QString& shown, pqPipelineSource* of, pqView* view)
+pqPipelineSource* addText(const QString& shown, pqPipelineSource* of, pqView* view)
 {
   vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
   pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
   pqPipelineSource* text = builder->createSource("sources", "TextSource", of->getServer());
   text->rename(of->getSMName() + ", text");
-  vtkSMPropertyHelper(text->getProxy(), "Text").Set(shown.toUtf8().data());
-  text->getProxy()->UpdateVTKObjects();
+  {
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", text->getProxy());
+    vtkSMPropertyHelper(text->getProxy(), Caption).Set(shown.toUtf8().data());
+    text->getProxy()->UpdateVTKObjects();
+  }
   text->setModifiedState(pqProxy::UNMODIFIED);
   if (vtkSMProxy* drawn = controller->Show(text->getSourceProxy(), 0, view->getViewProxy()))
   {
-    constexpr int upperCenter = 4; // of the property WindowLocation
+    constexpr int upperCenter = 6; // of the property WindowLocation
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", drawn);
     vtkSMPropertyHelper(drawn, "WindowLocation", true).Set(upperCenter);
     vtkSMPropertyHelper(drawn, "FontSize", true).Set(FontSize);
     drawn->UpdateVTKObjects();
   }
+  return text;
+}
+
+/// Writes the caption again, unless the user has written another one.
+void refreshCaption(pqPipelineSource* quality, pqPipelineSource* text, QString& last)
+{
+  static bool fetching = false; // reports an update itself
+  if (fetching || quality->modifiedState() != pqProxy::UNMODIFIED)
+  {
+    return;
+  }
+  const pqScopedUndoExclude notUndone;
+  fetching = true;
+  const QString now = describe(quality);
+  fetching = false;
+  vtkSMPropertyHelper shown(text->getProxy(), Caption);
+  if (now != last && QString::fromUtf8(shown.GetAsString()) == last)
+  {
+    shown.Set(now.toUtf8().data());
+    text->getProxy()->UpdateVTKObjects();
+    text->renderAllViews();
+  }
+  last = now;
+}
+
+/// Keeps the caption up to date, as the filter may be applied again.
+void followUpdates(pqPipelineSource* quality, pqPipelineSource* text)
+{
+  const auto last = std::make_shared<QString>(
+    QString::fromUtf8(vtkSMPropertyHelper(text->getProxy(), Caption).GetAsString()));
+  const QPointer<pqPipelineSource> measured = quality;
+  // Fetching updates a pipeline, which is not done within an update.
+  QObject::connect(pqApplicationCore::instance()->getServerManagerModel(),
+    &pqServerManagerModel::dataUpdated, text,
+    [measured, text, last](pqPipelineSource* updated)
+    {
+      if (updated != measured)
+      {
+        return;
+      }
+      QTimer::singleShot(0, text,
+        [measured, text, last]
+        {
+          if (measured)
+          {
+            refreshCaption(measured, text, *last);
+          }
+        });
+    });
 }
 
 /// Shows the mesh, and a text at the top.
-void fill(pqPipelineSource* quality, pqView* view, bool legend)
+pqPipelineSource* fill(pqPipelineSource* quality, pqView* view, bool legend)
 {
   vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
   vtkSMViewProxy* viewProxy = view->getViewProxy();
@@ -137,7 +253,9 @@ void fill(pqPipelineSource* quality, pqView* view, bool legend)
       hideLegendLater(shown, view);
     }
   }
-  addText(describe(quality), quality, view);
+  pqPipelineSource* text = addText(describe(quality), quality, view);
+  followUpdates(quality, text);
+  return text;
 }
 
 /// The direction of view of another view, if it is one of meshes.
@@ -186,14 +304,40 @@ pqPipelineSource* meshOfSource(pqPipelineSource* match)
   return mesh;
 }
 
+QString linkName(pqPipelineSource* filter)
+{
+  return filter->getSMName() + ", before and after";
+}
+
+/// Both views get the camera of the one that is moved, as long as both are there.
+ViewLink* linkCameras(pqPipelineSource* filter, const std::array<pqView*, Sides>& views)
+{
+  const pqScopedUndoExclude notUndone;
+  const auto link = vtkSmartPointer<ViewLink>::New();
+  link->link(views[0]->getProxy(), views[1]->getProxy());
+  for (pqView* view : views)
+  {
+    // It would keep the other view alive.
+    QObject::connect(view, &QObject::destroyed, [link] { link->RemoveAllLinks(); });
+  }
+  const std::string name = linkName(filter).toStdString();
+  SM_SCOPED_TRACE(CallFunction)
+    .arg("AddCameraLink")
+    .arg(views[0]->getProxy())
+    .arg(views[1]->getProxy())
+    .arg(name.c_str())
+    .arg("comment", "link cameras in two views");
+  return link;
+}
+
 /// Two views beside each other in a new layout; null where they cannot be made.
-std::array<pqView*, 2> splitLayout(pqServer* server)
+std::array<pqView*, Sides> splitLayout(pqServer* server)
 {
   vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
   vtkSmartPointer<vtkSMProxy> made;
   made.TakeReference(server->proxyManager()->NewProxy("misc", "ViewLayout"));
   auto* layout = vtkSMViewLayoutProxy::SafeDownCast(made);
-  std::array<pqView*, 2> views{};
+  std::array<pqView*, Sides> views{};
   if (!layout)
   {
     return views;
@@ -208,6 +352,120 @@ std::array<pqView*, 2> splitLayout(pqServer* server)
     layout->AssignView(left + static_cast<int>(i), views[i]->getViewProxy());
   }
   return views;
+}
+
+/// Removes the layout that a view was in, unless it has other views or is the only one.
+void removeLayout(vtkSMViewLayoutProxy* layout)
+{
+  auto* model = pqApplicationCore::instance()->getServerManagerModel();
+  auto* item = layout ? model->findItem<pqProxy*>(layout) : nullptr;
+  if (item && layout->GetViews().empty() &&
+    layout->GetSessionProxyManager()->GetNumberOfProxies("layouts") > 1)
+  {
+    pqApplicationCore::instance()->getObjectBuilder()->destroy(item);
+  }
+}
+
+/// Removes what is left of a comparison; meshes that the user works with stay.
+void close(const Comparison& comparison)
+{
+  pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
+  for (std::size_t i = 0; i < Sides; ++i)
+  {
+    if (comparison.texts[i])
+    {
+      builder->destroy(comparison.texts[i]);
+    }
+    pqPipelineSource* mesh = comparison.match ? nullptr : comparison.meshes[i].data();
+    if (mesh && mesh->getNumberOfConsumers() == 0)
+    {
+      builder->destroy(mesh);
+    }
+    if (comparison.views[i])
+    {
+      const vtkSmartPointer<vtkSMViewLayoutProxy> layout =
+        vtkSMViewLayoutProxy::FindLayout(comparison.views[i]->getViewProxy());
+      builder->destroy(comparison.views[i]);
+      removeLayout(layout);
+    }
+  }
+}
+
+/// A caption goes with its mesh, and all goes with the filter.
+void sourceRemoved(pqPipelineSource* source)
+{
+  for (Comparison& comparison : comparisons())
+  {
+    Comparison gone = comparison;
+    if (comparison.filter == source)
+    {
+      comparison = {};
+    }
+    else
+    {
+      gone.meshes = {};
+      gone.views = {};
+      for (std::size_t i = 0; i < Sides; ++i)
+      {
+        gone.texts[i] = comparison.meshes[i] == source ? comparison.texts[i] : nullptr;
+      }
+    }
+    // Within a removal no other source is removed.
+    QTimer::singleShot(0, pqApplicationCore::instance(),
+      [gone]
+      {
+        const pqScopedUndoExclude notUndone;
+        close(gone);
+      });
+  }
+}
+
+/// Adds the links to a state that is saved.
+void saveLinks(vtkPVXMLElement* root)
+{
+  vtkPVXMLElement* state = root->FindNestedElementByName("ServerManagerState");
+  vtkPVXMLElement* links = state ? state->FindNestedElementByName("Links") : nullptr;
+  for (const Comparison& comparison : comparisons())
+  {
+    if (links && comparison.link && comparison.isComplete())
+    {
+      comparison.link->save(linkName(comparison.filter), links);
+    }
+  }
+}
+
+void watchSession()
+{
+  static bool watching = false;
+  if (!watching)
+  {
+    watching = true;
+    auto* core = pqApplicationCore::instance();
+    QObject::connect(
+      core->getServerManagerModel(), &pqServerManagerModel::preSourceRemoved, core, sourceRemoved);
+    QObject::connect(core, &pqApplicationCore::stateSaved, core, saveLinks);
+  }
+}
+
+/// The comparison of a filter if nothing of it was removed; else what is left is removed.
+const Comparison* findComparison(pqPipelineSource* filter)
+{
+  std::vector<Comparison>& all = comparisons();
+  for (auto comparison = all.begin(); comparison != all.end(); ++comparison)
+  {
+    if (comparison->filter == filter && comparison->isComplete())
+    {
+      return &*comparison;
+    }
+    if (comparison->filter == filter)
+    {
+      const Comparison incomplete = *comparison;
+      all.erase(comparison);
+      close(incomplete);
+      return nullptr;
+    }
+  }
+  return nullptr;
 }
 
 } // anonymous namespace
@@ -228,21 +486,30 @@ QString showSideBySide(pqPipelineSource* filter)
   {
     return "Apply the filter first: there is no mesh before and after it.";
   }
+  watchSession();
+  const pqScopedUndoSet oneStep("Side by Side");
+  if (const Comparison* known = findComparison(filter))
+  {
+    pqActiveObjects::instance().setActiveView(known->views[1]);
+    pqActiveObjects::instance().setActiveSource(filter);
+    return {};
+  }
   const bool match = isMatch(filter);
   const QPointer<pqView> seen = pqActiveObjects::instance().activeView();
-  const std::array<pqPipelineSource*, 2> shown = match
-    ? std::array<pqPipelineSource*, 2>{ meshOfSource(filter), filter }
-    : std::array<pqPipelineSource*, 2>{ measure(inputOf(filter), "Before"),
+  const std::array<pqPipelineSource*, Sides> shown = match
+    ? std::array<pqPipelineSource*, Sides>{ meshOfSource(filter), filter }
+    : std::array<pqPipelineSource*, Sides>{ measure(inputOf(filter), "Before"),
         measure(filter->getOutputPort(MeshPort), "After") };
   if (!shown[0] || !shown[1])
   {
     return "The meshes cannot be measured.";
   }
-  const std::array<pqView*, 2> views = splitLayout(filter->getServer());
+  const std::array<pqView*, Sides> views = splitLayout(filter->getServer());
   if (!views[0] || !views[1])
   {
     return "A layout cannot be made.";
   }
+  Comparison comparison{ filter, match, {}, {}, {}, {} };
   for (std::size_t i = 0; i < views.size(); ++i)
   {
     if (match)
@@ -250,18 +517,20 @@ QString showSideBySide(pqPipelineSource* filter)
       // pqTautlinePictures adds the image behind the mesh.
       vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
       controller->Show(shown[i]->getSourceProxy(), MeshPort, views[i]->getViewProxy());
-      addText(i == 0 ? "source" : "target", shown[i], views[i]);
+      comparison.texts[i] = addText(i == 0 ? "source" : "target", shown[i], views[i]);
     }
     else
     {
-      fill(shown[i], views[i], i == 1);
+      comparison.texts[i] = fill(shown[i], views[i], i == 1);
     }
+    comparison.meshes[i] = shown[i];
+    comparison.views[i] = views[i];
   }
   if (!match) // the images may differ in size
   {
-    pqApplicationCore::instance()->getLinksModel()->addCameraLink(
-      filter->getSMName() + ", before and after", views[0]->getProxy(), views[1]->getProxy());
+    comparison.link = linkCameras(filter, views);
   }
+  comparisons().push_back(comparison);
   for (pqView* view : views)
   {
     takeCamera(view, seen);

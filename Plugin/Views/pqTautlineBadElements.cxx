@@ -9,6 +9,7 @@
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
 #include "pqView.h"
 
 #include "vtkNew.h"
@@ -17,6 +18,7 @@
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMSourceProxy.h"
+#include "vtkSMTrace.h"
 #include "vtkSMViewProxy.h"
 
 #include <QPointer>
@@ -104,6 +106,7 @@ void pqTautlineBadElements::arrangeLater(pqPipelineSource* source)
     {
       if (updated)
       {
+        const pqScopedUndoExclude notUndone;
         this->arrange(updated);
       }
     });
@@ -158,12 +161,16 @@ void pqTautlineBadElements::fade(pqDataRepresentation* mesh, pqDataRepresentatio
     return;
   }
   mesh->setProperty(Before, opacity.GetAsDouble());
-  opacity.Set(FadedOpacity);
-  mesh->getProxy()->UpdateVTKObjects();
+  {
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", mesh->getProxy());
+    opacity.Set(FadedOpacity);
+    mesh->getProxy()->UpdateVTKObjects();
+  }
   const bool elements =
     inside && inside->getOutputPortFromInput()->getPortName() == tautline::BadElementsPort;
   if (elements && inside->getProxy()->GetProperty(Style))
   {
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", inside->getProxy());
     vtkSMPropertyHelper(inside->getProxy(), Style).Set("Surface With Edges");
     vtkSMPropertyHelper(inside->getProxy(), "EdgeColor").Set(EdgeColor, 3);
     inside->getProxy()->UpdateVTKObjects();

@@ -15,6 +15,7 @@
 #include "pqPropertiesPanel.h"
 #include "pqRenderView.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
 
 #include "vtkAbstractArray.h"
 #include "vtkAxis.h"
@@ -338,6 +339,7 @@ void pqTautlineCharts::applied()
   QTimer::singleShot(0, this,
     [this]
     {
+      const pqScopedUndoExclude notUndone;
       for (const QPointer<pqDataRepresentation>& chart : std::exchange(this->OpenedByApply, {}))
       {
         if (chart && chart->getInput())
@@ -387,6 +389,7 @@ void pqTautlineCharts::stateChanged(pqServerManagerModelItem* item)
 //------------------------------------------------------------------------------
 void pqTautlineCharts::arrange(pqDataRepresentation* chart)
 {
+  const pqScopedUndoExclude notUndone;
   pqView* view = chart->getView();
   if (!view || !view->getProxy()->GetProperty("LeftAxisLogScale"))
   {

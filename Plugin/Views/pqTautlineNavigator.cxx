@@ -9,6 +9,7 @@
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
 #include "pqView.h"
 
 #include "vtkSMPropertyHelper.h"
@@ -126,6 +127,7 @@ void pqTautlineNavigator::dataUpdated(pqPipelineSource* source)
 void pqTautlineNavigator::refresh()
 {
   this->Lists.clear();
+  const pqScopedUndoExclude notUndone;
   if (this->Source && tautline::isTautline(this->Source->getProxy()))
   {
     this->Lists = tautline::worstElementsOf(this->Source);

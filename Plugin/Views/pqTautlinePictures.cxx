@@ -13,6 +13,7 @@
 #include "pqPipelineFilter.h"
 #include "pqRenderView.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
 
 #include "vtkDataObject.h"
 #include "vtkDataSetAttributes.h"
@@ -132,6 +133,7 @@ void pqTautlinePictures::added(pqRepresentation* shown)
     {
       if (mesh && mesh->getInput() && isArranged(mesh->getInput()->getProxy()))
       {
+        const pqScopedUndoExclude notUndone;
         this->arrange(mesh);
       }
     });
