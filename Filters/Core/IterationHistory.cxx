@@ -61,7 +61,7 @@ void addHistory(TableRows& rows, const std::vector<IterationRecord>& history,
 
 //------------------------------------------------------------------------------
 std::string summarize(
-  const OptimizeResult& result, const MovableMesh& mesh, const std::string& block)
+  const OptimizeResult& result, const MovableMesh& mesh, const std::string& block, double diagonal)
 {
   std::ostringstream text;
   text << (block.empty() ? "" : "In " + block + ": ") << describe(result.reason) << "\n";
@@ -111,7 +111,7 @@ std::string summarize(
                 : ": no others with a smaller objective were found without a worse worst element "
                   "or more invalid elements.");
   }
-  text << surfaceErrorSentence(result.surfaceError);
+  text << surfaceErrorSentence(result.surfaceError, diagonal);
   if (result.leftSurface > 0)
   {
     text << "\n"
@@ -135,13 +135,32 @@ std::string summarize(
 }
 
 //------------------------------------------------------------------------------
-std::string surfaceErrorSentence(double surfaceError)
+std::string distanceText(double distance, double diagonal)
 {
   std::ostringstream text;
-  if (surfaceError > 0)
+  text << distance;
+  if (diagonal > 0)
   {
-    text << "\nLargest distance of the elements from the surface: " << surfaceError << ".";
+    constexpr double percent = 100.0;
+    text.precision(2);
+    text << ", " << percent * distance / diagonal << " % of the diagonal of the bounding box";
   }
   return text.str();
+}
+
+//------------------------------------------------------------------------------
+std::string surfaceErrorSentence(double surfaceError, double diagonal)
+{
+  return surfaceError > 0 ? "\nLargest distance of the elements from the surface: " +
+      distanceText(surfaceError, diagonal) + "."
+                          : "";
+}
+
+//------------------------------------------------------------------------------
+std::string invalidSentence(Index before, Index after)
+{
+  return after == 0 ? ""
+                    : std::to_string(after) + (after == 1 ? " element is" : " elements are") +
+      " inverted or degenerate (" + std::to_string(before) + " before).";
 }
 }

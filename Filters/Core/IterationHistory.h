@@ -27,10 +27,24 @@ TAUTLINECORE_EXPORT void addHistory(TableRows& rows, const std::vector<Iteration
   const std::vector<std::string>& names, const std::string& block);
 
 /// Reason, iterations, seconds, free points and inverted elements, in sentences.
+/// @param diagonal of the bounding box of the mesh, see surfaceErrorSentence()
 TAUTLINECORE_EXPORT std::string summarize(
-  const OptimizeResult& result, const MovableMesh& mesh, const std::string& block);
+  const OptimizeResult& result, const MovableMesh& mesh, const std::string& block, double diagonal);
 
-/// "\nLargest distance of the elements from the surface: 0.01."; "" if the error is 0.
-TAUTLINECORE_EXPORT std::string surfaceErrorSentence(double surfaceError);
+/// "0.01, 0.2 % of the diagonal of the bounding box", or the distance alone if the diagonal is 0.
+TAUTLINECORE_EXPORT std::string distanceText(double distance, double diagonal);
+
+/**
+ * @brief "\nLargest distance of the elements from the surface: 0.01, 0.2 % of the diagonal of the
+ * bounding box."; "" if the error is 0.
+ * @param diagonal of the mesh in the same unit, or 0: not known
+ */
+TAUTLINECORE_EXPORT std::string surfaceErrorSentence(double surfaceError, double diagonal);
+
+/// What begins a sentence that warns of the result, which panels show in red.
+constexpr const char* WarningPrefix = "Warning: ";
+
+/// "18 elements are inverted or degenerate (51 before)."; "" if none is after.
+TAUTLINECORE_EXPORT std::string invalidSentence(Index before, Index after);
 }
 #endif

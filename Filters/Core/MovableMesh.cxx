@@ -127,6 +127,7 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
     this->Skip.resize(dropped.size(), 0);
     this->Skip[cell] |= dropped[cell];
   }
+  this->Stays = this->Fixed;
 }
 
 //------------------------------------------------------------------------------
@@ -336,6 +337,30 @@ void MovableMesh::fixBoundary()
   }
   std::transform(this->Fixed.begin(), this->Fixed.end(), this->Skin.begin(), this->Fixed.begin(),
     [](unsigned char fixed, char on) { return fixed || on; });
+  this->uniteFixed();
+}
+
+//------------------------------------------------------------------------------
+void MovableMesh::freeInvalid()
+{
+  const MeshView& view = this->mesh().view();
+  std::vector<unsigned char> freed(this->Fixed.size(), 0);
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const signed char validity = this->validity()[cell];
+    if (validity == Inverted || validity == Degenerate)
+    {
+      for (Index n = view.offsets[cell]; n < view.offsets[cell + 1]; ++n)
+      {
+        freed[view.connectivity[n]] = 1;
+      }
+    }
+  }
+  unite(freed, this->representative());
+  for (std::size_t p = 0; p < freed.size(); ++p)
+  {
+    this->Fixed[p] &= this->Stays[p] || !freed[p];
+  }
   this->uniteFixed();
 }
 

@@ -144,6 +144,11 @@ public:
   /// Marks the points that markSelected() found, and the points of the cells it found; null: none.
   void fixSelected(vtkDataSet* selected);
   void fixBoundary();
+  /**
+   * @brief Frees the points of elements that are inverted or degenerate, however they were fixed so
+   * far, except those that always stay (see fixed()). Not in pieces.
+   */
+  void freeInvalid();
   /// Marks points of the boundary that cannot slide; see boundaryShape().
   void fixCorners(const BoundaryShape& shape);
   /**
@@ -263,6 +268,7 @@ private:
   bool SlidingFixed = false;  ///< whether fixCorners() fixed any
   mutable std::vector<signed char> Validity;
   std::vector<unsigned char> Skip, Fixed;
+  std::vector<unsigned char> Stays; ///< Fixed at first; empty in pieces
   std::string Notice;
 };
 

@@ -69,17 +69,37 @@ void addStatistics(TableRows& rows, const std::string& ending, const Measurement
 
 namespace
 {
+/// Mean and worst value before and after, of what is compared.
+void describe(
+  const std::string& of, const Measurement& before, const Measurement& after, std::ostream& text)
+{
+  text << "\n"
+       << of << ": mean " << before.statistics.mean << " to " << after.statistics.mean << ", worst "
+       << before.worst << " to " << after.worst << ".";
+}
+
+/// The same measurement without the elements that are not valid.
+Measurement measureValid(
+  const MovableMesh& movable, Metric metric, const signed char* validity, const double* values)
+{
+  const MeshView& view = movable.mesh().view();
+  std::vector<unsigned char> skip(view.numberOfCells);
+  for (std::size_t i = 0; i < skip.size(); ++i)
+  {
+    skip[i] = validity[i] != Valid || (movable.skipped() && movable.skipped()[i]);
+  }
+  return measureValues(
+    movable.ranks(), view, movable.dimension(), metric, validity, skip.data(), values);
+}
+
 void addRow(const MeasuredMetric& what, const std::string& block, const Measurement& before,
-  const Measurement& after, TableRows& rows, std::ostream& text)
+  const Measurement& after, TableRows& rows)
 {
   rows.begin(block);
   rows.addText("Metric", what.name);
   rows.addText("Label", metricInfo(what.metric).label);
   addStatistics(rows, "Before", before);
   addStatistics(rows, "After", after);
-  text << "\n"
-       << metricInfo(what.metric).label << ": mean " << before.statistics.mean << " to "
-       << after.statistics.mean << ", worst " << before.worst << " to " << after.worst << ".";
 }
 }
 
@@ -168,7 +188,20 @@ std::string addBeforeAfter(const MovableMesh& mesh, const std::vector<double>& p
     {
       parallelFor(2, 1, threads, measure);
     }
-    addRow(what, block, before, after, rows, text);
+    addRow(what, block, before, after, rows);
+    const std::string label = metricInfo(what.metric).label;
+    if (before.counts.inverted + after.counts.inverted == 0)
+    {
+      describe(label, before, after, text);
+      continue;
+    }
+    // The value of an inverted element is not compared with that of a valid one.
+    before = measureValid(mesh, what.metric, validityBefore, valuesBefore);
+    after = measureValid(mesh, what.metric, validity->GetPointer(0), valuesAfter);
+    if (before.statistics.measured > 0 && after.statistics.measured > 0)
+    {
+      describe(label + " of the valid elements", before, after, text);
+    }
   }
   output->GetCellData()->AddArray(validity);
   // Without active point scalars, views colour by the metric.

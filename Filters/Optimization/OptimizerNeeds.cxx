@@ -63,6 +63,10 @@ NeedOfWholeMesh needOfWholeMesh(const OptimizerSettings& settings, bool features
   {
     return { "targets of a reference mesh", "choose another preset or target" };
   }
+  if (settings.freeInvalid)
+  {
+    return { "points of invalid elements that are freed", "switch Free Invalid Elements off" };
+  }
   if (settings.showFeatures)
   {
     return { "features that are shown", "switch Show Features off" };

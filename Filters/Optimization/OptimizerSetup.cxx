@@ -80,6 +80,10 @@ void OptimizerSetup::setFixed(const OptimizerSettings& settings, const InputBloc
     this->Options.slidePlanes = this->Shape.planes.data();
     this->Options.slideLines = this->Shape.lines.data();
   }
+  if (settings.freeInvalid)
+  {
+    mesh.freeInvalid();
+  }
   this->Options.fixed = mesh.fixed().data();
 }
 

@@ -72,6 +72,7 @@ struct OptimizerSettings
   vtkDataObject* geometry = nullptr; ///< what points slide on instead of the input, or null
   bool showFeatures = false;         ///< add the arrays of the features to the output
   double maximumDisplacement = 0.0;  ///< 0: any distance
+  bool freeInvalid = false;          ///< see MovableMesh::freeInvalid()
   bool mergePoints = true;           ///< whether coincident points on seams are one
   /// All that needs no data set. Of CUSTOM, too, what a preset replaces.
   OptimizeOptions options;
@@ -202,6 +203,7 @@ struct OptimizerRun
   bool single = false; ///< whether the points of the result are written in single precision
   std::string note;    ///< a sentence if they are not, although the input has it, or ""
   std::string warning; ///< a sentence if the points are those of the input instead, or ""
+  std::string moved;   ///< a sentence if the surface has moved although it was to stay, or ""
   std::string summary;
 
   /// Keeps the points of an iteration; drops every second frame when the memory is used up.

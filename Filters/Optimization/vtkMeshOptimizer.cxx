@@ -31,6 +31,14 @@ enum Ports
   NumberOfPorts = 3
 };
 
+/// A surface that is to stay may move by this fraction of the diagonal without a warning.
+constexpr double LeastSurfaceMotion = 0.001;
+constexpr const char* InvalidRemedy =
+  " Free their points (Free Invalid Elements), or choose another Boundary.";
+constexpr const char* FreedRemedy = " Choose another Boundary, or repair them by hand.";
+constexpr const char* SurfaceRemedy =
+  " Set a Maximum Displacement, or a smaller Feature Angle, to keep it closer.";
+
 // More time steps than this are of no use to an animation.
 constexpr int MaximumTimeSteps = 1000;
 }
@@ -360,6 +368,7 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
   settings.surfaceTolerance = this->SurfaceTolerance;
   settings.leaveSurface = this->LeaveSurface;
   settings.showFeatures = this->ShowFeatures;
+  settings.freeInvalid = this->FreeInvalid;
   settings.maximumDisplacement = this->MaximumDisplacement;
   settings.mergePoints = this->MergeCoincidentPoints;
   settings.arrays = this;
@@ -457,6 +466,13 @@ int vtkMeshOptimizer::RequestData(
   history.fill(vtkTable::GetData(outputVector, HistoryPort));
   statistics.fill(vtkTable::GetData(outputVector, StatisticsPort));
   this->Report();
+  for (const std::string& warning : this->ResultWarnings())
+  {
+    if (!done && this->IsFirst())
+    {
+      this->Warn(warning);
+    }
+  }
   this->AddToSummary(this->GetWhyGathered());
   if (this->Animation)
   {
@@ -558,7 +574,16 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   }
   if (!done)
   {
-    run.summary = tautline::summarize(run.result, mesh, block.name) + qualities;
+    const double diagonal = block.input->GetLength();
+    // Without a tolerance any distance is allowed.
+    const bool stays = settings.boundary != tautline::BoundaryMotion::Free && !settings.geometry &&
+      settings.surfaceTolerance > 0;
+    const double allowed = std::max(LeastSurfaceMotion, settings.surfaceTolerance) * diagonal;
+    const bool moved = stays && run.result.surfaceError > allowed;
+    run.moved = moved ? "The surface has moved by up to " +
+        tautline::distanceText(run.result.surfaceError, diagonal) + "."
+                      : "";
+    run.summary = tautline::summarize(run.result, mesh, block.name, diagonal) + qualities;
     const std::string why = run.result.reason == tautline::StopReason::NoFreeVertices
       ? mesh.whyNoneIsFree(tautline::BoundaryRemedy)
       : std::string();
@@ -639,10 +664,35 @@ void vtkMeshOptimizer::Report()
     this->SurfaceError = std::max(this->SurfaceError, result.surfaceError);
     this->AddToSummary(run->summary);
   }
+  for (const std::string& warning : this->ResultWarnings())
+  {
+    this->Summary.insert(0, tautline::WarningPrefix + warning + "\n");
+  }
   if (!this->Runs.empty())
   {
     this->AddToSummary(this->GetBlockNotice());
   }
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkMeshOptimizer::ResultWarnings() const
+{
+  std::vector<std::string> warnings;
+  for (const auto& run : this->Runs)
+  {
+    if (!run->moved.empty())
+    {
+      warnings.push_back(run->moved + SurfaceRemedy);
+      break;
+    }
+  }
+  // The last one is shown first.
+  if (this->InvertedAfter > 0)
+  {
+    warnings.push_back(tautline::invalidSentence(this->InvertedBefore, this->InvertedAfter) +
+      (this->FreeInvalid ? FreedRemedy : InvalidRemedy));
+  }
+  return warnings;
 }
 
 //------------------------------------------------------------------------------
@@ -694,5 +744,6 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "HoldWorst: " << this->HoldWorst << "\n";
   os << indent << "ReproducibleOrder: " << this->ReproducibleOrder << "\n";
   os << indent << "Animation: " << this->Animation << "\n";
+  os << indent << "FreeInvalid: " << this->FreeInvalid << "\n";
   os << indent << "AnimationMemory: " << this->AnimationMemory << "\n";
 }

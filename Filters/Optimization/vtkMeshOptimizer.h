@@ -559,6 +559,17 @@ public:
 
   ///@{
   /**
+   * Free the points of the elements that are inverted or degenerate in the input, however they are
+   * fixed, also on the boundary, which may change its shape there. A mesh on several processes is
+   * gathered on the first one. Off.
+   */
+  vtkSetMacro(FreeInvalid, bool);
+  vtkGetMacro(FreeInvalid, bool);
+  vtkBooleanMacro(FreeInvalid, bool);
+  ///@}
+
+  ///@{
+  /**
    * Give the iterations as time steps: time t is the mesh after iteration t (those of untangling
    * come first), so that ParaView's animation plays the optimization. Without a request for a time,
    * the output is the result. The time of the input is then its default one. Off.
@@ -632,11 +643,14 @@ private:
     tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
     tautline::TableRows& statistics);
   void Report();
+  /// What is wrong with the result, in sentences; the most important one last.
+  std::vector<std::string> ResultWarnings() const;
 
   std::vector<tautline::ObjectiveRow> Rows;
   int Objectives = 0;
   std::vector<double> Utopia;
   int Preset = BEST_SHAPE;
+  bool FreeInvalid = false;
   double Power = 8.0;
   int Combination = MEAN;
   double Beta = 0.0;

@@ -245,7 +245,13 @@ std::string describeRemaining(const std::vector<RemainingElement>& remaining, bo
   }
   text << remaining.size() << " " << (remaining.size() == 1 ? words.one : words.many)
        << (remaining.size() == 1 ? " remains" : " remain") << " below the target of " << targetAngle
-       << " degrees:";
+       << " degrees";
+  const auto byShape = std::count_if(remaining.begin(), remaining.end(),
+    [targetAngle](const RemainingElement& one) { return one.smallestAngle >= targetAngle; });
+  // The quality of an element is also that of its largest angle and, by objective, of its shape.
+  text << (byShape == 0 ? ""
+                        : ", " + std::to_string(byShape) + " of them by a large angle or shape")
+       << ":";
   std::array<Index, obstacles.size()> counts = {};
   for (const RemainingElement& element : remaining)
   {

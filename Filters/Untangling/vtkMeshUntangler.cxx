@@ -163,6 +163,13 @@ int vtkMeshUntangler::RequestData(
       tautline::TableRows history;
       this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, !this->FixBoundary,
         [&](const tautline::InputBlock& block) { this->Untangle(block, history); });
+      if (this->NotValid > 0)
+      {
+        const bool one = this->GetNumberOfBlocks() == 1;
+        this->Summary = tautline::WarningPrefix +
+          (one ? "" : std::to_string(this->NotValid) + " elements are not valid.\n") +
+          this->Summary;
+      }
       this->AddToSummary(this->GetBlockNotice());
       this->AddToSummary(this->GetWhyGathered());
       history.fill(vtkTable::GetData(outputVector, HistoryPort));
@@ -193,6 +200,16 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   if (this->FixBoundary)
   {
     mesh.fixBoundary();
+  }
+  if (this->FreeInvalid)
+  {
+    if (mesh.inPieces())
+    {
+      throw tautline::Error(
+        "Points of invalid elements that are freed need one process and its own "
+        "order: switch Reproducible Order or Free Invalid Elements off.");
+    }
+    mesh.freeInvalid();
   }
 
   tautline::UntangleResult result = tautline::untangle(mesh.inPieces() ? mesh.local() : mesh.mesh(),
@@ -225,7 +242,8 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
   this->NotValid += static_cast<vtkIdType>(remaining.size());
   this->AddToSummary((block.name.empty() ? "" : "In " + block.name + ": ") +
     verdict(result, remaining) +
-    tautline::surfaceErrorSentence(mesh.frame().unit() * result.surfaceError));
+    tautline::surfaceErrorSentence(
+      mesh.frame().unit() * result.surfaceError, block.input->GetLength()));
   this->AddToSummary(!remaining.empty() && !mesh.inPieces() &&
         mesh.mesh().dimension() == tautline::Dimension::Surface
       ? "Improve Mesh removes triangles without area."
@@ -275,7 +293,8 @@ tautline::GatheredRules vtkMeshUntangler::GetGatheredRules()
 //------------------------------------------------------------------------------
 bool vtkMeshUntangler::TakesPieces(vtkInformationVector** inputs)
 {
-  return this->TakePiece(vtkDataObject::GetData(inputs[MeshPort]), "");
+  return this->TakePiece(vtkDataObject::GetData(inputs[MeshPort]),
+    this->FreeInvalid ? "points of invalid elements that are freed need the whole mesh" : "");
 }
 
 //------------------------------------------------------------------------------
@@ -292,5 +311,6 @@ void vtkMeshUntangler::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Method: " << this->Method << "\n";
   os << indent << "Effort: " << this->Effort << "\n";
   os << indent << "FixBoundary: " << this->FixBoundary << "\n";
+  os << indent << "FreeInvalid: " << this->FreeInvalid << "\n";
   os << indent << "ReproducibleOrder: " << this->ReproducibleOrder << "\n";
 }

@@ -107,6 +107,17 @@ public:
 
   ///@{
   /**
+   * Free the points of the elements that are inverted or degenerate in the input, however they are
+   * fixed, also on the boundary, which may change its shape there. A mesh on several processes is
+   * gathered on the first one. Off.
+   */
+  vtkSetMacro(FreeInvalid, bool);
+  vtkGetMacro(FreeInvalid, bool);
+  vtkBooleanMacro(FreeInvalid, bool);
+  ///@}
+
+  ///@{
+  /**
    * Whether one process, too, works in the order that does not depend on how a mesh is spread over
    * processes, which several processes use unless the mesh is gathered: the points are then the
    * same on any number of them. Off.
@@ -149,6 +160,7 @@ private:
   int Method = AUTOMATIC;
   int Effort = NORMAL;
   bool FixBoundary = true;
+  bool FreeInvalid = false;
   std::string Reason;
   vtkIdType InvertedBefore = 0;
   vtkIdType InvertedAfter = 0;

@@ -226,7 +226,7 @@ vtkSmartPointer<vtkUnstructuredGrid> runOne(
   }
   const Messages messages(filter);
   filter->Update();
-  if (!messages.empty())
+  if (!messages.empty() && std::string(filter->GetSummary()).empty())
   {
     // Presets that depend on size would shrink a mesh whose boundary moves freely.
     const bool sized =
@@ -243,6 +243,7 @@ vtkSmartPointer<vtkUnstructuredGrid> runOne(
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedBefore(), before);
   TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), left);
   TAUTLINE_CHECK(left <= before);
+  TAUTLINE_CHECK_EQUAL(messages.has(wording("inverted-or-degenerate-before")), left > 0);
   checkReported(filter, output, after, of);
   const bool doubled = grid->GetPoints()->GetDataType() == VTK_FLOAT &&
     output->GetPoints()->GetDataType() == VTK_DOUBLE;

@@ -419,6 +419,53 @@ TAUTLINE_PART(testStops)
   TAUTLINE_CHECK_RELATIVE(objective(filter, 0), sumOfSquares(data), 1e-12);
 }
 
+/// Elements that are left invalid are a warning; valid and inverted elements are not compared.
+TAUTLINE_PART(testLeftInvalid)
+{
+  MeshData data = perturbed(CellType::Triangle, 6);
+  // Two corners; all points of the element at one of them are on the boundary.
+  data.setPoint(0, { 1.5, 1.5, 0 });
+  data.setPoint(6, { 4.5, 1.5, 0 });
+  const auto validity = validityOf(data);
+  const Index inverted = std::count(validity.begin(), validity.end(), Inverted);
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(toGrid(data)));
+  Messages messages(filter);
+  filter->Update();
+  const std::string left = std::to_string(filter->GetInvertedAfter());
+  TAUTLINE_CHECK(inverted > 0 && filter->GetInvertedAfter() > 0);
+  TAUTLINE_CHECK(messages.has(wording("inverted-or-degenerate-before") + std::to_string(inverted)));
+  TAUTLINE_CHECK_EQUAL(
+    std::string(filter->GetSummary()).rfind("Warning: " + left + " element", 0), 0);
+  // Mean and worst value of the valid elements, which are computed here.
+  const MeshData after = withPointsOf(data, meshOf(filter));
+  const auto of = [&](const MeshData& mesh)
+  {
+    std::vector<double> values(mesh.numberOfCells());
+    evaluateMetric(Mesh(mesh.view()), Metric::InverseMeanRatio, {}, values.data());
+    const auto valid = validityOf(mesh);
+    double sum = 0, worst = 0, number = 0;
+    for (std::size_t i = 0; i < values.size(); ++i)
+    {
+      const bool counts = valid[i] == Valid;
+      sum += counts ? values[i] : 0;
+      number += counts;
+      worst = counts ? std::max(worst, values[i]) : worst;
+    }
+    return std::array<double, 2>{ sum / number, worst };
+  };
+  const auto first = of(data), last = of(after);
+  std::ostringstream text;
+  text << " of the valid elements: mean " << first[0] << " to " << last[0] << ", worst " << first[1]
+       << " to " << last[1] << ".";
+  TAUTLINE_CHECK(contains(filter->GetSummary(), text.str()));
+
+  messages.clear();
+  TAUTLINE_SET(filter, FreeInvalidOn(), Update());
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+  TAUTLINE_CHECK(messages.empty());
+  TAUTLINE_CHECK(!contains(filter->GetSummary(), "Warning"));
+}
+
 /// The points of a sphere stay on it, and the error is reported.
 TAUTLINE_PART(testSurface)
 {
@@ -436,6 +483,10 @@ TAUTLINE_PART(testSurface)
   TAUTLINE_CHECK(off < 0.25 * longest * longest);
   TAUTLINE_CHECK(filter->GetSurfaceError() > 0);
   TAUTLINE_CHECK(filter->GetSurfaceError() < 0.25 * longest * longest);
+  const double share = filter->GetSurfaceError() / meshOf(filter)->GetLength();
+  TAUTLINE_CHECK(share > 0.001);
+  TAUTLINE_CHECK(contains(filter->GetSummary(), "Warning: The surface has moved by up to "));
+  TAUTLINE_CHECK(contains(filter->GetSummary(), " % of the diagonal of the bounding box."));
   TAUTLINE_CHECK(filter->GetStatistics()->GetValueByName(0, "MeanAfter").ToDouble() <
     filter->GetStatistics()->GetValueByName(0, "MeanBefore").ToDouble());
 }

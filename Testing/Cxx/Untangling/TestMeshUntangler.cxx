@@ -100,6 +100,27 @@ TAUTLINE_PART(testImpossible)
   TAUTLINE_CHECK(contains(filter->GetSummary(), "Element " + std::to_string(first) + " at ("));
   TAUTLINE_CHECK(contains(filter->GetSummary(), wording("all-its-points-are-fixed")));
   TAUTLINE_CHECK(messages.has(wording("because-of-fixed-points")));
+  TAUTLINE_CHECK_EQUAL(std::string(filter->GetSummary()).rfind("Warning: ", 0), 0);
+
+  // Free are then the points of these elements, and no others.
+  TAUTLINE_SET(filter, FreeInvalidOn(), Update());
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+  const MeshData repaired = withPointsOf(data, meshOf(filter));
+  Index moved = 0;
+  for (Index p = 0; p < data.numberOfPoints(); ++p)
+  {
+    bool ofInvalid = false;
+    for (Index i = 0; i < data.numberOfCells(); ++i)
+    {
+      const auto begin = data.connectivity.begin() + data.offsets[i];
+      ofInvalid |= validity[i] != Valid && std::count(begin, begin + 3, p) > 0;
+    }
+    const bool away = norm(repaired.point(p) - data.point(p)) > 0;
+    TAUTLINE_CHECK(ofInvalid || !away);
+    moved += away;
+  }
+  TAUTLINE_CHECK(moved > 0);
+  filter->FreeInvalidOff();
 
   // Freed but for the one point, the others cannot follow: or they can, and all is valid.
   TAUTLINE_SET(all, Fill(0), Modified());
