@@ -95,7 +95,6 @@ pqTautlineHistogram::pqTautlineHistogram(
   layout->addWidget(this->Bins);
 
   auto* model = pqApplicationCore::instance()->getServerManagerModel();
-  this->Source = model->findItem<pqPipelineSource*>(smproxy);
   QObject::connect(
     model, &pqServerManagerModel::dataUpdated, this, &pqTautlineHistogram::dataUpdated);
   QObject::connect(pqPVApplicationCore::instance()->selectionManager(),
@@ -107,6 +106,9 @@ pqTautlineHistogram::pqTautlineHistogram(
     this->Plot, &tautline::HistogramPlot::chosen, this, &pqTautlineHistogram::choose);
   QObject::connect(this->Clear, &QToolButton::clicked, this, &pqTautlineHistogram::clear);
   this->refresh();
+  // A filter that is being made has the state of one that was applied; fetching would execute it.
+  this->Source = model->findItem<pqPipelineSource*>(smproxy);
+  QTimer::singleShot(0, this, &pqTautlineHistogram::refresh);
 }
 
 //------------------------------------------------------------------------------

@@ -8,6 +8,8 @@
 #include "RunPlot.h"
 #include "StopWindow.h"
 
+#include "tautline/Quality/Metrics.h"
+
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqPipelineSource.h"
@@ -15,8 +17,11 @@
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
 
+#include "vtkAbstractArray.h"
 #include "vtkPVProxyDefinitionIterator.h"
 #include "vtkPVXMLElement.h"
+#include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 #include "vtkSMProxyDefinitionManager.h"
 #include "vtkSMSessionProxyManager.h"
@@ -33,6 +38,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include <algorithm>
 #include <cstring>
 
 #include <xcb/xcb.h>
@@ -44,6 +50,7 @@ constexpr const char* Iterative[][2] = { { "MeshOptimizer", "Optimize Mesh" },
   { "MeshUntangler", "Untangle Mesh" }, { "MeshImprover", "Improve Mesh" } };
 
 constexpr const char* StopTip = "End the run with the best mesh so far.";
+constexpr const char* Stopped = ": stopped";
 constexpr const char* IdleTip = "No filter of Tautline runs.";
 
 bool isIterative(const QString& filter)
@@ -74,6 +81,77 @@ vtkIdType columnOf(vtkTable* table, int axis)
     }
   }
   return -1;
+}
+
+/// Of several blocks, whether the worst value is the smallest one.
+bool isLargerBetter(const QString& column)
+{
+  const QString metric = QString(column).remove(QRegularExpression("( worst$|^Worst )"));
+  const tautline::MetricInfo* info = tautline::findMetric(metric.toStdString());
+  return info && info->direction == tautline::Direction::LargerIsBetter;
+}
+
+/**
+ * The values of a column by iteration. Of several blocks, whose rows are below each other, the
+ * worst value or, of counts and objectives, the sum; one that ended earlier keeps its last value.
+ */
+std::vector<double> valuesOf(vtkTable* table, vtkIdType column)
+{
+  vtkAbstractArray* names = table->GetColumnByName("Block");
+  std::vector<std::vector<double>> blocks;
+  for (vtkIdType row = 0; row < table->GetNumberOfRows(); ++row)
+  {
+    const bool same =
+      row > 0 && (!names || names->GetVariantValue(row) == names->GetVariantValue(row - 1));
+    if (!same)
+    {
+      blocks.emplace_back();
+    }
+    blocks.back().push_back(table->GetValue(row, column).ToDouble());
+  }
+  std::size_t iterations = 0;
+  for (const std::vector<double>& block : blocks)
+  {
+    iterations = std::max(iterations, block.size());
+  }
+  const QString name = table->GetColumnName(column);
+  const bool worst = name.contains("worst", Qt::CaseInsensitive);
+  const bool smallest = worst && isLargerBetter(name);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < iterations; ++i)
+  {
+    double value = blocks[0][std::min(i, blocks[0].size() - 1)];
+    for (std::size_t b = 1; b < blocks.size(); ++b)
+    {
+      const double other = blocks[b][std::min(i, blocks[b].size() - 1)];
+      value = smallest ? std::min(value, other) : worst ? std::max(value, other) : value + other;
+    }
+    values.push_back(value);
+  }
+  return values;
+}
+
+/// The value of a property of texts; empty without one.
+QString textOf(vtkSMProxy* proxy, const char* property)
+{
+  vtkSMProperty* found = proxy->GetProperty(property);
+  if (!found)
+  {
+    return {};
+  }
+  proxy->UpdatePropertyInformation(found);
+  return QString::fromUtf8(vtkSMPropertyHelper(found).GetAsString());
+}
+
+/// How the last run of a filter ended, by its own report.
+QString endOf(vtkSMProxy* filter)
+{
+  const QString summary = textOf(filter, "Summary"), reason = textOf(filter, "Reason");
+  return filter->GetProperty("Summary") && summary.isEmpty() ? ": failed, see Output Messages"
+    : reason.startsWith("Stopped")                           ? Stopped
+    : reason.contains("limit")                               ? ": ended at its limit"
+    : summary.startsWith("Warning: ")                        ? ": finished with a warning"
+                                                             : ": finished";
 }
 
 /// Shows what was drawn, though no event is processed.
@@ -320,7 +398,7 @@ void pqTautlineRunDock::end()
     return;
   }
   const bool stopped = tautline::isStopRequested();
-  this->EndedText = this->Running + (stopped ? ": stopped" : ": finished");
+  this->EndedText = this->Running + (stopped ? Stopped : ": ended");
   this->Filter->setText(this->EndedText);
   this->Ended = this->Running;
   this->Running.clear();
@@ -338,16 +416,7 @@ void pqTautlineRunDock::dataUpdated(pqPipelineSource* source)
   {
     return;
   }
-  const QString filter = source->getProxy()->GetXMLLabel();
-  if (isIterative(filter))
-  {
-    this->showHistoryLater(source);
-  }
-  else if (!this->drawn()) // a curve stays until there is another
-  {
-    this->Filter->setText(filter + ": finished");
-    this->Values->clear();
-  }
+  this->showHistoryLater(source);
 }
 
 //------------------------------------------------------------------------------
@@ -386,15 +455,31 @@ void pqTautlineRunDock::showHistoryLater(pqPipelineSource* source)
 //------------------------------------------------------------------------------
 void pqTautlineRunDock::showHistory(pqPipelineSource* source)
 {
+  const QString filter = source->getProxy()->GetXMLLabel();
+  const QString ended = filter + endOf(source->getProxy());
+  if (!isIterative(filter))
+  {
+    if (!this->drawn()) // a curve stays until there is another
+    {
+      this->Filter->setText(ended);
+      this->Values->clear();
+    }
+    return;
+  }
   const auto data = tautline::fetchOutput(source, "History");
   vtkTable* table = vtkTable::SafeDownCast(data);
-  const vtkIdType rows = table ? table->GetNumberOfRows() : 0;
-  if (rows == 0)
+  if (!table || table->GetNumberOfRows() == 0)
   {
+    if (filter == this->Ended || this->Ended.isEmpty())
+    {
+      this->Filter->setText(ended);
+      this->Values->clear();
+      this->Ended.clear();
+    }
     return;
   }
   History history;
-  QStringList texts = { QString("iteration %1").arg(rows - 1) };
+  QStringList texts;
   for (std::size_t curve = 0; curve < history.size(); ++curve)
   {
     const vtkIdType column = columnOf(table, static_cast<int>(curve));
@@ -406,9 +491,10 @@ void pqTautlineRunDock::showHistory(pqPipelineSource* source)
     QString name =
       QString(table->GetColumnName(column)).remove(QRegularExpression("^N ")).toLower();
     history[curve].first = name.contains("worst") ? "worst" : name;
-    for (vtkIdType row = 0; row < rows; ++row)
+    history[curve].second = valuesOf(table, column);
+    if (texts.isEmpty())
     {
-      history[curve].second.push_back(table->GetValue(row, column).ToDouble());
+      texts.append(QString("iteration %1").arg(history[curve].second.size() - 1));
     }
     constexpr int digits = 6;
     texts.append(
@@ -417,10 +503,9 @@ void pqTautlineRunDock::showHistory(pqPipelineSource* source)
 
   // ParaView reports updates without a run, too. Of a run that was shown live, the text stands,
   // unless that of a filter before it, executed in the same update, has replaced it.
-  const QString filter = source->getProxy()->GetXMLLabel();
   if (filter == this->Ended)
   {
-    this->Filter->setText(this->EndedText);
+    this->Filter->setText(this->EndedText.endsWith(Stopped) ? this->EndedText : ended);
     this->Ended.clear();
   }
   else if (history == this->Last)
@@ -429,7 +514,7 @@ void pqTautlineRunDock::showHistory(pqPipelineSource* source)
   }
   else
   {
-    this->Filter->setText(filter + ": finished");
+    this->Filter->setText(ended);
   }
   this->Last = history;
   this->Plot->clear();

@@ -166,7 +166,9 @@ void arrangeObjective(
   vtkSMPropertyHelper(view, "LeftAxisLogScale").Set(suitsLogarithms(objective) ? 1 : 0);
   setTitle(view, "LeftAxisTitle", objective.name.c_str());
   setTitle(view, "RightAxisTitle", title.c_str());
-  setTitle(view, "BottomAxisTitle", "Iteration");
+  const bool blocks = std::any_of(
+    columns.begin(), columns.end(), [](const Column& column) { return column.name == "Block"; });
+  setTitle(view, "BottomAxisTitle", blocks ? "Iterations, block after block" : "Iteration");
 }
 
 void arrangeHistory(vtkSMProxy* chart, vtkSMProxy* view, const std::vector<Column>& columns)

@@ -110,7 +110,11 @@ void pqTautlineNavigator::sourceChanged(pqPipelineSource* source)
     QObject::connect(
       source, &pqProxy::modifiedStateChanged, this, [this] { this->dataUpdated(this->Source); });
   }
-  this->refresh();
+  // A filter that is being made has the state of one that was applied; fetching would execute it.
+  this->Lists.clear();
+  this->Measure->clear();
+  this->listChanged();
+  QTimer::singleShot(0, this, &pqTautlineNavigator::refresh);
 }
 
 //------------------------------------------------------------------------------

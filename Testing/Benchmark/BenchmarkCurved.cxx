@@ -12,6 +12,7 @@
 #include "Elements/CurvedElements.h"
 #include "Elements/MfemMesh.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
