@@ -11,9 +11,12 @@
 #include "pqCoreUtilities.h"
 #include "pqFileDialog.h"
 #include "pqPipelineSource.h"
+#include "pqPropertiesPanel.h"
 #include "pqServerManagerModel.h"
+#include "pqUndoStack.h"
 
 #include "vtkSMProperty.h"
+#include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
 
 #include <QAbstractTextDocumentLayout>
@@ -26,6 +29,7 @@
 #include <QScrollBar>
 #include <QStringList>
 #include <QTextBrowser>
+#include <QTimer>
 #include <QToolButton>
 #include <QUrl>
 #include <QVBoxLayout>
@@ -37,6 +41,19 @@ namespace
 constexpr int FewestLines = 2;
 constexpr int MostLines = 12;
 constexpr const char* LinkScheme = "element";
+constexpr const char* WarningPrefix = "Warning: ";
+constexpr const char* WarningColor = "#b00020";
+/// Of filters that can free the points of invalid elements.
+constexpr const char* FreeInvalid = "FreeInvalid";
+
+/// Whether a filter reports invalid elements whose points it was not told to free.
+bool canFreeInvalid(vtkSMProxy* filter, const QString& text)
+{
+  static const QRegularExpression left(
+    "^Warning: \\d+ elements? (is|are) (inverted or degenerate|not valid)");
+  return filter->GetProperty(FreeInvalid) &&
+    vtkSMPropertyHelper(filter, FreeInvalid).GetAsInt() == 0 && left.match(text).hasMatch();
+}
 }
 
 //------------------------------------------------------------------------------
@@ -47,6 +64,7 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   , Copy(new QToolButton(this))
   , Save(new QToolButton(this))
   , Compare(new QToolButton(this))
+  , Retry(new QToolButton(this))
   , Note(new QLabel(this))
 {
   this->setShowLabel(false);
@@ -66,6 +84,12 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   this->Compare->setToolTip("Show the quality of the mesh before and after in two views beside "
                             "each other, with one legend and linked cameras; of Match Shape, "
                             "source and target.");
+  this->Retry->setObjectName("FreeAndRetry");
+  this->Retry->setText("Free Their Points and Retry");
+  this->Retry->setToolTip(
+    "Switch Free Invalid Elements on and apply the filter again. The boundary "
+    "may change its shape at these elements.");
+  this->Retry->hide();
   this->Note->setObjectName("Note");
   this->Note->setWordWrap(true);
   this->Note->hide();
@@ -78,6 +102,7 @@ pqTautlineResultPanel::pqTautlineResultPanel(
   auto* layout = new QVBoxLayout(this);
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(this->Browser);
+  layout->addWidget(this->Retry);
   layout->addWidget(this->Note);
   layout->addLayout(buttons);
 
@@ -85,6 +110,7 @@ pqTautlineResultPanel::pqTautlineResultPanel(
     this->Browser, &QTextBrowser::anchorClicked, this, &pqTautlineResultPanel::follow);
   QObject::connect(this->Copy, &QToolButton::clicked, this, &pqTautlineResultPanel::copy);
   QObject::connect(this->Compare, &QToolButton::clicked, this, &pqTautlineResultPanel::sideBySide);
+  QObject::connect(this->Retry, &QToolButton::clicked, this, &pqTautlineResultPanel::freeAndRetry);
   QObject::connect(this->Save, &QToolButton::clicked, this, &pqTautlineResultPanel::saveReport);
   QObject::connect(this->Browser->document()->documentLayout(),
     &QAbstractTextDocumentLayout::documentSizeChanged, this, &pqTautlineResultPanel::fitHeight);
@@ -110,6 +136,8 @@ QString pqTautlineResultPanel::linked(const QString& text)
     part = inBlock.hasMatch() ? inBlock.captured(1) : part;
     number = inBlock.hasMatch() ? inBlock.captured(2) : number;
     int end = 0;
+    const int begin = html.size();
+    const bool warning = line.startsWith(WarningPrefix);
     auto matches = element.globalMatch(line);
     while (matches.hasNext())
     {
@@ -129,7 +157,13 @@ QString pqTautlineResultPanel::linked(const QString& text)
                   partition.isEmpty() ? "0" : partition, match.captured(0).toHtmlEscaped());
       end = match.capturedEnd();
     }
-    html += line.mid(end).toHtmlEscaped() + "<br>";
+    html += line.mid(end).toHtmlEscaped();
+    if (warning)
+    {
+      html =
+        html.left(begin) + "<b style=\"color:" + WarningColor + "\">" + html.mid(begin) + "</b>";
+    }
+    html += "<br>";
   }
   html.chop(static_cast<int>(sizeof("<br>")) - 1);
   return html;
@@ -146,6 +180,7 @@ void pqTautlineResultPanel::setText(const QString& text)
       : pqTautlineResultPanel::linked(text));
   this->Copy->setEnabled(!text.isEmpty());
   this->Save->setEnabled(!text.isEmpty());
+  this->Retry->setVisible(canFreeInvalid(this->proxy(), text));
   pqPipelineSource* filter = this->source();
   this->Compare->setVisible(!text.isEmpty() && filter && tautline::changesMesh(filter));
   this->fitHeight();
@@ -236,6 +271,27 @@ void pqTautlineResultPanel::follow(const QUrl& link)
 void pqTautlineResultPanel::copy()
 {
   QApplication::clipboard()->setText(this->Text);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineResultPanel::freeAndRetry()
+{
+  for (QWidget* parent = this->parentWidget(); parent; parent = parent->parentWidget())
+  {
+    if (auto* panel = qobject_cast<pqPropertiesPanel*>(parent))
+    {
+      const pqScopedUndoSet oneStep("Free Points");
+      vtkSMPropertyHelper(this->proxy(), FreeInvalid).Set(1);
+      this->proxy()->UpdateVTKObjects();
+      if (pqPipelineSource* filter = this->source())
+      {
+        filter->setModifiedState(pqProxy::MODIFIED);
+      }
+      // Not within the click: the panel of the filter is refreshed.
+      QTimer::singleShot(0, panel, &pqPropertiesPanel::apply);
+      return;
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -53,6 +53,7 @@ private Q_SLOTS:
   void copy();
   void saveReport();
   void sideBySide();
+  void freeAndRetry();
   void fitWidth();
 
 private:
@@ -68,6 +69,7 @@ private:
   QToolButton* Copy;
   QToolButton* Save;
   QToolButton* Compare; ///< for filters that change a mesh
+  QToolButton* Retry;   ///< for filters that left elements invalid
   QLabel* Note;         ///< what was selected or saved, or what is wrong
 };
 

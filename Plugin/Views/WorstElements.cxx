@@ -39,6 +39,7 @@ namespace
 constexpr std::size_t Listed = 10;
 constexpr double Largest = std::numeric_limits<double>::max();
 constexpr const char* ObstacleArray = "Obstacle";
+constexpr const char* ValidityArray = "Validity";
 
 /// Why an element is not valid, by the values of the array Obstacle of vtkMeshUntangler.
 constexpr std::array<const char*, 5> obstacles = { "valid",
@@ -181,6 +182,13 @@ vtkPVArrayInformation* cellArray(pqOutputPort* port, const char* name)
   return port->getDataInformation()->GetArrayInformation(name, vtkDataObject::CELL);
 }
 
+/// Whether the array of an output may have inverted or degenerate elements.
+bool hasInvalid(pqOutputPort* port)
+{
+  vtkPVArrayInformation* validity = cellArray(port, ValidityArray);
+  return validity && validity->GetComponentRange(0)[0] <= Degenerate;
+}
+
 /// The elements with an obstacle.
 WorstElementList obstaclesOf(pqOutputPort* port)
 {
@@ -191,6 +199,18 @@ WorstElementList obstaclesOf(pqOutputPort* port)
     const auto reason =
       static_cast<std::size_t>(std::clamp<double>(entry.value, 0, obstacles.size() - 1));
     entry.text = obstacles[reason];
+  }
+  return list;
+}
+
+/// The elements that are inverted or degenerate, of a mesh whose points have moved.
+WorstElementList invalidOf(pqOutputPort* port)
+{
+  WorstElementList list = { "Invalid elements", ValidityArray,
+    HiddenSelection(port, { ValidityArray, Inverted, Degenerate }).cells() };
+  for (WorstElementEntry& entry : list.elements)
+  {
+    entry.text = entry.value == Inverted ? "inverted" : "degenerate";
   }
   return list;
 }
@@ -239,6 +259,10 @@ std::vector<WorstElementList> worstElementsOf(pqPipelineSource* source)
   if (cellArray(mesh, ObstacleArray))
   {
     lists.push_back(obstaclesOf(mesh));
+  }
+  else if (hasInvalid(mesh))
+  {
+    lists.push_back(invalidOf(mesh));
   }
   for (const auto& [array, label] :
     { std::pair("Share", "Share of the largest eigenvalue"), std::pair("Excess", "Excess") })
