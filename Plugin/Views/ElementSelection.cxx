@@ -120,7 +120,8 @@ bool append(pqOutputPort* port, const ElementName& name, std::vector<vtkIdType>&
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
-std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& names)
+vtkSmartPointer<vtkSMSourceProxy> selectionOf(
+  pqOutputPort* port, const std::vector<ElementName>& names, std::string& problem)
 {
   vtkPVDataInformation* info = port->getDataInformation();
   const bool composite = info->IsCompositeDataSet();
@@ -129,8 +130,9 @@ std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& n
       [](const ElementName& name) { return name.block < 0 && name.process < 0; });
   if (composite && !global && port->getServer()->getNumberOfPartitions() > 1)
   {
-    return "A cell of blocks on several processes has no unique number: apply Generate Global Ids "
-           "first.";
+    problem = "A cell of blocks on several processes has no unique number: apply Generate Global "
+              "Ids first.";
+    return nullptr;
   }
   const std::vector<ElementLeaf> leaves =
     composite && !global ? elementLeaves(port) : std::vector<ElementLeaf>();
@@ -144,8 +146,9 @@ std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& n
     }
     else if (composite ? !appendComposite(leaves, name, ids) : !append(port, name, ids))
     {
-      return "The output has no cell " + std::to_string(name.cell) +
+      problem = "The output has no cell " + std::to_string(name.cell) +
         ": apply the filter again, the result shown is of another mesh.";
+      return nullptr;
     }
   }
   Proxy source = newSource(port,
@@ -153,8 +156,18 @@ std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& n
       : composite ? "CompositeDataIDSelectionSource"
                   : "IDSelectionSource");
   vtkSMPropertyHelper(source, "IDs").Set(ids.data(), static_cast<unsigned int>(ids.size()));
-  select(port, { source }, "s0");
-  return {};
+  return source;
+}
+
+//------------------------------------------------------------------------------
+std::string selectElements(pqOutputPort* port, const std::vector<ElementName>& names)
+{
+  std::string problem;
+  if (const Proxy source = selectionOf(port, names, problem))
+  {
+    select(port, { source }, "s0");
+  }
+  return problem;
 }
 
 //------------------------------------------------------------------------------
@@ -238,6 +251,23 @@ vtkTypeInt64 countSelected(pqOutputPort* port)
 }
 
 //------------------------------------------------------------------------------
+void zoomTo(pqRenderView* view, const double bounds[6], double margin)
+{
+  double size = 0, around[6];
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    size = std::max(size, bounds[2 * axis + 1] - bounds[2 * axis]);
+  }
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    around[2 * axis] = bounds[2 * axis] - margin * size;
+    around[2 * axis + 1] = bounds[2 * axis + 1] + margin * size;
+  }
+  view->getRenderViewProxy()->ResetCamera(around);
+  view->render();
+}
+
+//------------------------------------------------------------------------------
 void zoomToSelected(pqOutputPort* port)
 {
   auto* view = qobject_cast<pqRenderView*>(pqActiveObjects::instance().activeView());
@@ -249,18 +279,7 @@ void zoomToSelected(pqOutputPort* port)
   port->getSelectedDataInformation()->GetBounds(bounds);
   // The elements around show where it is.
   constexpr double margin = 1.0;
-  double size = 0;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    size = std::max(size, bounds[2 * axis + 1] - bounds[2 * axis]);
-  }
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    bounds[2 * axis] -= margin * size;
-    bounds[2 * axis + 1] += margin * size;
-  }
-  view->getRenderViewProxy()->ResetCamera(bounds);
-  view->render();
+  zoomTo(view, bounds, margin);
 }
 
 } // namespace tautline

@@ -10,12 +10,15 @@
 #ifndef tautline_ElementSelection_h
 #define tautline_ElementSelection_h
 
+#include "vtkSmartPointer.h"
 #include "vtkType.h"
 
 #include <string>
 #include <vector>
 
 class pqOutputPort;
+class pqRenderView;
+class vtkSMSourceProxy;
 
 namespace tautline
 {
@@ -51,6 +54,13 @@ struct CellInterval
 using CellCondition = std::vector<std::vector<CellInterval>>;
 
 /**
+ * @brief A source of a selection of some cells, which is not selected yet.
+ * @param problem what is wrong, with the remedy, if the result is null
+ */
+vtkSmartPointer<vtkSMSourceProxy> selectionOf(
+  pqOutputPort* port, const std::vector<ElementName>& names, std::string& problem);
+
+/**
  * @brief Selects some cells, and nothing else.
  *
  * If the cells have global ids and a name gives neither block nor process, it is a global id.
@@ -71,6 +81,9 @@ std::vector<ElementLeaf> elementLeaves(pqOutputPort* port);
 
 /// The number of cells selected on an output.
 vtkTypeInt64 countSelected(pqOutputPort* port);
+
+/// Moves the camera of a view to bounds, with a margin around them that is a multiple of their size.
+void zoomTo(pqRenderView* view, const double bounds[6], double margin);
 
 /// Moves the camera of the active render view to what is selected, with some of what is around.
 void zoomToSelected(pqOutputPort* port);

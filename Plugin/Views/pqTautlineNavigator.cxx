@@ -5,41 +5,31 @@
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
-#include "pqDataRepresentation.h"
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
 #include "pqServerManagerModel.h"
 #include "pqUndoStack.h"
-#include "pqView.h"
-
-#include "vtkSMPropertyHelper.h"
-#include "vtkSMProxy.h"
 
 #include <QAction>
 #include <QComboBox>
 #include <QLabel>
 #include <QMainWindow>
 #include <QSignalBlocker>
+#include <QSpinBox>
 #include <QTimer>
 
 #include <algorithm>
-#include <vector>
 
 namespace
 {
-/// What Isolate sets: the mesh is hardly visible, the element is filled.
-constexpr double FadedOpacity = 0.1;
-constexpr int FilledSelection = 2; // VTK_SURFACE
-constexpr const char* Opacity = "Opacity";
-constexpr const char* SelectionStyle = "SelectionRepresentation";
-constexpr const char* Labels = "SelectionCellLabelVisibility";
-constexpr const char* LabelArray = "SelectionCellFieldDataArrayName";
+constexpr int DefaultLayers = 1, MostLayers = 9;
 }
 
 //------------------------------------------------------------------------------
 pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   : Superclass("Tautline Worst Elements", parentObject)
   , Measure(new QComboBox(this))
+  , Layers(new QSpinBox(this))
   , Element(new QLabel(this))
 {
   this->setObjectName("TautlineNavigator");
@@ -47,6 +37,11 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   this->Measure->setToolTip("What the worst elements are the worst by.");
   this->Measure->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   this->Element->setObjectName("Element");
+  this->Layers->setObjectName("Layers");
+  this->Layers->setToolTip("Layers of neighbors that Isolate shows around the element.");
+  this->Layers->setRange(0, MostLayers);
+  this->Layers->setValue(DefaultLayers);
+  this->Layers->setSuffix(" layers");
   const auto add = [this](const char* name, const char* icon, const char* tip)
   {
     QAction* action = this->addAction(QIcon(QString(":/Tautline/Icons/") + icon + ".svg"), name);
@@ -60,6 +55,7 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   this->Next = add("Next", "next", "Select the next of the worst elements.");
   this->Zoom = add("Zoom", "zoom", "Move the camera to the element selected.");
   this->Isolate = add("Isolate", "isolate", "Fade the mesh, so that an element inside is visible.");
+  this->addWidget(this->Layers);
   this->addWidget(this->Element);
   this->Zoom->setCheckable(true);
   this->Zoom->setChecked(true);
@@ -69,6 +65,14 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   QObject::connect(this->Next, &QAction::triggered, this, &pqTautlineNavigator::next);
   QObject::connect(this->Zoom, &QAction::toggled, this, &pqTautlineNavigator::zoom);
   QObject::connect(this->Isolate, &QAction::toggled, this, &pqTautlineNavigator::isolate);
+  QObject::connect(this->Layers, QOverload<int>::of(&QSpinBox::valueChanged), this,
+    [this]
+    {
+      if (this->Isolated.active())
+      {
+        this->go(std::max(0, this->Current));
+      }
+    });
   QObject::connect(this->Measure, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
     &pqTautlineNavigator::listChanged);
   QObject::connect(&pqActiveObjects::instance(), &pqActiveObjects::sourceChanged, this,
@@ -160,6 +164,10 @@ void pqTautlineNavigator::listChanged()
   }
   this->Measure->setEnabled(this->Lists.size() > 1);
   this->describe();
+  if (this->Isolated.active())
+  {
+    some ? this->isolate(true) : this->Isolate->setChecked(false);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -182,9 +190,10 @@ void pqTautlineNavigator::go(int element)
   pqOutputPort* mesh = this->Source->getOutputPort(0);
   const std::string problem =
     tautline::selectElements(mesh, { list->elements[this->Current].name });
-  if (problem.empty() && this->Zoom->isChecked())
+  if (problem.empty())
   {
-    tautline::zoomToSelected(mesh);
+    this->Isolated.show({ list->elements[this->Current].name }, this->Layers->value());
+    this->zoom(this->Zoom->isChecked());
   }
   this->describe(problem);
 }
@@ -223,7 +232,11 @@ void pqTautlineNavigator::describe(const std::string& problem)
 //------------------------------------------------------------------------------
 void pqTautlineNavigator::zoom(bool on)
 {
-  if (on && this->Source && this->Current >= 0)
+  if (on && this->Isolated.active())
+  {
+    this->Isolated.zoom();
+  }
+  else if (on && this->Source && this->Current >= 0)
   {
     tautline::zoomToSelected(this->Source->getOutputPort(0));
   }
@@ -232,75 +245,18 @@ void pqTautlineNavigator::zoom(bool on)
 //------------------------------------------------------------------------------
 void pqTautlineNavigator::isolate(bool on)
 {
-  this->restore();
-  pqView* view = pqActiveObjects::instance().activeView();
-  if (!on || !this->Source || !view)
+  this->Isolated.end();
+  if (!on || !this->Source)
   {
     return;
   }
-  QPointer<pqDataRepresentation> shown = this->Source->getOutputPort(0)->getRepresentation(view);
-  vtkSMProxy* proxy = shown ? shown->getProxy() : nullptr;
-  if (!proxy || !proxy->GetProperty(Opacity) || !proxy->GetProperty(SelectionStyle))
+  const tautline::WorstElementList* list = this->list();
+  const std::string problem =
+    this->Isolated.begin(this->Source->getOutputPort(0), list ? list->array : std::string());
+  if (!problem.empty())
   {
-    this->describe("Isolate needs a view in which the mesh is shown.");
+    this->describe(problem);
     return;
   }
-  if (this->Current < 0)
-  {
-    this->go(0);
-  }
-  const double opacity = vtkSMPropertyHelper(proxy, Opacity).GetAsDouble();
-  const int style = vtkSMPropertyHelper(proxy, SelectionStyle).GetAsInt();
-  const int labels = vtkSMPropertyHelper(proxy, Labels).GetAsInt();
-  const auto set = [shown](double newOpacity, int newStyle, int newLabels)
-  {
-    if (shown)
-    {
-      vtkSMPropertyHelper(shown->getProxy(), Opacity).Set(newOpacity);
-      vtkSMPropertyHelper(shown->getProxy(), SelectionStyle).Set(newStyle);
-      vtkSMPropertyHelper(shown->getProxy(), Labels).Set(newLabels);
-      shown->getProxy()->UpdateVTKObjects();
-      shown->renderViewEventually();
-    }
-  };
-  // The elements that Element Quality draws besides would hide the one isolated.
-  std::vector<QPointer<pqDataRepresentation>> others;
-  if (pqOutputPort* bad = this->Source->getOutputPort(tautline::BadElementsPort))
-  {
-    for (pqDataRepresentation* other : bad->getRepresentations(view))
-    {
-      if (other->isVisible())
-      {
-        other->setVisible(false);
-        others.emplace_back(other);
-      }
-    }
-  }
-  this->Restore = [=]
-  {
-    set(opacity, style, labels);
-    for (const QPointer<pqDataRepresentation>& other : others)
-    {
-      if (other)
-      {
-        other->setVisible(true);
-        other->renderViewEventually();
-      }
-    }
-  };
-  if (const tautline::WorstElementList* list = this->list())
-  {
-    vtkSMPropertyHelper(proxy, LabelArray).Set(list->array.c_str());
-  }
-  set(FadedOpacity, FilledSelection, 1);
-}
-
-//------------------------------------------------------------------------------
-void pqTautlineNavigator::restore()
-{
-  if (this->Restore)
-  {
-    this->Restore();
-    this->Restore = nullptr;
-  }
+  this->go(std::max(0, this->Current));
 }

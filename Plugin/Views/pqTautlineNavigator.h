@@ -6,24 +6,23 @@
  * It shows the worst elements of the active filter of the pipeline: of Element Quality, by a metric
  * to choose; of Untangle Mesh, those that are not valid; of Condition Estimator, those that
  * contribute most. Previous and next select an element and, if Zoom is on, move the camera to it.
- * Isolate fades the mesh and fills the element, so that it is visible inside a solid; its value
- * stands beside it. "3 of 10: cell 433, imr -2.1, inverted" is the element selected.
+ * Isolate shows the mesh faded with its edges, and the element with layers of its neighbors, so that
+ * it is visible inside a solid; its value stands beside it. "3 of 10: cell 433, imr -2.1, inverted" is the element selected.
  */
 
 #ifndef pqTautlineNavigator_h
 #define pqTautlineNavigator_h
 
+#include "Isolation.h"
 #include "WorstElements.h"
 
 #include <QPointer>
 #include <QToolBar>
 
-#include <functional>
-
 class QAction;
 class QComboBox;
 class QLabel;
-class pqDataRepresentation;
+class QSpinBox;
 class pqPipelineSource;
 
 class pqTautlineNavigator : public QToolBar
@@ -50,19 +49,18 @@ private:
   /// Selects an element; numbers count around.
   void go(int element);
   void describe(const std::string& problem = {});
-  void restore();
 
   QPointer<pqPipelineSource> Source;
   std::vector<tautline::WorstElementList> Lists;
   int Current = -1; ///< element of the list, -1: none
-  /// Undoes what Isolate changed.
-  std::function<void()> Restore;
+  tautline::Isolation Isolated;
 
   QComboBox* Measure;
   QAction* Previous;
   QAction* Next;
   QAction* Zoom;
   QAction* Isolate;
+  QSpinBox* Layers;
   QLabel* Element;
 };
 

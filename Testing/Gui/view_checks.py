@@ -64,3 +64,32 @@ def own_display_kept():
     shown = simple.GetDisplayProperties(find("MeshDomain"), render_view())
     assert list(shown.LookupTable.IndexedColors)[:6] == COLORS, list(shown.LookupTable.IndexedColors)
     assert chart_in("XYBarChartView")[0].LeftAxisTitle == TITLE, chart_in("XYBarChartView")[0].LeftAxisTitle
+
+
+@check
+def hide_mesh():
+    simple.Hide(find("ElementQuality"), render_view())
+
+
+def added_cells():
+    """The numbers of cells of what is drawn besides the pipeline."""
+    added = render_view().SMProxy.GetProperty("HiddenRepresentations")
+    inputs = [added.GetProxy(i).GetProperty("Input").GetProxy(0) for i in range(added.GetNumberOfProxies())]
+    return [one.GetDataInformation(0).GetNumberOfCells() for one in inputs]
+
+
+@check
+def isolated(*cells):
+    """The mesh is faded with its edges; these numbers of cells are drawn besides: the element, then its neighbors."""
+    shown = simple.GetDisplayProperties(find("ElementQuality"), render_view())
+    state = shown.Visibility, shown.Representation, shown.Opacity < 1
+    assert state == (1, "Surface With Edges", True), state
+    assert added_cells() == list(cells), added_cells()
+
+
+@check
+def mesh_hidden():
+    """As before Isolate; and nothing else is drawn."""
+    shown = simple.GetDisplayProperties(find("ElementQuality"), render_view())
+    state = shown.Visibility, shown.Representation, shown.Opacity, added_cells()
+    assert state == (0, "Surface", 1, []), state
