@@ -2,31 +2,26 @@
 #include "WorstElements.h"
 
 #include "FetchOutput.h"
+#include "HiddenSelection.h"
 
 #include "tautline/Quality/Metrics.h"
 
 #include "pqOutputPort.h"
 #include "pqPipelineSource.h"
-#include "pqServer.h"
-#include "pqTimeKeeper.h"
 
-#include "vtkCellData.h"
-#include "vtkCompositeDataIterator.h"
-#include "vtkCompositeDataSet.h"
+#include "vtkAbstractArray.h"
 #include "vtkDataArray.h"
-#include "vtkDataSet.h"
 #include "vtkPVArrayInformation.h"
 #include "vtkPVDataInformation.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
-#include "vtkSMPropertyHelper.h"
-#include "vtkSMSessionProxyManager.h"
-#include "vtkSMSourceProxy.h"
-#include "vtkSelectionNode.h"
-#include "vtkSmartPointer.h"
+#include "vtkSMProxy.h"
+#include "vtkTable.h"
+#include "vtkVariant.h"
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <limits>
 #include <sstream>
 
@@ -37,9 +32,10 @@ namespace
 
 /// How many elements are listed of an array whose values all elements have.
 constexpr std::size_t Listed = 10;
+/// Longer lists are no help.
+constexpr vtkIdType MostFetched = 10000;
 constexpr double Largest = std::numeric_limits<double>::max();
 constexpr const char* ObstacleArray = "Obstacle";
-constexpr const char* ValidityArray = "Validity";
 
 /// Why an element is not valid, by the values of the array Obstacle of vtkMeshUntangler.
 constexpr std::array<const char*, 5> obstacles = { "valid",
@@ -77,8 +73,8 @@ std::vector<WorstElementList> listsOf(vtkPolyData* points)
       const auto info = std::find_if(known.begin(), known.end(),
         [number](const MetricInfo& one) { return static_cast<int>(one.metric) == number; });
       lists.push_back(info == known.end() // of a server of another version
-          ? WorstElementList{ "Metric " + std::to_string(number), "", {} }
-          : WorstElementList{ info->label, info->name, {} });
+          ? WorstElementList{ "Metric " + std::to_string(number), "", {}, Ranking::Complete }
+          : WorstElementList{ info->label, info->name, {}, Ranking::Complete });
       last = number;
     }
     const double v = value->GetComponent(i, 0), state = validity->GetComponent(i, 0);
@@ -91,109 +87,37 @@ std::vector<WorstElementList> listsOf(vtkPolyData* points)
   return lists;
 }
 
-/// The cells of a selection of an interval of an array; nothing is shown.
-class HiddenSelection
-{
-public:
-  HiddenSelection(pqOutputPort* port, const CellInterval& interval)
-    : Port(port)
-    , Array(interval.array)
-  {
-    auto* manager = port->getSourceProxy()->GetSessionProxyManager();
-    this->Selection.TakeReference(
-      vtkSMSourceProxy::SafeDownCast(manager->NewProxy("sources", "ThresholdSelectionSource")));
-    const double ends[2] = { interval.low, interval.high };
-    vtkSMPropertyHelper(this->Selection, "FieldType").Set(vtkSelectionNode::CELL);
-    vtkSMPropertyHelper(this->Selection, "Thresholds").Set(ends, 2);
-    vtkSMPropertyHelper(this->Selection, "ArrayName").Set(interval.array.c_str());
-    this->Selection->UpdateVTKObjects();
-    this->Extract.TakeReference(
-      vtkSMSourceProxy::SafeDownCast(manager->NewProxy("filters", "ExtractSelection")));
-    vtkSMPropertyHelper(this->Extract, "Input")
-      .Set(port->getSourceProxy(), static_cast<unsigned int>(port->getPortNumber()));
-    vtkSMPropertyHelper(this->Extract, "Selection").Set(this->Selection.GetPointer());
-    this->Extract->UpdateVTKObjects();
-    this->Extract->UpdatePipeline(this->time());
-  }
-
-  vtkTypeInt64 count() const { return this->Extract->GetDataInformation(0)->GetNumberOfCells(); }
-
-  /// Names and values of the cells; of composite data on several processes nothing.
-  std::vector<WorstElementEntry> cells() const
-  {
-    std::vector<WorstElementEntry> entries;
-    const int processes = this->Port->getServer()->getNumberOfPartitions();
-    for (int process = 0; process < processes; ++process)
-    {
-      const auto data = fetchPart(this->Extract, 0, process, this->time());
-      const int named = processes > 1 ? process : -1;
-      if (auto* composite = vtkCompositeDataSet::SafeDownCast(data); composite && processes == 1)
-      {
-        this->addBlocks(composite, entries);
-      }
-      else if (auto* cells = vtkDataSet::SafeDownCast(data))
-      {
-        this->add(cells, { 0, -1, named, 0 }, entries);
-      }
-    }
-    return entries;
-  }
-
-private:
-  double time() const { return this->Port->getServer()->getTimeKeeper()->getTime(); }
-
-  void add(vtkDataSet* cells, ElementName name, std::vector<WorstElementEntry>& entries) const
-  {
-    vtkDataArray* ids = cells->GetCellData()->GetArray("vtkOriginalCellIds");
-    vtkDataArray* values = cells->GetCellData()->GetArray(this->Array.c_str());
-    for (vtkIdType i = 0; ids && values && i < cells->GetNumberOfCells(); ++i)
-    {
-      const double value = values->GetComponent(i, 0);
-      name.cell = static_cast<vtkIdType>(ids->GetComponent(i, 0));
-      entries.push_back({ name, value, textOf(this->Array, value) });
-    }
-  }
-
-  /// The blocks are numbered as those of the output, of which the extract may leave some empty.
-  void addBlocks(vtkCompositeDataSet* extract, std::vector<WorstElementEntry>& entries) const
-  {
-    const std::vector<ElementLeaf> leaves = elementLeaves(this->Port);
-    vtkSmartPointer<vtkCompositeDataIterator> iterator;
-    iterator.TakeReference(extract->NewIterator());
-    for (iterator->InitTraversal(); !iterator->IsDoneWithTraversal(); iterator->GoToNextItem())
-    {
-      auto* cells = vtkDataSet::SafeDownCast(iterator->GetCurrentDataObject());
-      const auto leaf = std::find_if(leaves.begin(), leaves.end(),
-        [&](const ElementLeaf& one) { return one.flatIndex == iterator->GetCurrentFlatIndex(); });
-      if (cells && leaf != leaves.end())
-      {
-        this->add(cells, { 0, leaf->block, -1, leaf->partition }, entries);
-      }
-    }
-  }
-
-  pqOutputPort* Port;
-  std::string Array;
-  vtkSmartPointer<vtkSMSourceProxy> Selection, Extract;
-};
-
 vtkPVArrayInformation* cellArray(pqOutputPort* port, const char* name)
 {
   return port->getDataInformation()->GetArrayInformation(name, vtkDataObject::CELL);
 }
 
-/// Whether the array of an output may have inverted or degenerate elements.
-bool hasInvalid(pqOutputPort* port)
+/// The place of an array among those of some cells; they have it.
+std::size_t placeOf(const ElementValues& cells, const std::string& array)
 {
-  vtkPVArrayInformation* validity = cellArray(port, ValidityArray);
-  return validity && validity->GetComponentRange(0)[0] <= Degenerate;
+  return static_cast<std::size_t>(
+    std::find(cells.arrays.begin(), cells.arrays.end(), array) - cells.arrays.begin());
+}
+
+/// The elements of which an array has values in an interval.
+std::vector<WorstElementEntry> entriesIn(pqOutputPort* port, const CellInterval& interval)
+{
+  std::vector<WorstElementEntry> entries;
+  const ElementValues cells = HiddenSelection(port, interval).cells();
+  const std::size_t place = placeOf(cells, interval.array);
+  for (const ElementValues::Row& row : cells.rows)
+  {
+    const double value = row.values[place];
+    entries.push_back({ row.name, value, textOf(interval.array, value) });
+  }
+  return entries;
 }
 
 /// The elements with an obstacle.
 WorstElementList obstaclesOf(pqOutputPort* port)
 {
   WorstElementList list = { "Obstacle to untangling", ObstacleArray,
-    HiddenSelection(port, { ObstacleArray, 1, Largest }).cells() };
+    entriesIn(port, { ObstacleArray, 1, Largest }), Ranking::Complete };
   for (WorstElementEntry& entry : list.elements)
   {
     const auto reason =
@@ -203,41 +127,108 @@ WorstElementList obstaclesOf(pqOutputPort* port)
   return list;
 }
 
-/// The elements that are inverted or degenerate, of a mesh whose points have moved.
-WorstElementList invalidOf(pqOutputPort* port)
+/// The inverted and degenerate elements.
+void addInvalid(pqOutputPort* port, WorstElementList& list)
 {
-  WorstElementList list = { "Invalid elements", ValidityArray,
-    HiddenSelection(port, { ValidityArray, Inverted, Degenerate }).cells() };
+  const CellInterval invalid = { list.array, Inverted, Degenerate };
+  if (HiddenSelection(port, invalid).count() > MostFetched)
+  {
+    list.label += " (too many for a list: color by Validity)";
+    return;
+  }
+  list.elements = entriesIn(port, invalid);
   for (WorstElementEntry& entry : list.elements)
   {
     entry.text = entry.value == Inverted ? "inverted" : "degenerate";
   }
-  return list;
 }
 
-/// The elements with the largest values of an array.
-WorstElementList largestOf(pqOutputPort* port, const char* label, const char* array)
+/// The elements with the largest or smallest values of an array.
+void addExtreme(pqOutputPort* port, WorstElementList& list)
 {
-  const double* range = cellArray(port, array)->GetComponentRange(0);
+  const bool largest = list.ranking == Ranking::Largest;
+  const double* range = cellArray(port, list.array.c_str())->GetComponentRange(0);
+  const auto beyond = [&](double value)
+  {
+    return largest ? CellInterval{ list.array, value, Largest }
+                   : CellInterval{ list.array, -Largest, value };
+  };
   // Bisection for a threshold that few, but enough, elements exceed.
-  constexpr int steps = 30, mostFetched = 200;
-  double enough = range[0], tooFew = range[1];
+  constexpr int steps = 30;
+  constexpr vtkTypeInt64 enoughFetched = 200;
+  double enough = range[largest ? 0 : 1], tooFew = range[largest ? 1 : 0];
   for (int step = 0; step < steps; ++step)
   {
     const double middle = 0.5 * enough + 0.5 * tooFew;
-    const vtkTypeInt64 count = HiddenSelection(port, { array, middle, Largest }).count();
+    const vtkTypeInt64 count = HiddenSelection(port, beyond(middle)).count();
     (count >= static_cast<vtkTypeInt64>(Listed) ? enough : tooFew) = middle;
-    if (count >= static_cast<vtkTypeInt64>(Listed) && count <= mostFetched)
+    if (count >= static_cast<vtkTypeInt64>(Listed) && count <= enoughFetched)
     {
       break;
     }
   }
-  WorstElementList list = { label, array,
-    HiddenSelection(port, { array, enough, Largest }).cells() };
+  list.elements = entriesIn(port, beyond(enough));
   std::stable_sort(list.elements.begin(), list.elements.end(),
-    [](const WorstElementEntry& a, const WorstElementEntry& b) { return a.value > b.value; });
+    [largest](const WorstElementEntry& a, const WorstElementEntry& b)
+    { return largest ? a.value > b.value : a.value < b.value; });
   list.elements.resize(std::min(Listed, list.elements.size()));
+}
+
+/// "partition 2 of block 3" of a table, as the parts of a name.
+ElementName inBlock(vtkIdType cell, const std::string& text)
+{
+  ElementName name = { cell, -1, -1, 0 };
+  int partition = 0, block = 0;
+  if (std::sscanf(text.c_str(), "partition %d of block %d", &partition, &block) >= 1)
+  {
+    name.partition = partition;
+    name.block = block;
+  }
+  else if (std::sscanf(text.c_str(), "block %d", &block) == 1)
+  {
+    name.block = block;
+  }
+  return name;
+}
+
+/// The elements that Improve Mesh left below its target.
+WorstElementList remainingOf(vtkTable* table)
+{
+  WorstElementList list = { "Below the target", "min_angle", {}, Ranking::Complete };
+  vtkAbstractArray *cell = table->GetColumnByName("Cell"), *block = table->GetColumnByName("Block"),
+                   *angle = table->GetColumnByName("Smallest angle"),
+                   *reason = table->GetColumnByName("Reason");
+  const vtkIdType rows = std::min(table->GetNumberOfRows(), MostFetched);
+  for (vtkIdType i = 0; cell && angle && reason && i < rows; ++i)
+  {
+    const double value = angle->GetVariantValue(i).ToDouble();
+    list.elements.push_back({ inBlock(static_cast<vtkIdType>(cell->GetVariantValue(i).ToLongLong()),
+                                block ? block->GetVariantValue(i).ToString() : std::string()),
+      value, textOf(list.array, value) + ", " + reason->GetVariantValue(i).ToString() });
+  }
   return list;
+}
+
+/// The lists by metrics that a filter measured before and after its work.
+void addMetrics(pqOutputPort* mesh, std::vector<WorstElementList>& lists)
+{
+  for (const MetricInfo& info : metricRegistry())
+  {
+    const std::string name = info.name;
+    if (!cellArray(mesh, (name + "_before").c_str()))
+    {
+      continue;
+    }
+    for (const std::string& array : { name, name + "_after" })
+    {
+      if (cellArray(mesh, array.c_str()))
+      {
+        lists.push_back({ info.label, array, {},
+          info.direction == Direction::LargerIsBetter ? Ranking::Smallest : Ranking::Largest });
+        break;
+      }
+    }
+  }
 }
 
 } // anonymous namespace
@@ -256,23 +247,55 @@ std::vector<WorstElementList> worstElementsOf(pqPipelineSource* source)
   }
   std::vector<WorstElementList> lists;
   pqOutputPort* mesh = source->getOutputPort(0);
+  const auto remaining = fetchOutput(source, "Remaining");
+  if (auto* table = vtkTable::SafeDownCast(remaining))
+  {
+    lists.push_back(remainingOf(table));
+  }
   if (cellArray(mesh, ObstacleArray))
   {
     lists.push_back(obstaclesOf(mesh));
   }
-  else if (hasInvalid(mesh))
+  // Other filters pass on the array of their input, which is out of date.
+  const std::string filter = source->getProxy()->GetXMLName();
+  vtkPVArrayInformation* validity = cellArray(mesh, "Validity");
+  if ((filter == "MeshOptimizer" || filter == "MeshWarp") && validity &&
+    validity->GetComponentRange(0)[0] < Valid)
   {
-    lists.push_back(invalidOf(mesh));
+    lists.push_back({ "Invalid elements", "Validity", {}, Ranking::Invalid });
   }
-  for (const auto& [array, label] :
-    { std::pair("Share", "Share of the largest eigenvalue"), std::pair("Excess", "Excess") })
+  addMetrics(mesh, lists);
+  const auto add = [&](const char* array, const char* label, Ranking ranking)
   {
     if (cellArray(mesh, array))
     {
-      lists.push_back(largestOf(mesh, label, array));
+      lists.push_back({ label, array, {}, ranking });
     }
+  };
+  if (filter == "MeshImprover")
+  {
+    add("min_angle", "Smallest angle", Ranking::Smallest);
+    add("imr", "Inverse mean ratio", Ranking::Largest);
   }
+  else if (filter == "MeshWarp")
+  {
+    add("TMP shape", "Change of shape", Ranking::Largest);
+  }
+  add("Share", "Share of the largest eigenvalue", Ranking::Largest);
+  add("Excess", "Excess", Ranking::Largest);
   return lists;
+}
+
+//------------------------------------------------------------------------------
+void completeList(pqPipelineSource* source, WorstElementList& list)
+{
+  pqOutputPort* mesh = source->getOutputPort(0);
+  if (list.ranking == Ranking::Complete || !cellArray(mesh, list.array.c_str()))
+  {
+    return;
+  }
+  list.ranking == Ranking::Invalid ? addInvalid(mesh, list) : addExtreme(mesh, list);
+  list.ranking = Ranking::Complete;
 }
 
 } // namespace tautline

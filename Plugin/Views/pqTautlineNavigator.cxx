@@ -2,6 +2,8 @@
 #include "pqTautlineNavigator.h"
 
 #include "ProxyKind.h"
+#include "pqTautlineElementTable.h"
+#include "pqTautlineRunDock.h"
 
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
@@ -31,6 +33,7 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   , Measure(new QComboBox(this))
   , Layers(new QSpinBox(this))
   , Element(new QLabel(this))
+  , Table(new pqTautlineElementTable(parentObject))
 {
   this->setObjectName("TautlineNavigator");
   this->Measure->setObjectName("Measure");
@@ -56,6 +59,12 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   this->Zoom = add("Zoom", "zoom", "Move the camera to the element selected.");
   this->Isolate = add("Isolate", "isolate", "Fade the mesh, so that an element inside is visible.");
   this->addWidget(this->Layers);
+  QAction* table =
+    add("Table", "table", "Show the worst elements as a table with the values of all metrics.");
+  table->setCheckable(true);
+  QAction* shown = this->Table->toggleViewAction();
+  QObject::connect(table, &QAction::toggled, this->Table, &QWidget::setVisible);
+  QObject::connect(shown, &QAction::toggled, table, &QAction::setChecked);
   this->addWidget(this->Element);
   this->Zoom->setCheckable(true);
   this->Zoom->setChecked(true);
@@ -65,6 +74,9 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   QObject::connect(this->Next, &QAction::triggered, this, &pqTautlineNavigator::next);
   QObject::connect(this->Zoom, &QAction::toggled, this, &pqTautlineNavigator::zoom);
   QObject::connect(this->Isolate, &QAction::toggled, this, &pqTautlineNavigator::isolate);
+  QObject::connect(this->Table, &pqTautlineElementTable::chosen, this, &pqTautlineNavigator::go);
+  QObject::connect(
+    this->Table, &pqTautlineElementTable::shown, this, &pqTautlineNavigator::fillTable);
   QObject::connect(this->Layers, QOverload<int>::of(&QSpinBox::valueChanged), this,
     [this]
     {
@@ -88,6 +100,8 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
       if (auto* window = qobject_cast<QMainWindow*>(this->parentWidget()))
       {
         window->insertToolBarBreak(this);
+        window->addDockWidget(Qt::BottomDockWidgetArea, this->Table);
+        this->Table->hide();
       }
     });
 }
@@ -157,13 +171,18 @@ void pqTautlineNavigator::refresh()
 void pqTautlineNavigator::listChanged()
 {
   this->Current = -1;
-  const bool some = this->list() && !this->list()->elements.empty();
+  const bool some = this->list() &&
+    (!this->list()->elements.empty() || this->list()->ranking != tautline::Ranking::Complete);
   for (QAction* action : { this->Previous, this->Next, this->Isolate })
   {
     action->setEnabled(some);
   }
   this->Measure->setEnabled(this->Lists.size() > 1);
   this->describe();
+  if (this->Table->isVisible())
+  {
+    this->fillTable();
+  }
   if (this->Isolated.active())
   {
     some ? this->isolate(true) : this->Isolate->setChecked(false);
@@ -178,11 +197,52 @@ const tautline::WorstElementList* pqTautlineNavigator::list() const
 }
 
 //------------------------------------------------------------------------------
+void pqTautlineNavigator::complete()
+{
+  const int index = this->Measure->currentIndex();
+  if (this->Source && this->list())
+  {
+    tautline::completeList(this->Source, this->Lists[static_cast<std::size_t>(index)]);
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::fillTable()
+{
+  QTimer::singleShot(0, this, &pqTautlineNavigator::placeTable);
+  this->complete();
+  this->describe();
+  this->Table->fill(this->Source ? this->Source->getOutputPort(0) : nullptr, this->list());
+  this->Table->mark(this->Current);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::placeTable()
+{
+  auto* window = qobject_cast<QMainWindow*>(this->parentWidget());
+  auto* run = window ? window->findChild<pqTautlineRunDock*>() : nullptr;
+  if (!run || this->Table->isHidden() || this->Table->isFloating())
+  {
+    return;
+  }
+  // In the place of the run: two docks side by side are too narrow on small screens.
+  const bool beside = !window->tabifiedDockWidgets(run).contains(this->Table);
+  if (beside && !run->isHidden() && !run->isFloating() &&
+    window->dockWidgetArea(run) == window->dockWidgetArea(this->Table))
+  {
+    window->tabifyDockWidget(run, this->Table);
+    this->Table->raise();
+  }
+}
+
+//------------------------------------------------------------------------------
 void pqTautlineNavigator::go(int element)
 {
+  this->complete();
   const tautline::WorstElementList* list = this->list();
   if (!this->Source || !list || list->elements.empty())
   {
+    this->describe();
     return;
   }
   const int number = static_cast<int>(list->elements.size());
@@ -195,6 +255,7 @@ void pqTautlineNavigator::go(int element)
     this->Isolated.show({ list->elements[this->Current].name }, this->Layers->value());
     this->zoom(this->Zoom->isChecked());
   }
+  this->Table->mark(this->Current);
   this->describe(problem);
 }
 
@@ -213,8 +274,9 @@ void pqTautlineNavigator::describe(const std::string& problem)
   }
   else if (this->Current < 0)
   {
-    text = list->elements.empty() ? QString("no element")
-                                  : QString("%1 elements").arg(list->elements.size());
+    text = list->ranking != tautline::Ranking::Complete ? QString("not searched yet: click Next")
+      : list->elements.empty()                          ? QString("no element")
+                               : QString("%1 elements").arg(list->elements.size());
   }
   else
   {

@@ -3,9 +3,9 @@
  * @class pqTautlineNavigator
  * @brief The tool bar that goes from one bad element to the next.
  *
- * It shows the worst elements of the active filter of the pipeline: of Element Quality, by a metric
- * to choose; of Untangle Mesh, those that are not valid; of Condition Estimator, those that
- * contribute most. Previous and next select an element and, if Zoom is on, move the camera to it.
+ * It shows the worst elements of the active filter of the pipeline, by a measure to choose; see
+ * tautline::worstElementsOf() for the lists. Previous and Next select an element and, if Zoom is on,
+ * move the camera to it. Table shows the list in a dock.
  * Isolate shows the mesh faded with its edges, and the element with layers of its neighbors, so that
  * it is visible inside a solid; its value stands beside it. "3 of 10: cell 433, imr -2.1, inverted" is the element selected.
  */
@@ -24,6 +24,7 @@ class QComboBox;
 class QLabel;
 class QSpinBox;
 class pqPipelineSource;
+class pqTautlineElementTable;
 
 class pqTautlineNavigator : public QToolBar
 {
@@ -43,11 +44,16 @@ private Q_SLOTS:
   void next() { this->go(this->Current + 1); }
   void zoom(bool on);
   void isolate(bool on);
+  void fillTable();
+  /// Puts the table on the dock of the run, if that is shown at the same place.
+  void placeTable();
+  /// Selects an element; numbers count around.
+  void go(int element);
 
 private:
   const tautline::WorstElementList* list() const;
-  /// Selects an element; numbers count around.
-  void go(int element);
+  /// Finds the elements of the current list, if they were not found yet.
+  void complete();
   void describe(const std::string& problem = {});
 
   QPointer<pqPipelineSource> Source;
@@ -62,6 +68,7 @@ private:
   QAction* Isolate;
   QSpinBox* Layers;
   QLabel* Element;
+  pqTautlineElementTable* Table; ///< owned by the main window
 };
 
 #endif

@@ -93,3 +93,18 @@ def mesh_hidden():
     shown = simple.GetDisplayProperties(find("ElementQuality"), render_view())
     state = shown.Visibility, shown.Representation, shown.Opacity, added_cells()
     assert state == (0, "Surface", 1, []), state
+
+
+@check
+def no_time(filter_name):
+    """The filter is to leave the mesh as it is."""
+    find(filter_name).TimeLimit = 1e-9
+
+
+@check
+def selected_cell(cell):
+    """This cell, and no other, is selected on the improved mesh."""
+    combined = find("MeshImprover").SMProxy.GetSelectionInput(0)
+    ids = combined.GetProperty("Input").GetProxy(0).GetProperty("IDs")
+    selected = [int(ids.GetElement(i)) for i in range(ids.GetNumberOfElements())]
+    assert selected == [-1, cell], selected
