@@ -53,6 +53,26 @@ std::string criteriaText(const std::string& text)
   content << file.rdbuf();
   return content.str();
 }
+
+/// What to choose if criteria have limits for none of the elements: "" or ", which are for shells;
+/// for solids there are fem, ...".
+std::string otherPresets(const QualityCriteria& criteria)
+{
+  const std::string graded = gradedCells(criteria);
+  const std::string other = graded == "shells" ? "solids" : "shells";
+  std::string names;
+  for (const std::string& name : criteriaPresets())
+  {
+    const std::string of = gradedCells(parseCriteria(presetCriteria(name)));
+    if (of.find(other) != std::string::npos)
+    {
+      names += (names.empty() ? "" : ", ") + name;
+    }
+  }
+  return graded.find(other) != std::string::npos
+    ? ""
+    : ", which are for " + graded + "; for " + other + " there are " + names;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -192,7 +212,18 @@ std::string CriteriaGrader::summary() const
   if (t.graded > 0)
   {
     text << ": of " << t.graded << " elements " << t.failed << " fail and " << t.warned
-         << " have warnings; quality index " << t.meanIndex() << " (0 ideal, 1 worst)";
+         << " have warnings; quality index " << t.meanIndex()
+         << " (0 ideal, 1 worst). Valid elements "
+         << "that fail:";
+    for (std::size_t c = 0; c < t.criteria.size(); ++c)
+    {
+      text << (c > 0 ? ", " : " ") << metricInfo(this->Criteria.criteria[c].metric).name << " "
+           << t.criteria[c].failed;
+    }
+  }
+  else
+  {
+    text << otherPresets(this->Criteria);
   }
   return text.str() + ".";
 }

@@ -2,14 +2,23 @@
 #include "pqTautlineCriteria.h"
 
 #include "CriteriaDialog.h"
+#include "Recolor.h"
 #include "Report.h"
 
 #include "tautline/Quality/Criteria.h"
 #include "tautline/Quality/Metrics.h"
 
+#include "pqApplicationCore.h"
 #include "pqCoreUtilities.h"
+#include "pqDataRepresentation.h"
 #include "pqFileDialog.h"
+#include "pqOutputPort.h"
+#include "pqPipelineSource.h"
+#include "pqServerManagerModel.h"
+#include "pqView.h"
 
+#include "vtkDataObject.h"
+#include "vtkPVDataInformation.h"
 #include "vtkSMProperty.h"
 #include "vtkSMPropertyHelper.h"
 #include "vtkSMProxy.h"
@@ -28,6 +37,7 @@
 namespace
 {
 constexpr const char* None = "none";
+constexpr const char* GradeArray = "Grade";
 constexpr const char* FileKinds = "Quality criteria (*.json)";
 
 bool isJson(const QString& text)
@@ -39,6 +49,27 @@ bool isPreset(const QString& text)
 {
   const auto& known = tautline::criteriaPresets();
   return std::find(known.begin(), known.end(), text.toStdString()) != known.end();
+}
+
+/// "hypermesh (shells)"
+QString labelOf(const std::string& preset)
+{
+  const auto criteria = tautline::parseCriteria(tautline::presetCriteria(preset));
+  return QString("%1 (%2)").arg(
+    QString::fromStdString(preset), QString::fromStdString(tautline::gradedCells(criteria)));
+}
+
+/// The name of the preset of a label; other texts as they are.
+QString presetOf(const QString& label)
+{
+  for (const std::string& preset : tautline::criteriaPresets())
+  {
+    if (label == labelOf(preset))
+    {
+      return QString::fromStdString(preset);
+    }
+  }
+  return label;
 }
 
 /// The built-in metrics, and those that are registered on the server now.
@@ -89,7 +120,7 @@ pqTautlineCriteria::pqTautlineCriteria(
   this->Choice->addItem(None);
   for (const std::string& preset : tautline::criteriaPresets())
   {
-    this->Choice->addItem(QString::fromStdString(preset));
+    this->Choice->addItem(labelOf(preset));
   }
   const auto button = [this](const char* name, const char* text, const char* tip)
   {
@@ -99,10 +130,11 @@ pqTautlineCriteria::pqTautlineCriteria(
     made->setToolTip(tip);
     return made;
   };
-  auto* edit = button("Edit", "Edit...", "Edit the criteria in a table.");
-  auto* load = button("Load", "Load...", "Load criteria from a JSON file of this computer.");
+  auto* edit = button("Edit", "&Edit...", "Edit the criteria in a table.");
+  this->Color = button("Color", "Color by &Grade", "Color the mesh by the grades of its elements.");
+  auto* load = button("Load", "&Load...", "Load criteria from a JSON file of this computer.");
   this->Save->setObjectName("Save");
-  this->Save->setText("Save...");
+  this->Save->setText("&Save...");
   this->Save->setToolTip("Save the criteria as a JSON file on this computer.");
   this->Problem->setObjectName("Problem");
   this->Problem->setWordWrap(true);
@@ -118,6 +150,7 @@ pqTautlineCriteria::pqTautlineCriteria(
   layout->setContentsMargins(0, 0, 0, 0);
   layout->addWidget(this->Choice);
   layout->addLayout(buttons);
+  layout->addWidget(this->Color);
   layout->addWidget(this->Problem);
 
   QObject::connect(this->Choice, QOverload<int>::of(&QComboBox::currentIndexChanged), this,
@@ -125,9 +158,13 @@ pqTautlineCriteria::pqTautlineCriteria(
   QObject::connect(this->Choice->lineEdit(), &QLineEdit::editingFinished, this,
     [this] { this->chosen(this->Choice->currentText()); });
   QObject::connect(edit, &QToolButton::clicked, this, &pqTautlineCriteria::edit);
+  QObject::connect(this->Color, &QToolButton::clicked, this, &pqTautlineCriteria::color);
+  QObject::connect(pqApplicationCore::instance()->getServerManagerModel(),
+    &pqServerManagerModel::dataUpdated, this, &pqTautlineCriteria::enableColor);
   QObject::connect(load, &QToolButton::clicked, this, &pqTautlineCriteria::load);
   QObject::connect(this->Save, &QToolButton::clicked, this, &pqTautlineCriteria::save);
   this->setCriteria(QString());
+  this->enableColor();
   this->addPropertyLink(this, "criteria", SIGNAL(criteriaChanged()), smproperty);
 }
 
@@ -148,7 +185,9 @@ void pqTautlineCriteria::setCriteria(const QString& criteria)
 {
   const bool changed = criteria != this->Criteria;
   this->Criteria = criteria;
-  QString shown = criteria.isEmpty() ? None : criteria;
+  QString shown = criteria.isEmpty() ? None
+    : isPreset(criteria)             ? labelOf(criteria.toStdString())
+                                     : criteria;
   QString problem;
   if (isJson(criteria))
   {
@@ -187,7 +226,40 @@ void pqTautlineCriteria::chosen(const QString& text)
   // The name of one's own criteria stands for the text that they have.
   if (!text.startsWith("own: "))
   {
-    this->setCriteria(text == None ? QString() : text.trimmed());
+    this->setCriteria(text == None ? QString() : presetOf(text.trimmed()));
+  }
+}
+
+//------------------------------------------------------------------------------
+pqOutputPort* pqTautlineCriteria::gradedMesh() const
+{
+  auto* source =
+    pqApplicationCore::instance()->getServerManagerModel()->findItem<pqPipelineSource*>(
+      this->proxy());
+  pqOutputPort* mesh = source ? source->getOutputPort(0) : nullptr;
+  const bool graded = mesh && source->modifiedState() != pqProxy::UNINITIALIZED &&
+    mesh->getDataInformation()->GetArrayInformation(GradeArray, vtkDataObject::CELL);
+  return graded ? mesh : nullptr;
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineCriteria::enableColor()
+{
+  this->Color->setEnabled(this->gradedMesh() != nullptr);
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineCriteria::color()
+{
+  pqOutputPort* mesh = this->gradedMesh();
+  for (pqView* view : mesh ? mesh->getViews() : QList<pqView*>())
+  {
+    pqDataRepresentation* shown = mesh->getRepresentation(view);
+    if (shown && shown->isVisible() && shown->getProxy()->GetProperty("ColorArrayName"))
+    {
+      tautline::recolor(shown, GradeArray, vtkDataObject::CELL, true);
+      shown->renderViewEventually();
+    }
   }
 }
 

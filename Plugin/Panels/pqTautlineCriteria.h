@@ -19,6 +19,7 @@
 class QComboBox;
 class QLabel;
 class QToolButton;
+class pqOutputPort;
 
 class pqTautlineCriteria : public pqPropertyWidget
 {
@@ -44,14 +45,20 @@ private Q_SLOTS:
   void edit();
   void load();
   void save();
+  /// Colors the mesh by Grade in the views that show it.
+  void color();
+  void enableColor();
 
 private:
+  /// The output with the array Grade; null before the elements are graded.
+  pqOutputPort* gradedMesh() const;
   /// The criteria chosen as JSON; "" if there are none or they are in a file on the server.
   QString json() const;
   void showProblem(const QString& problem);
 
   QString Criteria;
   QComboBox* Choice;
+  QToolButton* Color;
   QToolButton* Save;
   QLabel* Problem;
 };

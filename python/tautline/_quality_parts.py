@@ -185,7 +185,8 @@ def criteria(name: str) -> dict[str, Any]:
     Parameters
     ----------
     name : str
-        "fem", "skewness", "optistruct", "hypermesh", "nastran" or "ansys".
+        For shells and solids: "fem", "skewness". For shells: "optistruct", "hypermesh", "nastran", "ansys". For solids:
+        "optistruct_solids", "hypermesh_solids", "nastran_solids", "ansys_solids".
 
     Returns
     -------
@@ -377,7 +378,8 @@ def add_own_commands(commands: Any) -> None:
         example="fem",
         details="The file can be changed and given to quality --criteria.",
     )  # fmt: skip
-    preset.add_argument("name", metavar="NAME", help="fem, skewness, optistruct, hypermesh, nastran or ansys")
+    names = "fem, skewness; for shells optistruct, hypermesh, nastran, ansys; for solids the same with _solids"
+    preset.add_argument("name", metavar="NAME", help=names)
 
 
 def _run_criteria(arguments: argparse.Namespace) -> None:

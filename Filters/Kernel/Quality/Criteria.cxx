@@ -258,6 +258,21 @@ QualityCriteria parseCriteria(const std::string& json)
 }
 
 //------------------------------------------------------------------------------
+std::string gradedCells(const QualityCriteria& criteria)
+{
+  bool shells = false, solids = false;
+  for (const CellTopology& topology : topologies())
+  {
+    for (const QualityCriterion& criterion : criteria.criteria)
+    {
+      const bool limited = criterion.limits[topologyIndex(topology.type)].has_value();
+      (topology.dimension == 2 ? shells : solids) |= limited;
+    }
+  }
+  return shells && solids ? "shells and solids" : shells ? "shells" : "solids";
+}
+
+//------------------------------------------------------------------------------
 const std::vector<std::string>& criteriaPresets()
 {
   static const std::vector<std::string> names = []

@@ -79,6 +79,10 @@ struct QualityCriteria
  */
 TAUTLINE_KERNEL_EXPORT QualityCriteria parseCriteria(const std::string& json);
 
+/// The cells that criteria have limits for: "shells" (triangles, quadrilaterals), "solids" (the
+/// others) or "shells and solids".
+TAUTLINE_KERNEL_EXPORT std::string gradedCells(const QualityCriteria& criteria);
+
 /// The names of the presets.
 TAUTLINE_KERNEL_EXPORT const std::vector<std::string>& criteriaPresets();
 

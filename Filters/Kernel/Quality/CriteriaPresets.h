@@ -20,9 +20,9 @@ struct CriteriaPreset
   const char* json;
 };
 
-constexpr std::array<CriteriaPreset, 6> CriteriaPresetTexts = { {
+constexpr std::array<CriteriaPreset, 10> CriteriaPresetTexts = { {
   { "fem", R"json({
-  "name": "FEM default",
+  "name": "FEM default, shells and solids",
   "source": [
     "warn: the acceptable ranges of the metrics, most of them of Knupp et al., The Verdict library",
     "reference manual, Sandia (2006); fail: chosen for linear finite elements" ],
@@ -41,7 +41,7 @@ constexpr std::array<CriteriaPreset, 6> CriteriaPresetTexts = { {
 }
 )json" },
   { "skewness", R"json({
-  "name": "Equiangle skewness",
+  "name": "Equiangle skewness, shells and solids",
   "source": [
     "ANSYS ICEM CFD help 2024 R2, 35.11.3 Checking the Skewness, Table 35.1, of 1 - skewness:",
     "excellent to 0.25, good to 0.5, fair to 0.75, poor to 0.98, bad (sliver) beyond; formula:",
@@ -74,6 +74,23 @@ constexpr std::array<CriteriaPreset, 6> CriteriaPresetTexts = { {
   ]
 }
 )json" },
+  { "optistruct_solids", R"json({
+  "name": "OptiStruct solids (tetrahedra)",
+  "source": [
+    "Altair OptiStruct 2021 help, CTETRA Element Checks and Default Bound Values: edge angle, the",
+    "largest of |90 - angle between two faces| (degrees), limits of warnings (75) and, of CTETRA4,",
+    "of errors (87), as limits of the dihedral angles. Not here, as no metric has their",
+    "definition: aspect ratio, skew and vertex angles of faces, collapse; and the other solids" ],
+  "criteria": [
+    { "metric": "min_angle", "weight": 1,
+      "limits": {
+        "tetrahedron": { "ideal": 70.5288, "good": 40, "warn": 15, "fail": 3, "worst": 0 } } },
+    { "metric": "max_angle", "weight": 1,
+      "limits": {
+        "tetrahedron": { "ideal": 70.5288, "good": 110, "warn": 165, "fail": 177, "worst": 180 } } }
+  ]
+}
+)json" },
   { "hypermesh", R"json({
   "name": "HyperMesh shells",
   "source": [
@@ -97,6 +114,23 @@ constexpr std::array<CriteriaPreset, 6> CriteriaPresetTexts = { {
   ]
 }
 )json" },
+  { "hypermesh_solids", R"json({
+  "name": "HyperMesh solids",
+  "source": [
+    "Altair HyperMesh 2021 reference guide, *elementtestequiaskew, equiangle skew of 2D and 3D",
+    "elements: the threshold of its example, as the reference gives no default; an element beyond",
+    "it fails. Not here, as no metric has their definition: aspect ratio, warpage, skew, Jacobian,",
+    "interior angles of faces, tetra collapse, volumetric skew and volumetric aspect ratio" ],
+  "criteria": [
+    { "metric": "equiangle_skew", "weight": 1,
+      "limits": {
+        "tetrahedron": { "ideal": 0, "good": 0.5, "warn": 0.7, "fail": 0.7, "worst": 1 },
+        "hexahedron": { "ideal": 0, "good": 0.5, "warn": 0.7, "fail": 0.7, "worst": 1 },
+        "wedge": { "ideal": 0, "good": 0.5, "warn": 0.7, "fail": 0.7, "worst": 1 },
+        "pyramid": { "ideal": 0, "good": 0.5, "warn": 0.7, "fail": 0.7, "worst": 1 } } }
+  ]
+}
+)json" },
   { "nastran", R"json({
   "name": "Autodesk Nastran shells",
   "source": [
@@ -116,8 +150,24 @@ constexpr std::array<CriteriaPreset, 6> CriteriaPresetTexts = { {
   ]
 }
 )json" },
+  { "nastran_solids", R"json({
+  "name": "Autodesk Nastran solids (tetrahedra)",
+  "source": [
+    "Autodesk Nastran 2019 and 2023 reference, section 5, geometry processor parameters",
+    "TETFACEMINIATOL (5) and TETFACEMAXIATOL (170): default tolerances of the angles of faces",
+    "(degrees); both are an equiangle skew of 55 / 60 = 110 / 120. There are no errors by default,",
+    "so that elements fail at 1. Not here, as no metric has their definition: aspect ratio, skew,",
+    "edge points; and the other solids, whose two tolerances are different skews" ],
+  "criteria": [
+    { "metric": "equiangle_skew", "weight": 1,
+      "limits": {
+        "tetrahedron": { "ideal": 0, "good": 0.5, "warn": 0.9166666666666666, "fail": 1,
+          "worst": 1 } } }
+  ]
+}
+)json" },
   { "ansys", R"json({
-  "name": "ANSYS Mechanical APDL triangles",
+  "name": "ANSYS Mechanical APDL shells (triangles)",
   "source": [
     "ANSYS Mechanical APDL 2023 R2 command reference, SHPP, notes: maximum corner angle of a",
     "triangle; formula: ANSYS Mechanical APDL theory reference, 12.1 Element Shape Testing. Not",
@@ -127,6 +177,23 @@ constexpr std::array<CriteriaPreset, 6> CriteriaPresetTexts = { {
     { "metric": "max_angle", "weight": 1,
       "limits": {
         "triangle": { "ideal": 60, "good": 90, "warn": 165, "fail": 179.9, "worst": 180 } } }
+  ]
+}
+)json" },
+  { "ansys_solids", R"json({
+  "name": "ANSYS solids (tetrahedra)",
+  "source": [
+    "Ansys Discovery 2024 R2 user manual, Mesh Metrics, structural simulations: default lower",
+    "limit of the element quality, 0.05; below it an element fails. The element quality is the",
+    "volume over the square root of the cube of the sum of the squares of the edges, 1 for the",
+    "ideal element: in tetrahedra the mean ratio to the power 3/2, whose limit is 0.05 to the",
+    "power 2/3. Not here, as no metric has their definition: Jacobian ratio, aspect ratio; and the",
+    "other solids" ],
+  "criteria": [
+    { "metric": "mean_ratio", "weight": 1,
+      "limits": {
+        "tetrahedron": { "ideal": 1, "good": 0.6, "warn": 0.1357208808297453,
+          "fail": 0.1357208808297453, "worst": 0 } } }
   ]
 }
 )json" },

@@ -135,7 +135,39 @@ TAUTLINE_PART(testPresets)
   {
     TAUTLINE_CHECK((limits(preset, "max_angle", CellType::Tetrahedron) == Limits{ 0, 0 }));
   }
-  TAUTLINE_CHECK_EQUAL(criteriaPresets().size(), std::size_t{ 6 });
+  const auto tet = CellType::Tetrahedron;
+  TAUTLINE_CHECK((limits("optistruct_solids", "min_angle", tet) == Limits{ 15, 3 }));
+  TAUTLINE_CHECK((limits("optistruct_solids", "max_angle", tet) == Limits{ 165, 177 }));
+  TAUTLINE_CHECK((limits("hypermesh_solids", "equiangle_skew", tet) == Limits{ 0.7, 0.7 }));
+  TAUTLINE_CHECK(
+    (limits("hypermesh_solids", "equiangle_skew", CellType::Wedge) == Limits{ 0.7, 0.7 }));
+  TAUTLINE_CHECK((limits("nastran_solids", "equiangle_skew", tet) == Limits{ 55.0 / 60, 1 }));
+  TAUTLINE_CHECK_NEAR(55.0 / 60, (170.0 - 60) / (180 - 60), 1e-15);
+  const double quality = std::pow(0.05, 2.0 / 3);
+  TAUTLINE_CHECK_NEAR(limits("ansys_solids", "mean_ratio", tet)[1], quality, 1e-15);
+  TAUTLINE_CHECK_EQUAL(criteriaPresets().size(), std::size_t{ 10 });
+}
+
+/// Each solver has a preset for shells and one for solids, and the labels tell them apart.
+TAUTLINE_PART(testShellsAndSolids)
+{
+  for (const std::string& preset : criteriaPresets())
+  {
+    const Context context(preset);
+    const QualityCriteria criteria = parseCriteria(presetCriteria(preset));
+    const bool both = preset == "fem" || preset == "skewness";
+    const bool solids = preset.find("_solids") != std::string::npos;
+    const std::string graded = both ? "shells and solids" : solids ? "solids" : "shells";
+    TAUTLINE_CHECK_EQUAL(gradedCells(criteria), graded);
+    TAUTLINE_CHECK(criteria.name.find(graded) != std::string::npos);
+  }
+  // The element quality of ANSYS in a corner of a cube, V = 1/6: 1 in the regular tetrahedron.
+  MeshData data;
+  data.addCell(
+    CellType::Tetrahedron, std::vector<Vec3>{ { 0, 0, 0 }, { 1, 0, 0 }, { 0, 1, 0 }, { 0, 0, 1 } });
+  const double edges = 3 * 1 + 3 * 2;
+  const double ansys = 72 * std::sqrt(3.0) / 6 / std::sqrt(edges * edges * edges);
+  TAUTLINE_CHECK_NEAR(std::pow(valuesOf(data, Metric::MeanRatio)[0], 1.5), ansys, 1e-12);
 }
 
 /// Separate triangles over a base of length 1, of these heights.
@@ -181,6 +213,8 @@ void testFilter(const std::string& folder)
   TAUTLINE_CHECK(
     std::string(filter->GetSummary())
       .find("Failed by the criteria \"criteria\": of 4 elements 2 fail and 1 have") == 0);
+  TAUTLINE_CHECK(std::string(filter->GetSummary()).find(wording("valid-elements-that-fail")) !=
+    std::string::npos);
   vtkTable* table = filter->GetCriteriaTable();
   TAUTLINE_CHECK_EQUAL(table->GetNumberOfRows(), 1);
   TAUTLINE_CHECK_EQUAL(table->GetValueByName(0, "Graded").ToInt(), 3); // the valid ones
@@ -198,6 +232,9 @@ void testFilter(const std::string& folder)
   filter->SetCriteria(json("imr", R"({ "tetrahedron": )" + rising + " }").c_str());
   TAUTLINE_CHECK_EQUAL(verdict({ height }), "none");
   TAUTLINE_CHECK_EQUAL(cellValue(filter, "Grade", 0), -1);
+  TAUTLINE_CHECK(std::string(filter->GetSummary())
+                   .find("\"criteria\", which are for solids; for shells there are fem, skewness, "
+                         "optistruct, hypermesh, nastran, ansys.") != std::string::npos);
   filter->SetCriteria("");
   TAUTLINE_CHECK_EQUAL(verdict({ height }), "");
   TAUTLINE_CHECK_EQUAL(filter->GetCriteriaTable()->GetNumberOfRows(), 0);
