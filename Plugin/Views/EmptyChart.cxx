@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EmptyChart.h"
 
+#include "ProxyKind.h"
+
 #include "pqActiveObjects.h"
 #include "pqApplicationCore.h"
 #include "pqDataRepresentation.h"
@@ -35,16 +37,20 @@ bool isEmpty(pqOutputPort* table)
 }
 
 //------------------------------------------------------------------------------
-void tautline::closeEmptyChart(pqDataRepresentation* chart)
+void tautline::closeNeedlessChart(pqDataRepresentation* chart)
 {
   pqView* view = chart->getView();
   pqOutputPort* table = chart->getOutputPortFromInput();
-  if (!view || !view->getProxy()->GetProperty("LeftAxisLogScale") || !isEmpty(table) ||
+  const bool inDock = tautline::isDrawnInDock(table->getSource()->getProxy());
+  if (!view || !view->getProxy()->GetProperty("LeftAxisLogScale") || (!inDock && !isEmpty(table)) ||
     view->getNumberOfRepresentations() > 1)
   {
     return;
   }
-  table->getSource()->setProperty(Closed, table->getPortNumber());
+  if (!inDock)
+  {
+    table->getSource()->setProperty(Closed, table->getPortNumber());
+  }
   pqObjectBuilder* builder = pqApplicationCore::instance()->getObjectBuilder();
   vtkSMViewLayoutProxy* layout = vtkSMViewLayoutProxy::FindLayout(view->getViewProxy());
   const int place = layout ? layout->GetViewLocation(view->getViewProxy()) : -1;

@@ -22,4 +22,17 @@ bool isTautline(vtkSMProxy* proxy)
   return proxy && isInMenu(proxy->GetHints());
 }
 
+//------------------------------------------------------------------------------
+bool isDrawnInDock(vtkSMProxy* proxy)
+{
+  for (const char* name : { "MeshOptimizer", "MeshUntangler", "MeshImprover" })
+  {
+    if (proxy && std::strcmp(proxy->GetXMLName(), name) == 0)
+    {
+      return true;
+    }
+  }
+  return false;
+}
+
 } // namespace tautline

@@ -19,6 +19,9 @@ bool isInMenu(vtkPVXMLElement* hints);
 /// Whether the proxy is a filter or source of the menu Tautline. False for null.
 bool isTautline(vtkSMProxy* proxy);
 
+/// Whether the proxy is a filter whose history the dock of the run draws. False for null.
+bool isDrawnInDock(vtkSMProxy* proxy);
+
 /// The output of Element Quality with the elements that are drawn inside the mesh.
 constexpr const char* BadElementsPort = "Bad";
 

@@ -346,7 +346,7 @@ void pqTautlineCharts::applied()
       {
         if (chart && chart->getInput())
         {
-          tautline::closeEmptyChart(chart);
+          tautline::closeNeedlessChart(chart);
         }
       }
       for (pqPipelineSource* source : model()->findItems<pqPipelineSource*>())

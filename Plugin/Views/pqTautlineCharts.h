@@ -8,8 +8,8 @@
  * instead of the numbers of the rows. Study: the times in the order of the ranks, with the names
  * of the combinations. After Apply, the view of the mesh is active again, not the chart that was
  * added: the mesh of the next filter then appears there. A filter that refuses its input opens no
- * chart; it does once it has a result. The charts of a loaded state stay as they are. The plugin
- * starts the object in the GUI.
+ * chart; it does once it has a result. A run that the dock draws opens none. The charts of a
+ * loaded state stay as they are. The plugin starts the object in the GUI.
  */
 
 #ifndef pqTautlineCharts_h
@@ -45,7 +45,7 @@ private Q_SLOTS:
 private:
   void arrange(pqDataRepresentation* chart);
 
-  /// What the first Apply of filters has shown: charts among them may be empty.
+  /// What the first Apply of filters has shown: charts among them may be needless.
   QList<QPointer<pqDataRepresentation>> OpenedByApply;
 };
 
