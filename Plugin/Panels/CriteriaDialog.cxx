@@ -82,13 +82,15 @@ CriteriaDialog::CriteriaDialog(
   this->Buttons->setObjectName("Buttons");
   auto* add = new QToolButton(this);
   add->setObjectName("Add");
-  add->setText("Add Row");
+  add->setText("&Add Row");
   auto* remove = new QToolButton(this);
   remove->setObjectName("Remove");
-  remove->setText("Remove Row");
+  remove->setText("&Remove Row");
 
   auto* top = new QHBoxLayout;
-  top->addWidget(new QLabel("Name", this));
+  auto* name = new QLabel("&Name", this);
+  name->setBuddy(this->Name);
+  top->addWidget(name);
   top->addWidget(this->Name, 1);
   top->addWidget(add);
   top->addWidget(remove);

@@ -82,7 +82,7 @@ std::vector<ElementLeaf> elementLeaves(pqOutputPort* port);
 /// The number of cells selected on an output.
 vtkTypeInt64 countSelected(pqOutputPort* port);
 
-/// Moves the camera of a view to bounds, with a margin around them that is a multiple of their size.
+/// Moves the camera of a view to bounds; the margin around them is a multiple of their size.
 void zoomTo(pqRenderView* view, const double bounds[6], double margin);
 
 /// Moves the camera of the active render view to what is selected, with some of what is around.

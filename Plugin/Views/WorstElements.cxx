@@ -234,6 +234,15 @@ void addMetrics(pqOutputPort* mesh, std::vector<WorstElementList>& lists)
 } // anonymous namespace
 
 //------------------------------------------------------------------------------
+bool WorstElementList::largestIsWorst() const
+{
+  constexpr const char* after = "_after"; // of Compare Meshes
+  const std::string metric = this->array.substr(0, this->array.rfind(after));
+  const MetricInfo* info = findMetric(metric);
+  return info ? info->direction != Direction::LargerIsBetter : this->array != "Validity";
+}
+
+//------------------------------------------------------------------------------
 std::vector<WorstElementList> worstElementsOf(pqPipelineSource* source)
 {
   if (source->modifiedState() != pqProxy::UNMODIFIED)

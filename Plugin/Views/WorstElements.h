@@ -41,6 +41,9 @@ struct WorstElementList
   std::string array; ///< the cell array with its values
   std::vector<WorstElementEntry> elements;
   Ranking ranking = Ranking::Complete; ///< otherwise completeList() adds the elements
+
+  /// Whether the largest values of the array are the worst, not the smallest.
+  bool largestIsWorst() const;
 };
 
 /**

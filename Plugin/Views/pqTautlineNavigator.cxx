@@ -2,6 +2,7 @@
 #include "pqTautlineNavigator.h"
 
 #include "ProxyKind.h"
+#include "WorstOverTime.h"
 #include "pqTautlineElementTable.h"
 #include "pqTautlineRunDock.h"
 
@@ -14,6 +15,8 @@
 
 #include <QAction>
 #include <QComboBox>
+#include <QEvent>
+#include <QKeySequence>
 #include <QLabel>
 #include <QMainWindow>
 #include <QSignalBlocker>
@@ -40,31 +43,38 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   this->Measure->setToolTip("What the worst elements are the worst by.");
   this->Measure->setSizeAdjustPolicy(QComboBox::AdjustToContents);
   this->Element->setObjectName("Element");
+  constexpr int letters = 36;
+  this->Element->setFixedWidth(letters * this->fontMetrics().averageCharWidth());
   this->Layers->setObjectName("Layers");
   this->Layers->setToolTip("Layers of neighbors that Isolate shows around the element.");
   this->Layers->setRange(0, MostLayers);
   this->Layers->setValue(DefaultLayers);
   this->Layers->setSuffix(" layers");
-  const auto add = [this](const char* name, const char* icon, const char* tip)
+  const auto add = [this](const char* name, const char* icon, const char* key, const char* tip)
   {
     QAction* action = this->addAction(QIcon(QString(":/Tautline/Icons/") + icon + ".svg"), name);
     action->setObjectName(name);
-    action->setToolTip(tip);
+    // ParaView and its menus use few keys with both.
+    action->setShortcut(QKeySequence(QString("Alt+Shift+") + key));
+    action->setToolTip(QString("%1 (%2)").arg(tip, action->shortcut().toString()));
     return action;
   };
   this->addWidget(this->Measure);
   this->Previous =
-    add("Previous", "previous", "Select the element before in the list of the worst.");
-  this->Next = add("Next", "next", "Select the next of the worst elements.");
-  this->Zoom = add("Zoom", "zoom", "Move the camera to the element selected.");
-  this->Isolate = add("Isolate", "isolate", "Fade the mesh, so that an element inside is visible.");
+    add("Previous", "previous", "P", "Select the element before in the list of the worst.");
+  this->Next = add("Next", "next", "N", "Select the next of the worst elements.");
+  this->Zoom = add("Zoom", "zoom", "Z", "Move the camera to the element selected.");
+  this->Isolate =
+    add("Isolate", "isolate", "I", "Fade the mesh, so that an element inside is visible.");
   this->addWidget(this->Layers);
-  QAction* table =
-    add("Table", "table", "Show the worst elements as a table with the values of all metrics.");
+  QAction* table = add(
+    "Table", "table", "T", "Show the worst elements as a table with the values of all metrics.");
   table->setCheckable(true);
   QAction* shown = this->Table->toggleViewAction();
   QObject::connect(table, &QAction::toggled, this->Table, &QWidget::setVisible);
   QObject::connect(shown, &QAction::toggled, table, &QAction::setChecked);
+  this->OverTime =
+    add("OverTime", "time", "O", "Plot the worst value of all elements over the time steps.");
   this->addWidget(this->Element);
   this->Zoom->setCheckable(true);
   this->Zoom->setChecked(true);
@@ -77,6 +87,7 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   QObject::connect(this->Table, &pqTautlineElementTable::chosen, this, &pqTautlineNavigator::go);
   QObject::connect(
     this->Table, &pqTautlineElementTable::shown, this, &pqTautlineNavigator::fillTable);
+  QObject::connect(this->OverTime, &QAction::triggered, this, &pqTautlineNavigator::plotOverTime);
   QObject::connect(this->Layers, QOverload<int>::of(&QSpinBox::valueChanged), this,
     [this]
     {
@@ -93,13 +104,13 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
     &pqServerManagerModel::dataUpdated, this, &pqTautlineNavigator::dataUpdated);
   this->sourceChanged(pqActiveObjects::instance().activeSource());
 
-  // ParaView adds the tool bar at the end of a row that is full: it gets one of its own.
   QTimer::singleShot(0, this,
     [this]
     {
       if (auto* window = qobject_cast<QMainWindow*>(this->parentWidget()))
       {
-        window->insertToolBarBreak(this);
+        window->installEventFilter(this);
+        this->fitRow();
         window->addDockWidget(Qt::BottomDockWidgetArea, this->Table);
         this->Table->hide();
       }
@@ -108,6 +119,44 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
 
 //------------------------------------------------------------------------------
 pqTautlineNavigator::~pqTautlineNavigator() = default;
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::fitRow()
+{
+  auto* window = qobject_cast<QMainWindow*>(this->parentWidget());
+  if (!window || window->toolBarArea(this) != Qt::TopToolBarArea || this->isFloating())
+  {
+    return;
+  }
+  // The last row of the other tool bars, and its end.
+  int top = -1, end = 0;
+  for (QToolBar* other : window->findChildren<QToolBar*>(QString(), Qt::FindDirectChildrenOnly))
+  {
+    if (other == this || !other->isVisible() || window->toolBarArea(other) != Qt::TopToolBarArea)
+    {
+      continue;
+    }
+    end = other->y() > top ? 0 : end;
+    top = std::max(top, other->y());
+    end = other->y() == top ? std::max(end, other->geometry().right()) : end;
+  }
+  const bool fits = top >= 0 && window->width() - end > this->sizeHint().width();
+  if (fits == window->toolBarBreak(this))
+  {
+    fits ? window->removeToolBarBreak(this) : window->insertToolBarBreak(this);
+  }
+}
+
+//------------------------------------------------------------------------------
+bool pqTautlineNavigator::eventFilter(QObject* window, QEvent* event)
+{
+  if (event->type() == QEvent::Resize || event->type() == QEvent::Show)
+  {
+    // After the tool bars have their places.
+    QTimer::singleShot(0, this, &pqTautlineNavigator::fitRow);
+  }
+  return this->Superclass::eventFilter(window, event);
+}
 
 //------------------------------------------------------------------------------
 void pqTautlineNavigator::sourceChanged(pqPipelineSource* source)
@@ -178,6 +227,8 @@ void pqTautlineNavigator::listChanged()
     action->setEnabled(some);
   }
   this->Measure->setEnabled(this->Lists.size() > 1);
+  this->OverTime->setEnabled(
+    this->list() && tautline::hasTimeSteps(this->Source->getOutputPort(0)));
   this->describe();
   if (this->Table->isVisible())
   {
@@ -288,6 +339,8 @@ void pqTautlineNavigator::describe(const std::string& problem)
     text += entry.name.block < 0 ? QString() : QString(" of block %1").arg(entry.name.block);
     text += ", " + QString::fromStdString(entry.text);
   }
+  // No longer than the place for it: the tool bar shares a row.
+  this->Element->setToolTip(text);
   this->Element->setText(text);
 }
 
@@ -301,6 +354,23 @@ void pqTautlineNavigator::zoom(bool on)
   else if (on && this->Source && this->Current >= 0)
   {
     tautline::zoomToSelected(this->Source->getOutputPort(0));
+  }
+}
+
+//------------------------------------------------------------------------------
+void pqTautlineNavigator::plotOverTime()
+{
+  if (const tautline::WorstElementList* list = this->list())
+  {
+    // A copy: the filter that is added becomes the active one.
+    const std::string array = list->array;
+    const bool largest = list->largestIsWorst();
+    const std::string problem =
+      tautline::plotWorstOverTime(this->Source->getOutputPort(0), array, largest);
+    if (!problem.empty())
+    {
+      this->describe(problem);
+    }
   }
 }
 

@@ -4,10 +4,11 @@
  * @brief The tool bar that goes from one bad element to the next.
  *
  * It shows the worst elements of the active filter of the pipeline, by a measure to choose; see
- * tautline::worstElementsOf() for the lists. Previous and Next select an element and, if Zoom is on,
- * move the camera to it. Table shows the list in a dock.
- * Isolate shows the mesh faded with its edges, and the element with layers of its neighbors, so that
- * it is visible inside a solid; its value stands beside it. "3 of 10: cell 433, imr -2.1, inverted" is the element selected.
+ * tautline::worstElementsOf() for the lists. Previous and Next select an element and, if Zoom is
+ * on, move the camera to it. Table shows the list in a dock, Over Time plots the worst value of a
+ * time series. Isolate shows the mesh faded with its edges, and the element with layers of its
+ * neighbors, so that it is visible inside a solid; its value stands beside it. "3 of 10: cell 433,
+ * imr -2.1, inverted" is the element selected.
  */
 
 #ifndef pqTautlineNavigator_h
@@ -35,6 +36,8 @@ public:
   explicit pqTautlineNavigator(QWidget* parent = nullptr);
   ~pqTautlineNavigator() override;
 
+  bool eventFilter(QObject* window, QEvent* event) override;
+
 private Q_SLOTS:
   void sourceChanged(pqPipelineSource* source);
   void dataUpdated(pqPipelineSource* source);
@@ -44,7 +47,10 @@ private Q_SLOTS:
   void next() { this->go(this->Current + 1); }
   void zoom(bool on);
   void isolate(bool on);
+  void plotOverTime();
   void fillTable();
+  /// Shares the last row of tool bars if there is place, otherwise takes one of its own.
+  void fitRow();
   /// Puts the table on the dock of the run, if that is shown at the same place.
   void placeTable();
   /// Selects an element; numbers count around.
@@ -66,6 +72,7 @@ private:
   QAction* Next;
   QAction* Zoom;
   QAction* Isolate;
+  QAction* OverTime;
   QSpinBox* Layers;
   QLabel* Element;
   pqTautlineElementTable* Table; ///< owned by the main window

@@ -49,6 +49,12 @@ def chart_of(source, port, kind):
     return simple.Show(simple.OutputPort(source, port), view)
 
 
+@check
+def open_history(name):
+    """The chart of a run, which Apply does not open."""
+    chart_of(find(name), 1, "XYChartView")
+
+
 def chart_in(kind):
     """View and representation of the chart of this kind."""
     view = next(view for view in simple.GetViews() if view.GetXMLName() == kind)
@@ -400,6 +406,7 @@ def nothing_highlighted():
     assert not hidden_representations("GeometryRepresentation")
 
 
+MOVED = []  # the translation of the hole by the mouse
 SEEN = []  # time and points of the hole, of each frame that was played
 
 
@@ -427,6 +434,20 @@ def played():
     for time, points in SEEN:
         turn = numpy.exp(1j * numpy.radians(TURN * time))
         assert numpy.allclose(points - points.mean(), turn * (before - before.mean()), atol=1e-6), time
+
+
+@check
+def turned_in_plane():
+    """The hole, which was moved, is turned about its center by the angle of the box, which the mouse has turned."""
+    warp = find("MeshWarp")
+    hole, _ = hole_of(warp)
+    before, after = planar_points(warp.Input)[hole], planar_points(warp)[hole]
+    angle, scale = list(warp.Transform.Rotate), list(warp.Transform.Scale)
+    assert abs(angle[2]) > 5 and angle[:2] == [0, 0] and scale == [1, 1, 1], (angle, scale)
+    turn = numpy.exp(1j * numpy.radians(angle[2]))
+    assert numpy.allclose(after - after.mean(), turn * (before - before.mean()), atol=1e-6)
+    shift = after.mean() - before.mean()
+    assert numpy.allclose([shift.real, shift.imag], MOVED[-1], atol=1e-6), (shift, MOVED)
 
 
 @check
@@ -471,6 +492,20 @@ def own_labels():
 @check
 def no_labels():
     assert legend_labels() is None, legend_labels()
+
+
+@check
+def no_grade():
+    summary = find("ElementQuality").Summary
+    assert "which are for shells; for solids there are fem, skewness, optistruct_solids, " in summary, summary
+
+
+@check
+def colored_by_grade():
+    quality = find("ElementQuality")
+    assert re.match(r"Failed by .*solids.*Valid elements that fail: mean_ratio \d+", quality.Summary), quality.Summary
+    shown = simple.GetDisplayProperties(quality)
+    assert list(shown.ColorArrayName) == ["CELLS", "Grade"], list(shown.ColorArrayName)
 
 
 @check
@@ -585,6 +620,7 @@ def moved_in_plane():
     assert mesh.GetBounds()[4] == mesh.GetBounds()[5]
     moved = vtk_to_numpy(mesh.GetPointData().GetArray("Displacement"))
     assert numpy.allclose(moved[numpy.argmax(numpy.linalg.norm(moved, axis=1))], (x, y, 0), rtol=1e-6)
+    MOVED.append((x, y))
 
 
 @check

@@ -3,7 +3,9 @@
 
 import os
 
+import numpy
 from paraview import servermanager, simple, smstate
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 import fresh_session
 from session_checks import check, chart_in, find
@@ -14,27 +16,39 @@ STATE = os.path.join(os.environ["TAUTLINE_TEST_DIR"], "own-display")
 
 
 @check
-def no_chart(rows):
+def no_chart(rows, name="MeshImprover"):
     """The history has so many rows: 0, the input was refused; 1, there was nothing to improve."""
-    history = servermanager.Fetch(find("MeshImprover"), idx=1)
+    history = servermanager.Fetch(find(name), idx=1)
     assert history.GetNumberOfRows() == rows, history.GetNumberOfRows()
     (view,), (layout,) = simple.GetViews(), simple.GetLayouts().values()
     assert view.GetXMLName() == "RenderView" and layout.SMProxy.GetViewLocation(view.SMProxy) == 0
 
 
 @check
-def chart_opened():
+def no_chart_of_run():
+    rows = servermanager.Fetch(find("MeshImprover"), idx=1).GetNumberOfRows()
+    assert rows > 1 and len(simple.GetViews()) == 1, (rows, simple.GetViews())
+
+
+@check
+def source_term(expression):
+    solver = find("EllipticSolver")
+    solver.SourceType, solver.SourceExpression = "Expression", expression
+
+
+@check
+def chart_opened(name, left, bottom):
     """Beside the mesh, whose view is active."""
-    improver = find("MeshImprover")
+    source = find(name)
     view, chart = chart_in("XYChartView")
-    rows = servermanager.Fetch(improver, idx=1).GetNumberOfRows()
-    assert chart.Input.SMProxy == improver.SMProxy and rows > 0, (chart.Input, rows)
-    assert (view.LeftAxisTitle, view.BottomAxisTitle) == ("Angle (degrees)", "Pass"), view.LeftAxisTitle
+    rows = servermanager.Fetch(source, idx=1).GetNumberOfRows()
+    assert chart.Input.SMProxy == source.SMProxy and rows > 0, (chart.Input, rows)
+    assert (view.LeftAxisTitle, view.BottomAxisTitle) == (left, bottom), view.LeftAxisTitle
     active = simple.GetActiveView()
     assert len(simple.GetViews()) == 2 and active.GetXMLName() == "RenderView"
     (layout,) = simple.GetLayouts().values()
     assert sorted(layout.SMProxy.GetViewLocation(one.SMProxy) for one in simple.GetViews()) == [1, 2]
-    assert simple.GetDisplayProperties(improver, active).Visibility
+    assert simple.GetDisplayProperties(source, active).Visibility
 
 
 def render_view():
@@ -108,3 +122,20 @@ def selected_cell(cell):
     ids = combined.GetProperty("Input").GetProxy(0).GetProperty("IDs")
     selected = [int(ids.GetElement(i)) for i in range(ids.GetNumberOfElements())]
     assert selected == [-1, cell], selected
+
+
+@check
+def worst_over_time():
+    """One series, the worst element of each iteration, as in the history of the optimizer."""
+    view, chart = chart_in("XYChartView")
+    states = list(chart.SMProxy.GetProperty("SeriesVisibility").GetElement(i) for i in range(
+        chart.SMProxy.GetProperty("SeriesVisibility").GetNumberOfElements()))
+    visible = [name for name, state in zip(states[::2], states[1::2]) if state == "1"]
+    assert len(visible) == 1 and visible[0].startswith("max(imr)"), states
+    assert (view.LeftAxisTitle, view.BottomAxisTitle) == ("Worst imr", "Time"), view.LeftAxisTitle
+    table = servermanager.Fetch(chart.Input).GetBlock(0)
+    worst = vtk_to_numpy(table.GetColumnByName("max(imr)"))
+    history = vtk_to_numpy(servermanager.Fetch(find("MeshOptimizer"), idx=1).GetColumnByName("imr worst"))
+    # The times after the last iteration show its mesh.
+    history = numpy.append(history, numpy.full(len(worst) - len(history), history[-1]))
+    assert len(history) > 2 and numpy.allclose(worst, history, rtol=1e-6), (worst, history)
