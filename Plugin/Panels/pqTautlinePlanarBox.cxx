@@ -141,6 +141,8 @@ void pqTautlinePlanarBox::adapt()
   }
   QObject::connect(widget, &pqPropertyWidget::changeAvailable, this,
     &pqTautlinePlanarBox::keepInPlane, Qt::UniqueConnection);
+  QObject::connect(widget, &pqPropertyWidget::changeFinished, this,
+    &pqTautlinePlanarBox::keepInPlane, Qt::UniqueConnection);
 }
 
 //------------------------------------------------------------------------------

@@ -41,10 +41,10 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   this->setObjectName("TautlineNavigator");
   this->Measure->setObjectName("Measure");
   this->Measure->setToolTip("What the worst elements are the worst by.");
-  this->Measure->setSizeAdjustPolicy(QComboBox::AdjustToContents);
+  constexpr int fewestLetters = 11;
+  this->Measure->setSizeAdjustPolicy(QComboBox::AdjustToMinimumContentsLengthWithIcon);
+  this->Measure->setMinimumContentsLength(fewestLetters);
   this->Element->setObjectName("Element");
-  constexpr int letters = 36;
-  this->Element->setFixedWidth(letters * this->fontMetrics().averageCharWidth());
   this->Layers->setObjectName("Layers");
   this->Layers->setToolTip("Layers of neighbors that Isolate shows around the element.");
   this->Layers->setRange(0, MostLayers);
@@ -140,7 +140,12 @@ void pqTautlineNavigator::fitRow()
     top = std::max(top, other->y());
     end = other->y() == top ? std::max(end, other->geometry().right()) : end;
   }
-  const bool fits = top >= 0 && window->width() - end > this->sizeHint().width();
+  // The text of the element is cut if need be; its tool tip has all of it.
+  constexpr int letters = 25, margin = 12;
+  const int rest = window->width() - end - this->Element->x() - margin;
+  const bool fits = top >= 0 && rest > letters * this->fontMetrics().averageCharWidth();
+  this->Element->setMinimumWidth(fits ? rest : 0);
+  this->Element->setMaximumWidth(fits ? rest : QWIDGETSIZE_MAX);
   if (fits == window->toolBarBreak(this))
   {
     fits ? window->removeToolBarBreak(this) : window->insertToolBarBreak(this);
