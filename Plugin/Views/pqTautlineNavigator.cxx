@@ -49,7 +49,6 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
   this->Layers->setToolTip("Layers of neighbors that Isolate shows around the element.");
   this->Layers->setRange(0, MostLayers);
   this->Layers->setValue(DefaultLayers);
-  this->Layers->setSuffix(" layers");
   const auto add = [this](const char* name, const char* icon, const char* key, const char* tip)
   {
     QAction* action = this->addAction(QIcon(QString(":/Tautline/Icons/") + icon + ".svg"), name);
@@ -141,7 +140,7 @@ void pqTautlineNavigator::fitRow()
     end = other->y() == top ? std::max(end, other->geometry().right()) : end;
   }
   // The text of the element is cut if need be; its tool tip has all of it.
-  constexpr int letters = 25, margin = 12;
+  constexpr int letters = 24, margin = 12;
   const int rest = window->width() - end - this->Element->x() - margin;
   const bool fits = top >= 0 && rest > letters * this->fontMetrics().averageCharWidth();
   this->Element->setMinimumWidth(fits ? rest : 0);
