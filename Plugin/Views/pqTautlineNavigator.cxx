@@ -137,7 +137,9 @@ void pqTautlineNavigator::fitRow()
     }
     end = other->y() > top ? 0 : end;
     top = std::max(top, other->y());
-    end = other->y() == top ? std::max(end, other->geometry().right()) : end;
+    // The last one of a row is stretched.
+    const int right = other->x() + std::min(other->width(), other->sizeHint().width());
+    end = other->y() == top ? std::max(end, right) : end;
   }
   // The text of the element is cut if need be; its tool tip has all of it.
   constexpr int letters = 24, margin = 12;
