@@ -112,7 +112,7 @@ struct GmshInput
 /// The tag of the physical group that an entity is in, per dimension.
 using GmshPhysical = std::vector<std::unordered_map<Index, Index>>;
 
-void readGmshNodes2(GmshInput& input);
+void readGmshNodes2(GmshInput& input, bool parametric);
 void readGmshElements2(GmshInput& input);
 /// $ELM of version 1.
 void readGmshElements1(GmshInput& input);

@@ -21,6 +21,22 @@ void expectEnd(TextCursor& cursor, const std::string& section)
   }
 }
 
+/// Dimension and tag of the entity of a node, and its coordinates on a curve or a surface.
+void skipParameters(GmshInput& input)
+{
+  const auto next = [&](const char* what, Index low, Index high)
+  {
+    return input.binary ? Index{ input.cursor.binary<std::int32_t>(what) }
+                        : input.integer(what, low, high);
+  };
+  const Index dimension = next("dimension of the entity of a node", 0, 3);
+  next("tag of an entity", -LargestGmshNumber, LargestGmshNumber);
+  for (Index i = 0; i < dimension && dimension < 3; ++i)
+  {
+    input.coordinate("parametric coordinate");
+  }
+}
+
 /// Skips a section that is not used.
 void skipSection(TextCursor& cursor, const std::string& section)
 {
@@ -298,9 +314,11 @@ void readSections(GmshInput& input)
       readGmshEntities4(input, physical);
       expectEnd(cursor, section);
     }
-    else if ((section == "Nodes" || (section == "NOD" && version == 1.0)) && !nodes)
+    else if ((section == "Nodes" || (section == "NOD" && version == 1.0) ||
+               (section == "ParametricNodes" && version < 4.0)) &&
+      !nodes)
     {
-      version >= 4.0 ? readGmshNodes4(input) : readGmshNodes2(input);
+      version >= 4.0 ? readGmshNodes4(input) : readGmshNodes2(input, section == "ParametricNodes");
       expectEnd(cursor, section);
       nodes = true;
     }
@@ -326,7 +344,7 @@ void readSections(GmshInput& input)
       }
       readData(input, section == "NodeData");
     }
-    else if (section == "Nodes" || section == "Elements")
+    else if (section == "Nodes" || section == "ParametricNodes" || section == "Elements")
     {
       cursor.failAt(place, "a second section " + word);
     }
@@ -366,7 +384,7 @@ double GmshInput::coordinate(const char* what)
 }
 
 //------------------------------------------------------------------------------
-void readGmshNodes2(GmshInput& input)
+void readGmshNodes2(GmshInput& input, bool parametric)
 {
   TextCursor& cursor = input.cursor;
   const Index count = input.integer("number of nodes", 0, LargestGmshNumber);
@@ -381,6 +399,10 @@ void readGmshNodes2(GmshInput& input)
     for (std::size_t c = 0; c < 3; ++c)
     {
       input.mesh.points[3 * i + c] = input.coordinate("coordinate");
+    }
+    if (parametric)
+    {
+      skipParameters(input);
     }
     cursor.countRecord();
   }

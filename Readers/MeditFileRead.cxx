@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "MeditFile.h"
+#include "MeditContents.h"
 
 #include "FileNames.h"
 #include "FileSet.h"
@@ -8,24 +8,11 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <map>
 
 namespace tautline
 {
 namespace
 {
-/// The sections of a file as they come.
-struct Contents
-{
-  int dimension = 0;
-  Index points = -1;
-  std::vector<double> coordinates;
-  std::vector<Index> pointReferences;
-  std::map<unsigned char, std::vector<Index>> nodes;      ///< by type of cell
-  std::map<unsigned char, std::vector<Index>> references; ///< by type of cell
-  std::map<std::string, std::vector<Index>> lists;        ///< Corners, Ridges, ... as ids
-};
-
 std::string nextWord(TextCursor& cursor, const char* what)
 {
   if (!cursor.skipToToken())
@@ -54,7 +41,7 @@ Index sectionSize(TextCursor& cursor, const std::string& section, std::size_t nu
   return count;
 }
 
-void readVertices(TextCursor& cursor, Contents& contents)
+void readVertices(TextCursor& cursor, MeditContents& contents)
 {
   if (contents.dimension == 0)
   {
@@ -81,7 +68,7 @@ void readVertices(TextCursor& cursor, Contents& contents)
   }
 }
 
-void readCells(TextCursor& cursor, const MeditSection& section, Contents& contents)
+void readCells(TextCursor& cursor, const MeditSection& section, MeditContents& contents)
 {
   if (contents.points < 0)
   {
@@ -101,10 +88,9 @@ void readCells(TextCursor& cursor, const MeditSection& section, Contents& conten
       cursor.skipToToken();
       nodes[node++] = cursor.integer("vertex", 1, contents.points) - 1;
     }
-    if (section.type == FileWedge) // counter-clockwise from inside; VTK's from outside
+    if (section.type == FileWedge)
     {
-      std::swap(nodes[node - 5], nodes[node - 4]);
-      std::swap(nodes[node - 2], nodes[node - 1]);
+      turnMeditWedge(nodes, node);
     }
     cursor.skipToToken();
     references[reference++] = cursor.integer("reference");
@@ -113,7 +99,7 @@ void readCells(TextCursor& cursor, const MeditSection& section, Contents& conten
 }
 
 /// Corners, RequiredVertices, Ridges, RequiredEdges, RequiredTriangles: lists of numbers.
-void readList(TextCursor& cursor, const std::string& section, Contents& contents)
+void readList(TextCursor& cursor, const std::string& section, MeditContents& contents)
 {
   std::vector<Index>& ids = contents.lists[section];
   for (Index count = sectionSize(cursor, section, 1); count > 0; --count)
@@ -123,25 +109,61 @@ void readList(TextCursor& cursor, const std::string& section, Contents& contents
   }
 }
 
-/// Everything up to the next keyword.
-void skipSection(TextCursor& cursor)
+/**
+ * Everything up to the next keyword. At the end of the file, what was skipped must be a count and
+ * as many records of one length.
+ */
+void skipSection(TextCursor& cursor, const std::string& section, std::vector<std::string>& warnings)
 {
-  while (cursor.skipToToken() && !std::isalpha(static_cast<unsigned char>(*cursor.place())))
+  const char* start = cursor.place();
+  Index count = -1, words = 0;
+  for (; cursor.skipToToken() && !std::isalpha(static_cast<unsigned char>(*cursor.place()));
+       ++words)
   {
-    cursor.word();
+    const std::string_view word = cursor.word();
+    const char* end = word.data() + word.size();
+    if (words == 0 && std::from_chars(word.data(), end, count).ptr != end)
+    {
+      count = -1; // no count: a real number, a name
+    }
+  }
+  if (count > 0 && isMeditCellSection(section))
+  {
+    warnings.push_back(std::to_string(count) + " cells of the section " + section +
+      ", which are curved or have any number of points, are left out");
+  }
+  const Index values = words - 1;
+  const bool complete =
+    words > 0 && (count > 0 ? values >= count && values % count == 0 : values == 0 || count < 0);
+  if (cursor.atEnd() && !complete)
+  {
+    cursor.failAt(start, "the file ends within the section " + section);
   }
 }
 
-void readSections(TextCursor& cursor, Contents& contents)
+/// At the end of a file without the keyword End, which must have cells.
+void warnOfMissingEnd(
+  const char* what, const TextCursor& cursor, bool complete, std::vector<std::string>& warnings)
+{
+  if (!complete)
+  {
+    cursor.fail("the file ends without the keyword End: it is truncated");
+  }
+  const bool cut = !std::isspace(static_cast<unsigned char>(cursor.place()[-1]));
+  warnings.push_back(meditWithoutEnd(what) + (cut ? ", and its last number may be cut off" : ""));
+}
+
+void readSections(TextCursor& cursor, MeditContents& contents)
 {
   while (cursor.skipToToken())
   {
     const char* place = cursor.place();
     const std::string word(cursor.word());
     const auto* section = std::find_if(std::begin(MeditSections), std::end(MeditSections),
-      [&](const MeditSection& s) { return word == s.name; });
-    const bool list = word == "Corners" || word == "RequiredVertices" || word == "Ridges" ||
-      word == "RequiredEdges" || word == "RequiredTriangles";
+      [&](const MeditSection& s)
+      { return word == s.name || (word == "Hexaedra" && s.type == FileHexahedron); });
+    const bool list = std::any_of(std::begin(MeditLists), std::end(MeditLists),
+      [&](const MeditList& each) { return word == each.name; });
     if (word == "End")
     {
       return;
@@ -164,7 +186,7 @@ void readSections(TextCursor& cursor, Contents& contents)
     }
     else if (!word.empty() && std::isalpha(static_cast<unsigned char>(word[0])))
     {
-      skipSection(cursor);
+      skipSection(cursor, word, contents.warnings);
     }
     else
     {
@@ -173,11 +195,11 @@ void readSections(TextCursor& cursor, Contents& contents)
           "' (is the count of the section before it right?)");
     }
   }
-  cursor.fail("the file ends without the keyword End");
+  warnOfMissingEnd("the file", cursor, contents.hasCells(), contents.warnings);
 }
 
 /// A 0/1 array from a list of ids.
-MeshArray flags(const TextCursor& cursor, const char* name, const std::vector<Index>& ids,
+MeshArray flags(const FileContent& file, const char* name, const std::vector<Index>& ids,
   std::size_t begin, std::size_t count, MeshArray array)
 {
   if (array.size() == 0)
@@ -189,28 +211,30 @@ MeshArray flags(const TextCursor& cursor, const char* name, const std::vector<In
   {
     if (begin + static_cast<std::size_t>(id) >= values.size())
     {
-      cursor.fail(std::string(name) + ": number " + std::to_string(id + 1) + " is out of range");
+      throw FileError(
+        file.name() + ": " + name + ": number " + std::to_string(id + 1) + " is out of range");
     }
     values[begin + static_cast<std::size_t>(id)] = 1;
   }
   return array;
 }
 
-MeshFile assemble(const TextCursor& cursor, Contents contents)
+MeshFile assemble(const FileContent& file, MeditContents contents)
 {
   MeshFile mesh;
+  mesh.warnings = std::move(contents.warnings);
   mesh.points = std::move(contents.coordinates);
   const auto points = contents.pointReferences.size();
   mesh.pointArrays.push_back({ "Reference", 1, std::move(contents.pointReferences) });
   MeshArray fixed, corner, ridge, required;
   if (contents.lists.count("Corners"))
   {
-    corner = flags(cursor, "Corner", contents.lists["Corners"], 0, points, {});
-    fixed = flags(cursor, "Fixed", contents.lists["Corners"], 0, points, {});
+    corner = flags(file, "Corner", contents.lists["Corners"], 0, points, {});
+    fixed = flags(file, "Fixed", contents.lists["Corners"], 0, points, {});
   }
   if (contents.lists.count("RequiredVertices"))
   {
-    fixed = flags(cursor, "Fixed", contents.lists["RequiredVertices"], 0, points, fixed);
+    fixed = flags(file, "Fixed", contents.lists["RequiredVertices"], 0, points, fixed);
   }
   std::vector<Index> references;
   std::map<unsigned char, std::size_t> begins;
@@ -225,17 +249,17 @@ MeshFile assemble(const TextCursor& cursor, Contents contents)
   mesh.cellArrays.push_back({ "Reference", 1, std::move(references) });
   if (contents.lists.count("Ridges"))
   {
-    ridge = flags(cursor, "Ridge", contents.lists["Ridges"], begins[FileLine], cells, {});
+    ridge = flags(file, "Ridge", contents.lists["Ridges"], begins[FileLine], cells, {});
   }
   if (contents.lists.count("RequiredEdges"))
   {
     required =
-      flags(cursor, "Required", contents.lists["RequiredEdges"], begins[FileLine], cells, {});
+      flags(file, "Required", contents.lists["RequiredEdges"], begins[FileLine], cells, {});
   }
   if (contents.lists.count("RequiredTriangles"))
   {
-    required = flags(cursor, "Required", contents.lists["RequiredTriangles"], begins[FileTriangle],
-      cells, required);
+    required = flags(
+      file, "Required", contents.lists["RequiredTriangles"], begins[FileTriangle], cells, required);
   }
   for (MeshArray* array : { &fixed, &corner, &ridge, &required })
   {
@@ -262,6 +286,15 @@ void readHeader(TextCursor& cursor)
     cursor.fail("expected MeshVersionFormatted: this is no ASCII file of Medit");
   }
   nextInteger(cursor, "version", 0, 4); // 0: bamg
+}
+
+MeditContents readText(const FileContent& file)
+{
+  TextCursor cursor(file, '#');
+  readHeader(cursor);
+  MeditContents contents;
+  readSections(cursor, contents);
+  return contents;
 }
 
 /// One field of a .sol section.
@@ -406,15 +439,58 @@ void readSolutionSection(TextCursor& cursor, const FileContent& file, const std:
 }
 
 //------------------------------------------------------------------------------
+std::string meditWithoutEnd(const char* what)
+{
+  return std::string(what) +
+    " ends without the keyword End: its sections are complete, but others may be missing";
+}
+
+//------------------------------------------------------------------------------
+bool MeditContents::hasCells() const
+{
+  return std::any_of(this->references.begin(), this->references.end(),
+    [](const auto& each) { return !each.second.empty(); });
+}
+
+//------------------------------------------------------------------------------
+void turnMeditWedge(std::vector<Index>& nodes, std::size_t end)
+{
+  std::swap(nodes[end - 5], nodes[end - 4]);
+  std::swap(nodes[end - 2], nodes[end - 1]);
+}
+
+//------------------------------------------------------------------------------
+bool isMeditCellSection(const std::string& section)
+{
+  if (section == "Polygons" || section == "Polyhedra")
+  {
+    return true;
+  }
+  const std::size_t at = section.size() < 2 ? 0 : section.size() - 2; // TrianglesP2, HexahedraQ3
+  return at > 0 && (section[at] == 'P' || section[at] == 'Q') && section[at + 1] >= '2' &&
+    section[at + 1] <= '4' && section.find("At") == section.npos;
+}
+
+//------------------------------------------------------------------------------
 void readMeditSolution(const FileContent& file, MeshFile& mesh)
 {
   TextCursor cursor(file, '#');
   readHeader(cursor);
   int dimension = 0;
   std::vector<MeshArray> pointArrays, cellArrays;
-  std::string word = nextWord(cursor, "Dimension");
-  for (; word != "End"; word = nextWord(cursor, "the keyword End"))
+  for (;;)
   {
+    if (!cursor.skipToToken())
+    {
+      warnOfMissingEnd(
+        "its .sol", cursor, !pointArrays.empty() || !cellArrays.empty(), mesh.warnings);
+      break;
+    }
+    const std::string word(cursor.word());
+    if (word == "End")
+    {
+      break;
+    }
     if (word == "Dimension")
     {
       dimension = static_cast<int>(nextInteger(cursor, "dimension", 2, 3));
@@ -443,7 +519,7 @@ void readMeditSolution(const FileContent& file, MeshFile& mesh)
     }
     else if (std::isalpha(static_cast<unsigned char>(word[0])))
     {
-      skipSection(cursor);
+      skipSection(cursor, word, mesh.warnings);
     }
     else
     {
@@ -459,17 +535,15 @@ MeshFile readMedit(const std::string& name, bool lowerCells)
 {
   const auto [stem, extension] = splitExtension(name);
   const bool solution = extension == "sol";
-  const std::string meshName = solution ? stem + ".mesh" : name;
+  const std::string text = stem + ".mesh", binary = stem + ".meshb";
+  const bool isBinary = solution ? !fileExists(text) && fileExists(binary) : extension == "meshb";
+  const std::string meshName = !solution ? name : isBinary ? binary : text;
   const FileContent file(meshName, solution ? "the mesh of " + name : std::string());
   SetCheck set;
   set.add(file);
-  TextCursor cursor(file, '#');
-  readHeader(cursor);
-  Contents contents;
-  readSections(cursor, contents);
-  MeshFile mesh = assemble(cursor, std::move(contents));
+  MeshFile mesh = assemble(file, isBinary ? readMeditBinary(file) : readText(file));
   const std::string solutionName = stem + ".sol";
-  if (solution || fileExists(solutionName))
+  if (solution || (fileExists(solutionName) && (!isBinary || !fileExists(text))))
   {
     readMeditSolution(set.add(FileContent(solutionName)), mesh);
   }

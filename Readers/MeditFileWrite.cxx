@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <optional>
 
 namespace tautline
@@ -58,28 +60,124 @@ Sections sortCells(const MeshFile& mesh, const std::string& name)
   return sections;
 }
 
-void writeVertices(TextOutput& out, const MeshFile& mesh, int dimension)
+const MeshArray* pointReference(const MeshFile& mesh)
 {
   const MeshArray* reference = findArray(mesh.pointArrays, "Reference");
   reference = whole(reference) ? reference : findArray(mesh.pointArrays, "BoundaryMarker");
-  reference = whole(reference) ? reference : nullptr;
-  out << "\nVertices\n" << mesh.numberOfPoints();
-  out.endLine();
+  return whole(reference) ? reference : nullptr;
+}
+
+/// The sections of a .mesh or .meshb.
+class MeditOutput
+{
+public:
+  /// version: of a binary file; 0: text.
+  MeditOutput(TextOutput& out, std::int32_t version, int dimension)
+    : Out(out)
+    , Version(version)
+  {
+    if (!version)
+    {
+      out << "MeshVersionFormatted 2\nDimension " << dimension << '\n';
+      return;
+    }
+    this->word(1);
+    this->word(version);
+    this->header(MeditDimension, sizeof(std::int32_t));
+    this->word(dimension);
+  }
+  /// Begins a section of records with this many real and whole numbers each.
+  void section(const char* name, int code, Index count, std::size_t reals, std::size_t integers)
+  {
+    if (!this->Version)
+    {
+      this->Out << '\n' << name << '\n' << count;
+      this->Out.endLine();
+      return;
+    }
+    const std::size_t record = reals * sizeof(double) + integers * this->integerSize();
+    this->header(code, this->integerSize() + static_cast<std::size_t>(count) * record);
+    this->wide(count, this->integerSize());
+  }
+  /// Numbers within a record.
+  void real(double value)
+  {
+    this->Version ? this->Out.binary(value) : void(this->Out << value << ' ');
+  }
+  void integer(Index value)
+  {
+    this->Version ? this->wide(value, this->integerSize()) : void(this->Out << value << ' ');
+  }
+  /// The last number of a record: the value i of an array, 0 without one.
+  void last(const MeshArray* array, std::size_t i)
+  {
+    const auto* values = array ? std::get_if<MeshArray::Integers>(&array->values) : nullptr;
+    this->last(values ? (*values)[i] : array ? static_cast<Index>(array->at(i)) : 0);
+  }
+  void last(Index value)
+  {
+    if (this->Version)
+    {
+      this->wide(value, this->integerSize());
+      this->Out.endRecord();
+      return;
+    }
+    this->Out << value;
+    this->Out.endLine();
+  }
+  void end()
+  {
+    if (!this->Version)
+    {
+      this->Out << "\nEnd\n";
+      return;
+    }
+    this->word(MeditEnd);
+    this->wide(0, this->positionSize());
+  }
+
+private:
+  std::size_t integerSize() const
+  {
+    return this->Version >= 4 ? sizeof(std::int64_t) : sizeof(std::int32_t);
+  }
+  std::size_t positionSize() const
+  {
+    return this->Version >= 3 ? sizeof(std::int64_t) : sizeof(std::int32_t);
+  }
+  void word(std::int32_t value) { this->Out.binary(value); }
+  void wide(Index value, std::size_t bytes)
+  {
+    bytes == sizeof(std::int64_t) ? this->Out.binary(static_cast<std::int64_t>(value))
+                                  : this->Out.binary(static_cast<std::int32_t>(value));
+  }
+  /// The code of a section and the place of the next one.
+  void header(int code, std::size_t bytes)
+  {
+    constexpr std::size_t start = 2 * sizeof(std::int32_t);
+    this->Place =
+      (this->Place ? this->Place : start) + sizeof(std::int32_t) + this->positionSize() + bytes;
+    this->word(code);
+    this->wide(static_cast<Index>(this->Place), this->positionSize());
+  }
+
+  TextOutput& Out;
+  std::int32_t Version;
+  std::size_t Place = 0; ///< of the next section
+};
+
+void writeVertices(MeditOutput& out, const MeshFile& mesh, int dimension)
+{
+  const MeshArray* reference = pointReference(mesh);
+  out.section(
+    "Vertices", MeditVertices, mesh.numberOfPoints(), static_cast<std::size_t>(dimension), 1);
   for (std::size_t i = 0; i < static_cast<std::size_t>(mesh.numberOfPoints()); ++i)
   {
     for (int c = 0; c < dimension; ++c)
     {
-      out << mesh.points[3 * i + static_cast<std::size_t>(c)] << ' ';
+      out.real(mesh.points[3 * i + static_cast<std::size_t>(c)]);
     }
-    if (reference)
-    {
-      out.value(*reference, i);
-    }
-    else
-    {
-      out << 0;
-    }
-    out.endLine();
+    out.last(reference, i);
   }
 }
 
@@ -94,7 +192,7 @@ const MeshArray* referenceOf(const MeshFile& mesh, unsigned char type, int dimen
   return whole(second) ? second : nullptr;
 }
 
-void writeSection(TextOutput& out, const MeshFile& mesh, const MeditSection& section,
+void writeSection(MeditOutput& out, const MeshFile& mesh, const MeditSection& section,
   const std::vector<Index>& cells)
 {
   if (cells.empty())
@@ -102,8 +200,8 @@ void writeSection(TextOutput& out, const MeshFile& mesh, const MeditSection& sec
     return;
   }
   const MeshArray* reference = referenceOf(mesh, section.type, mesh.dimension());
-  out << '\n' << section.name << '\n' << static_cast<Index>(cells.size());
-  out.endLine();
+  out.section(section.name, section.code, static_cast<Index>(cells.size()), 0,
+    static_cast<std::size_t>(cellNodes(section.type)) + 1);
   for (const Index cell : cells)
   {
     const auto at = static_cast<std::size_t>(cell);
@@ -112,23 +210,15 @@ void writeSection(TextOutput& out, const MeshFile& mesh, const MeditSection& sec
     for (Index i = 0; i < size; ++i)
     {
       const Index node = mesh.offsets[at] + (section.type == FileWedge ? WedgeOrder[i] : i);
-      out << mesh.connectivity[static_cast<std::size_t>(node)] + 1 << ' ';
+      out.integer(mesh.connectivity[static_cast<std::size_t>(node)] + 1);
     }
-    if (reference)
-    {
-      out.value(*reference, at);
-    }
-    else
-    {
-      out << 0;
-    }
-    out.endLine();
+    out.last(reference, at);
   }
 }
 
 /// The numbers, from 1, of the nonzero entries.
 void writeList(
-  TextOutput& out, const char* section, const MeshArray* flags, const std::vector<Index>& of)
+  MeditOutput& out, const char* section, const MeshArray* flags, const std::vector<Index>& of)
 {
   if (!flags || flags->components != 1)
   {
@@ -142,13 +232,36 @@ void writeList(
       numbers.push_back(static_cast<Index>(i) + 1);
     }
   }
-  out << '\n' << section << '\n' << static_cast<Index>(numbers.size());
-  out.endLine();
+  const auto* list = std::find_if(std::begin(MeditLists), std::end(MeditLists),
+    [section](const MeditList& each) { return std::string(each.name) == section; });
+  out.section(section, list->code, static_cast<Index>(numbers.size()), 0, 1);
   for (const Index number : numbers)
   {
-    out << number;
-    out.endLine();
+    out.last(number);
   }
+}
+
+/// The oldest version of binary files with room for the mesh.
+std::int32_t versionFor(const MeshFile& mesh)
+{
+  constexpr Index Most = std::numeric_limits<std::int32_t>::max();
+  constexpr Index PointBytes = 48, CellBytes = 16, NodeBytes = 4, Headers = 1000; // with the lists
+  bool wide = mesh.numberOfPoints() > Most || mesh.numberOfCells() > Most;
+  for (const auto* arrays : { &mesh.pointArrays, &mesh.cellArrays })
+  {
+    for (const MeshArray& array : *arrays)
+    {
+      if (const auto* values = std::get_if<MeshArray::Integers>(&array.values))
+      {
+        wide = wide ||
+          std::any_of(values->begin(), values->end(),
+            [](Index value) { return value > Most || value < -Most - 1; });
+      }
+    }
+  }
+  const Index size = PointBytes * mesh.numberOfPoints() + CellBytes * mesh.numberOfCells() +
+    NodeBytes * static_cast<Index>(mesh.connectivity.size()) + Headers;
+  return wide ? 4 : size > Most ? 3 : 2;
 }
 
 bool symmetric(const MeshArray& array, int dimension)
@@ -309,14 +422,15 @@ std::optional<TextOutput> solutionFile(const MeshFile& mesh, const std::string& 
 std::vector<std::string> writeMedit(const MeshFile& mesh, const std::string& name)
 {
   const auto [stem, extension] = splitExtension(name);
-  if (extension != "mesh")
+  const bool binary = extension == "meshb";
+  if (extension != "mesh" && !binary)
   {
-    throw FileError(name + ": .mesh is expected as the file's ending");
+    throw FileError(name + ": .mesh is expected as the file's ending, or .meshb");
   }
   const Sections sections = sortCells(mesh, name);
   const int dimension = mesh.planar() ? 2 : 3;
-  TextOutput out(name);
-  out << "MeshVersionFormatted 2\nDimension " << dimension << '\n';
+  TextOutput text(name);
+  MeditOutput out(text, binary ? versionFor(mesh) : 0, dimension);
   writeVertices(out, mesh, dimension);
   const std::vector<Index> points = numbersTo(mesh.numberOfPoints());
   writeList(out, "Corners", findArray(mesh.pointArrays, "Corner"), points);
@@ -335,9 +449,13 @@ std::vector<std::string> writeMedit(const MeshFile& mesh, const std::string& nam
       writeList(out, "RequiredTriangles", findArray(mesh.cellArrays, "Required"), sections[i]);
     }
   }
-  out << "\nEnd\n";
+  out.end();
   std::vector<TextOutput> files;
-  files.push_back(std::move(out));
+  files.push_back(std::move(text));
+  if (binary)
+  {
+    return replaceSet(files);
+  }
   const std::string solution = stem + ".sol";
   if (std::optional<TextOutput> values = solutionFile(mesh, solution))
   {
@@ -347,5 +465,19 @@ std::vector<std::string> writeMedit(const MeshFile& mesh, const std::string& nam
   replaceSet(files);
   std::remove(solution.c_str());
   return { name };
+}
+
+//------------------------------------------------------------------------------
+std::string meditArraysLeftOut(const MeshFile& mesh)
+{
+  std::string names;
+  for (const auto* arrays : { &mesh.pointArrays, &mesh.cellArrays })
+  {
+    for (const MeshArray& array : *arrays)
+    {
+      names += inMesh(array) ? "" : (names.empty() ? "" : ", ") + array.name;
+    }
+  }
+  return names;
 }
 }

@@ -69,6 +69,12 @@ void TextOutput::value(const MeshArray& array, std::size_t i)
 void TextOutput::endLine()
 {
   this->Buffer.push_back('\n');
+  this->endRecord();
+}
+
+//------------------------------------------------------------------------------
+void TextOutput::endRecord()
+{
   if (this->Buffer.size() > BufferSize)
   {
     this->flush();

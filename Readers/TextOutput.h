@@ -49,6 +49,8 @@ public:
   }
   /// Ends a line and hands full buffers to the system.
   void endLine();
+  /// Hands full buffers to the system, for records that are no lines.
+  void endRecord();
   /// A check sum of the content so far, not of cryptographic strength.
   std::uint64_t checkSum() const;
   /// The complete file, to be replaced with others; throws FileError when a byte was not written.

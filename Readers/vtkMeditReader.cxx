@@ -20,5 +20,9 @@ int vtkMeditReader::CanReadFile(const char* name)
 {
   const std::string extension = tautline::splitExtension(name).second;
   const std::string start = tautline::firstWord(name);
+  if (extension == "meshb")
+  {
+    return tautline::isMeditBinary(name);
+  }
   return (extension == "mesh" || extension == "sol") && start == "MeshVersionFormatted";
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeditReader
- * @brief Reads Medit's ASCII .mesh (versions 1 and 2) and .sol files.
+ * @brief Reads Medit's .mesh (text), .meshb (binary, versions 1 to 4) and .sol files.
  *
- * A .mesh brings its .sol companion, a .sol its .mesh. Point arrays: `Reference`, `Fixed` (required
- * vertices and corners), `Corner`, fields of the .sol. Cell arrays: `Reference`, `Ridge`,
+ * A .mesh or .meshb brings its .sol companion, a .sol its .mesh. Point arrays: `Reference`, `Fixed`
+ * (required vertices and corners), `Corner`, fields of the .sol. Cell arrays: `Reference`, `Ridge`,
  * `Required`. Tensors of a .sol become 3 x 3 matrices, row by row, the format of the metric-tensor
  * targets.
  *
- * Limits: .meshb (binary) and curved (P2) cells are not read; normals and tangents are skipped.
+ * Limits: curved (P2) cells are left out, with a warning; binary .solb are not read; normals and
+ * tangents are skipped.
  *
  * @sa vtkMeshFileReader vtkMeditWriter tautline::readMedit
  */

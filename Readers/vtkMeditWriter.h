@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @class vtkMeditWriter
- * @brief Writes Medit's ASCII .mesh (version 2), and a .sol for the arrays a .mesh cannot hold.
+ * @brief Writes Medit's .mesh (text, version 2), with a .sol for the arrays it cannot hold, or
+ * .meshb (binary), without these arrays.
  *
  * `Reference` (else `BoundaryMarker`) is the reference of points and cells, of boundary cells
  * `BoundaryMarker` comes first. `Fixed`, `Corner`, `Ridge`, `Required` become RequiredVertices,

@@ -178,7 +178,7 @@ void fuzzTetGen(std::string_view bytes)
 //------------------------------------------------------------------------------
 void fuzzMedit(std::string_view bytes)
 {
-  fuzzSet(bytes, { "mesh", "sol" }, readMedit, writeMedit);
+  fuzzSet(bytes, { "mesh", "meshb", "sol" }, readMedit, writeMedit);
 }
 
 //------------------------------------------------------------------------------

@@ -39,7 +39,25 @@ PLANE = (
     "Quadrilaterals 1\n1 2 3 4 0\nEnd\n"
 )
 SOL = "MeshVersionFormatted 2\nDimension 3\nSolAtVertices\n5\n3 1 2 3\n" + "1 2 3 4 5 6 7 8 9 10\n" * 5 + "End\n"
+
+
+def meshb() -> bytes:
+    """A tetrahedron and a triangle in a binary file of version 2."""
+    content = struct.pack("<2i", 1, 2)
+    points = b"".join(struct.pack("<3di", *row) for row in ((0, 0, 0, 1), (1, 0, 0, 2), (0, 1, 0, 3), (0, 0, 1, 4)))
+    for code, data in (
+        (3, struct.pack("<i", 3)),
+        (4, struct.pack("<i", 4) + points),
+        (8, struct.pack("<6i", 1, 1, 2, 3, 4, 5)),
+        (6, struct.pack("<5i", 1, 1, 2, 3, 6)),
+        (15, struct.pack("<2i", 1, 2)),
+    ):
+        content += struct.pack("<2i", code, len(content) + 8 + len(data)) + data
+    return content + struct.pack("<2i", 54, 0)
+
+
 MEDIT = {
+    "binary": b"@meshb\n" + meshb(),
     "tetrahedra": "@mesh\n" + MESH,
     "quadrilateral": "@mesh\n" + PLANE,
     "solution": "@sol\n" + SOL + "@mesh\n" + MESH,

@@ -39,7 +39,7 @@ inline std::string readText(const std::string& name)
 inline MeshFile readByName(const std::string& name, bool lowerCells)
 {
   const std::string extension = splitExtension(name).second;
-  if (extension == "mesh" || extension == "sol")
+  if (extension == "mesh" || extension == "meshb" || extension == "sol")
   {
     return readMedit(name, lowerCells);
   }
