@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of solvers through VTK's readers and meshio, time steps, meshio's objects, the table of formats."""
 
+import base64
 import gzip
 import sys
 import warnings
+import zlib
 from importlib.util import find_spec
+from pathlib import Path
 
 import numpy as np
 import tautline as tl
@@ -128,6 +131,33 @@ def test_exodus():
     refused("broken.e: ", tl.read, FOLDER / "broken.e")
 
 
+#: A file of the older kind of CGNS, ADF, of four tetrahedra, written by the library of CGNS, compressed.
+ADF = (
+    "eNrtWNFumzAUZe36sq/wD1SyjQOkD+tcAlWlNA8tm9a+TKS4G1JnJiDVsj/ZXvey/cX+YT/ST5jdksQBgpG6RlHKiRLA9wbsc88Bmz+/fv6m"
+    "Ax8MwjwchxkD71iaxQkHFGKI0Gsa+fA8zMEouQXYARgfQPvAtAGG2AICIo40cTw8Er8mROKMBDr3X+UjYgTOgCCd71nInLfDI7pIgVD8p3ft"
+    "jnO17TH7/lXORsmASSZOk/wTS0dJxEAFZ0kihypCyTWQyX58o6YVp8TF1plfBPvWaQAaAdcKOeogjIdy1O7x6HwYj9Mwnc6qv4Rq/EPepufy"
+    "GmdEM2pUU5KnGOwDiEXlqM9HwVhps3QMLOoolChd0qaOxMETPslYBBjP0ymIOcgm430u5LMvzCaFo3Zwm3MzHniDMAgX3Njej+8XbyKPD6QC"
+    "dZzK+sicZd1VOEcV31kOPWmrQLwWBfZsRypwiY1eH+4ahiG/M0YuE97IiIyvYkNhxKww0kdEywgu9dp8UkZs36t40vapjgGFPdL57D940kF0"
+    "TyjwpfEAVYnB9AtrUqKMa7xZKwAXtfSmuxZvUsepKJE6RMeAwqB3nMaRmyRpFPMwZ9nqXEqdgOVZC4UjiEz8rJRIKXnLszydXOWTlEUzJeq4"
+    "LcUrglx5T3T7ZINnZ/MRva/tmZy50zQNpysM2Dg7c1r6r7cW/3mw6j8PEh0Di0VC31vkXjTnekQ576V2VvGs/OcRaCzh7tAowbzH38OZN3W8"
+    "b5FKfZNWZnC+jY1aLJhTGfu2MViu3eV2105sfatUO/F0xZ7RiLvDstp1T27vhn0W1ss0c6LyewIETXOz1isIYuxUGMMEvirNEosRn4X8Y+08"
+    "6YRH7Ot9tJ6Tpo5sGCOEltcrso3qGFDYI0Wum3DOrvL4Ns6n9bnEpd16pfYpJbmxXhTrlZIKV/L6mDtZWxUiuBYV9lxY8aWFoGRkp3iXIFdz"
+    "M4Z2iuOd4liN7xZtewWToEOHDh06dOjQocPW4h/1J1GW"
+)  # fmt: skip
+
+
+def test_adf():
+    """CGNS of the older kind is read like the newer one; a file that is cut is an error."""
+    content = zlib.decompress(base64.b64decode(ADF))
+    file = FOLDER / "old.cgns"
+    file.write_bytes(content)
+    mesh = tl.read(file)
+    assert mesh.GetNumberOfCells() == 4 and mesh.GetPoint(4) == (0.3, 0.3, 0.3)
+    for size in (100, 1500, 4000):
+        (FOLDER / "cut.cgns").write_bytes(content[:size])
+        refused("cut.cgns: ", tl.read, FOLDER / "cut.cgns")
+
+
 def test_ucd():
     for ending in (".avs", ".ucd", ".inp"):
         (FOLDER / f"one{ending}").write_text(UCD)
@@ -209,13 +239,39 @@ def test_medit():
     text = "MeshVersionFormatted 0\nDimension\n2\nVertices\n3\n0 0 1\n1 0 1\n0 1 1\nTriangles\n1\n1 2 3 1\nEnd\n"
     (FOLDER / "bamg.mesh").write_text(text)
     assert tl.quality(FOLDER / "bamg.mesh").mesh.GetNumberOfCells() == 1
+    # without the keyword End: sfepy, libigl and meshio have such files
+    (FOLDER / "open.mesh").write_text(text.removesuffix("End\n"))
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        assert tl.quality(FOLDER / "open.mesh").mesh.GetNumberOfCells() == 1
+    assert len(told) == 1 and wording("ends-without-the-keyword-end") in str(told[0].message)
+    (FOLDER / "open.mesh").write_text(text.removesuffix(" 1\nEnd\n"))
+    refused("open.mesh", tl.read, FOLDER / "open.mesh")
     (FOLDER / "mfem.mesh").write_text("MFEM mesh v1.0\n\ndimension\n2\n")
     refused(wording("mfem-mesh-1-this-is-a-mesh"), tl.read, FOLDER / "mfem.mesh")
+    result = tl.quality(DATA / "bracket.vtu", "imr")
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        tl.write(result, FOLDER / "binary.meshb", binary=True)
+        tl.write(tl.read(FOLDER / "binary.meshb"), FOLDER / "again.meshb")
+    assert len(told) == 1 and "imr" in str(told[0].message), told
+    again = tl.read(FOLDER / "binary.meshb")
+    assert np.array_equal(points(again), points(result.mesh))
+    assert again.GetNumberOfCells() == result.mesh.GetNumberOfCells()
+    if find_spec("meshio"):
+        import meshio
+
+        other = meshio.read(FOLDER / "binary.meshb")
+        assert np.array_equal(other.points, points(again)) and len(other.cells[0].data) == again.GetNumberOfCells()
+        meshio.write(FOLDER / "theirs.meshb", other)
+        theirs = tl.quality(FOLDER / "theirs.meshb", "imr")
+        assert np.array_equal(theirs.values["imr"], result.values["imr"])
 
 
 def test_formats():
     rows = {row["ending"]: row for row in tl.formats()}
-    assert rows[".vtu"] == {"ending": ".vtu", "format": "VTK", "read": True, "write": True, "times": False, "by": "VTK"}
+    assert rows[".vtu"] == {"ending": ".vtu", "format": "VTK", "read": True, "write": True, "times": False, "by": "VTK",
+                            "comes_back": True}  # fmt: skip
     assert rows[".e"]["times"] and rows[".e"]["read"] and not rows[".e"]["write"]
     assert rows[".msh"]["by"] == "Tautline" and rows[".pvd"]["times"]
     assert len(shell("formats").splitlines()) == len(rows) + 2
@@ -228,6 +284,23 @@ def test_formats():
         except tl.Error as error:
             missing = wording("no-reader"), wording("not-installed-2")
             assert row["read"] == (not any(text in str(error) for text in missing)), error
+
+
+def test_table():
+    """The table of the documentation is what formats() lists where meshio and h5py are installed."""
+    page = Path(__file__).parents[2] / "Plugin" / "Site" / "formats.md"
+    if not (find_spec("meshio") and find_spec("h5py")):
+        return
+    shown = {True: "yes", False: "-"}
+    lines = ["| Ending | Format | Read by | Written | Time steps | Comes back |", f"|{' --- |' * 6}"]
+    for row in tl.formats():
+        by = row["by"] if row["read"] or row["ending"] in (".xmf", ".xdmf") else "-"  # VTK of ParaView reads XDMF
+        answers = [shown[row[key]] for key in ("write", "times", "comes_back")]
+        values = [f"`{row['ending']}`", row["format"], by, *answers]
+        lines.append(f"| {' | '.join(values)} |")
+    text = page.read_text(encoding="utf-8")
+    start, end = text.index("| Ending |"), text.index("\n<!-- end of formats -->")
+    assert text[start:end].splitlines() == lines, "replace the table by\n" + "\n".join(lines)
 
 
 def test_meshio():
@@ -294,6 +367,21 @@ def test_round_trips():
                 found, known = tl.quality(file, "size"), tl.quality(mesh, "size")
                 assert (found.validity > -2).sum() == mesh.GetNumberOfCells() and found.inverted == 0, file
                 assert np.isclose(found.values["size"].sum(), known.values["size"].sum(), rtol=1e-4), file
+
+
+def test_moab():
+    """meshio writes lines, triangles and tetrahedra without arrays of cells: others are refused, arrays announced."""
+    if not find_spec("h5py") or not find_spec("meshio"):
+        return
+    file = FOLDER / "moab.h5m"
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        tl.write(tl.quality(square(2), "imr"), file)
+    assert len(told) == 1 and wording("arrays-of-cells-are-left-out") in str(told[0].message), told
+    quads = tl.from_arrays([[0, 0], [1, 0], [1, 1], [0, 1]], {"quadrilateral": [[0, 1, 2, 3]]})
+    before = file.read_bytes()
+    refused(wording("has-no-cells-quad"), tl.write, quads, file)
+    assert file.read_bytes() == before
 
 
 def test_su2():

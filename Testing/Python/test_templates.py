@@ -3,6 +3,7 @@
 
 import re
 import shutil
+import struct
 import subprocess
 import sys
 import warnings
@@ -262,6 +263,95 @@ def test_gmsh():
             if binary:
                 size = file.stat().st_size
                 assert (FOLDER / "back.msh").stat().st_size == size
+
+
+def test_other_systems():
+    """Points that the file has in other coordinates than the mesh: the error names the reason and a remedy."""
+    source, target = FOLDER / "moved.bdf", FOLDER / "out-moved.bdf"
+    target.unlink(missing_ok=True)
+    system = "CORD2R         7       0      5.      0.      0.      5.      0.      1.\n"
+    system += "              6.      0.      0.\n"
+    grid = "GRID           6       7      0.      0.      0.\n"
+    cell = "CTRIA3        99       1       1       2       6\n"
+    source.write_text(NASTRAN.replace("ENDDATA", system + grid + cell + "ENDDATA"))
+    mesh = tl.read(source)
+    assert points(mesh)[:, 0].max() == 5, points(mesh)
+    refused(wording("in-the-basic-system"), tl.write, mesh, target, template=source)
+    source, target = FOLDER / "moved.inp", FOLDER / "out-moved.inp"
+    part = "*Part, name=A\n*Node\n1, 0., 0., 0.\n2, 1., 0., 0.\n3, 1., 1., 0.\n*Element, type=CPS3\n1, 1, 2, 3\n"
+    part += "*End Part\n"
+    placed = [f"*Instance, name=A-{i}, part=A\n {i}., 0., 0.\n*End Instance\n" for i in (1, 2)]
+    for instances in (placed[0], "".join(placed)):
+        source.write_text(f"*Heading\n{part}*Assembly, name=Assembly\n{instances}*End Assembly\n")
+        refused(wording("without-parts-and-assemblies"), tl.write, tl.read(source), target, template=source)
+
+
+def test_parametric():
+    """Gmsh's nodes with parametric coordinates, as text and binary: the same mesh; text comes back as it was."""
+    rows = "1 0 0 0 0 1\n2 1 0 0 0 2\n3 1 1 0 1 5 .5\n40 0 1 0 2 6 .25 .75\n5 .4 .5 0 3 1\n"
+    nodes = MSH2[MSH2.index("$Nodes") : MSH2.index("$Elements")]
+    text = MSH2.replace(nodes, f"$ParametricNodes\n5\n{rows}$EndParametricNodes\n")
+    source, target = FOLDER / "parametric.msh", FOLDER / "out-parametric.msh"
+    source.write_text(text)
+    tl.write(moved(source), target, template=source)
+    assert target.read_text() == text.replace("5 .4 .5 0 3 1", f"5 {1 / 3!r} {2 / 3!r} 0 3 1")
+    content = b"$MeshFormat\n2.2 1 8\n" + struct.pack("<i", 1) + b"\n$EndMeshFormat\n$ParametricNodes\n5\n"
+    for row in rows.splitlines():
+        words = row.split()
+        content += struct.pack("<i3d2i", int(words[0]), *map(float, words[1:4]), *map(int, words[4:6]))
+        content += b"".join(struct.pack("<d", float(word)) for word in words[6:])
+    content += b"\n$EndParametricNodes\n$Elements\n1\n" + struct.pack("<9i", 2, 1, 2, 7, 2, 1, 1, 2, 5)
+    source.write_bytes(content + b"\n$EndElements\n")
+    mesh = tl.read(source)
+    assert np.array_equal(points(mesh)[3:], [[0, 1, 0], [0.4, 0.5, 0]]) and mesh.GetNumberOfCells() == 1
+    refused(wording("parametric-nodes"), tl.write, mesh, target, template=source)
+    source.write_text(text.replace("40 0 1 0 2 6 .25 .75", "40 0 1 0 2 6 .25"))
+    refused("parametric.msh:", tl.read, source)
+
+
+def meshb(version: int, order: str) -> bytes:
+    """A binary file of Medit, in two dimensions: the square of the text files, an edge and a section not read."""
+    whole, position = ("q" if version >= least else "i" for least in (4, 3))
+    real = "f" if version == 1 else "d"
+    content = struct.pack(f"{order}2i", 1, version)
+
+    def section(code: int, data: bytes) -> None:
+        nonlocal content
+        end = len(content) + struct.calcsize(f"={position}") + 4 + len(data)
+        content += struct.pack(f"{order}i{position}", code, end) + data
+
+    def records(layout: str, rows: list) -> bytes:
+        return struct.pack(f"{order}{whole}", len(rows)) + b"".join(struct.pack(order + layout, *row) for row in rows)
+
+    section(3, struct.pack(f"{order}i", 2))
+    section(4, records(2 * real + whole, [(0, 0, 7), (1, 0, 8), (1, 1, 9), (0, 1, 9), (0.375, 0.5, 6)]))
+    section(20, records(2 * whole, [(1, 1)]))
+    section(6, records(4 * whole, [(1, 2, 5, 1), (2, 3, 5, 1), (3, 4, 5, 2), (4, 1, 5, 2)]))
+    section(5, records(3 * whole, [(1, 2, 4)]))
+    return content + struct.pack(f"{order}i{position}", 54, 0)
+
+
+def test_meshb():
+    """Binary files of Medit: only the coordinates of the inner point change, rounded where the file has 4 bytes."""
+    source, target = FOLDER / "a.meshb", FOLDER / "out.meshb"
+    for version in (1, 2, 3, 4):
+        for order in "<>":
+            content = meshb(version, order)
+            source.write_bytes(content)
+            mesh = tl.read(source)
+            assert (mesh.GetNumberOfPoints(), mesh.GetNumberOfCells()) == (5, 4), (version, order)
+            mesh.GetPoints().SetPoint(4, 1 / 3, 2 / 3, 0)
+            with warnings.catch_warnings(record=True) as told:
+                warnings.simplefilter("always")
+                tl.write(mesh, target, template=source)
+            assert len(told) == (version == 1), [str(one.message) for one in told]
+            real = struct.Struct(f"{order}2{'f' if version == 1 else 'd'}")
+            assert target.read_bytes() == content.replace(real.pack(0.375, 0.5), real.pack(1 / 3, 2 / 3)) != content
+    mesh.GetPoints().SetPoint(4, 0.4, 0.5, 0.1)
+    refused(wording("leaves-the-plane"), tl.write, mesh, target, template=source)
+    mesh.GetPoints().SetPoint(4, 1e300, 0.5, 0)
+    source.write_bytes(meshb(1, "<"))
+    refused(wording("too-large-for-its-numbers"), tl.write, mesh, target, template=source)
 
 
 def test_refused():

@@ -54,6 +54,21 @@ _PLACES = (
 )
 
 
+#: The attribute of mesh objects with the file they come from.
+_SOURCE = "source_file"
+
+
+def source_of(data: Any) -> str:
+    """The full name of the file that a mesh was read from, or the mesh that a filter has moved; "" if there is none."""
+    return str(getattr(data, _SOURCE, ""))
+
+
+def keep_source(data: Any, file: str) -> None:
+    """Note the file of a mesh; it is no part of the mesh and is not written."""
+    if file:
+        setattr(data, _SOURCE, file)
+
+
 def leaves(data: vtkDataObject) -> Iterator[vtkDataSet]:
     """The data set itself, or the blocks of a composite one in order."""
     if isinstance(data, vtkDataSet):
@@ -141,6 +156,7 @@ class InputArrays:
     def __init__(self, algorithm: Any, mesh: vtkDataObject) -> None:
         self.algorithm, self.mesh = algorithm, mesh
         self._added: list[str] = []
+        self._source = source_of(mesh)
 
     def use(
         self, index: int, values: float | Values | None, name: str, on: str = ANY, *, scalar: bool = False
@@ -159,7 +175,8 @@ class InputArrays:
         self.algorithm.SetInputArrayToProcess(index, 0, 0, association, found)
 
     def remove_from(self, output: vtkDataObject) -> vtkDataObject:
-        """Remove the added arrays from the output of the filter; returns the output."""
+        """Remove the added arrays from the output of the filter, which gets the source of the mesh; returns it."""
+        keep_source(output, self._source)
         for leaf in leaves(output) if self._added else ():
             for name in self._added:
                 leaf.GetPointData().RemoveArray(name)

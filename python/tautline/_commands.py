@@ -35,6 +35,8 @@ _HELP_WIDTH = 100
 _INPUTS = ("mesh", "input", "before", "after", "reference", "target", "geometry", "outline", "surface")
 _STANDARD_INPUT = "standard-input.vtu"
 _IMPROVE = "improve"  # the command that changes cells
+#: Commands that move points, and can write formats of which there are only copies with other coordinates.
+_MOVING = ("optimize", "untangle", "warp", "perturb")
 
 EXIT_CODES = """exit codes:
   0    done
@@ -317,7 +319,8 @@ def check_outputs(arguments: argparse.Namespace) -> None:
     if len(streams) > 1:
         raise Error(f"{' and '.join(streams)} would all write to the standard output: choose one")
     if output and output != STREAM:
-        check_output(output)
+        source = getattr(arguments, "mesh", None)
+        check_output(output, source if isinstance(source, str) and arguments.command in _MOVING else "")
     for name in ("csv", "report"):
         if getattr(arguments, name, None):
             check_stream_or_target(_stream(getattr(arguments, name)))
@@ -383,12 +386,7 @@ def finish(
 def _write(arguments: argparse.Namespace, result: Any, options: dict[str, Any]) -> list[str]:
     """Write a mesh; after a motion of points, to the format that was read: the file itself with new coordinates."""
     source, output = getattr(arguments, "mesh", None), arguments.output
-    if isinstance(source, str) and not options and hasattr(result, "displacement") and can_be_template(source, output):
-        try:
-            return write(result, output, template=source)
-        except Error as error:
-            warnings.warn(f"{error}; {output} is written anew", stacklevel=2)
-    elif isinstance(source, str) and arguments.command == _IMPROVE and can_be_template(source, output):
+    if isinstance(source, str) and arguments.command == _IMPROVE and can_be_template(source, output):
         lost = losses(source)
         if lost:
             warnings.warn(f"{output}: points and cells changed, so it lacks {lost} of {source}", stacklevel=2)

@@ -9,14 +9,15 @@ from typing import Any
 from . import _commands
 from ._errors import checked
 from ._formats import FORMATS
-from ._io import SU2, read, readable
+from ._io import SU2, is_template, read, readable
 from ._meshio import MESHIO_FORMATS, installed
 from ._tables import align
 from ._vtk_readers import SERIES, SOLVER_FORMATS
 
 _OWN = {
     ".node": "TetGen, Triangle", ".ele": "TetGen, Triangle", ".face": "TetGen, Triangle", ".edge": "TetGen, Triangle",
-    ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit", ".sol": "Medit", ".msh": "Gmsh, FreeFem++",
+    ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit", ".meshb": "Medit, binary",
+    ".sol": "Medit", ".msh": "Gmsh, FreeFem++",
     ".pos": "Gmsh's views", ".msh2": "Gmsh", ".msh4": "Gmsh",
     ".off": "OFF", ".coff": "OFF", ".noff": "OFF", ".cnoff": "OFF", ".ply": "PLY", ".stl": "STL",
     ".obj": "Wavefront OBJ",
@@ -31,13 +32,14 @@ def formats() -> list[dict[str, Any]]:
     -------
     list[dict[str, Any]]
         A dict for each: ending; format (its name); read, write (whether it is possible here); times (whether files have
-        time steps); by ("Tautline", "VTK" or "meshio", which reads it).
+        time steps); by ("Tautline", "VTK" or "meshio", which reads it); comes_back (whether a file can be the template
+        of write(), so that after a motion of points it comes back with new coordinates and all else as it was).
 
     Examples
     --------
     >>> [form["ending"] for form in tautline.formats() if form["write"]]
     """
-    return [_facts(ending) for ending in sorted({*readable(), *FORMATS})]
+    return [_facts(ending) | {"comes_back": is_template(ending)} for ending in sorted({*readable(), *FORMATS})]
 
 
 def _facts(ending: str) -> dict[str, Any]:

@@ -53,7 +53,7 @@ _TETGEN = Format("vtkTetGenReader", "vtkTetGenWriter", "vtkDataSet")
 _OFF = "vtkOffReader"
 _OWN_FORMATS = {
     **dict.fromkeys((".node", ".ele", ".face", ".edge", ".poly", ".smesh"), _TETGEN),
-    ".mesh": Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet"),
+    **dict.fromkeys((".mesh", ".meshb"), Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet")),
     ".sol": Format("vtkMeditReader", None, "vtkDataSet"),
     ".msh": Format("vtkGmshReader", "vtkGmshWriter", "vtkDataSet"),
     **dict.fromkeys((".msh2", ".msh4"), Format("vtkGmshReader", None, "vtkDataSet")),

@@ -8,6 +8,7 @@ import os
 import shutil
 import warnings
 import zlib
+from importlib.util import find_spec
 from os import PathLike
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -18,7 +19,8 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkStringOutputWindow
 from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet, vtkPointSet
 
-from ._arrays import leaves
+from ._array_templates import ARRAY_TEMPLATES, rewrite_arrays
+from ._arrays import Array, keep_source, leaves, source_of
 from ._arguments import number
 from ._errors import Error, checked, interruptible, plain, run, watch
 from ._files import check_input, check_target, file_name, require_memory
@@ -35,6 +37,7 @@ from ._surfaces import check_surface
 from ._template import LOCATORS, rewrite
 from ._views import MeshViews, viewed
 from ._vtk_readers import (
+    EXODUS_ENDINGS,
     SERIES,
     SOLVER_FORMATS,
     SolverFormat,
@@ -69,7 +72,7 @@ _CONVERTERS = {
     ".iges": "it is a geometry without a mesh: mesh it with Gmsh",
     ".pos": "it holds views without their mesh: write .msh",
     ".geo": "it is a geometry without a mesh: mesh it with Gmsh",
-    ".meshb": "save it as text, .mesh, with the program that wrote it",
+    ".solb": "save it as text, .sol, with the program that wrote it",
     ".cdb": "save it as Nastran .bdf in ANSYS",
     ".ans": "save it as Nastran .bdf in ANSYS",
 }
@@ -77,15 +80,16 @@ SU2 = ".su2"
 # Files compressed by gzip, of formats whose meshes are in one file.
 _COMPRESSED = ".gz"
 _OF_ONE_FILE = (
-    ".msh", ".msh2", ".msh4", ".mesh", ".inp", ".bdf", ".nas", ".fem", ".su2", ".off", ".vtk", ".vtu", ".vtp", ".stl",
-    ".ply", ".obj",
+    ".msh", ".msh2", ".msh4", ".mesh", ".meshb", ".inp", ".bdf", ".nas", ".fem", ".su2", ".off", ".vtk", ".vtu", ".vtp",
+    ".stl", ".ply", ".obj",
 )  # fmt: skip
+_ALWAYS_BINARY = ".meshb"
 # Formats whose readers in VTK crash on damaged files.
 _UNSAFE = (".ply", ".obj")
 # Formats of VTK that are templates by their data.
 _VTK_TEMPLATES = (".vtk", ".vtu")
 # Formats with cells that are only read on demand, and with more than a mesh.
-_WITH_LOWER_CELLS = (".msh", ".mesh", ".su2", ".inp", ".bdf", ".nas", ".fem")
+_WITH_LOWER_CELLS = (".msh", ".mesh", ".meshb", ".su2", ".inp", ".bdf", ".nas", ".fem")
 _MODELS = (".inp", ".bdf", ".nas", ".fem")
 # Of the extent of a mesh: coordinates that are rounded by more are worth a warning.
 _ROUNDING = 1e-9
@@ -128,8 +132,8 @@ def read(
     ----------
     file : str or path
         VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was built,
-        TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .sol), Gmsh and FreeFem++ (.msh), OFF
-        (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2, Exodus (.e
+        TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .meshb .sol), Gmsh and FreeFem++ (.msh),
+        OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2, Exodus (.e
         .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam), Gambit (.neu),
         Fluent (.cas), Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen (.vol) and others, see formats().
         Formats of one file also with .gz behind their ending.
@@ -163,7 +167,9 @@ def read(
     mesh = _read_compressed(name, options) if name.lower().endswith(_COMPRESSED) else _read(name, options)
     for leaf in leaves(mesh):
         check_grid(leaf, name)
-    return viewed(mesh)
+    made = viewed(mesh)
+    keep_source(made, os.path.abspath(name))
+    return made
 
 
 def _read_compressed(name: str, options: dict[str, Any]) -> vtkDataObject:
@@ -318,7 +324,7 @@ def write(
     file: str | PathLike[str],
     *,
     groups: Groups | None = None,
-    template: str | PathLike[str] | None = None,
+    template: str | PathLike[str] | bool | None = None,
     progress: Progress | bool | None = None,
     **options: Any,
 ) -> list[str]:
@@ -330,16 +336,19 @@ def write(
         A vtkDataSet, a composite data set, the result of another function, a file name or (points, cells).
     file : str or path
         VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl), always binary and compressed where the format can be; or,
-        where the module of readers was built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh),
-        Gmsh (.msh, and .pos: a view for each array), OFF (.off).
+        where the module of readers was built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh
+        .meshb), Gmsh (.msh, and .pos: a view for each array), OFF (.off).
     groups : Groups, optional
         Sets of cells by name: numbers of cells from 0, or a mask of one value per cell; see QualityResult.groups().
         They are element sets in Abaqus's .inp and groups in Salome's .med, in other files cell arrays of 0 and 1.
-    template : str or path, optional
+    template : str, path or bool, optional
         The file that the mesh was read from, of the same format. The output is a copy of it in which only the
         coordinates are those of the mesh: markers, sets, materials, types of elements, comments and the format of the
         numbers stay. The mesh must have the cells of that file, in its order, as after untangle(), optimize(), warp()
-        and perturb(); its arrays are not written. For .msh, .mesh, .su2, .inp, .bdf .nas .fem, .off, .vtk and .vtu.
+        and perturb(); its arrays are not written. For .msh, .mesh, .meshb, .su2, .inp, .bdf .nas .fem, .off, .vtk and
+        .vtu; Salome's .med, CGNS, Exodus and MOAB's .h5m, where h5py is installed (Exodus also without it, unless it is
+        in HDF5). The default, for the results of these functions: the file that the mesh was read from if it is of the
+        same format, except VTK's. False: none; the mesh is written with its arrays.
     **options
         binary (False): write .msh as bytes. Not for formats of VTK.
     progress : bool or callable, optional
@@ -363,11 +372,19 @@ def write(
     """
     name = file_name(file)
     ending = Path(name).suffix.lower()
-    form = check_output(name)
-    if template is not None:
+    if template is not None and not isinstance(template, bool):
         if groups is not None or options:
             raise Error(f"{name}: with a template there are no groups and no other options")
-        return _write_like(as_data_set(mesh), name, file_name(template))
+        check_target(name)
+        return _write_like(as_mesh(mesh), name, file_name(template))
+    source = _source_for(mesh, name) if template is not False and groups is None and not options else ""
+    form = check_output(name, source)
+    if source:
+        try:
+            return _write_like(as_mesh(mesh), name, source)
+        except Error as error:
+            check_output(name)  # which fails where there is only a copy
+            warnings.warn(f"{error}; {name} is written anew", stacklevel=4)
     if form is None:
         _check_options(name, ending, options, None)
         one = as_data_set(mesh)
@@ -389,13 +406,28 @@ def write(
     return write_composite(data, name) if ending == ".vtm" else write_data(data, name, form)
 
 
+def _source_for(mesh: Mesh, name: str) -> str:
+    """The file whose points a result has moved, if it can be the template; else ""."""
+    inner = getattr(mesh, "mesh", None)
+    source = source_of(inner) if inner is not None and hasattr(mesh, "displacement") else ""
+    return source if source and os.path.isfile(source) and can_be_template(source, name) else ""
+
+
+def is_template(ending: str) -> bool:
+    """Whether files with an ending can be templates of write() here."""
+    if ending in ARRAY_TEMPLATES:
+        older = ending in EXODUS_ENDINGS  # netCDF, without HDF5
+        return ending in readable() and (older or find_spec("h5py") is not None)
+    return ending in LOCATORS or ending in _VTK_TEMPLATES
+
+
 def can_be_template(source: str, target: str) -> bool:
     """Whether a file can be the template of another one: both are of one format, and of one for which that is useful.
 
     Files of VTK have everything in the mesh.
     """
     ending = Path(target).suffix.lower()
-    return ending in LOCATORS and ending == Path(source).suffix.lower()
+    return (ending in LOCATORS or ending in ARRAY_TEMPLATES) and ending == Path(source).suffix.lower()
 
 
 def losses(source: str) -> str:
@@ -411,35 +443,51 @@ def losses(source: str) -> str:
     return " and ".join(found)
 
 
-def _write_like(data: vtkDataSet, name: str, source: str) -> list[str]:
+def _write_like(data: vtkDataObject, name: str, source: str) -> list[str]:
     """Write a copy of a file with the coordinates of a mesh."""
     ending = Path(name).suffix.lower()
     if ending != Path(source).suffix.lower():
         raise Error(f"{name}: the template {source} is of another format")
-    if ending not in LOCATORS and ending not in _VTK_TEMPLATES:
-        known = " ".join(sorted([*LOCATORS, *_VTK_TEMPLATES]))
+    if ending not in LOCATORS and ending not in _VTK_TEMPLATES and ending not in ARRAY_TEMPLATES:
+        known = " ".join(sorted([*LOCATORS, *_VTK_TEMPLATES, *ARRAY_TEMPLATES]))
         raise Error(f"{name}: files '{ending}' cannot be templates; these can: {known}")
     lower = ending == SU2 or (ending in FORMATS and FORMATS[ending].own)
-    found = read(source)
-    if lower and isinstance(found, vtkDataSet) and found.GetNumberOfCells() != data.GetNumberOfCells():
-        found = read(source, lower_cells=True)
-    if not isinstance(found, vtkPointSet) or not isinstance(data, vtkPointSet):
-        raise Error(f"{name}: a template holds one mesh with points of its own, not a {found.GetClassName()}")
-    if not same_cells(found, data):
+    with warnings.catch_warnings():  # these were issued when the mesh was read
+        warnings.simplefilter("ignore")
+        found = read(source)
+        if lower and isinstance(found, vtkDataSet) and _cells(found) != _cells(data):
+            found = read(source, lower_cells=True)
+    mine, its = list(leaves(data)), list(leaves(found))
+    if len(its) > 1 and ending not in ARRAY_TEMPLATES:
+        raise Error(f"{name}: a template holds one mesh, not a {found.GetClassName()}")
+    if not all(isinstance(leaf, vtkPointSet) for leaf in (*mine, *its)):
+        raise Error(f"{name}: a template holds a mesh with points of its own, not a {found.GetClassName()}")
+    if len(mine) != len(its) or not all(map(same_cells, its, mine)):
         raise Error(f"{name}: the mesh has other cells or another number of points than the template {source}; leave "
                     "out template")  # fmt: skip
     if ending in _VTK_TEMPLATES:
         made = found.NewInstance()
         made.ShallowCopy(found)
-        made.SetPoints(data.GetPoints())
+        made.SetPoints(mine[0].GetPoints())
         return write_data(made, name, FORMATS[ending])
-    before, after = (np.array(vtk_to_numpy(mesh.GetPoints().GetData()), float) for mesh in (found, data))
-    if not np.isfinite(after).all():
+    before, after = ([_coordinates(leaf) for leaf in parts] for parts in (its, mine))
+    if not all(np.isfinite(part).all() for part in after):
         raise Error(f"{name}: a coordinate is not finite")
-    rounding = rewrite(source, name, before, after)
-    if rounding > _ROUNDING * np.ptp(after, axis=0).max():
+    if ending in ARRAY_TEMPLATES:
+        rounding = rewrite_arrays(source, name, ending, before, after)
+    else:
+        rounding = rewrite(source, name, before[0], after[0])
+    if rounding > _ROUNDING * max(np.ptp(part, axis=0).max() for part in after):
         warnings.warn(f"{name}: the fields of the file round coordinates by up to {rounding:.2g}", stacklevel=5)
     return [name]
+
+
+def _cells(data: vtkDataObject) -> int:
+    return sum(leaf.GetNumberOfCells() for leaf in leaves(data))
+
+
+def _coordinates(mesh: vtkPointSet) -> Array:
+    return np.array(vtk_to_numpy(mesh.GetPoints().GetData()), float)
 
 
 @checked
@@ -467,10 +515,11 @@ def to_meshio(mesh: Mesh) -> Any:
     return meshio_of(as_data_set(mesh))
 
 
-def check_output(file: str | PathLike[str]) -> Format | None:
-    """The format of a mesh to be written; None: SU2, or meshio writes it.
+def check_output(file: str | PathLike[str], source: str = "") -> Format | None:
+    """The format of a mesh to be written; None: SU2, or meshio writes it, or it is a copy of `source`.
 
-    Raises Error if there is no writer for it or no file can be made there.
+    source: the file the mesh was read from. Raises Error if there is no writer for the format or no file can be made
+    there.
     """
     name = file_name(file)
     ending = Path(name).suffix.lower()
@@ -479,6 +528,9 @@ def check_output(file: str | PathLike[str]) -> Format | None:
         return None
     if ending in MESHIO_FORMATS:
         check_installed(name)
+        check_target(name)
+        return None
+    if (ending not in FORMATS or not FORMATS[ending].writer) and can_be_template(source, name):
         check_target(name)
         return None
     if ending not in FORMATS or not FORMATS[ending].writer:
@@ -556,7 +608,7 @@ def _write_own(data: vtkDataSet, name: str, form: Format, binary: bool) -> list[
     writer = form.make_writer()
     if hasattr(writer, "SetBinary"):
         writer.SetBinary(binary)
-    elif binary:
+    elif binary and Path(name).suffix.lower() != _ALWAYS_BINARY:
         raise Error(f"{name}: '{Path(name).suffix}' is always text")
     writer.SetInputData(writable(data))
     writer.SetFileName(name)

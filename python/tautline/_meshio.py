@@ -63,12 +63,14 @@ _ONE_LABEL = (".ugrid",)
 _LABELS = ("Reference", "ugrid:ref", "BoundaryMarker")
 _DIMENSION = {"line": 1, "triangle": 2, "quad": 2, "tetra": 3, "hexahedron": 3, "wedge": 3, "pyramid": 3}
 PACKAGE = "meshio (Debian: apt-get install python3-meshio)"
-_HDF5_FORMATS = (".med", ".h5m")
+_MOAB = ".h5m"
+_HDF5_FORMATS = (".med", _MOAB)
 _HDF5_PACKAGE = "h5py (Debian: apt-get install python3-h5py)"
 #: The cells of formats that do not have all of meshio's.
 _ONLY_CELLS = {
     ".f3grid": ("FLAC3D", {"tetra", "pyramid", "wedge", "hexahedron", "triangle", "quad"}, 3),
     ".xml": ("DOLFIN", {"triangle", "tetra"}, 2),
+    _MOAB: ("MOAB's format, as meshio writes it,", {"line", "triangle", "tetra"}, 0),
     # meshio writes line3 as B33H, which has two nodes
     ".inp": ("Abaqus", set(_CELLS) - {"line3", "vertex", "pyramid", "pyramid13", "triangle7", "hexahedron27"}, 0),
 }
@@ -158,8 +160,12 @@ def write_meshio(data: vtkDataSet, name: str, groups: Groups | None = None) -> l
         data = cast(vtkDataSet, with_groups(data, groups or {}))
     made = meshio_of(data)
     if ending == ".med":
-        made = _by_type(made, *families(sets, data.GetNumberOfCells()))
+        tags, names = families(sets, data.GetNumberOfCells())
+        made = _by_type(made, {"cell_tags": tags})
+        made.cell_tags = names
     _check_cells(name, ending, made)
+    if ending == _MOAB:
+        made = _without_cell_data(name, _by_type(made, {}))
     made = _labeled(made) if ending in _ONE_LABEL else made
     with replacing_by_name(name) as temporary:
         _quietly(name, "write", lambda: meshio.write(temporary, made), temporary)
@@ -188,21 +194,26 @@ def _labeled(mesh: Any) -> Any:
     return type(mesh)(mesh.points, [(block.type, block.data) for block in mesh.cells], cell_data=labels)
 
 
-def _by_type(mesh: Any, tags: Array, names: dict[int, list[str]]) -> Any:
-    """A mesh with one block for each type of cells, and the families of MED."""
+def _without_cell_data(name: str, mesh: Any) -> Any:
+    """The mesh without arrays of cells, which meshio cannot write to this format."""
+    if mesh.cell_data:
+        warnings.warn(f"{name}: the arrays of cells are left out: {', '.join(mesh.cell_data)}", stacklevel=6)
+    return type(mesh)(mesh.points, [(block.type, block.data) for block in mesh.cells], point_data=mesh.point_data)
+
+
+def _by_type(mesh: Any, more: dict[str, Array]) -> Any:
+    """A mesh with one block for each type of cells, and more arrays of cells."""
     blocks = [block.type for block in mesh.cells]
-    data = {name: np.concatenate(values) for name, values in mesh.cell_data.items()} | {"cell_tags": tags}
+    data = {name: np.concatenate(values) for name, values in mesh.cell_data.items()} | more
     types = np.repeat(np.arange(len(blocks)), [len(block.data) for block in mesh.cells])
     kinds = list(dict.fromkeys(blocks))
     of_kind = np.array([kinds.index(block) for block in blocks])[types] if blocks else types
-    made = type(mesh)(
+    return type(mesh)(
         mesh.points,
         [(kind, np.concatenate([b.data for b in mesh.cells if b.type == kind])) for kind in kinds],
         point_data=mesh.point_data,
         cell_data={name: [values[of_kind == i] for i in range(len(kinds))] for name, values in data.items()},
     )
-    made.cell_tags = names
-    return made
 
 
 def _quietly(name: str, verb: str, action: Callable[[], Any], temporary: str = "") -> Any:
@@ -221,7 +232,8 @@ def _quietly(name: str, verb: str, action: Callable[[], Any], temporary: str = "
     except (Exception, SystemExit) as error:
         reason = "" if isinstance(error, SystemExit) else str(error) or type(error).__name__
         text = " ".join(f"{reason} {said.getvalue()}".split()).replace(temporary or name, name)
-        raise Error(f"{name}: meshio cannot {verb} it: {text or type(error).__name__}") from None
+        remedy = "; write .vtu or .msh" if verb == "write" else ""
+        raise Error(f"{name}: meshio cannot {verb} it: {text or type(error).__name__}{remedy}") from None
     if text := " ".join(said.getvalue().split()).replace(temporary or name, name):
         warnings.warn(f"{name}: meshio: {text}", stacklevel=2)
     return result

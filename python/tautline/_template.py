@@ -8,13 +8,13 @@ After a motion of points, the file is copied and only its coordinates are replac
 from __future__ import annotations
 
 import re
-import struct
 from pathlib import Path
 from typing import Callable, Iterator
 
 import numpy as np
 
 from ._arrays import Array
+from ._binary_coordinates import BLOCKS, NUMBERS_FIRST, changed, check_equal, coordinates_in, with_coordinates
 from ._errors import Error
 from ._files import replace_bytes
 
@@ -22,14 +22,14 @@ from ._files import replace_bytes
 _Span = tuple[int, int]
 _TOKEN = re.compile(rb"\S+")
 _NUMBER = re.compile(rb"([+-]?)(\d*)(\.?)(\d*)(?:([eEdD])([+-]?)(\d+))?")
+_OTHER_SYSTEM = re.compile(rb"^CORD[123][RCS]", re.MULTILINE | re.IGNORECASE)
+_PLACED = re.compile(rb"^\*(INSTANCE|SYSTEM)\b", re.MULTILINE | re.IGNORECASE)
 #: Numbers of a file are written with as many digits as they have in it, where that is a fixed number of at least this.
 _FEWEST_DIGITS = 8
 _EXACT_DIGITS = 17  # of a double
+_VOLUME = 3  # dimension of an entity without parametric coordinates
 _SMALL_FIELD, _LARGE_FIELD = 8, 16  # characters, of Nastran
 _GRID_FIELD, _LARGE_GRID_FIELD = 24, 40  # where x begins
-_DOUBLE = struct.calcsize("d")
-_SIZE = struct.calcsize("Q")
-_BLOCKS, _NUMBERS_FIRST = 4.0, 4.1  # Gmsh's versions with blocks of points, and with all numbers of a block first
 
 
 def rewrite(source: str, target: str, before: Array, after: Array) -> float:
@@ -41,16 +41,22 @@ def rewrite(source: str, target: str, before: Array, after: Array) -> float:
     """
     content = Path(source).read_bytes()
     ending = Path(source).suffix.lower()
-    if ending in _GMSH and (place := _binary_msh(source, content)) is not None:
-        replace_bytes(target, _with_doubles(source, content, place, before, after))
-        return 0.0
+    if (place := coordinates_in(source, content)) is not None:
+        made, rounding = with_coordinates(source, content, place, before, after)
+        replace_bytes(target, made)
+        return rounding
     try:
         spans = list(LOCATORS[ending](content))
     except (RuntimeError, ValueError, IndexError):  # a generator ends where tokens are missing
-        raise _changed(source, "the section of the points is damaged") from None
+        raise changed(source, "the section of the points is damaged") from None
     nastran = ending in _NASTRAN
     numbers = [[content[a:b] for a, b in point] for point in spans]
-    _check(source, numbers, before)
+    try:
+        _check(source, numbers, before)
+    except Error as error:
+        if reason := _other_coordinates(ending, content):
+            raise changed(source, reason) from None
+        raise error from None
     layout = None if nastran else _layout([text for point in numbers for text in point])
     parts: list[bytes] = []
     at, rounding = 0, 0.0
@@ -71,23 +77,27 @@ def rewrite(source: str, target: str, before: Array, after: Array) -> float:
     return rounding
 
 
-def _changed(source: str, reason: str) -> Error:
-    return Error(f"{source}: its coordinates cannot be replaced: {reason}")
+def _other_coordinates(ending: str, content: bytes) -> str:
+    """Why a model has its points in other coordinates than the mesh, with a remedy; "" if nothing is known."""
+    if ending in _NASTRAN and _OTHER_SYSTEM.search(content):
+        return (
+            "points of GRID are in coordinate systems of their own: save the model with GRID in the basic system, "
+            "or write .vtu or .msh"
+        )
+    if ending == ".inp" and _PLACED.search(content):
+        return (
+            "the points are those of parts, which instances place in the model: save it without parts and assemblies "
+            "(Abaqus/CAE: model attributes), or write .vtu or .msh"
+        )
+    return ""
 
 
 def _check(source: str, numbers: list[list[bytes]], before: Array) -> None:
     """Raise Error unless the numbers found are the coordinates that were read."""
     if len(numbers) != len(before):
-        raise _changed(source, f"it has {len(numbers)} points and the mesh {len(before)}")
+        raise changed(source, f"it has {len(numbers)} points and the mesh {len(before)}")
     found = np.array([[_value(text) for text in point] + [0.0] * (3 - len(point)) for point in numbers])
-    _check_equal(source, found.reshape(-1, 3), before)
-
-
-def _check_equal(source: str, found: Array, before: Array) -> None:
-    wrong = (found != before).any(axis=1)
-    if wrong.any():
-        i = int(np.flatnonzero(wrong)[0])
-        raise _changed(source, f"point {i} is at {found[i].tolist()} in it and at {before[i].tolist()} as it is read")
+    check_equal(source, found.reshape(-1, 3), before)
 
 
 # --- numbers ---------------------------------------------------------------------------------------------------
@@ -175,7 +185,7 @@ def _tokens(content: bytes, begin: int, end: int) -> Iterator[_Span]:
 
 def _msh(content: bytes) -> Iterator[list[_Span]]:
     """Gmsh's text, versions 1, 2, 4.0 and 4.1; FreeFem++'s, which begins with the numbers of points and elements."""
-    section = re.search(rb"^\$(Nodes|NOD)\b[^\n]*\n", content, re.MULTILINE)
+    section = re.search(rb"^\$(Nodes|NOD|ParametricNodes)\b[^\n]*\n", content, re.MULTILINE)
     if not section:
         yield from _freefem(content)
         return
@@ -190,24 +200,28 @@ def _msh(content: bytes) -> Iterator[list[_Span]]:
         return int(content[slice(*take())])
 
     first = whole()
-    if number < _BLOCKS:
+    if number < BLOCKS:
         for _ in range(first):
             take()
             yield [take(), take(), take()]
+            if section[1] == b"ParametricNodes":
+                dimension, _ = whole(), take()
+                for _ in range(dimension if dimension < _VOLUME else 0):
+                    take()
         return
-    for _ in range(3 if number >= _NUMBERS_FIRST else 1):  # number of points; the smallest and the largest number
+    for _ in range(3 if number >= NUMBERS_FIRST else 1):  # number of points; the smallest and the largest number
         take()
     for _ in range(first):
         dimension, tag = whole(), whole()
-        if number < _NUMBERS_FIRST:
+        if number < NUMBERS_FIRST:
             dimension = tag
         parametric, count = whole(), whole()
         extra = dimension if parametric else 0
-        if number >= _NUMBERS_FIRST:
+        if number >= NUMBERS_FIRST:
             for _ in range(count):
                 take()
         for _ in range(count):
-            if number < _NUMBERS_FIRST:
+            if number < NUMBERS_FIRST:
                 take()
             yield [take(), take(), take()]
             for _ in range(extra):
@@ -223,51 +237,6 @@ def _freefem(content: bytes) -> Iterator[list[_Span]]:
     for _ in range(count):
         yield [next(tokens) for _ in range(dimension)]
         next(tokens)
-
-
-def _binary_msh(source: str, content: bytes) -> tuple[list[tuple[int, int]], int] | None:
-    """Of a binary file of Gmsh, runs of points (their place and their number) and bytes from one to the next."""
-    head = re.match(rb"\$MeshFormat\s+(\S+) +1 +8", content)
-    if not head:
-        return None
-    section = re.search(rb"\n\$Nodes\s*\n", content)
-    version = float(head[1])
-    one = content[content.index(b"\n", head.end()) + 1 :][:4]
-    if not section or one != struct.pack("<i", 1) or not (version < _BLOCKS or version >= _NUMBERS_FIRST):
-        raise Error(f"{source}: its coordinates cannot be replaced: binary .msh are handled in versions 2 and 4.1, of "
-                    "this machine's order of bytes")  # fmt: skip
-    at = section.end()
-    if version < _BLOCKS:
-        count = int(content[at : content.index(b"\n", at)])
-        return [(content.index(b"\n", at) + 1 + 4, count)], 4 + 3 * _DOUBLE
-    runs = []
-    blocks = struct.unpack_from("<Q", content, at)[0]
-    at += 4 * _SIZE
-    for _ in range(blocks):
-        dimension, _, parametric = struct.unpack_from("<3i", content, at)
-        count = struct.unpack_from("<Q", content, at + 12)[0]
-        if parametric and dimension:
-            raise Error(f"{source}: its coordinates cannot be replaced: binary .msh with parametric nodes")
-        at += 12 + _SIZE + count * _SIZE
-        runs.append((at, count))
-        at += 3 * _DOUBLE * count
-    return runs, 3 * _DOUBLE
-
-
-def _with_doubles(
-    source: str, content: bytes, place: tuple[list[tuple[int, int]], int], before: Array, after: Array
-) -> bytes:
-    runs, stride = place
-    made = np.frombuffer(content, np.uint8).copy()
-    first = 0
-    if sum(count for _, count in runs) != len(before):
-        raise _changed(source, f"it has {sum(count for _, count in runs)} points and the mesh {len(before)}")
-    for at, count in runs:
-        rows = np.arange(count)[:, None] * stride + at + np.arange(3 * _DOUBLE)[None]
-        _check_equal(source, np.ascontiguousarray(made[rows]).view("<f8"), before[first : first + count])
-        made[rows] = np.ascontiguousarray(after[first : first + count], "<f8").view(np.uint8).reshape(count, -1)
-        first += count
-    return made.tobytes()
 
 
 def _uncommented(content: bytes, sign: bytes) -> bytes:
@@ -302,6 +271,11 @@ def _su2(content: bytes) -> Iterator[list[_Span]]:
             yield spans[: int(dimension[1])]
             count -= 1
         at = end + 1
+
+
+def _never(_: bytes) -> Iterator[list[_Span]]:
+    """For formats without text."""
+    yield from ()
 
 
 def _off(content: bytes) -> Iterator[list[_Span]]:
@@ -378,6 +352,7 @@ _GMSH = (".msh", ".msh2", ".msh4")
 LOCATORS: dict[str, Callable[[bytes], Iterator[list[_Span]]]] = {
     **dict.fromkeys(_GMSH, _msh),
     ".mesh": _medit,
+    ".meshb": _never,
     ".su2": _su2,
     ".off": _off,
     ".inp": _abaqus,

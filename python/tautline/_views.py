@@ -19,7 +19,7 @@ from vtkmodules.vtkCommonDataModel import (
 )
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
 
-from ._arrays import Array, cell_types
+from ._arrays import Array, cell_types, keep_source, source_of
 from ._cell_names import CELLS, CELLS_BY_NUMBER, find_cell
 from ._errors import Error, MissingKey, run
 from ._tables import many
@@ -300,4 +300,5 @@ def viewed(data: Any) -> Any:
         return data
     made = kind()
     made.ShallowCopy(data)
+    keep_source(made, source_of(data))
     return made

@@ -45,9 +45,10 @@ _XDMF = SolverFormat("XDMF 2", "vtkIOXdmf2", "vtkXdmfReader", times=True)
 _CGNS = SolverFormat("CGNS", "vtkIOCGNSReader", "vtkCGNSReader", times=True)
 _AVS = SolverFormat("AVS UCD", "vtkIOGeometry", "vtkAVSucdReader")
 _TECPLOT = SolverFormat("Tecplot, text", "vtkIOGeometry", "vtkTecplotReader")
+EXODUS_ENDINGS = (".e", ".exo", ".ex2", ".exii", ".g")
 #: The formats by the ending, in lower case, of a file's name.
 SOLVER_FORMATS = {
-    **dict.fromkeys((".e", ".exo", ".ex2", ".exii", ".g"), _EXODUS),
+    **dict.fromkeys(EXODUS_ENDINGS, _EXODUS),
     ".cgns": _CGNS,
     **dict.fromkeys((".xmf", ".xdmf"), _XDMF),
     **dict.fromkeys((".avs", ".ucd"), _AVS),
@@ -63,7 +64,9 @@ SOLVER_FORMATS = {
 #: The ending of ParaView's lists of files by time.
 SERIES = ".pvd"
 #: How files begin.
-_HDF5, _NETCDF, _ADF = b"\x89HDF\r\n\x1a\n", b"CDF", b"@(#)ADF"
+_HDF5, _NETCDF = b"\x89HDF\r\n\x1a\n", b"CDF"
+#: CGNS of the older kind: "@(#)" with the high bit of each byte set.
+ADF = b"\xc0\xa8\xa3\xa9ADF"
 _HEAD = 16  # bytes
 _UCD_BINARY = b"\x07"
 _UCD_NUMBERS = 5  # in the first line of a UCD file
@@ -178,11 +181,9 @@ def check_content(name: str, form: SolverFormat) -> None:
         raise Error(f"{name}: this VTK has no reader for {form.title}; save the mesh as .vtu")
     with open(name, "rb") as file:
         head = file.read(_HEAD)
-    if form is _CGNS and head.startswith(_ADF):
-        raise Error(f"{name}: is CGNS of the older kind, ADF: convert it by the program adf2hdf of CGNS")
     if form is _AVS:
         _check_ucd(name)
-    signatures = {_CGNS: (_HDF5,), _EXODUS: (_HDF5, _NETCDF)}.get(form, ())
+    signatures = {_CGNS: (_HDF5, ADF), _EXODUS: (_HDF5, _NETCDF)}.get(form, ())
     if signatures and not head.startswith(signatures):
         raise Error(f"{name}: is not {form.title}, or damaged")
     if form is _XDMF:
