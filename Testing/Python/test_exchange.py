@@ -158,6 +158,52 @@ def test_adf():
         refused("cut.cgns: ", tl.read, FOLDER / "cut.cgns")
 
 
+def foam(folder, field: str):
+    """A case of OpenFOAM of two cubes, with a field p of the first time step."""
+
+    def write(name: str, kind: str, text: str) -> None:
+        file = folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        head = f"FoamFile\n{{\n version 2.0;\n format ascii;\n class {kind};\n object {file.name};\n}}\n"
+        file.write_text(head + text)
+
+    def listed(rows: list) -> str:
+        return f"{len(rows)}\n(\n" + "\n".join(rows) + "\n)\n"
+
+    corners = [f"({x} {y} {z})" for z in range(3) for y in range(2) for x in range(2)]
+    faces = [(4, 5, 7, 6), (0, 2, 3, 1), (8, 9, 11, 10)]
+    for b in (0, 4):
+        faces += [(b, b + 1, b + 5, b + 4), (b + 1, b + 3, b + 7, b + 5), (b + 3, b + 2, b + 6, b + 7),
+                  (b + 2, b, b + 4, b + 6)]  # fmt: skip
+    write("constant/polyMesh/points", "vectorField", listed(corners))
+    write("constant/polyMesh/faces", "faceList", listed([f"4({' '.join(map(str, face))})" for face in faces]))
+    write("constant/polyMesh/owner", "labelList", listed(list("00100001111")))
+    write("constant/polyMesh/neighbour", "labelList", listed(["1"]))
+    walls = f"walls\n{{\n type wall;\n nFaces {len(faces) - 1};\n startFace 1;\n}}"
+    write("constant/polyMesh/boundary", "polyBoundaryMesh", f"1\n(\n{walls}\n)\n")
+    write("system/controlDict", "dictionary", "startTime 0;\nendTime 1;\ndeltaT 1;\nwriteControl timeStep;\n"
+          "writeInterval 1;\n")  # fmt: skip
+    write("0/p", "volScalarField", "dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar>\n" + field
+          + ";\nboundaryField\n{\n walls { type zeroGradient; }\n}\n")  # fmt: skip
+    (folder / "case.foam").touch()
+    return folder / "case.foam"
+
+
+def test_foam():
+    """A case is taken without results, with a warning, if only these cannot be read; without faces it is not."""
+    mesh = tl.read(foam(FOLDER / "foam", "2\n(\n1\n2\n)\n"))
+    assert mesh.GetNumberOfCells() == 2 and mesh.cell_data["p"].tolist() == [1, 2]
+    for field in ("2\n(\n1\n)\n", "2\n(\n1\nabc\n)\n", "3\n(\n1\n2\n3\n)\n"):
+        file = foam(FOLDER / "foam", field)
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            mesh = tl.read(file)
+        assert mesh.GetNumberOfCells() == 2 and "p" not in mesh.cell_data, field
+        assert len(told) == 1 and wording("read-without-its-results") in str(told[0].message), told
+    (FOLDER / "foam" / "constant" / "polyMesh" / "faces").write_text("4(0 1")
+    refused("case.foam: ", tl.read, file)
+
+
 def test_ucd():
     for ending in (".avs", ".ucd", ".inp"):
         (FOLDER / f"one{ending}").write_text(UCD)

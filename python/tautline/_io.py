@@ -265,10 +265,26 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
 
 
 def _read_with(name: str, form: SolverFormat, time: float | None) -> vtkDataObject:
+    """Read a file with a reader of VTK; without its results, with a warning, if only these cannot be read."""
+    try:
+        return _read_strictly(name, form, time)
+    except Error as error:
+        if not form.optional_results:
+            raise
+        try:
+            mesh = _read_strictly(name, form, time, results=False)
+        except Error:
+            raise error from None
+        reason = str(error).splitlines()[-1].removeprefix(f"{name}: ")
+        warnings.warn(f"{name}: the mesh is read without its results: {reason}", stacklevel=5)
+        return mesh
+
+
+def _read_strictly(name: str, form: SolverFormat, time: float | None, results: bool = True) -> vtkDataObject:
     """Read a file with a reader of VTK, of which every message is an error."""
     with _CapturedOutput() as captured:
         try:
-            mesh = read_solver(name, form, time)
+            mesh = read_solver(name, form, time, results)
         except Error as error:
             text = str(error).removeprefix(f"{name}: ")
             raise Error("\n".join(dict.fromkeys([f"{name}: {text}", *captured()]))) from None

@@ -31,6 +31,8 @@ class SolverFormat:
     setter: str = "SetFileName"
     #: Whether files can have time steps.
     times: bool = False
+    #: Whether the mesh is read without its results where these cannot be read.
+    optional_results: bool = False
 
     def built(self) -> bool:
         """Whether this VTK has the reader."""
@@ -53,14 +55,15 @@ SOLVER_FORMATS = {
     **dict.fromkeys((".xmf", ".xdmf"), _XDMF),
     **dict.fromkeys((".avs", ".ucd"), _AVS),
     ".case": SolverFormat("EnSight", "vtkIOEnSight", "vtkGenericEnSightReader", "SetCaseFileName", True),
-    ".foam": SolverFormat("OpenFOAM", "vtkIOGeometry", "vtkOpenFOAMReader", times=True),
+    ".foam": SolverFormat("OpenFOAM", "vtkIOGeometry", "vtkOpenFOAMReader", times=True, optional_results=True),
     ".neu": SolverFormat("Gambit neutral", "vtkIOGeometry", "vtkGAMBITReader"),
-    ".cas": SolverFormat("Fluent", "vtkIOGeometry", "vtkFLUENTReader"),
+    ".cas": SolverFormat("Fluent", "vtkIOGeometry", "vtkFLUENTReader", optional_results=True),
     **dict.fromkeys((".tec", ".tp"), _TECPLOT),
     ".pvti": SolverFormat("VTK, pieces", "vtkIOXML", "vtkXMLPImageDataReader"),
     ".pvtr": SolverFormat("VTK, pieces", "vtkIOXML", "vtkXMLPRectilinearGridReader"),
     ".pvts": SolverFormat("VTK, pieces", "vtkIOXML", "vtkXMLPStructuredGridReader"),
 }
+_DISABLE = ("DisableAllCellArrays", "DisableAllPointArrays", "DisableAllLagrangianArrays")
 #: The ending of ParaView's lists of files by time.
 SERIES = ".pvd"
 #: How files begin.
@@ -123,13 +126,16 @@ def _check_ucd(name: str) -> None:
         at = end
 
 
-def read_solver(name: str, form: SolverFormat, time: float | None) -> vtkDataObject:
+def read_solver(name: str, form: SolverFormat, time: float | None, results: bool = True) -> vtkDataObject:
     """The mesh of a file at the time step nearest to `time`, the first for None.
 
-    Raises Error if there is no such reader in this VTK, if it fails, or if the file has no time steps.
+    results: False leaves the results of formats with optional_results unread. Raises Error if there is no such reader
+    in this VTK, if it fails, or if the file has no time steps.
     """
     with _named(name):
         reader, messages = _reader(name, form)
+        for disable in () if results else _DISABLE:
+            getattr(reader, disable, lambda: None)()
         steps = _steps(reader)
         if time is not None:
             _request(reader, _nearest(name, steps, time))
