@@ -3,6 +3,8 @@
 
 import base64
 import gzip
+import re
+import shutil
 import sys
 import warnings
 import zlib
@@ -193,6 +195,30 @@ def test_foam():
     """A case is taken without results, with a warning, if only these cannot be read; without faces it is not."""
     mesh = tl.read(foam(FOLDER / "foam", "2\n(\n1\n2\n)\n"))
     assert mesh.GetNumberOfCells() == 2 and mesh.cell_data["p"].tolist() == [1, 2]
+    # a copy of the case with other points, of numbers as text and as bytes
+    case = FOLDER / "foam" / "case.foam"
+    mesh.GetPoints().SetPoint(4, 0.25, 0.125, 1.5)
+    original = FOLDER / "foam" / "constant" / "polyMesh" / "points"
+    text = original.read_text()
+    rows = np.array(re.findall(r"^\((\d) (\d) (\d)\)$", text, re.MULTILINE), float)
+    content = text[: text.index("12\n(")].replace("ascii", "binary").encode() + b"12\n(" + rows.tobytes() + b")\n"
+    for i, form in enumerate((text.encode(), content)):
+        original.write_bytes(form)
+        copy = FOLDER / f"copy{i}" / "new.foam"
+        shutil.rmtree(copy.parent, ignore_errors=True)
+        copy.parent.mkdir()
+        tl.write(mesh, copy, template=case)
+        assert np.array_equal(points(tl.read(copy)), points(mesh)), form
+        for name in ("constant/polyMesh/boundary", "0/p", "system/controlDict"):
+            assert (copy.parent / name).read_bytes() == (FOLDER / "foam" / name).read_bytes()
+        assert original.read_bytes() == form and sorted(file.name for file in copy.parent.iterdir()) == [
+            "0", "constant", "new.foam", "system"]  # fmt: skip
+        refused(wording("name-a-foam-in-another"), tl.write, mesh, copy, template=case)
+    refused(wording("name-a-foam-in-another"), tl.write, mesh, FOLDER / "foam" / "new.foam", template=case)
+    original.write_bytes(content[:-20])
+    refused("case.foam", tl.write, mesh, FOLDER / "new.foam", template=case)
+    original.write_text(text)
+
     for field in ("2\n(\n1\n)\n", "2\n(\n1\nabc\n)\n", "3\n(\n1\n2\n3\n)\n"):
         file = foam(FOLDER / "foam", field)
         with warnings.catch_warnings(record=True) as told:

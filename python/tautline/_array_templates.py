@@ -17,7 +17,7 @@ from typing import Any, Callable, Iterator
 import numpy as np
 
 from ._arrays import Array
-from ._binary_coordinates import changed, check_equal
+from ._binary_coordinates import as_read, changed, check_equal
 from ._errors import Error
 from ._files import replacing_by_name
 from ._vtk_readers import ADF, EXODUS_ENDINGS
@@ -104,7 +104,7 @@ def _replace(source: str, parts: _Parts, before: list[Array], after: list[Array]
         if any(len(value) != len(old) for value in values):
             raise changed(source, f"it has {len(values[0])} points and the mesh {len(old)}")
         found.append(np.stack([*values, *[np.zeros(len(old))] * (3 - len(values))], axis=1))
-        check_equal(source, _as_read(found[-1], old), old)
+        check_equal(source, as_read(found[-1], old), old)
     rounding = 0.0
     for columns, old, new, numbers in zip(parts, before, after, found):
         if new[:, len(columns) :].any():
@@ -118,12 +118,6 @@ def _replace(source: str, parts: _Parts, before: list[Array], after: list[Array]
                     raise changed(source, "a coordinate is too large for its numbers, which have 4 bytes")
                 rounding = max(rounding, float(np.abs(written - new[:, axis])[moved].max()))
     return rounding
-
-
-def _as_read(found: Array, old: Array) -> Array:
-    """The coordinates of a file in single precision, if that is how they were read."""
-    single = found.astype(np.float32).astype(float)
-    return single if np.array_equal(single, old) else found
 
 
 def _combined(source: str, before: list[Array], after: list[Array]) -> Array:

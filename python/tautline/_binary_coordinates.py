@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where the coordinates of points stand in binary files of Gmsh and Medit, and files with other ones in their place."""
+"""Where coordinates stand in binary files of Gmsh, Medit and OpenFOAM, and files with other ones in their place."""
 
 from __future__ import annotations
 
 import re
 import struct
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from ._errors import Error
 _DOUBLE = struct.calcsize("d")
 _INT = struct.calcsize("i")
 _SIZE = struct.calcsize("Q")
-_GMSH, _MEDIT = (".msh", ".msh2", ".msh4"), ".meshb"
+_GMSH, _MEDIT, FOAM = (".msh", ".msh2", ".msh4"), ".meshb", ".foam"
 #: Gmsh's versions with blocks of points, and with all numbers of a block first.
 BLOCKS, NUMBERS_FIRST = 4.0, 4.1
 _PARAMETRIC = "binary .msh with parametric nodes are not handled: save it without them, or as text"
@@ -50,11 +49,18 @@ def check_equal(source: str, found: Array, before: Array) -> None:
         raise changed(source, f"point {i} is at {found[i].tolist()} in it and at {before[i].tolist()} as it is read")
 
 
-def coordinates_in(source: str, content: bytes) -> Runs | None:
+def as_read(found: Array, old: Array) -> Array:
+    """The coordinates of a file in single precision, if that is how they were read."""
+    single = found.astype(np.float32).astype(float)
+    return single if np.array_equal(single, old) else found
+
+
+def coordinates_in(source: str, ending: str, content: bytes) -> Runs | None:
     """The points of a binary file; None for text. Raises Error for binary files that cannot be handled."""
-    ending = Path(source).suffix.lower()
     if ending in _GMSH:
         return _of_msh(source, content)
+    if ending == FOAM:
+        return _of_foam(source, content)
     return _of_meshb(source, content) if ending == _MEDIT else None
 
 
@@ -74,7 +80,8 @@ def with_coordinates(source: str, content: bytes, place: Runs, before: Array, af
         old, new = (coordinates[first : first + number] for coordinates in (before, after))
         found = np.zeros_like(old)
         found[:, : place.dimension] = np.ascontiguousarray(made[rows]).view(place.dtype)
-        check_equal(source, found, old)
+        check_equal(source, as_read(found, old), old)
+        new = np.where(new == old, found, new)  # what has not moved stays as it is in the file
         with np.errstate(over="ignore"):
             numbers = np.ascontiguousarray(new[:, : place.dimension], place.dtype)
         if not np.isfinite(numbers).all():
@@ -136,3 +143,29 @@ def _of_meshb(source: str, content: bytes) -> Runs:
             break
         at = following
     raise changed(source, "it has no vertices")
+
+
+def foam_list(content: bytes) -> tuple[int, int]:
+    """The number of points in OpenFOAM's file of points, and the byte after the parenthesis that begins the list.
+
+    Raises ValueError if there is none.
+    """
+    head = content.index(b"}", content.index(b"FoamFile"))
+    found = re.compile(rb"^\s*(\d+)\s*\(", re.MULTILINE).search(content, head)
+    if not found:
+        raise ValueError("no list of points")
+    return int(found[1]), found.end()
+
+
+def _of_foam(source: str, content: bytes) -> Runs | None:
+    try:
+        head = content[content.index(b"FoamFile") : content.index(b"}")]
+        if not re.search(rb"\bformat\s+binary\b", head):
+            return None
+        count, begin = foam_list(content)
+    except ValueError:
+        raise changed(source, "it has no list of points") from None
+    size = 4 if b"scalar=32" in head else _DOUBLE
+    if b"MSB" in head or content[begin + 3 * size * count :][:1] != b")":
+        raise changed(source, "its binary list of points is not of this machine's order of bytes, or damaged")
+    return Runs([(begin, count)], 3 * size, f"<f{size}")

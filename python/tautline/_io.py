@@ -363,8 +363,9 @@ def write(
         numbers stay. The mesh must have the cells of that file, in its order, as after untangle(), optimize(), warp()
         and perturb(); its arrays are not written. For .msh, .mesh, .meshb, .su2, .inp, .bdf .nas .fem, .off, .vtk and
         .vtu; Salome's .med, CGNS, Exodus and MOAB's .h5m, where h5py is installed (Exodus also without it, unless it is
-        in HDF5). The default, for the results of these functions: the file that the mesh was read from if it is of the
-        same format, except VTK's. False: none; the mesh is written with its arrays.
+        in HDF5); .foam, whose case is copied to the directory of the file, which must be empty. The default,
+        for the results of these functions: the file that the mesh was read from if it is of the same format, except
+        VTK's. False: none; the mesh is written with its arrays.
     **options
         binary (False): write .msh as bytes. Not for formats of VTK.
     progress : bool or callable, optional

@@ -14,9 +14,20 @@ from typing import Callable, Iterator
 import numpy as np
 
 from ._arrays import Array
-from ._binary_coordinates import BLOCKS, NUMBERS_FIRST, changed, check_equal, coordinates_in, with_coordinates
+from ._binary_coordinates import (
+    BLOCKS,
+    FOAM,
+    NUMBERS_FIRST,
+    as_read,
+    changed,
+    check_equal,
+    coordinates_in,
+    foam_list,
+    with_coordinates,
+)
 from ._errors import Error
 from ._files import replace_bytes
+from ._foam_case import copy_case
 
 #: Where a coordinate stands, from and to; the three of a point one after the other, missing ones (z) left out.
 _Span = tuple[int, int]
@@ -27,6 +38,7 @@ _PLACED = re.compile(rb"^\*(INSTANCE|SYSTEM)\b", re.MULTILINE | re.IGNORECASE)
 #: Numbers of a file are written with as many digits as they have in it, where that is a fixed number of at least this.
 _FEWEST_DIGITS = 8
 _EXACT_DIGITS = 17  # of a double
+_VECTOR = re.compile(rb"\(([^()]*)\)")
 _VOLUME = 3  # dimension of an entity without parametric coordinates
 _SMALL_FIELD, _LARGE_FIELD = 8, 16  # characters, of Nastran
 _GRID_FIELD, _LARGE_GRID_FIELD = 24, 40  # where x begins
@@ -39,12 +51,18 @@ def rewrite(source: str, target: str, before: Array, after: Array) -> float:
     the largest rounding of a coordinate by the fields of the file. Raises Error if the coordinates in the file are not
     `before`, and for a format that cannot be handled so; then no file is written.
     """
-    content = Path(source).read_bytes()
     ending = Path(source).suffix.lower()
-    if (place := coordinates_in(source, content)) is not None:
-        made, rounding = with_coordinates(source, content, place, before, after)
-        replace_bytes(target, made)
-        return rounding
+    if ending == FOAM:
+        return copy_case(source, target, lambda file, content: rewritten(file, ending, content, before, after))
+    content, rounding = rewritten(source, ending, Path(source).read_bytes(), before, after)
+    replace_bytes(target, content)
+    return rounding
+
+
+def rewritten(source: str, ending: str, content: bytes, before: Array, after: Array) -> tuple[bytes, float]:
+    """The content of a file of the format `ending` with other coordinates, and the largest rounding; see rewrite()."""
+    if (place := coordinates_in(source, ending, content)) is not None:
+        return with_coordinates(source, content, place, before, after)
     try:
         spans = list(LOCATORS[ending](content))
     except (RuntimeError, ValueError, IndexError):  # a generator ends where tokens are missing
@@ -73,8 +91,7 @@ def rewrite(source: str, target: str, before: Array, after: Array) -> float:
                 begin -= min(len(new) - (b - a), _blanks_before(content, a) - 1)
             parts += [content[at:begin], new]
             at = b
-    replace_bytes(target, b"".join([*parts, content[at:]]))
-    return rounding
+    return b"".join([*parts, content[at:]]), rounding
 
 
 def _other_coordinates(ending: str, content: bytes) -> str:
@@ -97,7 +114,7 @@ def _check(source: str, numbers: list[list[bytes]], before: Array) -> None:
     if len(numbers) != len(before):
         raise changed(source, f"it has {len(numbers)} points and the mesh {len(before)}")
     found = np.array([[_value(text) for text in point] + [0.0] * (3 - len(point)) for point in numbers])
-    check_equal(source, found.reshape(-1, 3), before)
+    check_equal(source, as_read(found.reshape(-1, 3), before), before)
 
 
 # --- numbers ---------------------------------------------------------------------------------------------------
@@ -273,6 +290,16 @@ def _su2(content: bytes) -> Iterator[list[_Span]]:
         at = end + 1
 
 
+def _foam(content: bytes) -> Iterator[list[_Span]]:
+    """The list of vectors in OpenFOAM's file of points: a number, then (x y z) for each."""
+    count, begin = foam_list(content)
+    for match in _VECTOR.finditer(content, begin):
+        if not count:
+            return
+        yield list(_tokens(content, *match.span(1)))
+        count -= 1
+
+
 def _never(_: bytes) -> Iterator[list[_Span]]:
     """For formats without text."""
     yield from ()
@@ -354,6 +381,7 @@ LOCATORS: dict[str, Callable[[bytes], Iterator[list[_Span]]]] = {
     ".mesh": _medit,
     ".meshb": _never,
     ".su2": _su2,
+    FOAM: _foam,
     ".off": _off,
     ".inp": _abaqus,
     ".bdf": _nastran_grids,
