@@ -5,6 +5,7 @@ import base64
 import gzip
 import re
 import shutil
+import subprocess
 import sys
 import warnings
 import zlib
@@ -299,7 +300,6 @@ def test_messages():
             assert name in str(error), error
         (FOLDER / name).write_bytes(b"")
         refused(wording("the-file-is-empty"), tl.read, FOLDER / name)
-    refused(wording("no-reader-for-unv-convert-it-with"), tl.read, FOLDER / "x.unv")
     refused(wording("mesh-it-with-gmsh"), tl.read, FOLDER / "x.step")
     refused(wording("no-reader-for-xyz"), tl.times, FOLDER / "x.xyz")
     refused(wording("has-no-time-steps"), tl.read, BRACKET, time=1)
@@ -493,6 +493,61 @@ def test_su2():
     corners[3][2] = 0.5
     refused(wording("no-surfaces-in-space"), tl.write, meshio.Mesh(corners, blocks), FOLDER / "markers.su2")
     assert (FOLDER / "markers.su2").read_text() == text
+
+
+def test_unv():
+    """Universal files: groups, lower cells, parabolic elements; damages are named with their line; Gmsh's own files."""
+    nodes = "".join(f"{i} 1 1 11\n {x}.D+00 {y}.D+00 {z}.D+00\n" for i, (x, y, z) in enumerate(
+        [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (5, 5, 5)], 3))  # fmt: skip
+    nodes = f"    -1\n  2411\n{nodes}    -1\n"
+    elements = "    -1\n  2412\n1 11 1 1 7 2\n0 1 1\n3 4\n2 91 4 1 7 3\n3 4 5\n8 111 6 1 7 4\n3 4 5 6\n{}    -1\n"
+    group = "    -1\n  2467\n1 0 0 0 0 0 0 2\nsolid\n8 8 0 0 7 3 0 0\n    -1\n"
+    file = FOLDER / "one.unv"
+    file.write_text(nodes + elements.format("") + group)
+    mesh = tl.read(file)
+    assert (mesh.GetNumberOfPoints(), mesh.GetNumberOfCells(), mesh.GetCellType(0)) == (5, 1, 10)
+    assert mesh.cell_data["Reference"].tolist() == [6] and mesh.cell_data["solid"].tolist() == [1]
+    every = tl.read(file, lower_cells=True)
+    assert every.cell_data["Reference"].tolist() == [1, 4, 6] and every.cell_data["solid"].tolist() == [0, 0, 1]
+    for text, problem in (
+        (nodes, wording("has-no-elements")),
+        (elements.format(""), wording("has-no-nodes")),
+        ((nodes + elements.format(""))[:-8], wording("ends-within-a-dataset")),
+        (nodes + elements.format("9 111 1 1 7 4\n3 4 5 99\n"), "one.unv:23: element 9 uses node 99"),
+        (nodes + elements.format("9 777\n"), "one.unv:23: "),
+        (nodes + elements.format("9 111 1 1 7 5\n3 4 5 6 7\n"), "one.unv:23: elements with the descriptor 111 and 5"),
+        (nodes.replace("5 1 1 11", "4 1 1 11") + elements.format(""), "one.unv:8: node 4 is given twice"),
+        (nodes.replace("1.D+00", "nan", 1) + elements.format(""), "one.unv:6: three finite coordinates"),
+        ("nonsense\n", wording("this-is-no-universal-file")),
+    ):
+        file.write_text(text)
+        refused(problem, tl.read, file)
+    file.write_text(nodes + elements.format("9 136 1 1 7 2\n3 4\n"))
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        assert tl.read(file).GetNumberOfCells() == 1
+    assert len(told) == 1 and wording("springs-masses") in str(told[0].message), told
+    if not shutil.which("gmsh"):
+        return
+    box = 'SetFactory("OpenCASCADE"); Box(1) = {0, 0, 0, 1, 1, 1}; Mesh.MeshSizeMax = 0.6; Physical Volume("a") = {1};'
+    for name, text in {
+        "tetrahedra": box,
+        "hexahedra": box + "Transfinite Curve {1:12} = 3; Transfinite Surface {1:6}; Recombine Surface {1:6};"
+        "Transfinite Volume {1};",
+        "wedges": 'SetFactory("OpenCASCADE"); Rectangle(1) = {0, 0, 0, 1, 1}; Transfinite Curve {1:4} = 3;\n'
+        'Extrude {0, 0, 1} { Surface{1}; Layers {2}; Recombine; }\nPhysical Volume("solid") = {1};',
+    }.items():  # fmt: skip
+        (FOLDER / f"{name}.geo").write_text(text)
+        for order in ("1", "2"):
+            for form in ("unv", "msh2"):
+                command = ["gmsh", "-3", FOLDER / f"{name}.geo", "-order", order, "-format", form]
+                command += ["-setnumber", "Mesh.SecondOrderIncomplete", "1", "-o", FOLDER / f"{name}.{form}"]
+                subprocess.run(command, check=True, capture_output=True)
+            one, two = (tl.read(FOLDER / f"{name}.{form}") for form in ("unv", "msh2"))
+            assert one.cells.keys() == two.cells.keys() and tl.quality(one).inverted == 0, (name, order)
+            for kind in one.cells:
+                places = [mesh.points[mesh.cells[kind]] for mesh in (one, two)]
+                assert np.allclose(*places, atol=1e-12), (name, kind)
 
 
 def test_kratos():

@@ -160,13 +160,55 @@ PSHELL  1       1       0.1
 MAT1    1       2.1+5           0.3
 ENDDATA
 """
+UNV = """    -1
+   164
+         1Meter               2
+    1.0000000000000000D+00    1.0000000000000000D+00
+    -1
+    -1
+  2411
+         1         1         1        11
+   0.0000000000000000D+00   0.0000000000000000D+00   0.0000000000000000D+00
+         2         1         1        11
+   1.0000000000000000D+00   0.0000000000000000D+00   0.0000000000000000D+00
+         3         1         1        11
+   1.0000000000000000D+00   1.0000000000000000D+00   0.0000000000000000D+00
+        40         1         1        11
+   0.0000000000000000D+00   1.0000000000000000D+00   0.0000000000000000D+00
+         5         1         1        11
+   4.0000000000000002D-01   5.0000000000000000D-01   0.0000000000000000D+00
+    -1
+    -1
+  2412
+         7        21         2         1         7         2
+         0         1         1
+         1         2
+        11        41         3         1         7         3
+         1         2         5
+        12        41         3         1         7         3
+         2         3         5
+        13        41         3         1         7         3
+         3        40         5
+        14        41         3         1         7         3
+        40         1         5
+    -1
+    -1
+  2467
+         1         0         0         0         0         0         0         3
+wall and more
+         8        11         0         0         8         7         0         0
+         7         1         0         0
+    -1
+"""
 FILES = {
     "v2.msh": MSH2, "v41.msh": MSH41, "a.mesh": MEDIT, "a.su2": SU2, "a.off": OFF, "a.inp": ABAQUS, "a.bdf": NASTRAN,
+    "a.unv": UNV,
 }  # fmt: skip
 #: What stands where the coordinates of the inner point were: patterns, with a group for each.
 INNER = {
     "v2.msh": r"\n5 (\S+) (\S+) 0\n\$EndNodes", "v41.msh": r"\n5\n(\S+) (\S+) 0\n", "a.mesh": r"\n(\S+) (\S+) 0\nTri",
     "a.su2": r"\n\t(\S+) \t(\S+) \t4\n", "a.off": r"\n(\S+) (\S+) 0 # inside", "a.inp": r"5,( +\S+),( +\S+),  0.\n",
+    "a.unv": r"\n {9}5 [ 0-9]*\n {3}(\S+) {3}(\S+) {3}0.0000000000000000D",
     "a.bdf": r"\nGRID\* {18}5 {16}(.{16})(.{16})\n",
 }  # fmt: skip
 MESHIO = find_spec("meshio") is not None
@@ -395,7 +437,7 @@ def test_shell():
             target = FOLDER / f"{command}-{name}"
             shell(command, source, "-o", target)
             assert len(target.read_text().splitlines()) == len(text.splitlines()), (command, name)
-            for word in ("wall", "RequiredVertices", "*MATERIAL", "PSHELL", "# inside", "kept"):
+            for word in ("wall", "Meter", "RequiredVertices", "*MATERIAL", "PSHELL", "# inside", "kept"):
                 assert (word in text) == (word in target.read_text()), (command, name, word)
         assert np.allclose(points(tl.read(FOLDER / f"optimize-{name}"))[4], (0.5, 0.5, 0), atol=1e-3), name
 

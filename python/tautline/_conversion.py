@@ -9,7 +9,7 @@ from typing import Any
 from . import _commands
 from ._errors import checked
 from ._formats import FORMATS
-from ._io import SU2, is_template, read, readable
+from ._io import SU2, UNV, is_template, read, readable
 from ._meshio import MESHIO_FORMATS, installed
 from ._tables import align
 from ._vtk_readers import SERIES, SOLVER_FORMATS
@@ -56,6 +56,8 @@ def _facts(ending: str) -> dict[str, Any]:
             facts["format"] = f"{facts['format']}, AVS UCD"
     elif ending == SU2:
         facts |= {"format": "SU2", "write": True, "by": "Tautline"}
+    elif ending == UNV:
+        facts |= {"format": "I-DEAS, Salome: universal file", "by": "Tautline"}
     elif ending == SERIES:
         facts |= {"format": "ParaView, files by time", "times": True, "by": "Tautline"}
     elif ending in SOLVER_FORMATS:

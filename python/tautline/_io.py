@@ -35,6 +35,7 @@ from ._reading import answer, read_apart
 from ._su2 import read_su2, write_su2
 from ._surfaces import check_surface
 from ._template import LOCATORS, rewrite
+from ._unv import read_unv
 from ._views import MeshViews, viewed
 from ._vtk_readers import (
     EXODUS_ENDINGS,
@@ -66,7 +67,6 @@ _REFERRING = (".vtm", *_IN_PIECES)
 _MEMORY_PER_BYTE = 8
 #: What converts formats that nothing here reads.
 _CONVERTERS = {
-    ".unv": "convert it with Gmsh (gmsh -save -format msh22)",
     ".step": "it is a geometry without a mesh: mesh it with Gmsh",
     ".stp": "it is a geometry without a mesh: mesh it with Gmsh",
     ".iges": "it is a geometry without a mesh: mesh it with Gmsh",
@@ -76,12 +76,12 @@ _CONVERTERS = {
     ".cdb": "save it as Nastran .bdf in ANSYS",
     ".ans": "save it as Nastran .bdf in ANSYS",
 }
-SU2 = ".su2"
+SU2, UNV = ".su2", ".unv"
 # Files compressed by gzip, of formats whose meshes are in one file.
 _COMPRESSED = ".gz"
 _OF_ONE_FILE = (
-    ".msh", ".msh2", ".msh4", ".mesh", ".meshb", ".inp", ".bdf", ".nas", ".fem", ".su2", ".off", ".vtk", ".vtu", ".vtp",
-    ".stl", ".ply", ".obj",
+    ".msh", ".msh2", ".msh4", ".mesh", ".meshb", ".inp", ".bdf", ".nas", ".fem", ".su2", ".unv", ".off", ".vtk", ".vtu",
+    ".vtp", ".stl", ".ply", ".obj",
 )  # fmt: skip
 _ALWAYS_BINARY = ".meshb"
 # Formats whose readers in VTK crash on damaged files.
@@ -89,8 +89,8 @@ _UNSAFE = (".ply", ".obj")
 # Formats of VTK that are templates by their data.
 _VTK_TEMPLATES = (".vtk", ".vtu")
 # Formats with cells that are only read on demand, and with more than a mesh.
-_WITH_LOWER_CELLS = (".msh", ".mesh", ".meshb", ".su2", ".inp", ".bdf", ".nas", ".fem")
-_MODELS = (".inp", ".bdf", ".nas", ".fem")
+_WITH_LOWER_CELLS = (".msh", ".mesh", ".meshb", ".su2", ".unv", ".inp", ".bdf", ".nas", ".fem")
+_MODELS = (".unv", ".inp", ".bdf", ".nas", ".fem")
 # Of the extent of a mesh: coordinates that are rounded by more are worth a warning.
 _ROUNDING = 1e-9
 # Of one file; a damaged one may have thousands.
@@ -133,13 +133,14 @@ def read(
     file : str or path
         VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was built,
         TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .meshb .sol), Gmsh and FreeFem++ (.msh),
-        OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2, Exodus (.e
-        .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), OpenFOAM (.foam), Gambit (.neu),
-        Fluent (.cas), Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen (.vol) and others, see formats().
+        OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2, universal
+        files (.unv), Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case),
+        OpenFOAM (.foam), Gambit (.neu), Fluent (.cas), Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen
+        (.vol) and others, see formats().
         Formats of one file also with .gz behind their ending.
     **options
         lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the formats
-        of mesh generators, Abaqus, Nastran and SU2. time: the time step to read, the nearest to this number, see
+        of mesh generators, Abaqus, Nastran, SU2 and .unv. time: the time step to read, the nearest to this number, see
         times(); the default is the first. Of the formats of solvers and .pvd.
     progress : bool or callable, optional
         True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
@@ -245,7 +246,7 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
     """Read a file of a solver with a reader of VTK, else with meshio."""
     if ending not in readable():
         raise Error(f"{name}: no reader for '{ending}'{_tool(ending)}; there are {' '.join(readable())}")
-    _check_options(name, ending, options, "lower_cells" if ending == SU2 else None)
+    _check_options(name, ending, options, "lower_cells" if ending in (SU2, UNV) else None)
     check_input(name)
     if os.path.getsize(name) == 0 and ending != ".foam":
         raise Error(f"{name}: the file is empty")
@@ -257,6 +258,8 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
             raise Error(f"{name}: '{ending}' has no time steps; leave out time")
         if ending == SU2:
             return read_su2(name, **options)
+        if ending == UNV:
+            return read_unv(name, **options)
         check_installed(name)
         return read_apart(name, {}, lambda: read_meshio(name))
     known = form
@@ -296,7 +299,7 @@ def _read_strictly(name: str, form: SolverFormat, time: float | None, results: b
 def readable() -> list[str]:
     """The endings of the files that read() takes, whether meshio is installed or not."""
     own = {ending for ending, form in FORMATS.items() if form.reader}
-    return sorted({*own, *SOLVER_FORMATS, SERIES, SU2, *MESHIO_FORMATS})
+    return sorted({*own, *SOLVER_FORMATS, SERIES, SU2, UNV, *MESHIO_FORMATS})
 
 
 def _tool(ending: str) -> str:
@@ -361,11 +364,11 @@ def write(
         The file that the mesh was read from, of the same format. The output is a copy of it in which only the
         coordinates are those of the mesh: markers, sets, materials, types of elements, comments and the format of the
         numbers stay. The mesh must have the cells of that file, in its order, as after untangle(), optimize(), warp()
-        and perturb(); its arrays are not written. For .msh, .mesh, .meshb, .su2, .inp, .bdf .nas .fem, .off, .vtk and
-        .vtu; Salome's .med, CGNS, Exodus and MOAB's .h5m, where h5py is installed (Exodus also without it, unless it is
-        in HDF5); .foam, whose case is copied to the directory of the file, which must be empty. The default,
-        for the results of these functions: the file that the mesh was read from if it is of the same format, except
-        VTK's. False: none; the mesh is written with its arrays.
+        and perturb(); its arrays are not written. For .msh, .mesh, .meshb, .su2, .inp, .bdf .nas .fem, .unv, .off, .vtk
+        and .vtu; Salome's .med, CGNS, Exodus and MOAB's .h5m, where h5py is installed (Exodus also without it, unless
+        it is in HDF5); .foam, whose case is copied to the directory of the file, which must be empty. The default, for
+        the results of these functions: the file that the mesh was read from if it is of the same format, except VTK's.
+        False: none; the mesh is written with its arrays.
     **options
         binary (False): write .msh as bytes. Not for formats of VTK.
     progress : bool or callable, optional
@@ -468,7 +471,7 @@ def _write_like(data: vtkDataObject, name: str, source: str) -> list[str]:
     if ending not in LOCATORS and ending not in _VTK_TEMPLATES and ending not in ARRAY_TEMPLATES:
         known = " ".join(sorted([*LOCATORS, *_VTK_TEMPLATES, *ARRAY_TEMPLATES]))
         raise Error(f"{name}: files '{ending}' cannot be templates; these can: {known}")
-    lower = ending == SU2 or (ending in FORMATS and FORMATS[ending].own)
+    lower = ending in (SU2, UNV) or (ending in FORMATS and FORMATS[ending].own)
     with warnings.catch_warnings():  # these were issued when the mesh was read
         warnings.simplefilter("ignore")
         found = read(source)

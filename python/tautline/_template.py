@@ -28,6 +28,7 @@ from ._binary_coordinates import (
 from ._errors import Error
 from ._files import replace_bytes
 from ._foam_case import copy_case
+from ._unv import NODES, NODES_OF_ONE_LINE
 
 #: Where a coordinate stands, from and to; the three of a point one after the other, missing ones (z) left out.
 _Span = tuple[int, int]
@@ -38,6 +39,8 @@ _PLACED = re.compile(rb"^\*(INSTANCE|SYSTEM)\b", re.MULTILINE | re.IGNORECASE)
 #: Numbers of a file are written with as many digits as they have in it, where that is a fixed number of at least this.
 _FEWEST_DIGITS = 8
 _EXACT_DIGITS = 17  # of a double
+_UNV_SHORT, _UNV_HEAD = NODES_OF_ONE_LINE.encode(), 4  # numbers before the coordinates
+_UNV_NODES = (*(number.encode() for number in NODES), _UNV_SHORT)
 _VECTOR = re.compile(rb"\(([^()]*)\)")
 _VOLUME = 3  # dimension of an entity without parametric coordinates
 _SMALL_FIELD, _LARGE_FIELD = 8, 16  # characters, of Nastran
@@ -300,6 +303,23 @@ def _foam(content: bytes) -> Iterator[list[_Span]]:
         count -= 1
 
 
+def _unv(content: bytes) -> Iterator[list[_Span]]:
+    """The datasets of nodes of universal files: coordinates are in the second line of a node, or in its only one."""
+    at, number, second = 0, b"", False
+    inside = False
+    for line in content.splitlines(keepends=True):
+        text = line.strip()
+        if text == b"-1":
+            inside, number = not inside, b""
+        elif inside and not number:
+            number, second = text, False
+        elif text and number in _UNV_NODES:
+            if second or number == _UNV_SHORT:
+                yield list(_tokens(content, at, at + len(line)))[0 if second else _UNV_HEAD :][:3]
+            second = not second and number != _UNV_SHORT
+        at += len(line)
+
+
 def _never(_: bytes) -> Iterator[list[_Span]]:
     """For formats without text."""
     yield from ()
@@ -381,6 +401,7 @@ LOCATORS: dict[str, Callable[[bytes], Iterator[list[_Span]]]] = {
     ".mesh": _medit,
     ".meshb": _never,
     ".su2": _su2,
+    ".unv": _unv,
     FOAM: _foam,
     ".off": _off,
     ".inp": _abaqus,
