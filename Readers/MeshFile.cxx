@@ -18,7 +18,7 @@ struct CellFacts
   const char* plural;
 };
 
-constexpr std::array<CellFacts, 19> Facts = { {
+constexpr std::array<CellFacts, 25> Facts = { {
   { FileVertex, 0, 1, "vertices" },
   { FileLine, 1, 2, "lines" },
   { FileTriangle, 2, 3, "triangles" },
@@ -38,6 +38,12 @@ constexpr std::array<CellFacts, 19> Facts = { {
   { FileQuadrilateral9, 2, 9, "biquadratic quadrilaterals" },
   { FileHexahedron27, 3, 27, "triquadratic hexahedra" },
   { FileWedge18, 3, 18, "biquadratic wedges" },
+  { FileLagrangeLine, 1, 0, "Lagrange lines" },
+  { FileLagrangeTriangle, 2, 0, "Lagrange triangles" },
+  { FileLagrangeQuadrilateral, 2, 0, "Lagrange quadrilaterals" },
+  { FileLagrangeTetrahedron, 3, 0, "Lagrange tetrahedra" },
+  { FileLagrangeHexahedron, 3, 0, "Lagrange hexahedra" },
+  { FileLagrangeWedge, 3, 0, "Lagrange wedges" },
 } };
 
 constexpr CellFacts Unknown = { 0, -1, 0, "cells of another type" };

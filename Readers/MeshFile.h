@@ -3,8 +3,8 @@
  * @file MeshFile.h
  * @brief What a mesh file holds, in plain C++ arrays, between a format's parser and VTK.
  *
- * The parsers and formatters of this directory (TetGenFile, MeditFile, GmshFile, OffFile) fill and
- * print a MeshFile and do not use VTK; MeshFileAdapter turns it into data sets and back.
+ * The parsers and formatters of this directory (TetGenFile, MeditFile, GmshFile, MfemFile, OffFile)
+ * fill and print a MeshFile and do not use VTK; MeshFileAdapter turns it into data sets and back.
  *
  * Names every format shares, so that a filter finds them wherever a mesh came from:
  *
@@ -63,12 +63,18 @@ enum FileCell : unsigned char
   FilePyramid13 = 27,
   FileQuadrilateral9 = 28,
   FileHexahedron27 = 29,
-  FileWedge18 = 32
+  FileWedge18 = 32,
+  FileLagrangeLine = 68, ///< of any order, as all below
+  FileLagrangeTriangle = 69,
+  FileLagrangeQuadrilateral = 70,
+  FileLagrangeTetrahedron = 71,
+  FileLagrangeHexahedron = 72,
+  FileLagrangeWedge = 73
 };
 
 /// 0 to 3; -1 for a type that no supported file has.
 TAUTLINEREADERS_EXPORT int cellDimension(unsigned char type);
-/// Nodes of a cell; 0 for polygons and unknown types.
+/// Nodes of a cell; 0 for polygons, Lagrange cells and unknown types.
 TAUTLINEREADERS_EXPORT int cellNodes(unsigned char type);
 /// "tetrahedra", "quadratic triangles", ... for messages.
 TAUTLINEREADERS_EXPORT const char* cellPlural(unsigned char type);

@@ -222,8 +222,9 @@ bool addCell(MeshFile& mesh, int type, vtkIdType size, const vtkIdType* ids)
   const unsigned char polygons[] = { 0, 0, 0, FileTriangle, FileQuadrilateral };
   const bool small = type == VTK_POLYGON && size >= 3 && size <= 4;
   const auto code = small ? polygons[size] : static_cast<unsigned char>(type);
-  const bool known =
-    cellDimension(code) >= 0 && (code == FilePolygon ? size >= 3 : cellNodes(code) == size);
+  const bool anySize = cellNodes(code) == 0 && code != FilePolygon;
+  const bool known = cellDimension(code) >= 0 &&
+    (code == FilePolygon ? size >= 3 : cellNodes(code) == size || anySize);
   if (known)
   {
     const std::vector<Index> nodes(ids, ids + size);

@@ -241,8 +241,8 @@ std::vector<std::string> writeOff(const MeshFile& mesh, const std::string& name)
   for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
   {
     const unsigned char type = mesh.cellTypes[cell];
-    const bool linear =
-      cellDimension(type) < 3 && (type == FilePolygon || cellNodes(type) <= 4) && type != FileLine3;
+    const bool linear = cellDimension(type) < 3 &&
+      (type == FilePolygon || (cellNodes(type) > 0 && cellNodes(type) <= 4)) && type != FileLine3;
     if (!linear)
     {
       throw FileError(name + ": OFF files cannot hold " + cellPlural(type) + " (cell " +

@@ -16,7 +16,7 @@
  * must execute the reader. If one of them fails (a missing file, too little memory), all report an
  * error, so that no filter downstream works on an incomplete mesh.
  *
- * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkOffReader vtkMeshFileWriter
+ * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkMfemReader vtkOffReader vtkMeshFileWriter
  */
 #ifndef vtkMeshFileReader_h
 #define vtkMeshFileReader_h

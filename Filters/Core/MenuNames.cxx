@@ -30,6 +30,7 @@ constexpr MenuName Names[] = {
   { "vtkMeshUntangler", "Untangle Mesh" },
   { "vtkMeshWarp", "Warp Mesh" },
   { "vtkMetricField", "Metric Field" },
+  { "vtkMfemReader", "MFEM Reader" },
   { "vtkNastranReader", "Nastran Reader" },
   { "vtkOffReader", "OFF Reader" },
   { "vtkPeridynamicStiffness", "Peridynamic Condition" },

@@ -388,6 +388,16 @@ def medit_files():
     return side_by_side(fit(view, 1.3), size=(420, HEIGHT))
 
 
+def mfem_files():
+    view = new_view(OBLIQUE)
+    pipe = sample("pipe.mesh")
+    pipe.UpdatePipeline()
+    display = draw(pipe, view, "Reference", light=LIT)
+    display.NonlinearSubdivisionLevel = 3
+    values("Reference", *pipe.CellData["Reference"].GetRange())
+    return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
+
+
 def off_files():
     view = new_view(OBLIQUE)
     display = draw(sample("house.off"), view, "Color")
@@ -405,7 +415,8 @@ PICTURES = (
     element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, untangle_mesh, warp_mesh, perturb_mesh,
     compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde, condition_estimator,
     solver_study, peridynamic_condition, interaction_layer, horizon_neighbors, silhouette_to_mesh, match_shape,
-    shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files, medit_files, off_files, tetgen_files,
+    shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files, medit_files, mfem_files, off_files,
+    tetgen_files,
 )  # fmt: skip
 
 

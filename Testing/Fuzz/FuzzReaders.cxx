@@ -7,6 +7,7 @@
 
 #include "AbaqusFile.h"
 #include "MeshFileAdapter.h"
+#include "MfemFile.h"
 #include "NastranFile.h"
 
 #include "vtkNew.h"
@@ -191,6 +192,12 @@ void fuzzAbaqus(std::string_view bytes)
 void fuzzNastran(std::string_view bytes)
 {
   fuzzFile(bytes, "bdf", readNastran, writeNothing);
+}
+
+//------------------------------------------------------------------------------
+void fuzzMfem(std::string_view bytes)
+{
+  fuzzFile(bytes, "mesh", readMfem, writeNothing);
 }
 
 //------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ const std::vector<FuzzTarget>& fuzzTargets()
     { "off", fuzzOff },
     { "abaqus", fuzzAbaqus },
     { "nastran", fuzzNastran },
+    { "mfem", fuzzMfem },
     { "quality", fuzzQuality },
     { "mesh", fuzzMesh },
     { "move", fuzzMove },

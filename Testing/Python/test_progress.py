@@ -92,6 +92,19 @@ ABAQUS = ("*NODE", "{}, {}, {}, {}", "*ELEMENT, TYPE=C3D4", "{}, {}, {}, {}, {}"
 NASTRAN = ("BEGIN BULK", "GRID,{},,{},{},{}", "$", "CTETRA,{},1,{},{},{},{}")
 
 
+def straight_mesh(mesh):
+    """A file of MFEM."""
+    data = servermanager.Fetch(mesh)
+    cells = [data.GetCell(c) for c in range(data.GetNumberOfCells())]
+    elements = ["1 4 " + " ".join(str(cell.GetPointId(i)) for i in range(4)) for cell in cells]
+    points = [" ".join(map(str, data.GetPoint(p))) for p in range(data.GetNumberOfPoints())]
+    text = ["MFEM mesh v1.0", "dimension", "3", "elements", str(len(elements)), *elements, "boundary", "0"]
+    text += ["vertices", str(len(points)), "3", *points]
+    file = OUT / "progress-mfem.mesh"
+    file.write_text("\n".join(text) + "\n")
+    return str(file)
+
+
 def cases():
     """Inputs that take long enough: group, name, inputs, settings."""
     cube = grid(15)
@@ -109,6 +122,7 @@ def cases():
         yield "sources", name, {}, {"FileNames": [file]}
     yield "sources", "ABAQUSReader", {}, {"FileNames": [deck(".inp", cube, ABAQUS)]}
     yield "sources", "AnyNastranReader", {}, {"FileNames": [deck(".bdf", cube, NASTRAN)]}
+    yield "sources", "TautlineMfemReader", {}, {"FileNames": [straight_mesh(cube)]}
     yield "sources", "SilhouetteSetReader", {}, {"FileName": str(DATA / "silhouettes.csv")}
     yield "filters", "ElementQuality", {"Input": cube}, {}
     yield "filters", "MeshComparison", {"Input": cube, "Other": cube}, {}

@@ -21,14 +21,18 @@ class Format:
     holds: str | None
     #: The module of vtkmodules with both classes; None: our own compiled modules.
     module: str | None = None
+    #: Another of our readers, for files of the same ending that it can read.
+    other: str | None = None
 
     @property
     def own(self) -> bool:
         """Whether the classes are ours: a format of a mesh generator."""
         return self.module is None
 
-    def make_reader(self) -> Any:
-        """A new reader."""
+    def make_reader(self, file: str = "") -> Any:
+        """A new reader of a file."""
+        if self.other and (reader := self._make(self.other)).CanReadFile(file):
+            return reader
         return self._make(self.reader or "")
 
     def make_writer(self) -> Any:
@@ -53,7 +57,8 @@ _TETGEN = Format("vtkTetGenReader", "vtkTetGenWriter", "vtkDataSet")
 _OFF = "vtkOffReader"
 _OWN_FORMATS = {
     **dict.fromkeys((".node", ".ele", ".face", ".edge", ".poly", ".smesh"), _TETGEN),
-    **dict.fromkeys((".mesh", ".meshb"), Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet")),
+    ".mesh": Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet", other="vtkMfemReader"),
+    ".meshb": Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet"),
     ".sol": Format("vtkMeditReader", None, "vtkDataSet"),
     ".msh": Format("vtkGmshReader", "vtkGmshWriter", "vtkDataSet"),
     **dict.fromkeys((".msh2", ".msh4"), Format("vtkGmshReader", None, "vtkDataSet")),

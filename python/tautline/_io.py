@@ -205,7 +205,7 @@ def _read(name: str, options: dict[str, Any]) -> vtkDataObject:
     _check_options(name, ending, options, "lower_cells" if form.own else None)
     check_input(name)
     if form.own:
-        reader = form.make_reader()
+        reader = form.make_reader(name)
         reader.SetLowerCells(options.get("lower_cells", False))
         reader.SetFileName(name)
         for text in dict.fromkeys(run(reader).warnings):

@@ -316,9 +316,10 @@ const std::vector<std::string>& classesWithoutInput()
     "vtkTautlineTimedAlgorithm", "vtkMeshMotionAlgorithm", "vtkMetricAlgorithm",
     "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm", "vtkBoundaryMesher",
     "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField", "vtkDomainSource", "vtkGmshReader",
-    "vtkAbaqusReader", "vtkNastranReader", "vtkMeditReader", "vtkOffReader", "vtkTetGenReader",
-    "vtkSilhouetteSetReader", "vtkHtmlReport", "vtkImageFileReader", "vtkInterruption",
-    "vtkMeshDecomposition", "vtkTautlineSetRange", "vtkUpdateGuard", "vtkUserMetric" };
+    "vtkAbaqusReader", "vtkNastranReader", "vtkMeditReader", "vtkMfemReader", "vtkOffReader",
+    "vtkTetGenReader", "vtkSilhouetteSetReader", "vtkHtmlReport", "vtkImageFileReader",
+    "vtkInterruption", "vtkMeshDecomposition", "vtkTautlineSetRange", "vtkUpdateGuard",
+    "vtkUserMetric" };
   return names;
 }
 
