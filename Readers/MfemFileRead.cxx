@@ -306,6 +306,15 @@ public:
   void addElements(const std::vector<double>& values)
   {
     this->Tolerance = this->size(values) * RelativeTolerance;
+    if (this->Space.continuous)
+    {
+      for (Index node = 0; node < this->Numbering.numberOfNodes(); ++node)
+      {
+        const Vec3 place = this->value(values, node);
+        this->Output.points.insert(this->Output.points.end(), place.begin(), place.end());
+      }
+      this->NextCopy.assign(this->Points.size(), -1);
+    }
     std::vector<Index> nodes, cell;
     std::vector<Vec3> own;
     Index first = 0;
@@ -485,8 +494,14 @@ private:
       }
       last = point;
     }
+    if (last < 0 && this->Space.continuous)
+    {
+      std::copy(place.begin(), place.end(), this->Output.points.begin() + 3 * node);
+      first = node;
+      return node;
+    }
     const Index point = this->Output.numberOfPoints();
-    this->Output.points.insert(this->Output.points.end(), { place[0], place[1], place[2] });
+    this->Output.points.insert(this->Output.points.end(), place.begin(), place.end());
     this->NextCopy.push_back(-1);
     if (last < 0)
     {

@@ -92,6 +92,29 @@ RequiredVertices 1
 1
 End
 """
+MFEM = """MFEM mesh v1.0
+# vertices
+dimension
+2
+elements
+4
+1 2 0 1 4
+1 2 1 2 4
+2 2 2 3 4
+2 2 3 0 4
+boundary
+1
+7 1 0 1
+
+vertices
+5
+2
+0 0
+1 0
+1 1
+0 1
+0.4 0.5
+"""
 SU2 = """NDIME= 2
 NELEM= 4
 5 0 1 4 0
@@ -201,12 +224,13 @@ wall and more
     -1
 """
 FILES = {
-    "v2.msh": MSH2, "v41.msh": MSH41, "a.mesh": MEDIT, "a.su2": SU2, "a.off": OFF, "a.inp": ABAQUS, "a.bdf": NASTRAN,
+    "v2.msh": MSH2, "v41.msh": MSH41, "a.mesh": MEDIT, "m.mesh": MFEM, "a.su2": SU2, "a.off": OFF, "a.inp": ABAQUS, "a.bdf": NASTRAN,
     "a.unv": UNV,
 }  # fmt: skip
 #: What stands where the coordinates of the inner point were: patterns, with a group for each.
 INNER = {
     "v2.msh": r"\n5 (\S+) (\S+) 0\n\$EndNodes", "v41.msh": r"\n5\n(\S+) (\S+) 0\n", "a.mesh": r"\n(\S+) (\S+) 0\nTri",
+    "m.mesh": r"\n(\S+) (\S+)\n$",
     "a.su2": r"\n\t(\S+) \t(\S+) \t4\n", "a.off": r"\n(\S+) (\S+) 0 # inside", "a.inp": r"5,( +\S+),( +\S+),  0.\n",
     "a.unv": r"\n {9}5 [ 0-9]*\n {3}(\S+) {3}(\S+) {3}0.0000000000000000D",
     "a.bdf": r"\nGRID\* {18}5 {16}(.{16})(.{16})\n",

@@ -264,8 +264,22 @@ def _uncommented(content: bytes, sign: bytes) -> bytes:
     return re.sub(re.escape(sign) + rb"[^\n]*", lambda match: b" " * len(match[0]), content)
 
 
+def _mfem(content: bytes) -> Iterator[list[_Span]]:
+    """The vertices of MFEM's straight meshes."""
+    text = _uncommented(content, b"#")
+    section = re.search(rb"^\s*vertices\s+(\d+)\s+([123])\s", text, re.MULTILINE)
+    if not section:
+        return
+    tokens = _tokens(text, section.end(), len(text))
+    for _ in range(int(section[1])):
+        yield [next(tokens) for _ in range(int(section[2]))]
+
+
 def _medit(content: bytes) -> Iterator[list[_Span]]:
     text = _uncommented(content, b"#")
+    if text.lstrip().startswith(b"MFEM"):
+        yield from _mfem(content)
+        return
     dimension = re.search(rb"\bDimension\s+(\d)", text)
     section = re.search(rb"(?<!\S)Vertices\s+(\d+)", text)
     if not dimension or not section:
