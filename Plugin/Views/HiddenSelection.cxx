@@ -7,6 +7,7 @@
 #include "pqPipelineSource.h"
 #include "pqServer.h"
 #include "pqTimeKeeper.h"
+#include "pqUndoStack.h"
 
 #include "vtkCellData.h"
 #include "vtkCompositeDataIterator.h"
@@ -48,6 +49,7 @@ std::size_t placeOf(const std::string& array, std::vector<std::string>& arrays)
 HiddenSelection::HiddenSelection(pqOutputPort* port, const CellInterval& interval)
   : Port(port)
 {
+  const pqScopedUndoExclude notUndone;
   auto* manager = port->getSourceProxy()->GetSessionProxyManager();
   this->Selection.TakeReference(
     vtkSMSourceProxy::SafeDownCast(manager->NewProxy("sources", "ThresholdSelectionSource")));
@@ -63,6 +65,7 @@ HiddenSelection::HiddenSelection(pqOutputPort* port, vtkSMSourceProxy* selection
   : Port(port)
   , Selection(selection)
 {
+  const pqScopedUndoExclude notUndone;
   this->extract();
 }
 

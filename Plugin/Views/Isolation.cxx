@@ -10,6 +10,7 @@
 #include "pqServer.h"
 #include "pqServerManagerModel.h"
 #include "pqTimeKeeper.h"
+#include "pqUndoStack.h"
 
 #include "vtkDataObject.h"
 #include "vtkNew.h"
@@ -113,6 +114,7 @@ bool Isolation::planar() const
 //------------------------------------------------------------------------------
 void Isolation::fade(pqDataRepresentation* mesh, const std::string& array, bool shownBefore)
 {
+  const pqScopedUndoExclude notUndone;
   // Other meshes, and the elements that Element Quality draws, would hide the elements.
   std::vector<QPointer<pqDataRepresentation>> others;
   for (pqRepresentation* other : this->View->getRepresentations())
@@ -165,6 +167,7 @@ void Isolation::fade(pqDataRepresentation* mesh, const std::string& array, bool 
 //------------------------------------------------------------------------------
 void Isolation::show(const std::vector<ElementName>& names, int layers)
 {
+  const pqScopedUndoExclude notUndone;
   this->remove();
   if (!this->active() || !this->Mesh || !this->View || !this->Faded)
   {
@@ -248,6 +251,7 @@ void Isolation::zoom() const
 //------------------------------------------------------------------------------
 void Isolation::remove()
 {
+  const pqScopedUndoExclude notUndone;
   for (const Drawn& drawn : std::exchange(this->Additions, {}))
   {
     if (this->View)
@@ -262,6 +266,7 @@ void Isolation::remove()
 //------------------------------------------------------------------------------
 void Isolation::end()
 {
+  const pqScopedUndoExclude notUndone;
   this->remove();
   if (const auto restore = std::exchange(this->Restore, nullptr))
   {

@@ -8,6 +8,7 @@
 #include "pqPipelineSource.h"
 #include "pqServer.h"
 #include "pqTimeKeeper.h"
+#include "pqUndoStack.h"
 #include "pqView.h"
 
 #include "vtkDataObject.h"
@@ -76,6 +77,7 @@ std::string plotWorstOverTime(pqOutputPort* mesh, const std::string& array, bool
   {
     return "There is one time step: open a time series, or switch Animation on.";
   }
+  const pqScopedUndoSet oneStep("Plot Worst over Time");
   pqPipelineSource* plot = pqApplicationCore::instance()->getObjectBuilder()->createFilter(
     "filters", "PlotDataOverTime", mesh->getSource(), mesh->getPortNumber());
   vtkSMViewProxy* chart = plot ? newChart(mesh->getServer()) : nullptr;
