@@ -142,7 +142,7 @@ void pqTautlineNavigator::fitRow()
     end = other->y() == top ? std::max(end, right) : end;
   }
   // The text of the element is cut if need be; its tool tip has all of it.
-  constexpr int letters = 24, margin = 12;
+  constexpr int letters = 18, margin = 48;
   const int rest = window->width() - end - this->Element->x() - margin;
   const bool fits = top >= 0 && rest > letters * this->fontMetrics().averageCharWidth();
   this->Element->setMinimumWidth(fits ? rest : 0);
