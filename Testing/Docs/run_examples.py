@@ -68,9 +68,13 @@ def run_page(page: Path, kind: str, write: bool) -> tuple:
 
 
 def main(kind: str, pages: Path, work: Path, write: bool) -> int:
+    data = pages.parents[1] / "Data"
+    if work.exists() and not (work / "Data").is_symlink():
+        print(f"{work} is not of these examples, and is left as it is: name a folder that does not exist")
+        return 2
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir(parents=True)
-    (work / "Data").symlink_to(pages.parents[1] / "Data")
+    (work / "Data").symlink_to(data)
     os.chdir(work)
     results = [run_page(page, kind, write) for page in sorted(pages.glob("*.html"))]
     count, wrong = (sum(column) for column in zip(*results))
