@@ -10,7 +10,6 @@
 
 #include "Clocks.h"
 #include "Elements/CurvedElements.h"
-#include "Elements/MfemMesh.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -148,7 +147,7 @@ int main(int argc, char* argv[])
   if (std::filesystem::exists(file))
   {
     measure("cube-holes", ElementType::ofVtk(quadraticTetrahedron, 10),
-      setOf(quadraticTetrahedra(readMfemMesh(file))), repeats);
+      setOf(elementsOf(readMfem(file, false), FileTetrahedron10)), repeats);
   }
   return EXIT_SUCCESS;
 }

@@ -7,6 +7,7 @@
 #ifndef tautline_CurvedElements_h
 #define tautline_CurvedElements_h
 
+#include "MfemFile.h"
 #include "tautline/Core/Random.h"
 #include "tautline/Elements/JacobianCertifier.h"
 
@@ -14,6 +15,26 @@
 
 namespace tautline
 {
+/// The nodes of the cells of one type in a file, by cell.
+inline std::vector<std::vector<Vec3>> elementsOf(const MeshFile& mesh, unsigned char type)
+{
+  std::vector<std::vector<Vec3>> elements;
+  for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
+  {
+    if (mesh.cellTypes[cell] != type)
+    {
+      continue;
+    }
+    std::vector<Vec3>& nodes = elements.emplace_back();
+    for (Index i = mesh.offsets[cell]; i < mesh.offsets[cell + 1]; ++i)
+    {
+      const double* point = mesh.points.data() + 3 * mesh.connectivity[static_cast<std::size_t>(i)];
+      nodes.push_back({ point[0], point[1], point[2] });
+    }
+  }
+  return elements;
+}
+
 /// The nodes of an element in its real shape, at the places of its reference coordinates: of a
 /// pyramid not collapsed.
 inline std::vector<Vec3> straightElement(const ElementType& type)

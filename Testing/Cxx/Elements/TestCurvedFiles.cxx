@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The certificate on curved meshes of MFEM and Gmsh with known numbers of invalid elements.
 #include "CurvedElements.h"
-#include "MfemMesh.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
 
@@ -37,13 +36,16 @@ Found examine(const ElementType& type, const ElementSet& set)
   TAUTLINE_CHECK_EQUAL(certifier.counts().undecided, 0);
   return found;
 }
+
+std::vector<std::vector<Vec3>> fileElements(const char* name, unsigned char type)
+{
+  return elementsOf(readMfem(externalData("curved") + "/" + name, false), type);
+}
 }
 
 TAUTLINE_PART(testCubeHoles)
 {
-  const MfemMesh mesh = readMfemMesh(externalData("curved") + "/cube-holes-inv.mesh");
-  TAUTLINE_CHECK_EQUAL(static_cast<Index>(mesh.nodes.size()), mesh.vertices + mesh.edgeCount);
-  const ElementSet set = setOf(quadraticTetrahedra(mesh));
+  const ElementSet set = setOf(fileElements("cube-holes-inv.mesh", FileTetrahedron10));
   const Found found = examine(ElementType::ofVtk(VTK_QUADRATIC_TETRA, 10), set);
   TAUTLINE_CHECK_EQUAL(set.count(), 3782);
   TAUTLINE_CHECK_EQUAL(found.invalid, 219);
@@ -51,49 +53,40 @@ TAUTLINE_PART(testCubeHoles)
   TAUTLINE_CHECK_NEAR(found.least.lower, -6.98984e-4, 5e-9);
 }
 
-/// Quadrilaterals of order 4 with nodes of their own, in the order of the axes.
 TAUTLINE_PART(testBlade)
 {
-  const MfemMesh mesh = readMfemMesh(externalData("curved") + "/blade.mesh");
-  TAUTLINE_CHECK_EQUAL(mesh.collection, std::string("L2_T4_2D_P4")); // closed uniform nodes
-  std::vector<Vec3> places;
-  for (int n = 0; n < 25; ++n)
-  {
-    places.push_back({ n % 5 / 4.0, n / 5 / 4.0, 0 });
-  }
-  const ElementType type(ElementShape::Quadrilateral, { 4, 4, 0 }, places);
-  std::vector<std::vector<Index>> nodes(mesh.elements.size());
-  for (std::size_t e = 0; e < nodes.size(); ++e)
-  {
-    for (Index n = 0; n < 25; ++n)
-    {
-      nodes[e].push_back(25 * static_cast<Index>(e) + n);
-    }
-  }
-  const Found found = examine(type, setOf(pointsOf(mesh, nodes)));
-  TAUTLINE_CHECK_EQUAL(nodes.size(), 109u);
+  const ElementSet set = setOf(fileElements("blade.mesh", FileLagrangeQuadrilateral));
+  const Found found = examine(ElementType::ofVtk(VTK_LAGRANGE_QUADRILATERAL, 25), set);
+  TAUTLINE_CHECK_EQUAL(set.count(), 109);
   TAUTLINE_CHECK_EQUAL(found.invalid, 0);
   TAUTLINE_CHECK_NEAR(found.least.upper, 6.516e-5, 5e-9);
+}
+
+TAUTLINE_PART(testIcf)
+{
+  const ElementSet set = setOf(fileElements("icf.mesh", FileQuadrilateral9));
+  const Found found = examine(ElementType::ofVtk(VTK_BIQUADRATIC_QUAD, 9), set);
+  TAUTLINE_CHECK_EQUAL(set.count(), 224);
+  TAUTLINE_CHECK_EQUAL(found.invalid, 0);
+  TAUTLINE_CHECK_NEAR(found.least.upper, 1.49928e-5, 5e-10);
 }
 
 /// The mesh is of order 4; with order 2 the nodes are those in the middle of edges and elements.
 TAUTLINE_PART(testJagged)
 {
-  const MfemMesh mesh = readMfemMesh(externalData("curved") + "/jagged.mesh");
-  TAUTLINE_CHECK_EQUAL(mesh.collection, std::string("H1_2D_P4"));
-  const Index inside = mesh.vertices + 3 * mesh.edgeCount;
-  std::vector<std::vector<Index>> nodes = mesh.elements;
-  for (std::size_t e = 0; e < nodes.size(); ++e)
+  const std::vector<Vec3>& all = ElementType::ofVtk(VTK_LAGRANGE_QUADRILATERAL, 25).coordinates();
+  const ElementType& type = ElementType::ofVtk(VTK_BIQUADRATIC_QUAD, 9);
+  std::vector<std::vector<Vec3>> elements;
+  for (const std::vector<Vec3>& given : fileElements("jagged.mesh", FileLagrangeQuadrilateral))
   {
-    for (Index edge : mesh.edges[e])
+    std::vector<Vec3>& nodes = elements.emplace_back();
+    for (const Vec3& place : type.coordinates())
     {
-      nodes[e].push_back(mesh.vertices + 3 * edge + 1);
+      nodes.push_back(given.at(std::find(all.begin(), all.end(), place) - all.begin()));
     }
-    nodes[e].push_back(inside + 9 * static_cast<Index>(e) + 4);
   }
-  const Found found =
-    examine(ElementType::ofVtk(VTK_BIQUADRATIC_QUAD, 9), setOf(pointsOf(mesh, nodes)));
-  TAUTLINE_CHECK_EQUAL(nodes.size(), 18u);
+  const Found found = examine(type, setOf(elements));
+  TAUTLINE_CHECK_EQUAL(elements.size(), 18u);
   TAUTLINE_CHECK_EQUAL(found.invalid, 3);
   TAUTLINE_CHECK_NEAR(found.least.upper, -2.0 / 9, 1e-6);
 }
