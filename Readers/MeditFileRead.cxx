@@ -277,9 +277,7 @@ void readHeader(TextCursor& cursor)
   const std::string first = nextWord(cursor, "MeshVersionFormatted");
   if (first == "MFEM")
   {
-    cursor.fail(
-      "this is a mesh of MFEM, which has the same ending as those of Medit: save it as .vtu "
-      "(Mesh::PrintVTU), or with mesh-explorer as .vtk");
+    cursor.fail("this is a mesh of MFEM, which has the same ending: vtkMfemReader reads it");
   }
   if (first != "MeshVersionFormatted")
   {

@@ -320,7 +320,7 @@ def test_medit():
     (FOLDER / "open.mesh").write_text(text.removesuffix(" 1\nEnd\n"))
     refused("open.mesh", tl.read, FOLDER / "open.mesh")
     (FOLDER / "mfem.mesh").write_text("MFEM mesh v1.0\n\ndimension\n2\n")
-    refused(wording("mfem-mesh-1-this-is-a-mesh"), tl.read, FOLDER / "mfem.mesh")
+    refused("mfem.mesh:5: ", tl.read, FOLDER / "mfem.mesh")  # by the reader of MFEM, which has the same ending
     result = tl.quality(DATA / "bracket.vtu", "imr")
     with warnings.catch_warnings(record=True) as told:
         warnings.simplefilter("always")
