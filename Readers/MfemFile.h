@@ -8,8 +8,8 @@
  * Gauss-Legendre, uniform) or Bernstein coefficients. Its cells become VTK's: quadratic ones with
  * all nodes for order 2, Lagrange cells for higher orders, whose nodes are evenly spaced: the
  * functions are evaluated there, so that the shape of every cell is kept to rounding. Points are in
- * the order of H1: vertices, nodes of edges, of faces, of elements. Where the elements of a space L2
- * differ at a common node, as in periodic meshes, each value is a point.
+ * the order of H1: vertices, nodes of edges, of faces, of elements. Where the elements of a space
+ * L2 differ at a common node, as in periodic meshes, each value is a point.
  *
  * Refused by name, with the remedy: nonconforming, NURBS and inline meshes, meshes of lines, curved
  * pyramids, and the collection Cubic on cubes and prisms.

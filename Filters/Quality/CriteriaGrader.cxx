@@ -212,13 +212,16 @@ std::string CriteriaGrader::summary() const
   if (t.graded > 0)
   {
     text << ": of " << t.graded << " elements " << t.failed << " fail and " << t.warned
-         << " have warnings; quality index " << t.meanIndex()
-         << " (0 ideal, 1 worst). Valid elements "
-         << "that fail:";
+         << " have warnings; quality index " << t.meanIndex() << " (0 ideal, 1 worst)";
+    const char* before = ". Valid elements that fail: ";
     for (std::size_t c = 0; c < t.criteria.size(); ++c)
     {
-      text << (c > 0 ? ", " : " ") << metricInfo(this->Criteria.criteria[c].metric).name << " "
-           << t.criteria[c].failed;
+      if (t.criteria[c].failed > 0)
+      {
+        text << before << metricInfo(this->Criteria.criteria[c].metric).name << " "
+             << t.criteria[c].failed;
+        before = ", ";
+      }
     }
   }
   else

@@ -45,6 +45,6 @@ CRITERIA_PORT = 6
 quality.Criteria = "skewness"
 quality.UpdatePipeline()
 quality.UpdatePropertyInformation()
-assert quality.Summary.startswith('Passed by the criteria "Equiangle skewness"'), quality.Summary
+assert quality.Summary.startswith('Passed by the criteria "Equiangle skewness, shells and solids"'), quality.Summary
 assert quality.CellData["Grade"].GetRange() == (0, 0)
 assert servermanager.Fetch(quality, idx=CRITERIA_PORT).GetValueByName(0, "Graded").ToInt() == 27

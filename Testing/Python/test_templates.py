@@ -224,8 +224,8 @@ wall and more
     -1
 """
 FILES = {
-    "v2.msh": MSH2, "v41.msh": MSH41, "a.mesh": MEDIT, "m.mesh": MFEM, "a.su2": SU2, "a.off": OFF, "a.inp": ABAQUS, "a.bdf": NASTRAN,
-    "a.unv": UNV,
+    "v2.msh": MSH2, "v41.msh": MSH41, "a.mesh": MEDIT, "m.mesh": MFEM, "a.su2": SU2, "a.off": OFF, "a.inp": ABAQUS,
+    "a.bdf": NASTRAN, "a.unv": UNV,
 }  # fmt: skip
 #: What stands where the coordinates of the inner point were: patterns, with a group for each.
 INNER = {
