@@ -15,7 +15,6 @@
 
 #include <QAction>
 #include <QComboBox>
-#include <QEvent>
 #include <QKeySequence>
 #include <QLabel>
 #include <QMainWindow>
@@ -108,8 +107,7 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
     {
       if (auto* window = qobject_cast<QMainWindow*>(this->parentWidget()))
       {
-        window->installEventFilter(this);
-        this->fitRow();
+        window->insertToolBarBreak(this);
         window->addDockWidget(Qt::BottomDockWidgetArea, this->Table);
         this->Table->hide();
       }
@@ -118,51 +116,6 @@ pqTautlineNavigator::pqTautlineNavigator(QWidget* parentObject)
 
 //------------------------------------------------------------------------------
 pqTautlineNavigator::~pqTautlineNavigator() = default;
-
-//------------------------------------------------------------------------------
-void pqTautlineNavigator::fitRow()
-{
-  auto* window = qobject_cast<QMainWindow*>(this->parentWidget());
-  if (!window || window->toolBarArea(this) != Qt::TopToolBarArea || this->isFloating())
-  {
-    return;
-  }
-  // The last row of the other tool bars, and its end.
-  int top = -1, end = 0;
-  for (QToolBar* other : window->findChildren<QToolBar*>(QString(), Qt::FindDirectChildrenOnly))
-  {
-    if (other == this || !other->isVisible() || window->toolBarArea(other) != Qt::TopToolBarArea)
-    {
-      continue;
-    }
-    end = other->y() > top ? 0 : end;
-    top = std::max(top, other->y());
-    // The last one of a row is stretched.
-    const int right = other->x() + std::min(other->width(), other->sizeHint().width());
-    end = other->y() == top ? std::max(end, right) : end;
-  }
-  // The text of the element is cut if need be; its tool tip has all of it.
-  constexpr int letters = 18, margin = 48;
-  const int rest = window->width() - end - this->Element->x() - margin;
-  const bool fits = top >= 0 && rest > letters * this->fontMetrics().averageCharWidth();
-  this->Element->setMinimumWidth(fits ? rest : 0);
-  this->Element->setMaximumWidth(fits ? rest : QWIDGETSIZE_MAX);
-  if (fits == window->toolBarBreak(this))
-  {
-    fits ? window->removeToolBarBreak(this) : window->insertToolBarBreak(this);
-  }
-}
-
-//------------------------------------------------------------------------------
-bool pqTautlineNavigator::eventFilter(QObject* window, QEvent* event)
-{
-  if (event->type() == QEvent::Resize || event->type() == QEvent::Show)
-  {
-    // After the tool bars have their places.
-    QTimer::singleShot(0, this, &pqTautlineNavigator::fitRow);
-  }
-  return this->Superclass::eventFilter(window, event);
-}
 
 //------------------------------------------------------------------------------
 void pqTautlineNavigator::sourceChanged(pqPipelineSource* source)

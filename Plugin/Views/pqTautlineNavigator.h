@@ -36,8 +36,6 @@ public:
   explicit pqTautlineNavigator(QWidget* parent = nullptr);
   ~pqTautlineNavigator() override;
 
-  bool eventFilter(QObject* window, QEvent* event) override;
-
 private Q_SLOTS:
   void sourceChanged(pqPipelineSource* source);
   void dataUpdated(pqPipelineSource* source);
@@ -49,8 +47,6 @@ private Q_SLOTS:
   void isolate(bool on);
   void plotOverTime();
   void fillTable();
-  /// Shares the last row of tool bars if there is place, otherwise takes one of its own.
-  void fitRow();
   /// Puts the table on the dock of the run, if that is shown at the same place.
   void placeTable();
   /// Selects an element; numbers count around.
