@@ -509,36 +509,6 @@ TAUTLINE_PART(testDiscontinuousSpaces)
   }
 }
 
-/// Files of MFEM: points, cells of each dimension, orders.
-TAUTLINE_PART(testSamplesOfMfem)
-{
-  const std::string folder = externalData("curved");
-  struct Expected
-  {
-    const char* name;
-    Index points;
-    std::size_t cells;
-    std::size_t boundary;
-    unsigned char type;
-  };
-  const Expected files[] = { { "jagged.mesh", 325, 18, 18, FileLagrangeQuadrilateral },
-    { "icf.mesh", 965, 224, 100, FileQuadrilateral9 },
-    { "blade.mesh", 1860, 109, 58, FileLagrangeQuadrilateral },
-    { "cube-holes-inv.mesh", 6605, 3782, 1660, FileTetrahedron10 } };
-  for (const Expected& file : files)
-  {
-    const MeshFile mesh = readMfem(folder + "/" + file.name, true);
-    TAUTLINE_CHECK(mesh.numberOfPoints() == file.points);
-    TAUTLINE_CHECK(mesh.cellTypes.size() == file.cells + file.boundary);
-    TAUTLINE_CHECK(mesh.cellTypes[0] == file.type && mesh.warnings.empty());
-    vtkNew<vtkMfemReader> reader;
-    reader->SetFileName((folder + "/" + file.name).c_str());
-    TAUTLINE_CHECK(reader->CanReadFile(reader->GetFileName()) == 1);
-    reader->Update();
-    TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == static_cast<vtkIdType>(file.cells));
-  }
-}
-
 const char* const Straight = "MFEM mesh v1.0\ndimension\n2\nelements\n1\n5 3 0 1 2 3\nboundary\n1\n"
                              "8 1 0 1\nvertices\n4\n2\n0 0\n1 0\n1 1\n0 1\n";
 
@@ -638,6 +608,36 @@ TAUTLINE_PART(testErrors)
   TAUTLINE_CHECK(fails(replaced(lines, "VDim: 2", "VDim: 1"), "coordinates"));
   TAUTLINE_CHECK(fails(replaced(lines, "3 0 1 2 3", "3 0 1 2 0"), "twice"));
   TAUTLINE_CHECK(fails(replaced(lines, "boundary\n0\n", "boundary\n1\n1 1 0 2\n"), "side"));
+}
+
+/// Files of MFEM: points, cells of each dimension, orders.
+TAUTLINE_PART(testSamplesOfMfem)
+{
+  const std::string folder = externalData("curved");
+  struct Expected
+  {
+    const char* name;
+    Index points;
+    std::size_t cells;
+    std::size_t boundary;
+    unsigned char type;
+  };
+  const Expected files[] = { { "jagged.mesh", 325, 18, 18, FileLagrangeQuadrilateral },
+    { "icf.mesh", 965, 224, 100, FileQuadrilateral9 },
+    { "blade.mesh", 1860, 109, 58, FileLagrangeQuadrilateral },
+    { "cube-holes-inv.mesh", 6605, 3782, 1660, FileTetrahedron10 } };
+  for (const Expected& file : files)
+  {
+    const MeshFile mesh = readMfem(folder + "/" + file.name, true);
+    TAUTLINE_CHECK(mesh.numberOfPoints() == file.points);
+    TAUTLINE_CHECK(mesh.cellTypes.size() == file.cells + file.boundary);
+    TAUTLINE_CHECK(mesh.cellTypes[0] == file.type && mesh.warnings.empty());
+    vtkNew<vtkMfemReader> reader;
+    reader->SetFileName((folder + "/" + file.name).c_str());
+    TAUTLINE_CHECK(reader->CanReadFile(reader->GetFileName()) == 1);
+    reader->Update();
+    TAUTLINE_CHECK(reader->GetOutput()->GetNumberOfCells() == static_cast<vtkIdType>(file.cells));
+  }
 }
 }
 
