@@ -13,21 +13,6 @@ namespace tautline
 {
 namespace
 {
-std::string nextWord(TextCursor& cursor, const char* what)
-{
-  if (!cursor.skipToToken())
-  {
-    cursor.fail(std::string("the file ends before ") + what);
-  }
-  return std::string(cursor.word());
-}
-
-Index nextInteger(TextCursor& cursor, const char* what, Index low, Index high)
-{
-  cursor.skipToToken();
-  return cursor.integer(what, low, high);
-}
-
 Index sectionSize(TextCursor& cursor, const std::string& section, std::size_t numbers)
 {
   cursor.skipToToken();
@@ -170,7 +155,7 @@ void readSections(TextCursor& cursor, MeditContents& contents)
     }
     if (word == "Dimension")
     {
-      contents.dimension = static_cast<int>(nextInteger(cursor, "dimension", 2, 3));
+      contents.dimension = static_cast<int>(cursor.nextInteger("dimension", 2, 3));
     }
     else if (word == "Vertices")
     {
@@ -274,7 +259,7 @@ MeshFile assemble(const FileContent& file, MeditContents contents)
 
 void readHeader(TextCursor& cursor)
 {
-  const std::string first = nextWord(cursor, "MeshVersionFormatted");
+  const std::string first = cursor.nextWord("MeshVersionFormatted");
   if (first == "MFEM")
   {
     cursor.fail("this is a mesh of MFEM, which has the same ending: vtkMfemReader reads it");
@@ -283,7 +268,7 @@ void readHeader(TextCursor& cursor)
   {
     cursor.fail("expected MeshVersionFormatted: this is no ASCII file of Medit");
   }
-  nextInteger(cursor, "version", 0, 4); // 0: bamg
+  cursor.nextInteger("version", 0, 4); // 0: bamg
 }
 
 MeditContents readText(const FileContent& file)
@@ -383,10 +368,10 @@ void readField(
 std::vector<Field> readFields(TextCursor& cursor)
 {
   std::vector<Field> fields(
-    static_cast<std::size_t>(nextInteger(cursor, "number of fields", 0, 1000)));
+    static_cast<std::size_t>(cursor.nextInteger("number of fields", 0, 1000)));
   for (Field& field : fields)
   {
-    field.type = nextInteger(cursor, "type of a field", 1, 3);
+    field.type = cursor.nextInteger("type of a field", 1, 3);
   }
   return fields;
 }
@@ -491,7 +476,7 @@ void readMeditSolution(const FileContent& file, MeshFile& mesh)
     }
     if (word == "Dimension")
     {
-      dimension = static_cast<int>(nextInteger(cursor, "dimension", 2, 3));
+      dimension = static_cast<int>(cursor.nextInteger("dimension", 2, 3));
       continue;
     }
     if (dimension == 0)

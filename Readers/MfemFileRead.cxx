@@ -58,34 +58,18 @@ unsigned char cellCode(int geometry, int order)
   return order == 1 ? codes.linear : order == 2 ? codes.quadratic : codes.higher;
 }
 
-/// Moves to the next word, and takes it; throws where the file ends.
-std::string takeWord(TextCursor& cursor, const char* what)
-{
-  if (!cursor.skipToToken())
-  {
-    cursor.fail(std::string("the file ends before ") + what);
-  }
-  return std::string(cursor.word().substr(0, 40));
-}
-
 void expectWord(TextCursor& cursor, const char* expected)
 {
-  const std::string word = takeWord(cursor, expected);
+  const std::string word = cursor.nextWord(expected);
   if (word != expected)
   {
-    cursor.fail(std::string("expected '") + expected + "', found '" + word + "'");
+    cursor.fail(std::string("expected '") + expected + "', found '" + word.substr(0, 40) + "'");
   }
-}
-
-Index takeInteger(TextCursor& cursor, const char* what, Index low, Index high)
-{
-  cursor.skipToToken();
-  return cursor.integer(what, low, high);
 }
 
 void readMfemHeader(TextCursor& cursor)
 {
-  if (takeWord(cursor, "MFEM mesh v1.0") != "MFEM")
+  if (cursor.nextWord("MFEM mesh v1.0") != "MFEM")
   {
     cursor.fail("expected MFEM mesh v1.0");
   }
@@ -560,7 +544,7 @@ void readSpace(TextCursor& cursor, MfemMesh& mesh, MfemSpace& space, bool& byNod
 {
   expectWord(cursor, "FiniteElementSpace");
   expectWord(cursor, "FiniteElementCollection:");
-  const std::string name = takeWord(cursor, "the collection");
+  const std::string name = cursor.nextWord("the collection");
   try
   {
     space = MfemSpace::parse(name, mesh.dimension);
@@ -570,9 +554,9 @@ void readSpace(TextCursor& cursor, MfemMesh& mesh, MfemSpace& space, bool& byNod
     cursor.fail(error.what());
   }
   expectWord(cursor, "VDim:");
-  mesh.spaceDimension = static_cast<int>(takeInteger(cursor, "VDim", 1, 3));
+  mesh.spaceDimension = static_cast<int>(cursor.nextInteger("VDim", 1, 3));
   expectWord(cursor, "Ordering:");
-  byNodes = takeInteger(cursor, "Ordering", 0, 1) == 0;
+  byNodes = cursor.nextInteger("Ordering", 0, 1) == 0;
 }
 
 /// The file ends, or the part of a parallel mesh.
@@ -606,7 +590,7 @@ MeshFile readMfem(const std::string& name, bool lowerCells)
   readMfemHeader(cursor);
   MfemMesh mesh;
   expectWord(cursor, "dimension");
-  mesh.dimension = static_cast<int>(takeInteger(cursor, "dimension", 1, 3));
+  mesh.dimension = static_cast<int>(cursor.nextInteger("dimension", 1, 3));
   if (mesh.dimension == 1)
   {
     cursor.fail("meshes of lines are not read");

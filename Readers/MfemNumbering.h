@@ -43,7 +43,7 @@ public:
   Index numberOfNodes() const { return this->Total; }
   /**
    * @brief The nodes of an element, in the order of its shape's lattice.
-   * @param boundary the elements it is one of, else it is one of those of the constructor
+   * @param boundary the boundary elements it is one of; null for one of the constructor's elements
    * @return false for a boundary element that is no edge or face of an element
    */
   bool nodesOf(std::size_t element, const MfemElements* boundary, std::vector<Index>& nodes) const;

@@ -282,6 +282,16 @@ std::string_view TextCursor::word()
 }
 
 //------------------------------------------------------------------------------
+std::string TextCursor::nextWord(const char* what)
+{
+  if (!this->skipToToken())
+  {
+    this->fail(std::string("the file ends before ") + what);
+  }
+  return std::string(this->word());
+}
+
+//------------------------------------------------------------------------------
 std::string TextCursor::quoted(const char* what)
 {
   this->skipBlanks();

@@ -152,6 +152,14 @@ public:
   void expectRoom(Index records, std::size_t bytes, const char* what) const;
   /// Everything up to the next blank or line end; empty at the end of the line.
   std::string_view word();
+  /// The next word of this or a later line; `what` names it where the file ends before.
+  std::string nextWord(const char* what);
+  /// The next token of this or a later line, a whole number within [low, high].
+  Index nextInteger(const char* what, Index low, Index high)
+  {
+    this->skipToToken();
+    return this->integer(what, low, high);
+  }
   /// The text between double quotes.
   std::string quoted(const char* what);
 
