@@ -45,24 +45,14 @@
 
 namespace
 {
-/// The filters whose values are drawn and that Stop applies to: name of the proxy, in the menu.
-constexpr const char* Iterative[][2] = { { "MeshOptimizer", "Optimize Mesh" },
-  { "MeshUntangler", "Untangle Mesh" }, { "MeshImprover", "Improve Mesh" } };
-
 constexpr const char* StopTip = "End the run with the best mesh so far.";
 constexpr const char* Stopped = ": stopped";
 constexpr const char* IdleTip = "No filter of Tautline runs.";
 
 bool isIterative(const QString& filter)
 {
-  for (const auto& [proxy, label] : Iterative)
-  {
-    if (filter == label)
-    {
-      return true;
-    }
-  }
-  return false;
+  return std::any_of(std::begin(tautline::DrawnInDock), std::end(tautline::DrawnInDock),
+    [&filter](const auto& drawn) { return filter == drawn[1]; });
 }
 
 /**
@@ -245,13 +235,10 @@ QString pqTautlineRunDock::axes() const
 //------------------------------------------------------------------------------
 void pqTautlineRunDock::sourceAdded(pqPipelineSource* source)
 {
-  for (const auto& [proxy, label] : Iterative)
+  if (!this->Shown && tautline::isDrawnInDock(source->getProxy()))
   {
-    if (!this->Shown && std::strcmp(source->getProxy()->GetXMLName(), proxy) == 0)
-    {
-      this->Shown = true;
-      this->show();
-    }
+    this->Shown = true;
+    this->show();
   }
 }
 

@@ -4,7 +4,9 @@
 #include "vtkPVXMLElement.h"
 #include "vtkSMProxy.h"
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 
 namespace tautline
 {
@@ -25,14 +27,9 @@ bool isTautline(vtkSMProxy* proxy)
 //------------------------------------------------------------------------------
 bool isDrawnInDock(vtkSMProxy* proxy)
 {
-  for (const char* name : { "MeshOptimizer", "MeshUntangler", "MeshImprover" })
-  {
-    if (proxy && std::strcmp(proxy->GetXMLName(), name) == 0)
-    {
-      return true;
-    }
-  }
-  return false;
+  return proxy &&
+    std::any_of(std::begin(DrawnInDock), std::end(DrawnInDock),
+      [proxy](const auto& filter) { return std::strcmp(proxy->GetXMLName(), filter[0]) == 0; });
 }
 
 } // namespace tautline

@@ -19,7 +19,11 @@ bool isInMenu(vtkPVXMLElement* hints);
 /// Whether the proxy is a filter or source of the menu Tautline. False for null.
 bool isTautline(vtkSMProxy* proxy);
 
-/// Whether the proxy is a filter whose history the dock of the run draws. False for null.
+/// The filters whose runs the dock draws, and that Stop applies to: name of the proxy, in the menu.
+constexpr const char* DrawnInDock[][2] = { { "MeshOptimizer", "Optimize Mesh" },
+  { "MeshUntangler", "Untangle Mesh" }, { "MeshImprover", "Improve Mesh" } };
+
+/// Whether the proxy is one of DrawnInDock. False for null.
 bool isDrawnInDock(vtkSMProxy* proxy);
 
 /// The output of Element Quality with the elements that are drawn inside the mesh.
