@@ -8,7 +8,7 @@
  * grids are copied. Pixels and voxels become quadrilaterals and hexahedra; polygons with three or
  * four points become triangles and quadrilaterals. Hexahedra, wedges, pyramids and quadrilaterals
  * that list points more than once become what remains of them, see remainingShape() of the kernel.
- * Cell and point ids stay those of the data set.
+ * The numbering of cells and points is the data set's.
  *
  * The data set must outlive the adapter and not change meanwhile.
  */

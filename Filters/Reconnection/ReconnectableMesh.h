@@ -77,7 +77,7 @@ public:
 
   /**
    * @brief Removes degenerate cells, see removeDegenerateCells() of the kernel: mesh(), lines(),
-   * facets() and regions() are then those of the cells that remain. To be called when points have
+   * facets() and regions() then describe the cells that remain. To be called when points have
    * been fixed and regions set.
    */
   void removeDegenerate();

@@ -52,7 +52,7 @@ struct WorstElementList
  * Element Quality: one per metric, of its output Worst. Untangle Mesh: the elements that are not
  * valid, of the array Obstacle. Improve Mesh: those of its output Remaining, and by both measures.
  * Optimize Mesh, Warp Mesh: the invalid ones, if any. Optimize Mesh, Compare Meshes: by each metric
- * that was measured before and after. Condition Estimator: those of the largest Share and Excess.
+ * that was measured before and after. Condition Estimator: the largest Share and Excess.
  * None for other filters, and before the first execution.
  */
 std::vector<WorstElementList> worstElementsOf(pqPipelineSource* source);

@@ -56,7 +56,7 @@ public:
    * nodal pyramidal elements", J. Sci. Comput. 42 (2010)
    * @param orders 1 to MaxElementOrder; the orders of a pyramid are equal
    * @param coordinates of the nodes; u, v, w, of a pyramid in the collapsed cube
-   * @throws Error where the number of nodes is not that of the polynomials, or the nodes do not
+   * @throws Error where there are not as many nodes as polynomials, or the nodes do not
    * determine them
    */
   ElementType(

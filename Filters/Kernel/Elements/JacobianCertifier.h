@@ -89,8 +89,9 @@ public:
   JacobianBound minimum(const double* points, const Index* nodes,
     const MinimumTolerance& tolerance = MinimumTolerance());
 
-  /// The mean of the coefficients of the determinant; of all elements but pyramids the volume or
-  /// area over that of the reference element. Of a surface the length of the mean normal.
+  /// The mean of the coefficients of the determinant; of all elements but pyramids the volume
+  /// or area divided by the one of the reference element. Of a surface the length of the mean
+  /// normal.
   double meanJacobian(const double* points, const Index* nodes);
 
   const CertificateCounts& counts() const { return this->Counts; }

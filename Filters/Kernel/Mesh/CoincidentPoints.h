@@ -49,8 +49,8 @@ struct CoincidentPoints
  * be null. Its points are one with those of a cell at the same place, or of other copies of it;
  * else with the one point, if there is one, that other cells have at the same place.
  * @param copies if not null, cells at the places of another one, in the same sense, are copies of
- * it, as where pieces overlap: their points are one with those of the first of them, and they have
- * no facets, like ghosts. It gets one flag per cell, nonzero for all but the first, or is empty
+ * it, as where pieces overlap: they share the points of the first of them, and have no facets, like
+ * ghosts. It gets one flag per cell, nonzero for all but the first, or is empty
  * without copies. Cells with the same points count where other points are at the places of these.
  * The points of 2D cells beside 3D ones are then also one with the one point, if there is one, that
  * 3D cells have at the same place.

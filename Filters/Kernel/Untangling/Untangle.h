@@ -11,7 +11,8 @@
  * meshes with the holes turned back. These phases see the corners of the elements; hexahedra and
  * wedges that are then folded between valid corners are repaired one by one, as far as their
  * neighbours allow. A cell counts as valid when its Jacobian determinant is positive everywhere
- * (Mesh::classifyCells()). The connectivity never changes. Planar and volume meshes.
+ * (Mesh::classifyCells()). The connectivity never changes. Surfaces in
+ * space are untangled in the tangent planes of their elements, see invertedBefore.
  *
  * UntangleMethod::Simultaneous is the method of Escobar et al. as published, for comparison: each
  * free vertex of the mesh, one after the other, minimizes the regularized energy of its elements,
