@@ -13,17 +13,8 @@ namespace tautline
 {
 namespace
 {
-enum Geometry : unsigned char
-{
-  Point = 0,
-  Segment = 1,
-  Triangle = 2,
-  Square = 3,
-  Tetrahedron = 4,
-  Cube = 5,
-  Prism = 6,
-  Pyramid = 7
-};
+// Numbers of shapes in the files.
+constexpr int Cube = 5, Prism = 6, Pyramid = 7;
 constexpr int Shapes = 8;
 
 /// So many that the nodes of a mesh can be counted.

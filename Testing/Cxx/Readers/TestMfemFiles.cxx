@@ -610,6 +610,34 @@ TAUTLINE_PART(testErrors)
   TAUTLINE_CHECK(fails(replaced(lines, "boundary\n0\n", "boundary\n1\n1 1 0 2\n"), "side"));
 }
 
+/// One cube with nodes at the places of Gauss-Legendre, or with Bernstein coefficients, of order 2.
+TAUTLINE_PART(testOtherBases)
+{
+  Sample cube{ Cubes, {}, { { 0, 1, 2, 3, 4, 5, 6, 7 } } };
+  for (int c = 0; c < 8; ++c)
+  {
+    cube.vertices.push_back(cubeCorner(c));
+  }
+  constexpr int order = 2;
+  const double inner = std::sqrt(0.6);
+  const std::array<double, 3> gauss = { 0.5 * (1.0 - inner), 0.5, 0.5 * (1.0 + inner) };
+  std::vector<Vec3> values, coefficients;
+  for (const LatticePoint& place : lattice(Cubes, order))
+  {
+    const auto at = [&](std::size_t axis) { return gauss[static_cast<std::size_t>(place[axis])]; };
+    values.push_back(curved({ at(0), at(1), at(2) }));
+    // The coefficients of x are 0, 1/2, 1, of x^2 they are 0, 0, 1; products are of other axes.
+    const Vec3 linear = { 0.5 * place[0], 0.5 * place[1], 0.5 * place[2] };
+    const auto square = [&](std::size_t axis) { return place[axis] == order ? 1.0 : 0.0; };
+    coefficients.push_back({ linear[0] + 0.1 * linear[1] * linear[2] - 0.05 * square(0),
+      linear[1] + 0.07 * linear[0] * linear[2],
+      linear[2] + 0.11 * linear[0] * linear[1] + 0.03 * square(2) });
+  }
+  checkPoints(readLines(header(cube, "L2_3D_P2") + text(values, 3)), cube, curved);
+  checkPoints(readLines(header(cube, "L2_T0_3D_P2") + text(values, 3)), cube, curved);
+  checkPoints(readLines(header(cube, "L2_T2_3D_P2") + text(coefficients, 3)), cube, curved);
+}
+
 /// Files of MFEM: points, cells of each dimension, orders.
 TAUTLINE_PART(testSamplesOfMfem)
 {
