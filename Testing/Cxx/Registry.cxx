@@ -158,21 +158,30 @@ int runTest(const RegisteredTest& test, std::vector<char*> arguments)
   choice.run = choice.skipped = 0;
   const int before = failures();
   const long checked = checks();
+  // What has no data is left out; the other parts run, and their failures count.
+  bool leftOut = false;
+  const auto unlessSkipped = [&](const auto& run)
+  {
+    try
+    {
+      run();
+    }
+    catch (const SkippedTest& skipped)
+    {
+      std::cout << test.name << ": skipped: " << skipped.reason << "\n";
+      leftOut = true;
+    }
+  };
   try
   {
     if (test.run)
     {
-      test.run(static_cast<int>(arguments.size()) - 1, arguments.data());
+      unlessSkipped([&] { test.run(static_cast<int>(arguments.size()) - 1, arguments.data()); });
     }
     for (const RegisteredPart& part : test.parts)
     {
-      TAUTLINE_RUN_CALL(part.call, part.pace, part.run());
+      unlessSkipped([&] { TAUTLINE_RUN_CALL(part.call, part.pace, part.run()); });
     }
-  }
-  catch (const SkippedTest& skipped)
-  {
-    std::cout << test.name << ": skipped: " << skipped.reason << "\n";
-    return Skipped;
   }
   catch (const std::exception& error)
   {
@@ -195,7 +204,7 @@ int runTest(const RegisteredTest& test, std::vector<char*> arguments)
   {
     std::cout << test.name << ": " << checks() - checked << " checks\n";
   }
-  return failures() == before ? Passed : Failed;
+  return failures() != before ? Failed : leftOut ? Skipped : Passed;
 }
 }
 }

@@ -118,11 +118,12 @@ private:
   std::chrono::steady_clock::time_point Start;
 };
 
-/** Ends a test as skipped, with the reason: for data that are not part of the repository. */
+/** Ends a part of a test, with the reason: for data that are not part of the repository. The test
+    counts as skipped if none of its other parts fails. */
 [[noreturn]] void skipTest(const std::string& reason);
 
 /** A folder of the data that are not part of the repository, in the directory that the environment
-    variable TAUTLINE_TEST_DATA names; where it is absent, the test is skipped. */
+    variable TAUTLINE_TEST_DATA names; where it is absent, skipTest() is called. */
 std::string externalData(const std::string& folder);
 }
 
