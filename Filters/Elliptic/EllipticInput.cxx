@@ -57,6 +57,22 @@ void requireOrder(RankOrder& order, Dimension dimension)
   }
 }
 
+/// Lists the nodes between the corners of a quadratic triangle or tetrahedron in the order that its
+/// corners have after reverseCell(). Other curved cells are refused later.
+void reverseMiddles(CellType type, Index* nodes, Index size)
+{
+  constexpr Index triangle = 6, withCenter = 7, tetrahedron = 10;
+  if (type == CellType::Triangle && (size == triangle || size == withCenter))
+  {
+    std::swap(nodes[3], nodes[5]);
+  }
+  if (type == CellType::Tetrahedron && size == tetrahedron)
+  {
+    std::swap(nodes[4], nodes[6]);
+    std::swap(nodes[8], nodes[9]);
+  }
+}
+
 /// The values, or null if there are none; not null only because this process has no points.
 const double* orNull(std::vector<double>& values, bool given)
 {
@@ -73,7 +89,9 @@ EllipticInput::EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkA
   this->Adapter = std::make_unique<MeshAdapter>(mesh.input, threads);
   this->Skip = cellsBesideElements(*this->Adapter);
   requireDistinctCells(this->Adapter->mesh(), this->Skip.empty() ? nullptr : this->Skip.data());
-  const std::string more = this->Adapter->notice();
+  MeshRemarks remarks = this->Adapter->remarks();
+  remarks.higherOrderCells = 0; // these are refused, or all their nodes count
+  const std::string more = describe(remarks);
   this->Notice = mesh.notice + (mesh.notice.empty() || more.empty() ? "" : " ") + more;
   this->Problem.pde = choice.pde;
   if (mesh.input->GetNumberOfPoints() > 0)
@@ -287,11 +305,6 @@ void EllipticInput::settleOrientation(RankGroup& processes, int threads)
   std::string text;
   std::vector<signed char> validity;
   const Mesh& mesh = this->piece();
-  if (mesh.higherOrderCells() > 0)
-  {
-    throw Error("The mesh has " + std::to_string(mesh.higherOrderCells()) +
-      " cells of quadratic or higher order: run Tessellate first.");
-  }
   text = processes.size() > 1 ? "" : this->Adapter->orient();
   if (processes.size() > 1)
   {
@@ -307,7 +320,36 @@ void EllipticInput::settleOrientation(RankGroup& processes, int threads)
     requireOrder(order, whole.dimension);
     text = this->Adapter->orient(validity.data(), order);
   }
+  if (mesh.higherOrderCells() > 0 && !this->Adapter->reversedCells().empty())
+  {
+    this->reverseQuadratic(threads);
+  }
   this->Notice = text + (text.empty() || this->Notice.empty() ? "" : " ") + this->Notice;
+}
+
+//------------------------------------------------------------------------------
+/// MeshAdapter lists only the corners of cells in the opposite order.
+void EllipticInput::reverseQuadratic(int threads)
+{
+  Mesh& mesh = this->Adapter->mesh();
+  MeshView view = mesh.view();
+  this->Turned.assign(view.connectivity, view.connectivity + view.offsets[view.numberOfCells]);
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const bool counts = !(this->skipped() && this->skipped()[cell]);
+    if (this->Adapter->reversedCells()[cell] && isHigherOrder(view.cellTypes[cell]) && counts)
+    {
+      const Index first = view.offsets[cell];
+      reverseMiddles(
+        cornerType(view.cellTypes[cell]), &this->Turned[first], view.offsets[cell + 1] - first);
+    }
+  }
+  view.connectivity = this->Turned.data();
+  const MeshSpace space = mesh.space();
+  const bool mirrored = mesh.mirrored();
+  mesh = Mesh(view, threads); // in place: others refer to it
+  mesh.setSpace(space);
+  mesh.setMirrored(mirrored);
 }
 
 //------------------------------------------------------------------------------

@@ -54,8 +54,8 @@ class EllipticInput
 public:
   /**
    * @brief Collective. Throws Error, on all processes, for what EllipticSystem rejects, arrays and
-   * expressions that do not fit, cells of higher order, polygons and polyhedra, and parts
-   * without a consistent orientation.
+   * expressions that do not fit, cells of higher order but quadratic triangles and tetrahedra,
+   * polygons and polyhedra, and parts without a consistent orientation.
    */
   EllipticInput(LocalMesh& mesh, const EllipticChoice& choice, vtkAlgorithm* algorithm,
     RankGroup& processes, int threads);
@@ -80,6 +80,7 @@ public:
 private:
   void readArrays(const EllipticChoice& choice, vtkAlgorithm* algorithm);
   void settleOrientation(RankGroup& processes, int threads);
+  void reverseQuadratic(int threads);
   void settleDimension(const EllipticChoice& choice, RankGroup& processes);
   void markFixed(const EllipticChoice& choice, vtkAlgorithm* algorithm, RankGroup& processes);
   void divide(Redistribution how, int threads);
@@ -97,6 +98,7 @@ private:
   EllipticProblem Problem;
   MeshPart Part;
   std::vector<unsigned char> Skip;
+  std::vector<Index> Turned; ///< the connectivity, where reverseQuadratic() has changed it
   Arrays Values;
   std::string Notice;
   std::unique_ptr<RankGroup> Group;       ///< null with one process

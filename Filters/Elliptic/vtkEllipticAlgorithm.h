@@ -4,8 +4,8 @@
  * @brief Base class of the filters for elliptic partial differential equations: the boundary value
  * problem.
  *
- * Abstract. The boundary value problem of dissertation section 2.2, discretized by linear finite
- * elements (triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids) on the mesh at
+ * Abstract. The boundary value problem of dissertation section 2.2, discretized by finite elements
+ * of linear cells, or of quadratic triangles and tetrahedra, which may be curved, on the mesh at
  * input port 0. Input port 1 (optional) is a vtkSelection of points, or of cells with their points,
  * where the solution is given.
  *
@@ -19,8 +19,9 @@
  *
  * Output port 0 is the mesh with point and cell data, port 1 a vtkTable. Refused by name: inverted
  * and degenerate elements, duplicate cells, coincident facets that cannot be merged, polygons,
- * polyhedra, cells of higher order, cells without a consistent orientation, parts without a point
- * where the solution is given, values and coefficients that are not finite.
+ * polyhedra, cells of higher order but quadratic triangles and tetrahedra, a mixture of these and
+ * linear cells, cells without a consistent orientation, parts without a point where the solution is
+ * given, values and coefficients that are not finite.
  *
  * Arrays (SetInputArrayToProcess), by index: 0 fixed points (of points or cells), 1 source, 2 given
  * values (of points), 3 tensors, 4 factors of the stiffness (of cells); "None" or not set: none.

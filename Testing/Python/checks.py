@@ -49,6 +49,18 @@ def square(n: int):
     return tl.from_arrays(np.column_stack([x.ravel(), y.ravel()]), {"triangle": cells})
 
 
+def quadratic_square(n: int, bend: float = 0.0):
+    """The unit square of 2 n^2 triangles of 6 nodes; all edges inside are curved where it is bent."""
+    steps = 2 * n + 1
+    x, y = (at.ravel() / (2 * n) for at in np.meshgrid(np.arange(steps), np.arange(steps)))
+    a = (2 * np.arange(n)[:, None] * steps + 2 * np.arange(n)).ravel()
+    lower = [0, 2, 2 * steps + 2, 1, steps + 2, steps + 1]
+    upper = [0, 2 * steps + 2, 2 * steps, steps + 1, 2 * steps + 1, steps]
+    cells = np.stack([a + step for step in lower + upper], axis=1).reshape(-1, 6)
+    wave = bend * np.sin(np.pi * x) * np.sin(np.pi * y)
+    return tl.from_arrays(np.column_stack([x + wave, y - 0.7 * wave]), {"triangle6": cells})
+
+
 def test_data(name: str) -> Path:
     """A folder of the test data that are not part of the repository; where it is absent, the test is skipped."""
     top = os.environ.get("TAUTLINE_TEST_DATA")

@@ -6,7 +6,13 @@ import itertools
 import numpy as np
 from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
-from vtkmodules.vtkCommonDataModel import VTK_TETRA, VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
+from vtkmodules.vtkCommonDataModel import (
+    VTK_QUADRATIC_TETRA,
+    VTK_TETRA,
+    VTK_TRIANGLE,
+    vtkCellArray,
+    vtkUnstructuredGrid,
+)
 from vtkmodules.vtkFiltersCore import vtkAppendFilter
 from vtkmodules.vtkParallelCore import vtkMultiProcessController
 
@@ -28,6 +34,14 @@ def simplices(n: int, dimension: int = 3) -> tuple:
             corners[1], corners[2] = corners[2], corners[1]
         cells.append(np.stack(corners, -1))
     return places, np.concatenate(cells).astype(np.int64)
+
+
+def quadratic(places: np.ndarray, cells: np.ndarray) -> tuple:
+    """Points and nodes of quadratic tetrahedra in place of linear ones; the corners keep their numbers."""
+    ends = np.concatenate([cells[:, edge] for edge in ([0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3])])
+    edges, numbers = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
+    middles = len(places) + numbers.reshape(6, -1).T
+    return np.concatenate([places, places[edges].mean(axis=1)]), np.hstack([cells, middles])
 
 
 def divided(centres: np.ndarray, cut: str, pieces: int, axis: int = 2) -> np.ndarray:
@@ -82,7 +96,8 @@ def piece(points: np.ndarray, cells: np.ndarray, own: np.ndarray, ghosts: bool =
     local = local.reshape(-1).astype(np.int64)
     array.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(local, deep=True))
     # A type per cell: VTK 9.6 takes cells that are inserted later for the one type of a mesh otherwise.
-    types = np.full(array.GetNumberOfCells(), VTK_TETRA if corners == 4 else VTK_TRIANGLE, np.uint8)
+    kinds = {3: VTK_TRIANGLE, 4: VTK_TETRA, 10: VTK_QUADRATIC_TETRA}
+    types = np.full(array.GetNumberOfCells(), kinds[corners], np.uint8)
     grid.SetCells(numpy_to_vtk(types, deep=True), array)
     add_array(grid.GetPointData(), "place", used.astype(np.int64))
     add_array(grid.GetCellData(), "cell", np.flatnonzero(taken).astype(np.int64))

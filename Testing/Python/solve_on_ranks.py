@@ -13,7 +13,7 @@ import zlib
 
 import numpy as np
 import tautline
-from rank_meshes import CONTROLLER, CUTS, RANK, RANKS, add_global_ids, appended, divided, piece, simplices
+from rank_meshes import CONTROLLER, CUTS, RANK, RANKS, add_global_ids, appended, divided, piece, quadratic, simplices
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkPartitionedDataSet, vtkUnstructuredGrid
 
@@ -135,7 +135,30 @@ def numbers(data, redistribution: int = 0) -> dict:
     }
 
 
+def curved_solution(cut: str, ids: bool, redistribution: int) -> dict:
+    """Of quadratic tetrahedra, whose edges are bent, in as many pieces as there are ranks."""
+    points, cells = quadratic(*simplices(3))
+    points = points / 3
+    points = points + 0.2 * points * (1 - points) * np.sin(np.pi * points[:, [1, 2, 0]])
+    of_cell = divided(points[cells[:, :4]].mean(axis=1), cut, RANKS)
+    grid = piece(points, cells, of_cell == RANK)
+    if ids and grid.GetNumberOfCells():
+        add_global_ids(grid)
+    solve = run("EllipticSolver", grid, redistribution)
+    solve.SetSourceType(EXPRESSION)
+    solve.SetSourceExpression("x*y + z")
+    solve.Update()
+    output = solve.GetOutputDataObject(0)
+    places, values = (vtk_to_numpy(output.GetPointData().GetArray(name)) for name in ("place", "Solution"))
+    found = gathered(list(zip(places.tolist(), values.tolist())))
+    return {"unknowns": solve.GetUnknowns(), "solution": [value for _, value in sorted(found.items())]}
+
+
 results = {"ranks": RANKS}
+for cut in CUTS:
+    for ids in (False, True):
+        for redistribution in (0, *DIVISIONS):
+            results[f"quadratic, {cut}, {ids}, {redistribution}"] = curved_solution(cut, ids, redistribution)
 for cut in CUTS:
     for pieces in sorted({1, max(1, RANKS - 1), RANKS, 2 * RANKS + 1}):
         for ghosts in (False, True):

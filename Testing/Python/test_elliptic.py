@@ -8,7 +8,7 @@ import time
 import checks
 import numpy as np
 import tautline as tl
-from checks import DATA, points, refused, run_tests, shell, square, wording
+from checks import DATA, points, quadratic_square, refused, run_tests, shell, square, wording
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 OUT = checks.OUT / "conditioning"
@@ -65,6 +65,68 @@ def test_elasticity():
     stiff = tl.solve(mesh, "elasticity", source=(0, -1), preconditioner="gamg", fixed="x < 0.01", stiffness=[2.0] * 288)
     assert np.abs(soft.solution - stiff.solution).max() < 1e-12 and soft.solution[:, 1].min() < -0.5
     assert vtk_to_numpy(soft.mesh.GetCellData().GetArray("VonMises")).max() > 1
+
+
+def quadratic_system(xy, cells, source):
+    """The matrix and the load of Poisson's equation on triangles of 6 nodes, by Gauss points of a collapsed square."""
+    at, weights = np.polynomial.legendre.leggauss(6)
+    at, weights = (1 + at) / 2, weights / 2
+    matrix, load = np.zeros((len(xy), len(xy))), np.zeros(len(xy))
+    for u, wu in zip(at, weights):
+        for s, ws in zip(at, weights):
+            r = u * (1 - s)
+            q = 1 - r - s
+            value = [q * (2 * q - 1), r * (2 * r - 1), s * (2 * s - 1), 4 * q * r, 4 * r * s, 4 * s * q]
+            by_r = [1 - 4 * q, 4 * r - 1, 0, 4 * (q - r), 4 * s, -4 * s]
+            by_s = [1 - 4 * q, 0, 4 * s - 1, -4 * r, 4 * r, 4 * (q - s)]
+            slopes = np.array([by_r, by_s])
+            jacobian = np.einsum("dk,ckx->cxd", slopes, xy[cells])
+            size = wu * ws * (1 - s) * np.linalg.det(jacobian)
+            gradient = np.einsum("dk,cdx->ckx", slopes, np.linalg.inv(jacobian))
+            entries = np.einsum("c,ckx,clx->ckl", size, gradient, gradient)
+            np.add.at(matrix, (cells[:, :, None], cells[:, None, :]), entries)
+            here = np.einsum("k,ck->c", value, source[cells])
+            np.add.at(load, cells, (size * here)[:, None] * value)
+    return matrix, load
+
+
+def test_quadratic():
+    """Against an assembly by numpy; the order of convergence; the errors."""
+    for bend, tolerance in ((0.0, 1e-10), (0.08, 2e-5)):
+        mesh = quadratic_square(6, bend)
+        xy = points(mesh)[:, :2]
+        source = np.sin(3 * xy[:, 0]) + xy[:, 1] ** 2
+        matrix, load = quadratic_system(xy, vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 6), source)
+        steps = 13
+        inside = np.zeros((steps, steps), bool)
+        inside[1:-1, 1:-1] = True
+        free = np.flatnonzero(inside.ravel())
+        expected = np.zeros(len(xy))
+        expected[free] = np.linalg.solve(matrix[np.ix_(free, free)], load[free])
+        found = tl.solve(mesh, source=source, solver="direct")
+        assert found.unknowns == len(free) == 121
+        assert np.abs(found.solution - expected).max() < tolerance * expected.max(), bend
+    wave, errors = "exp(x)*sin(2*y)", []
+    for n in (6, 12):
+        mesh = quadratic_square(n, 0.08)
+        x, y, _ = points(mesh).T
+        found = tl.solve(mesh, source=f"3*{wave}", given=wave, relative_tolerance=1e-11)
+        errors.append(np.sqrt(np.mean((found.solution - np.exp(x) * np.sin(2 * y)) ** 2)))
+    assert np.log2(errors[0] / errors[1]) > 2.8, errors
+    mesh = quadratic_square(4, 0.05)
+    cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 6).copy()
+    cells[::3] = cells[::3, [0, 2, 1, 5, 4, 3]]  # in the opposite order
+    turned = tl.solve(tl.from_arrays(points(mesh)[:, :2], {"triangle6": cells}), solver="direct")
+    assert wording("as-if-listed-in-the-opposite-order") in turned.summary and "corners" not in turned.summary
+    assert np.abs(turned.solution - tl.solve(mesh, solver="direct").solution).max() < 1e-12
+    assert tl.condition(mesh).condition > 1
+    assert tl.solver_study(mesh, combinations=[1, 13]).summary
+    refused(wording("choose-the-consistent-mass-matrix"), tl.solve, mesh, time_scheme="newmark", mass="lumped")
+    folded = points(mesh).copy()
+    folded[1] = folded[0] + 0.05 * (folded[2] - folded[0])  # the middle of an edge next to its end
+    cells = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).reshape(-1, 6)
+    curved = tl.from_arrays(folded[:, :2], {"triangle6": cells})
+    refused(wording("inverted-against-the-rest"), tl.solve, curved)
 
 
 def test_time_steps():

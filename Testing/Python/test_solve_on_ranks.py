@@ -45,6 +45,14 @@ for ranks in (1, 2, 3, 4):
         # Jacobi's preconditioner is the same on any ranks; multigrid is not.
         assert study["N iterations"][0] == expected["study"]["N iterations"][0], (ranks, name, study)
         assert far(study["N condition"][:1], expected["study"]["N condition"][:1]) <= CONDITION_CLOSE, (ranks, name)
+    curved = {name: case for name, case in found.items() if name.startswith("quadratic")}
+    assert len(curved) == 18, list(curved)
+    known = one["quadratic, slabs, False, 0"]
+    assert known["unknowns"] == 5**3 and len(known["solution"]) == 7**3
+    for name, case in curved.items():
+        assert case["unknowns"] == known["unknowns"], (ranks, name, case["unknowns"])
+        apart = far(case["solution"], known["solution"])
+        assert apart <= CLOSE, (ranks, name, apart)
     functions = [name for name in found if name.startswith("function")]
     assert len(functions) == 6, functions
     for name in functions:

@@ -74,7 +74,7 @@ struct Work
 /// One cell: its largest eigenvalue, that of its part among the free unknowns, its energy in the
 /// eigenvector.
 template <int Nodes, int Dimension, class Element>
-void visitCell(Work& work, const Element& element, Index cell, CellType type, double& lowerBound)
+void visitCell(Work& work, const Element& element, Index cell, ElementKind kind, double& lowerBound)
 {
   constexpr int components = Element::Components, rows = Nodes * components;
   const MeshView& view = work.System.mesh().view();
@@ -85,7 +85,7 @@ void visitCell(Work& work, const Element& element, Index cell, CellType type, do
     p[k] = pointOf(view, node[k]);
   }
   double matrix[rows * rows] = {}, copy[rows * rows];
-  element.template compute<Nodes, Dimension>(cell, type, p, matrix);
+  element.template compute<Nodes, Dimension>(cell, kind, p, matrix);
   std::copy_n(matrix, rows * rows, copy);
   const double largest = largestEigenvalue(copy, rows);
   work.Result.largestEigenvalue[cell] = largest;
@@ -130,16 +130,16 @@ void visitCells(Work& work, const Element& element)
     {
       for (Index cell = begin; cell < end; ++cell)
       {
-        const auto type = static_cast<CellType>(view.cellTypes[cell]);
+        const ElementKind kind = elementKind(view, cell);
         if (work.skipped(cell) && !work.isCopy(cell))
         {
           continue;
         }
-        withElement(type,
+        withElement(kind,
           [&](auto nodes, auto dimension)
           {
             visitCell<decltype(nodes)::value, decltype(dimension)::value>(
-              work, element, cell, type, work.LowerBound[chunk]);
+              work, element, cell, kind, work.LowerBound[chunk]);
           });
       }
     });

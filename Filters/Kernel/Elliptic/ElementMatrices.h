@@ -17,11 +17,15 @@
 namespace tautline
 {
 /**
- * @brief Throws Error if a mesh has cells there are no elements for: which, how many, and what to
- * do.
+ * @brief Throws Error if a mesh has cells there are no elements for, or elements that do not fit
+ * together: linear and quadratic ones, or edges with several nodes between their ends. Which, how
+ * many, and what to do.
  * @param skip one flag per cell: it does not count; or null
  */
 void requireElements(const Mesh& mesh, const unsigned char* skip = nullptr);
+
+/// Throws Error that names the remedy: a mesh with linear and quadratic elements.
+[[noreturn]] void refuseMixedOrders(Index linear, Index quadratic);
 
 /// The product C v.
 inline Vec3 applyTensor(const SymmetricTensor& c, const Vec3& v)
@@ -35,20 +39,6 @@ inline Vec3 applyTensor(const SymmetricTensor& c, const Vec3& v)
 inline bool isIsotropic(const SymmetricTensor& c)
 {
   return c[0] == c[1] && c[1] == c[2] && c[3] == 0 && c[4] == 0 && c[5] == 0;
-}
-
-/// Where the matrix of an element is integrated: at one place of a simplex, where gradients are
-/// constant.
-inline std::vector<ReferencePoint> elementRule(CellType type)
-{
-  const CellTopology& t = topology(type);
-  const bool simplex = t.nodes == t.dimension + 1;
-  std::vector<ReferencePoint> rule = referenceRule(type, simplex ? 1 : 2);
-  if (simplex)
-  {
-    rule[0].weight = t.sizePerDeterminant;
-  }
-  return rule;
 }
 
 /// Copies the entries above the diagonal below it, and fills the diagonal so that rows sum to 0.
@@ -80,29 +70,26 @@ public:
   explicit DiffusionElement(const DiffusionOperator& pde)
     : Pde(pde)
     , Isotropic(!pde.tensors && isIsotropic(pde.tensor))
+    , Rules(elementRules(elementRule))
   {
-    for (int t = 0; t < NumberOfCellTypes; ++t)
-    {
-      this->Rules[t] = elementRule(topologies()[t].type);
-    }
   }
 
   /// Writes the matrix of a cell, Nodes x Nodes.
   template <int Nodes, int CellDimension>
-  void compute(Index cell, CellType type, const Vec3* p, double* k) const
+  void compute(Index cell, ElementKind kind, const Vec3* p, double* k) const
   {
     SymmetricTensor c = this->Pde.tensor;
     if (this->Pde.tensors)
     {
       std::copy_n(this->Pde.tensors + 6 * cell, 6, c.begin());
     }
-    if (Nodes == CellDimension + 1)
+    if constexpr (Nodes == CellDimension + 1)
     {
       this->simplex<Nodes>(c, p, k);
     }
     else
     {
-      this->general<Nodes, CellDimension>(this->Rules[topologyIndex(type)], c, p, k);
+      this->general<Nodes, CellDimension>(this->Rules[static_cast<int>(kind)], c, p, k);
     }
   }
 
@@ -213,7 +200,7 @@ private:
 
   DiffusionOperator Pde;
   bool Isotropic;
-  std::array<std::vector<ReferencePoint>, NumberOfCellTypes> Rules;
+  ElementRules Rules;
 };
 
 /// lambda and mu of a body with E = 1 (2.4); for plane stress lambda is replaced so that the third
@@ -237,16 +224,13 @@ public:
     : Pde(pde)
     , Frame(frame)
     , Lame(lameParameters(pde, Dim == 2))
+    , Rules(elementRules(elementRule))
   {
-    for (int t = 0; t < NumberOfCellTypes; ++t)
-    {
-      this->Rules[t] = elementRule(topologies()[t].type);
-    }
   }
 
   /// Writes the matrix of a cell, of Nodes x Dim rows.
   template <int Nodes, int CellDimension>
-  void compute(Index cell, CellType type, const Vec3* p, double* k) const
+  void compute(Index cell, ElementKind kind, const Vec3* p, double* k) const
   {
     if constexpr (CellDimension != Dim)
     {
@@ -255,7 +239,7 @@ public:
     constexpr int rows = Nodes * Dim;
     std::fill(k, k + rows * rows, 0.0);
     const double factor = this->Pde.stiffening ? this->Pde.stiffening[cell] : 1.0;
-    for (const ReferencePoint& reference : this->Rules[topologyIndex(type)])
+    for (const ReferencePoint& reference : this->Rules[static_cast<int>(kind)])
     {
       ElementSample<Nodes> s;
       sampleElement<Nodes, CellDimension>(reference, p, s);
@@ -303,7 +287,7 @@ private:
   ElasticOperator Pde;
   std::array<Vec3, 2> Frame;
   std::array<double, 2> Lame;
-  std::array<std::vector<ReferencePoint>, NumberOfCellTypes> Rules;
+  ElementRules Rules;
 };
 }
 #endif

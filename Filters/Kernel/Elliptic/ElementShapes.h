@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file ElementShapes.h
- * @brief Shape functions of the six linear cell types with quadrature, and their gradients in
- * space.
+ * @brief Shape functions of the six linear cell types and of quadratic simplices with quadrature,
+ * and their gradients in space.
  * Internal: not installed.
  */
 #ifndef tautline_ElementShapes_h
 #define tautline_ElementShapes_h
 
-#include "tautline/Mesh/CellTopology.h"
+#include "tautline/Mesh/Mesh.h"
 
 #include <algorithm>
 #include <limits>
@@ -16,13 +16,52 @@
 
 namespace tautline
 {
+/// The elements. The linear ones are in the order of topologies().
+enum class ElementKind : signed char
+{
+  None = -1,
+  Triangle,
+  Quadrilateral,
+  Tetrahedron,
+  Hexahedron,
+  Wedge,
+  Pyramid,
+  QuadraticTriangle,
+  BubbleTriangle, ///< of 7 nodes: the quadratic one with a cubic bubble
+  QuadraticTetrahedron
+};
+
+constexpr int NumberOfElementKinds = 9;
+constexpr int MaxElementNodes = 10;
+
+/**
+ * @brief The element of a VTK cell: linear cells (5, 9, 10, 12, 13, 14), quadratic triangles (22;
+ * 34, with a node at the center) and tetrahedra (24), and Lagrange triangles (69) and tetrahedra
+ * (71) of the same nodes. None for all else.
+ * @param nodes of the cell
+ */
+ElementKind elementKind(int vtkType, Index nodes);
+
+inline ElementKind elementKind(const MeshView& view, Index cell)
+{
+  return elementKind(view.cellTypes[cell], view.offsets[cell + 1] - view.offsets[cell]);
+}
+
+inline bool isQuadratic(ElementKind kind)
+{
+  return kind > ElementKind::Pyramid;
+}
+
+/// Nodes of an element; 0 of None.
+int nodesOf(ElementKind kind);
+
 /// A place in the reference cell: weight, shape functions and their derivatives by reference
 /// coordinates.
 struct ReferencePoint
 {
   double weight;
-  std::array<double, MaxNodes> value;
-  std::array<std::array<double, MaxNodes>, 3> derivative; ///< [direction][node]
+  std::array<double, MaxElementNodes> value;
+  std::array<std::array<double, MaxElementNodes>, 3> derivative; ///< [direction][node]
 };
 
 /**
@@ -30,7 +69,34 @@ struct ReferencePoint
  * and pyramids are cubes with collapsed sides, so that n points are exact to degree 2 n - 2 on
  * triangles and 2 n - 3 on tetrahedra and pyramids. The weights of simplices sum to 1/2 and 1/6.
  */
-std::vector<ReferencePoint> referenceRule(CellType type, int pointsPerDirection);
+std::vector<ReferencePoint> referenceRule(ElementKind kind, int pointsPerDirection);
+
+/**
+ * @brief Where the matrix of an element is integrated: simplices of constant gradients at one
+ * place, other linear cells at two Gauss points per direction. Quadratic simplices have rules of
+ * positive weights that are exact to degree 5, which is enough for order 3 in L2 on curved
+ * elements (P. G. Ciarlet, The Finite Element Method for Elliptic Problems, 1978, section 4.4):
+ * 7 points (J. Radon 1948) and 14 (N. J. Walkington, "Quadrature on simplices of arbitrary
+ * dimension", 2000). With the bubble the degree is 6.
+ */
+std::vector<ReferencePoint> elementRule(ElementKind kind);
+
+/// The place at which the derivatives of a solution are given: of simplices the center.
+std::vector<ReferencePoint> centerRule(ElementKind kind);
+
+/// One rule for each kind of element.
+using ElementRules = std::array<std::vector<ReferencePoint>, NumberOfElementKinds>;
+
+template <class MakeRule>
+ElementRules elementRules(const MakeRule& makeRule)
+{
+  ElementRules rules;
+  for (int kind = 0; kind < NumberOfElementKinds; ++kind)
+  {
+    rules[kind] = makeRule(static_cast<ElementKind>(kind));
+  }
+  return rules;
+}
 
 /// Gradients of the shape functions at one place of an element, and what the place counts in an
 /// integral.
@@ -109,27 +175,33 @@ inline void sampleElement(
   }
 }
 
-/// Calls work(nodes of the type, its dimension) with both as compile-time constants.
+/// Calls work(nodes of the element, its dimension) with both as compile-time constants.
 template <class Work>
-void withElement(CellType type, const Work& work)
+void withElement(ElementKind kind, const Work& work)
 {
   const std::integral_constant<int, 2> two{};
   const std::integral_constant<int, 3> three{};
-  switch (type)
+  switch (kind)
   {
-    case CellType::Triangle:
+    case ElementKind::Triangle:
       return work(std::integral_constant<int, 3>{}, two);
-    case CellType::Quadrilateral:
+    case ElementKind::Quadrilateral:
       return work(std::integral_constant<int, 4>{}, two);
-    case CellType::Tetrahedron:
+    case ElementKind::Tetrahedron:
       return work(std::integral_constant<int, 4>{}, three);
-    case CellType::Hexahedron:
+    case ElementKind::Hexahedron:
       return work(std::integral_constant<int, 8>{}, three);
-    case CellType::Wedge:
+    case ElementKind::Wedge:
       return work(std::integral_constant<int, 6>{}, three);
-    case CellType::Pyramid:
+    case ElementKind::Pyramid:
       return work(std::integral_constant<int, 5>{}, three);
-    case CellType::Unsupported:
+    case ElementKind::QuadraticTriangle:
+      return work(std::integral_constant<int, 6>{}, two);
+    case ElementKind::BubbleTriangle:
+      return work(std::integral_constant<int, 7>{}, two);
+    case ElementKind::QuadraticTetrahedron:
+      return work(std::integral_constant<int, 10>{}, three);
+    case ElementKind::None:
       break;
   }
 }

@@ -5,6 +5,9 @@
 #include "FiniteElements.h"
 #include "tautline/Core/UnionFind.h"
 #include "tautline/Mesh/CoordinateFrame.h"
+#include "tautline/Mesh/CurvedCells.h"
+
+#include <limits>
 
 namespace tautline
 {
@@ -124,6 +127,7 @@ void EllipticChecks::requireValidElements() const
   const Index cells = this->Input.view().numberOfCells;
   std::vector<signed char> validity(cells);
   this->Input.classifyCells(validity.data(), this->Threads);
+  certifyCurvedCells(this->Input, {}, validity.data(), nullptr, this->Threads);
   // Counted over all ranks; the first cell of each kind is of this rank.
   struct Kind
   {
@@ -149,6 +153,19 @@ void EllipticChecks::requireValidElements() const
   {
     throw Error("The mesh has no cells finite elements are made of: triangles, quadrilaterals, "
                 "tetrahedra, hexahedra, wedges or pyramids.");
+  }
+  Index linear = 0, quadratic = 0;
+  for (Index cell = 0; cell < cells; ++cell)
+  {
+    const ElementKind kind = elementKind(this->Input.view(), cell);
+    quadratic += !this->skipped(cell) && isQuadratic(kind);
+    linear += !this->skipped(cell) && kind != ElementKind::None && !isQuadratic(kind);
+  }
+  linear = this->Numbering.sum(linear);
+  quadratic = this->Numbering.sum(quadratic);
+  if (linear > 0 && quadratic > 0)
+  {
+    refuseMixedOrders(linear, quadratic); // of different ranks
   }
   if (nonFinite.count > 0)
   {
@@ -360,11 +377,43 @@ void EllipticChecks::requireFixedParts(
 }
 
 //------------------------------------------------------------------------------
+/// A mesh is planar by its corners; the other nodes of quadratic elements have to lie in the plane,
+/// too.
+void EllipticChecks::requireFlatElements() const
+{
+  constexpr double tolerance = 1e-6; // as flat as a planar mesh is
+  const MeshView& view = this->Input.view();
+  double low = std::numeric_limits<double>::max(), high = -low;
+  for (Index cell = 0; this->Input.higherOrderCells() > 0 && cell < view.numberOfCells; ++cell)
+  {
+    for (Index k = view.offsets[cell]; k < view.offsets[cell + 1] && !this->skipped(cell); ++k)
+    {
+      const double height = dot(pointOf(view, view.connectivity[k]), this->Input.normal());
+      low = std::min(low, height);
+      high = std::max(high, height);
+    }
+  }
+  if (high - low > tolerance * coordinateRange(view).extent)
+  {
+    throw Error(
+      "The corners of the elements lie in a plane, and their other nodes do not: this is a "
+      "surface in space, a shell. Linear elasticity needs a planar mesh or a volume mesh.");
+  }
+}
+
+//------------------------------------------------------------------------------
 int EllipticChecks::elasticUnknowns() const
 {
   int own = 0;
   this->everywhere(
-    [&]() { own = this->Input.view().numberOfCells > 0 ? elasticComponents(this->Input) : 0; });
+    [&]()
+    {
+      own = this->Input.view().numberOfCells > 0 ? elasticComponents(this->Input) : 0;
+      if (own == 2)
+      {
+        this->requireFlatElements();
+      }
+    });
   const int all = static_cast<int>(this->Numbering.maximum(own));
   // Parts that are each planar must have one plane, and the same axes in it.
   constexpr double tolerance = 1e-6, nothing = -10;

@@ -54,6 +54,7 @@ public:
 private:
   bool skipped(Index cell) const { return this->Part.skip && this->Part.skip[cell]; }
   void throwTogether(const std::string& message) const;
+  void requireFlatElements() const;
   void requireInPlane(
     const double* vectors, const std::vector<unsigned char>& where, const char* name) const;
   void spreadHeld(UnionFind& parts, std::vector<unsigned char>& held) const;

@@ -38,7 +38,7 @@ void differentiate(const EllipticDomain& domain, EllipticSolution& solution)
   const int size = solution.components == 1 ? 3 : 6;
   solution.gradients.assign(
     size * domain.mesh.view().numberOfCells, std::numeric_limits<double>::quiet_NaN());
-  forEachSample(domain, 1, true,
+  forEachSample(domain, elementRules(centerRule), true,
     [&](Index cell, const Index* node, const Vec3*, const auto& sample)
     {
       Vec3 value;

@@ -42,11 +42,11 @@ void interpolate(const ElementSample<Nodes>& sample, const EllipticSolution& sol
   }
 }
 
-/// Calls work(cell, nodes, sample) at the places of a rule in every cell that is not skipped, chunk
-/// by chunk.
+/// Calls work(cell, nodes, points, sample) at the places of the rules in every cell that is not
+/// skipped, chunk by chunk.
 template <class Work>
 void forEachSample(
-  const EllipticDomain& domain, int pointsPerDirection, bool ghosts, const Work& work)
+  const EllipticDomain& domain, const ElementRules& rules, bool ghosts, const Work& work)
 {
   const MeshView& view = domain.mesh.view();
   const bool volume = domain.mesh.dimension() == Dimension::Volume;
@@ -55,35 +55,35 @@ void forEachSample(
     // What is skipped is either a ghost or a face of a volume.
     const bool face = volume && topology(block.type).dimension == 2;
     const unsigned char* skip = ghosts && !face ? nullptr : domain.part.skip;
-    std::vector<ReferencePoint> rule = referenceRule(block.type, pointsPerDirection);
-    withElement(block.type,
-      [&](auto nodesOfCell, auto dimensionOfCell)
+    const auto visitCell = [&](Index cell, ElementKind kind, auto nodesOfCell, auto dimension)
+    {
+      constexpr int nodes = decltype(nodesOfCell)::value;
+      const Index* node = view.connectivity + view.offsets[cell];
+      Vec3 p[nodes];
+      for (int k = 0; k < nodes; ++k)
       {
-        constexpr int nodes = decltype(nodesOfCell)::value;
-        forEachChunk(block.count, domain.threads,
-          [&](Index, Index begin, Index end)
+        p[k] = pointOf(view, node[k]);
+      }
+      for (const ReferencePoint& reference : rules[static_cast<int>(kind)])
+      {
+        ElementSample<nodes> sample;
+        sampleElement<nodes, decltype(dimension)::value>(reference, p, sample);
+        work(cell, node, p, sample);
+      }
+    };
+    forEachChunk(block.count, domain.threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (Index i = begin; i < end; ++i)
+        {
+          const Index cell = block.cell(i);
+          const ElementKind kind = elementKind(view, cell);
+          if (!(skip && skip[cell]))
           {
-            for (Index i = begin; i < end; ++i)
-            {
-              const Index cell = block.cell(i);
-              const Index* node = view.connectivity + view.offsets[cell];
-              if (skip && skip[cell])
-              {
-                continue;
-              }
-              Vec3 p[nodes];
-              for (int k = 0; k < nodes; ++k)
-              {
-                p[k] = pointOf(view, node[k]);
-              }
-              for (const ReferencePoint& reference : rule)
-              {
-                ElementSample<nodes> sample;
-                sampleElement<nodes, decltype(dimensionOfCell)::value>(reference, p, sample);
-                work(cell, node, p, sample);
-              }
-            }
-          });
+            withElement(
+              kind, [&](auto nodes, auto dimension) { visitCell(cell, kind, nodes, dimension); });
+          }
+        }
       });
   }
 }

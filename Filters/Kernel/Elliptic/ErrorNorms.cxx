@@ -8,12 +8,14 @@ namespace tautline
 std::array<double, 2> errorNorms(const EllipticSystem& system, const EllipticSolution& solution,
   const std::function<void(const Vec3&, double* value, double* gradient)>& exact)
 {
-  constexpr int gaussPoints = 4;
+  constexpr int gaussPoints = 4, quadraticGaussPoints = 6;
+  const auto rule = [](ElementKind kind)
+  { return referenceRule(kind, isQuadratic(kind) ? quadraticGaussPoints : gaussPoints); };
   const EllipticDomain domain = { system.mesh(), system.problem(), system.part(),
     system.threads() };
   // One sum per cell, so that their order is that of the cells.
   std::vector<std::array<double, 2>> squares(system.mesh().view().numberOfCells);
-  forEachSample(domain, gaussPoints, false,
+  forEachSample(domain, elementRules(rule), false,
     [&](Index cell, const Index* node, const Vec3* p, const auto& sample)
     {
       Vec3 place = { 0, 0, 0 }, value;

@@ -16,7 +16,7 @@ namespace tautline
 {
 /**
  * @brief Norms of the difference between a solution and a known function, by four Gauss points in
- * each direction. Collective.
+ * each direction, of quadratic elements six. Collective.
  * @param exact writes `components` values and their gradients (3 per component; of a surface its
  * tangential ones) at a place
  * @return { L2 norm of the error, L2 norm of the gradient's error }

@@ -13,8 +13,9 @@ namespace tautline
 {
 namespace
 {
-constexpr int placeBits = 3; // MaxNodes places
-static_assert(1 << placeBits == MaxNodes, "a place in a cell takes placeBits");
+constexpr int linearPlaceBits = 3, quadraticPlaceBits = 4;
+static_assert(1 << linearPlaceBits >= MaxNodes && 1 << quadraticPlaceBits >= MaxElementNodes,
+  "a place in a cell takes so many bits");
 constexpr Index widestSlot = std::numeric_limits<std::uint16_t>::max();
 
 /// The lowest of the cells that several threads report.
@@ -48,21 +49,38 @@ AssemblyPattern::AssemblyPattern(const Mesh& mesh, const AssemblyOptions& option
   , Threads(options.threads)
 {
   requireElements(mesh, options.skip);
+  const MeshView& view = mesh.view();
   this->Nodes.fill(0);
+  const auto addType = [this](int vtkType, int nodes)
+  {
+    this->Nodes[vtkType] = static_cast<signed char>(nodes);
+    this->Stride = std::max(this->Stride, nodes);
+  };
   for (const CellBlock& block : mesh.blocks())
   {
     if (!isElement(mesh, block.type))
     {
       continue; // all of them are skipped
     }
-    const int nodes = topology(block.type).nodes;
-    this->Nodes[static_cast<int>(block.type)] = static_cast<signed char>(nodes);
-    this->Stride = std::max(this->Stride, nodes);
+    if (mesh.higherOrderCells() == 0)
+    {
+      addType(static_cast<int>(block.type), topology(block.type).nodes);
+    }
+    for (Index i = 0; mesh.higherOrderCells() > 0 && i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      if (!(options.skip && options.skip[cell]))
+      {
+        const ElementKind kind = elementKind(view, cell);
+        addType(view.cellTypes[cell], tautline::nodesOf(kind));
+        this->Quadratic = this->Quadratic || isQuadratic(kind);
+      }
+    }
   }
-  const MeshView& view = mesh.view();
+  this->PlaceBits = this->Quadratic ? quadraticPlaceBits : linearPlaceBits;
   const Index size = view.offsets[view.numberOfCells] - view.offsets[0];
   this->Uniform = mesh.blocks().size() == 1 && mesh.unsupportedCells() == 0 &&
-    size == this->Stride * view.numberOfCells;
+    size == this->Stride * view.numberOfCells && !this->Quadratic;
   this->findUses(options.skip);
   this->findColumns();
 }
@@ -88,7 +106,7 @@ void AssemblyPattern::findUses(const unsigned char* skip)
       const int nodes = skip && skip[cell] ? 0 : this->nodesOf(cell);
       for (int k = 0; k < nodes; ++k)
       {
-        visit(node[k], (cell << placeBits) + k);
+        visit(node[k], (cell << this->PlaceBits) + k);
       }
     }
   };
@@ -150,7 +168,7 @@ void AssemblyPattern::findColumns()
         {
           for (Index use = firstUse; use < lastUse; ++use)
           {
-            const Index cell = this->Uses[use] >> placeBits;
+            const Index cell = this->cellOf(use);
             const Index* node = view.connectivity + this->firstNode(cell);
             const int nodes = this->nodesOf(cell);
             for (int k = 0; k < nodes; ++k)
@@ -257,8 +275,8 @@ void AssemblyPattern::computeBatch(const Element& element, const MeshView& view,
           continue;
         }
         const Index* node = view.connectivity + this->firstNode(cell);
-        const CellType type = static_cast<CellType>(view.cellTypes[cell]);
-        withElement(type,
+        const ElementKind kind = elementKind(view, cell);
+        withElement(kind,
           [&](auto nodesOfCell, auto dimensionOfCell)
           {
             constexpr int nodes = decltype(nodesOfCell)::value;
@@ -268,7 +286,7 @@ void AssemblyPattern::computeBatch(const Element& element, const MeshView& view,
             {
               p[k] = pointOf(view, node[k]);
             }
-            element.template compute<nodes, dimension>(cell, type, p, &buffer[i * entries]);
+            element.template compute<nodes, dimension>(cell, kind, p, &buffer[i * entries]);
           });
       }
     });
@@ -280,7 +298,7 @@ template <int Components>
 void AssemblyPattern::addUse(
   Index use, Index firstColumn, Index width, const double* k, double* row) const
 {
-  const Index cell = this->Uses[use] >> placeBits;
+  const Index cell = this->cellOf(use);
   const int nodes = this->nodesOf(cell);
   for (int j = 0; j < nodes; ++j)
   {
@@ -335,16 +353,16 @@ void AssemblyPattern::gather(
         {
           const Index lastUse = this->UseOffsets[point + 1];
           Index use = this->UseOffsets[point] + done[point];
-          if (use == lastUse || (this->Uses[use] >> placeBits) >= endCell)
+          if (use == lastUse || this->cellOf(use) >= endCell)
           {
             continue;
           }
           const Index first = this->Offsets[point], width = this->Offsets[point + 1] - first;
           double* row = &matrix.values[components * components * first];
-          for (; use < lastUse && (this->Uses[use] >> placeBits) < endCell; ++use)
+          for (; use < lastUse && this->cellOf(use) < endCell; ++use)
           {
-            const Index cell = this->Uses[use] >> placeBits;
-            const int nodes = this->nodesOf(cell), place = this->Uses[use] % MaxNodes;
+            const Index cell = this->cellOf(use);
+            const int nodes = this->nodesOf(cell), place = this->placeOf(use);
             const double* k =
               &buffer[(cell - firstCell) * entries + place * components * components * nodes];
             this->addUse<components>(use, first, width, k, row);
@@ -449,55 +467,56 @@ std::vector<double> loadVector(
   requireElements(mesh, options.skip);
   const MeshView& view = mesh.view();
   std::vector<double> load(components * view.numberOfPoints, 0.0);
+  const ElementRules rules = elementRules(elementRule);
+  const auto addCell = [&](Index cell, ElementKind kind, auto nodesOfCell, auto dimensionOfCell)
+  {
+    constexpr int nodes = decltype(nodesOfCell)::value;
+    constexpr int dimension = decltype(dimensionOfCell)::value;
+    const Index* node = view.connectivity + view.offsets[cell];
+    Vec3 p[nodes];
+    for (int k = 0; k < nodes; ++k)
+    {
+      p[k] = pointOf(view, node[k]);
+    }
+    double mass[nodes][nodes] = {};
+    for (const ReferencePoint& reference : rules[static_cast<int>(kind)])
+    {
+      ElementSample<nodes> s;
+      sampleElement<nodes, dimension>(reference, p, s);
+      for (int a = 0; a < nodes; ++a)
+      {
+        for (int b = 0; b < nodes; ++b)
+        {
+          // On a linear simplex the integrals of the products have closed forms.
+          mass[a][b] += s.weight *
+            (nodes == dimension + 1 ? (a == b ? 2.0 : 1.0) / (nodes * (nodes + 1))
+                                    : s.value[a] * s.value[b]);
+        }
+      }
+    }
+    for (int a = 0; a < nodes; ++a)
+    {
+      for (int b = 0; b < nodes; ++b)
+      {
+        for (int c = 0; c < components; ++c)
+        {
+          load[components * node[a] + c] += mass[a][b] * f[components * node[b] + c];
+        }
+      }
+    }
+  };
   for (const CellBlock& block : mesh.blocks())
   {
-    const std::vector<ReferencePoint> rule = elementRule(block.type);
-    withElement(block.type,
-      [&](auto nodesOfCell, auto dimensionOfCell)
+    for (Index i = 0; i < block.count; ++i)
+    {
+      const Index cell = block.cell(i);
+      const ElementKind kind = elementKind(view, cell);
+      if (!(options.skip && options.skip[cell]))
       {
-        constexpr int nodes = decltype(nodesOfCell)::value;
-        constexpr int dimension = decltype(dimensionOfCell)::value;
-        for (Index i = 0; i < block.count; ++i)
-        {
-          const Index cell = block.cell(i);
-          if (options.skip && options.skip[cell])
-          {
-            continue;
-          }
-          const Index* node = view.connectivity + view.offsets[cell];
-          Vec3 p[nodes];
-          for (int k = 0; k < nodes; ++k)
-          {
-            p[k] = pointOf(view, node[k]);
-          }
-          double mass[nodes][nodes] = {};
-          for (const ReferencePoint& reference : rule)
-          {
-            ElementSample<nodes> s;
-            sampleElement<nodes, dimension>(reference, p, s);
-            for (int a = 0; a < nodes; ++a)
-            {
-              for (int b = 0; b < nodes; ++b)
-              {
-                // On a simplex the integrals of the products have closed forms.
-                mass[a][b] += s.weight *
-                  (nodes == dimension + 1 ? (a == b ? 2.0 : 1.0) / (nodes * (nodes + 1))
-                                          : s.value[a] * s.value[b]);
-              }
-            }
-          }
-          for (int a = 0; a < nodes; ++a)
-          {
-            for (int b = 0; b < nodes; ++b)
-            {
-              for (int c = 0; c < components; ++c)
-              {
-                load[components * node[a] + c] += mass[a][b] * f[components * node[b] + c];
-              }
-            }
-          }
-        }
-      });
+        withElement(
+          kind, [&](auto nodes, auto dimension) { addCell(cell, kind, nodes, dimension); });
+      }
+    }
   }
   return load;
 }

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file FiniteElements.h
- * @brief Stiffness matrices and load vectors of linear finite elements: P1 on triangles and
- * tetrahedra, Q1 on quadrilaterals and hexahedra, conforming functions on wedges and pyramids.
+ * @brief Stiffness matrices and load vectors of finite elements: P1 on triangles and tetrahedra, Q1
+ * on quadrilaterals and hexahedra, conforming functions on wedges and pyramids, and P2 on quadratic
+ * triangles (VTK's types 22, 34 and 69) and tetrahedra (24, 71), whose edges and faces may be
+ * curved: isoparametric elements.
  *
  * Matrices are those of all points of the mesh, before any boundary condition: a point outside all
  * cells has an empty row. They come out the same, bitwise, for any number of threads, and exactly
@@ -39,10 +41,10 @@ struct AssemblyOptions
  * @brief The sparsity pattern of the matrices of a mesh: found once, used for every assembly on
  * that mesh.
  *
- * Elements with more than two nodes along an edge and cells of other types are refused. Where the
- * Jacobian of an element vanishes (Mesh::degenerateTolerance()) it contributes nothing; inverted
- * elements contribute by its absolute value. Check with Mesh::classifyCells() first where that
- * matters.
+ * Cells of other types are refused, and linear elements beside quadratic ones. Where the Jacobian
+ * of an element vanishes (Mesh::degenerateTolerance()) it contributes nothing; inverted elements
+ * contribute by its absolute value. Check with Mesh::classifyCells(), of quadratic ones with
+ * certifyCurvedCells(), first where that matters.
  */
 class TAUTLINE_SOLVERS_EXPORT AssemblyPattern
 {
@@ -94,7 +96,12 @@ private:
   void gather(const Element& element, SparseMatrix& matrix, const double* points) const;
   int nodesOf(Index cell) const
   {
-    return this->Uniform ? this->Stride : this->Nodes[this->Input->view().cellTypes[cell]];
+    const MeshView& view = this->Input->view();
+    const int nodes = this->Uniform ? this->Stride : this->Nodes[view.cellTypes[cell]];
+    // Lagrange triangles have 6 nodes or 7.
+    return this->Quadratic && nodes > 0
+      ? static_cast<int>(view.offsets[cell + 1] - view.offsets[cell])
+      : nodes;
   }
   Index firstNode(Index cell) const
   {
@@ -104,11 +111,16 @@ private:
 
   const Mesh* Input;
   int Threads;
+  int placeOf(Index use) const { return this->Uses[use] & ((1U << this->PlaceBits) - 1); }
+  Index cellOf(Index use) const { return this->Uses[use] >> this->PlaceBits; }
+
   int Stride = 0;                     // maximum number of nodes of a cell
+  int PlaceBits = 0;                  // that a place in a cell takes
   bool Uniform = false;               // all cells have so many, without gaps
-  std::array<signed char, 256> Nodes; // of a cell by its VTK type
+  bool Quadratic = false;             // the elements
+  std::array<signed char, 256> Nodes; // of a cell by its VTK type; 0: it does not count
   /// The cells at each point, in increasing order, each with the point's place in it: cell *
-  /// MaxNodes + place.
+  /// 2^PlaceBits + place.
   std::vector<Index> UseOffsets;
   std::vector<std::uint32_t> Uses;
   /// Where the nodes of each use are in the row of its point; Stride per use.
@@ -129,8 +141,8 @@ TAUTLINE_SOLVERS_EXPORT SparseMatrix stiffnessMatrix(
 TAUTLINE_SOLVERS_EXPORT int elasticComponents(const Mesh& mesh);
 
 /**
- * @brief Integrals of f phi_p: f is given at the points (components per point, interpolated
- * linearly).
+ * @brief Integrals of f phi_p: f is given at the points (components per point, interpolated by the
+ * shape functions).
  * @return components x numberOfPoints
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> loadVector(

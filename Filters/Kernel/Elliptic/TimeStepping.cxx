@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TimeStepping.h"
 
+#include "ElementShapes.h"
 #include "FiniteElements.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
@@ -333,6 +334,16 @@ SparseMatrix massMatrix(const EllipticSystem& system, MassMatrix kind)
   {
     return made; // a rank may have no cells
   }
+  const bool lumped = kind == MassMatrix::Lumped;
+  for (Index cell = 0; lumped && cell < mesh.view().numberOfCells; ++cell)
+  {
+    const bool counts = !(system.part().skip && system.part().skip[cell]);
+    if (counts && isQuadratic(elementKind(mesh.view(), cell)))
+    {
+      throw Error("The sums of the rows of the mass matrix are not positive for quadratic "
+                  "elements, at their corners: choose the consistent mass matrix.");
+    }
+  }
   DiffusionOperator identity;
   identity.tensor = { 0, 0, 0, 0, 0, 0 };
   identity.reaction = 1.0;
@@ -354,7 +365,7 @@ SparseMatrix massMatrix(const EllipticSystem& system, MassMatrix kind)
     const Index row = free[i];
     for (Index k = whole.offsets[row]; k < whole.offsets[row + 1]; ++k)
     {
-      const Index column = kind == MassMatrix::Lumped ? i : freeIndex[whole.columns[k]];
+      const Index column = lumped ? i : freeIndex[whole.columns[k]];
       for (int c = 0; column >= 0 && c < d; ++c)
       {
         made.values[placeOf(made, d * i + c, static_cast<std::int32_t>(d * column + c))] +=

@@ -373,6 +373,65 @@ void forEachOpenFacet(const Mesh& mesh, const unsigned char* skip, const Visit& 
       });
 }
 
+/**
+ * The nodes in the middle of edges of the boundary. An edge between two boundary points may be
+ * inside, so that these are the edges of facets. Of quadratic triangles and tetrahedra, where an
+ * edge of each two corners of a facet is one of the cell.
+ */
+class QuadraticEdges
+{
+public:
+  QuadraticEdges(const Mesh& mesh, const unsigned char* skip)
+    : TheMesh(mesh)
+    , Skip(skip)
+  {
+  }
+
+  void add(const LocalFacet& facet)
+  {
+    for (std::size_t i = 0; this->TheMesh.higherOrderCells() > 0 && i < facet.size(); ++i)
+    {
+      for (std::size_t j = 0; j < i; ++j)
+      {
+        if (facet[i] >= 0 && facet[j] >= 0)
+        {
+          this->Edges.push_back(std::minmax(facet[i], facet[j]));
+        }
+      }
+    }
+  }
+
+  void mark(std::vector<unsigned char>& flags)
+  {
+    std::sort(this->Edges.begin(), this->Edges.end());
+    const MeshView& view = this->TheMesh.view();
+    for (Index cell = 0; !this->Edges.empty() && cell < view.numberOfCells; ++cell)
+    {
+      const CellType type = cornerType(view.cellTypes[cell]);
+      const bool simplex = type == CellType::Triangle || type == CellType::Tetrahedron;
+      if (!simplex || !isHigherOrder(view.cellTypes[cell]) || (this->Skip && this->Skip[cell]))
+      {
+        continue;
+      }
+      const CellTopology& t = topology(type);
+      const Index* node = view.connectivity + view.offsets[cell];
+      const Index nodes = view.offsets[cell + 1] - view.offsets[cell];
+      for (int e = 0; e < t.edges && t.nodes + e < nodes; ++e)
+      {
+        const std::pair<Index, Index> edge =
+          std::minmax(node[t.edgeNodes[e][0]], node[t.edgeNodes[e][1]]);
+        const bool found = std::binary_search(this->Edges.begin(), this->Edges.end(), edge);
+        flags[node[t.nodes + e]] |= static_cast<unsigned char>(found);
+      }
+    }
+  }
+
+private:
+  const Mesh& TheMesh;
+  const unsigned char* Skip;
+  std::vector<std::pair<Index, Index>> Edges;
+};
+
 /// The number of cells of each facet on all ranks, added up by a directory spread over the ranks.
 std::vector<int> cellsOnAllRanks(MPI_Comm comm, int ranks, const std::vector<SharedFacet>& facets)
 {
@@ -415,6 +474,7 @@ std::vector<int> cellsOnAllRanks(MPI_Comm comm, int ranks, const std::vector<Sha
 }
 }
 
+//------------------------------------------------------------------------------
 std::vector<unsigned char> globalBoundaryPoints(
   const Mesh& mesh, Communicator communicator, const Index* globalIds, const unsigned char* skip)
 {
@@ -423,6 +483,7 @@ std::vector<unsigned char> globalBoundaryPoints(
   const PointNumbering all(communicator, points, globalIds);
   const bool volume = mesh.dimension() == Dimension::Volume;
   const bool volumeSomewhere = all.maximum(volume ? 1.0 : 0.0) > 0.0;
+  QuadraticEdges edges(mesh, skip);
   const auto mark = [&](const LocalFacet& facet)
   {
     for (const Index point : facet)
@@ -432,11 +493,13 @@ std::vector<unsigned char> globalBoundaryPoints(
         flags[point] = 1;
       }
     }
+    edges.add(facet);
   };
   // As in Mesh::boundary(), facets that do not have two cells are boundary.
   if (all.ranks() == 1)
   {
     forEachOpenFacet(mesh, skip, [&](const LocalFacet& facet, int) { mark(facet); });
+    edges.mark(flags);
     return flags;
   }
   // Another rank may have the second cell. A rank without volume cells has no facets of a volume
@@ -466,6 +529,7 @@ std::vector<unsigned char> globalBoundaryPoints(
       mark(facets[i]);
     }
   }
+  edges.mark(flags);
   all.either(flags.data());
   return flags;
 }

@@ -63,7 +63,8 @@ private:
 
 /**
  * @brief The points of edges (2D) or faces (3D) that exactly one cell on all ranks has (or more
- * than two); cells with skip flags (ghosts) do not count. On one rank the result of
+ * than two), of quadratic triangles and tetrahedra with the nodes in the middle of edges; cells
+ * with skip flags (ghosts) do not count. Of linear cells on one rank the result of
  * Mesh::boundary(). Collective.
  * @param globalIds as above; null on one rank
  */

@@ -2,7 +2,7 @@
 // Boundary value problems on a mesh spread over MPI ranks: the solution, its derivatives, norms,
 // steps in time and the study of solvers are those of the whole mesh in one process; what one rank
 // rejects all reject. Runs on any number of ranks.
-#include "Blocks.h"
+#include "QuadraticMeshes.h"
 #include "Registry.h"
 #include "tautline/Elliptic/ErrorNorms.h"
 #include "tautline/Elliptic/SolverStudy.h"
@@ -78,12 +78,26 @@ struct Share
   static constexpr double blockSize = 5;
 };
 
+/// Quadratic cells, all of whose edges are bent.
+MeshData curved(const MeshData& linear)
+{
+  MeshData data = quadraticOf(linear);
+  data.transform(
+    [](const Vec3& p) {
+      return p + 0.1 * Vec3{ std::sin(2 * p[1]), std::sin(2 * p[0]), 0 };
+    });
+  return data;
+}
+
 //------------------------------------------------------------------------------
-void testSolutions(MPI_Comm comm, CellType type, Pde pde, bool scattered, bool lastIsEmpty)
+void testSolutions(
+  MPI_Comm comm, CellType type, Pde pde, bool scattered, bool lastIsEmpty, bool quadratic = false)
 {
   const Context context(std::string(topology(type).plural) + ", problem " +
-    std::to_string(static_cast<int>(pde)) + (scattered ? ", scattered" : ", bands"));
-  const MeshData whole = shuffled(movedBlock(type, 5, 0.1), 3);
+    std::to_string(static_cast<int>(pde)) + (scattered ? ", scattered" : ", bands") +
+    (quadratic ? ", quadratic" : ""));
+  const MeshData linear = movedBlock(type, quadratic ? 4 : 5, 0.1);
+  const MeshData whole = shuffled(quadratic ? curved(linear) : linear, 3);
   const Share share(comm, whole, scattered, lastIsEmpty);
   const int given = pde == Pde::Elasticity ? 3 : 1;
   Random random(5);
@@ -126,7 +140,8 @@ void testSolutions(MPI_Comm comm, CellType type, Pde pde, bool scattered, bool l
     { TimeScheme::Bdf2, TimeScheme::CrankNicolson, TimeScheme::Newmark })
   {
     TAUTLINE_LET(TimeOptions, time, scheme = scheme, step = 0.1, steps = 4,
-      mass = scheme == TimeScheme::Bdf2 ? MassMatrix::Lumped : MassMatrix::Consistent);
+      mass =
+        scheme == TimeScheme::Bdf2 && !quadratic ? MassMatrix::Lumped : MassMatrix::Consistent);
     const std::vector<double> start = unknownsOf(alone, values);
     const std::vector<double> myStart = unknownsOf(together, myValues);
     const TimeSeries there = integrate(alone, time, start, start, options);
@@ -233,6 +248,8 @@ TAUTLINE_TEST(TestEllipticRanks)
   TAUTLINE_RUN(testSolutions(comm, CellType::Quadrilateral, Pde::Elasticity, true, false));
   TAUTLINE_RUN(testSolutions(comm, CellType::Tetrahedron, Pde::Elliptic, true, true));
   TAUTLINE_RUN(testSolutions(comm, CellType::Hexahedron, Pde::Elasticity, false, true));
+  TAUTLINE_RUN(testSolutions(comm, CellType::Triangle, Pde::Elasticity, true, false, true));
+  TAUTLINE_RUN(testSolutions(comm, CellType::Tetrahedron, Pde::Poisson, false, true, true));
   TAUTLINE_RUN(testRefusals(comm));
   MPI_Finalize();
 }
