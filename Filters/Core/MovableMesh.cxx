@@ -2,6 +2,7 @@
 #include "MovableMesh.h"
 
 #include "Blocks.h"
+#include "CurvedMesh.h"
 #include "PointMerge.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/BoundaryShape.h"
@@ -230,6 +231,14 @@ MovableMesh::MovableMesh(
   this->skipCopies();
   this->checkOrder();
   this->fixHeld(held);
+}
+
+//------------------------------------------------------------------------------
+void MovableMesh::certifyBy(const CurvedMesh& curved)
+{
+  this->Curved = &curved;
+  const MeshView& view = this->Adapter.inputView();
+  curved.certify({ view.points, view.points + 3 * view.numberOfPoints }, this->Validity);
 }
 
 //------------------------------------------------------------------------------
@@ -592,7 +601,12 @@ Mesh MovableMesh::placed(const std::vector<double>& points, std::vector<double>&
 std::vector<signed char> MovableMesh::validityAt(const std::vector<double>& points) const
 {
   std::vector<double> storage;
-  return validityOf(this->placed(points, storage), this->Threads);
+  std::vector<signed char> validity = validityOf(this->placed(points, storage), this->Threads);
+  if (this->Curved)
+  {
+    this->Curved->certify(this->actual(points), validity);
+  }
+  return validity;
 }
 
 //------------------------------------------------------------------------------

@@ -24,6 +24,7 @@ class vtkPointSet;
 namespace tautline
 {
 struct BoundaryShape;
+class CurvedMesh;
 
 /// Neighbouring cells list their points in opposite orders, or parts of the mesh are reversed and
 /// others are not: a mesh in pieces can be gathered.
@@ -81,6 +82,11 @@ public:
   /// processes, if neighbouring cells list their points in opposite orders.
   static std::unique_ptr<MovableMesh> makePiece(RankGroup& group, vtkDataSet* input, int threads,
     bool mergePoints, Redistribution redistribution = Redistribution::None);
+
+  /// Makes validity(), validityAt() and move() judge curved cells as a whole, where this is the
+  /// mesh of their corners. Not in pieces.
+  /// @param curved outlives the mesh
+  void certifyBy(const CurvedMesh& curved);
 
   bool inPieces() const { return this->Spread != nullptr; }
 
@@ -258,6 +264,7 @@ private:
   std::vector<double> written(const std::vector<double>& points, bool single) const;
   void uniteFixed();
 
+  const CurvedMesh* Curved = nullptr;
   vtkPointSet* Input; ///< null for an empty piece of another kind
   MeshAdapter Adapter;
   int Threads;
