@@ -2,6 +2,8 @@
 #include "RestingMesh.h"
 
 #include "vtkCellData.h"
+#include "vtkDataArray.h"
+#include "vtkPointData.h"
 #include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
@@ -29,7 +31,18 @@ vtkSmartPointer<vtkPointSet> structureOf(vtkPointSet* input)
   {
     copy->GetCellData()->AddArray(ghosts);
   }
+  copy->GetCellData()->SetHigherOrderDegrees(input->GetCellData()->GetHigherOrderDegrees());
+  copy->GetPointData()->SetRationalWeights(input->GetPointData()->GetRationalWeights());
   return copy;
+}
+
+//------------------------------------------------------------------------------
+bool RestingMesh::sameAs(vtkPointSet* input, int threads) const
+{
+  const MeshAdapter other(input, threads);
+  return this->curved
+    ? sameMesh(other.mesh().view(), MeshAdapter(this->data, threads).mesh().view())
+    : sameMesh(other.mesh().view(), this->mesh->given().view());
 }
 
 //------------------------------------------------------------------------------
@@ -37,18 +50,30 @@ void RestingMesh::take(vtkPointSet* input, int threads, bool mergePoints)
 {
   // What was taken shares its arrays with its owner, who may have changed them in place.
   if (this->data && this->data->GetMTime() <= this->time && mergePoints == this->MergePoints &&
-    input->HasAnyGhostCells() == this->data->HasAnyGhostCells() &&
-    sameMesh(MeshAdapter(input, threads).mesh().view(), this->mesh->given().view()))
+    input->HasAnyGhostCells() == this->data->HasAnyGhostCells() && this->sameAs(input, threads))
   {
     return;
   }
   this->warper.reset();
   this->data = nullptr; // so that it is not taken for good if what follows throws
   vtkSmartPointer<vtkPointSet> copy = structureOf(input);
-  this->mesh = std::make_unique<MovableMesh>(copy, threads, mergePoints);
+  this->mesh.reset(); // refers to the other
+  this->curved = hasCurvedCells(copy) ? std::make_unique<CurvedMesh>(copy, threads) : nullptr;
+  this->mesh = std::make_unique<MovableMesh>(
+    this->curved ? static_cast<vtkDataSet*>(this->curved->corners()) : copy.Get(), threads,
+    mergePoints);
+  if (this->curved)
+  {
+    this->curved->join(this->mesh->representative());
+    this->mesh->certifyBy(*this->curved);
+  }
   this->MergePoints = mergePoints;
   requireElements(*this->mesh);
   this->boundary = boundaryOf(this->mesh->mesh());
+  for (std::size_t i = 0; this->curved && i < this->boundary.size(); ++i)
+  {
+    this->boundary[i] |= this->curved->nodes().boundary()[i];
+  }
   this->Parts.reset();
   this->takeElements(threads);
   this->data = copy;

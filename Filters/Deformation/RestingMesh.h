@@ -6,6 +6,7 @@
 #ifndef tautline_RestingMesh_h
 #define tautline_RestingMesh_h
 
+#include "CurvedMesh.h"
 #include "MovedBoundary.h"
 #include "tautline/Deformation/Warp.h"
 
@@ -17,16 +18,18 @@
 
 namespace tautline
 {
-/// Points, cells and which are ghosts; without other arrays, whose changes do not matter.
+/// Points, cells, their orders and which are ghosts; without other arrays, whose changes do not
+/// matter.
 vtkSmartPointer<vtkPointSet> structureOf(vtkPointSet* input);
 
 /// A mesh at rest, and what was made of it.
 struct RestingMesh
 {
   vtkSmartPointer<vtkPointSet> data;
-  vtkMTimeType time = 0; ///< of data when it was taken
-  std::unique_ptr<MovableMesh> mesh;
-  PointFlags boundary;
+  vtkMTimeType time = 0;              ///< of data when it was taken
+  std::unique_ptr<CurvedMesh> curved; ///< null: all cells are linear
+  std::unique_ptr<MovableMesh> mesh;  ///< of the corners
+  PointFlags boundary;                ///< also nodes between corners
   // The elements alone, if there are other cells (lines, vertices, the triangles around a volume).
   std::vector<unsigned char> types;
   std::vector<Index> offsets, connectivity, cells;
@@ -45,6 +48,7 @@ struct RestingMesh
   const BoundaryParts& parts() const;
 
 private:
+  bool sameAs(vtkPointSet* input, int threads) const;
   void takeElements(int threads);
 
   bool MergePoints = true;

@@ -95,6 +95,11 @@ std::string describe(const WarpResult& result, const WarpFacts& facts, const War
   {
     text << q.inverted << " of " << q.elements << " elements are inverted or degenerate";
   }
+  if (facts.following > 0)
+  {
+    text << " in the whole cell; " << facts.following << " nodes of curved cells followed their "
+         << "corners" << (q.inverted > 0 ? " (Untangle Mesh moves these, too)" : "");
+  }
   if (result.invertedWarp > 0 && result.invertedWarp != q.inverted)
   {
     text << "; after the warp itself " << result.invertedWarp << " were not";

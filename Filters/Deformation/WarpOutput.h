@@ -25,6 +25,7 @@ struct WarpFacts
   bool reused = false;
   double seconds = 0.0; ///< all of it
   int threads = 0;
+  Index following = 0; ///< nodes between the corners of curved cells
 };
 
 /// A metric over a mesh.

@@ -331,10 +331,12 @@ void WarpSession::visit(const InputBlock& block, vtkDataObject* target, vtkDataO
   }
   WarpFacts facts = factsOf(this->settings, todo);
   facts.reused = reused;
+  facts.following =
+    kept.rest.curved ? static_cast<Index>(kept.rest.curved->nodes().points().size()) : 0;
   for (Index i = 0; i < view.numberOfPoints; ++i)
   {
     const double length = norm3(&todo.displacement[3 * i]);
-    facts.boundaryPoints += todo.prescribed[i] != 0;
+    facts.boundaryPoints += todo.prescribed[i] != 0 || kept.rest.boundary[i];
     facts.movedPoints += length > 0;
     facts.largestDisplacement = std::max(facts.largestDisplacement, length);
   }
@@ -458,6 +460,11 @@ void WarpSession::prescribe(const InputBlock& block, const RestingMesh& rest, Wa
   }
   task.prescribed = rest.boundary;
   holdStaying(task);
+  // The nodes between corners are none of the mesh that is warped.
+  for (std::size_t i = 0; rest.curved && i < rest.curved->nodes().points().size(); ++i)
+  {
+    task.prescribed[rest.curved->nodes().points()[i]] = 0;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -500,7 +507,15 @@ PointFlags WarpSession::movedPart(
   choice.parts = [&rest]() -> const BoundaryParts& { return rest.parts(); };
   choice.selected = counterpartOf(block, selected);
   choice.elsewhere = selected && block.flatIndex > 0;
-  return movedPoints(rest.mesh->mesh(), rest.boundary, choice);
+  PointFlags moved = movedPoints(rest.mesh->mesh(), rest.boundary, choice);
+  // Nodes between corners that move are of the same part.
+  for (std::size_t i = 0; rest.curved && i < rest.curved->nodes().points().size(); ++i)
+  {
+    const Index point = rest.curved->nodes().points()[i];
+    moved[point] |=
+      static_cast<unsigned char>(rest.boundary[point] && rest.curved->nodes().allCorners(i, moved));
+  }
+  return moved;
 }
 
 //------------------------------------------------------------------------------
@@ -519,6 +534,7 @@ void WarpSession::moveToTarget(const InputBlock& block, const RestingMesh& rest,
   request.threads = set.options.threads;
   TargetPlaces places = placesOf(request);
   task.displacement = std::move(places.displacement);
+  task.own = std::move(places.given);
   task.correspondence = places.how;
 }
 
@@ -532,6 +548,7 @@ void WarpSession::moveByTransform(
     return displacements(motion, fraction * amount, view.numberOfPoints, view.points, moved.data());
   };
   task.displacement = task.path(1.0);
+  task.own = moved;
 }
 
 //------------------------------------------------------------------------------
@@ -609,6 +626,10 @@ WarpResult WarpSession::warp(WarpBlock& kept, WarpTask& task, int blockNumber, b
     reused = this->prepare(rest, task, blockNumber);
     rest.warper->setMaximumSeconds(this->settings.secondsLeft());
     result = runWarp(*rest.warper, task);
+    if (rest.curved)
+    {
+      followCorners(rest, task, this->settings.options.threads, result.points, result.amount);
+    }
   }
   else
   {
@@ -620,6 +641,10 @@ WarpResult WarpSession::warp(WarpBlock& kept, WarpTask& task, int blockNumber, b
     result.message += " Cells are counted without lines, vertices and the surfaces of volumes.";
   }
   spread(result.points, 3, rest.mesh->representative());
+  if (rest.curved)
+  {
+    rest.curved->nodes().unite(result.points);
+  }
   if (stepwise)
   {
     limitFrames(kept, 3 * static_cast<std::size_t>(kept.rest.data->GetNumberOfPoints()));
@@ -654,6 +679,10 @@ WarpResult WarpSession::warpFromPrevious(
   this->prepare(from, rise, blockNumber);
   from.warper->setMaximumSeconds(this->settings.secondsLeft());
   WarpResult result = runWarp(*from.warper, rise);
+  if (from.curved)
+  {
+    followCorners(from, rise, this->settings.options.threads, result.points, result.amount);
+  }
   result.message += (result.message.empty() || note.empty() ? "" : " ") + note;
   return result;
 }
@@ -674,6 +703,30 @@ WarpResult runWarp(Warper& warper, const WarpTask& task)
         displacement[i] = task.stay[i / 3] ? 0.0 : d[i];
       }
     });
+}
+
+//------------------------------------------------------------------------------
+void followCorners(const RestingMesh& rest, const WarpTask& task, int threads,
+  std::vector<double>& points, double amount)
+{
+  const FollowingNodes& nodes = rest.curved->nodes();
+  const double* before = rest.mesh->mesh().view().points;
+  nodes.place(before, points, threads);
+  for (std::size_t i = 0; amount == 1.0 && i < nodes.points().size(); ++i)
+  {
+    const Index point = nodes.points()[i];
+    // Between corners that stay, nodes of the boundary stay; beside one that moves, nodes without a
+    // motion follow.
+    const bool own = task.own.empty() || task.own[point] || !nodes.anyCorner(i, task.own);
+    if (task.stay[point] || (nodes.boundary()[point] && own))
+    {
+      for (Index c = 3 * point; c < 3 * point + 3; ++c)
+      {
+        points[c] = before[c] + task.displacement[c];
+      }
+    }
+  }
+  nodes.unite(points);
 }
 
 //------------------------------------------------------------------------------

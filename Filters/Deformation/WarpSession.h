@@ -101,6 +101,7 @@ void limitFrames(WarpBlock& block, std::size_t numbers);
 struct WarpTask
 {
   PointFlags prescribed, stay;
+  PointFlags own; ///< points whose motion is given, the others of the boundary stay; empty: all
   std::vector<double> displacement; ///< at the amount, from the mesh at rest
   /// The same after a fraction (0 to 1) of the way, where it is not straight; or empty.
   std::function<std::vector<double>(double)> path;
@@ -119,6 +120,13 @@ bool staysAtRest(const WarpTask& task);
 /// The result of that. @param points as they are
 WarpResult resultAtRest(std::vector<double> points);
 WarpResult runWarp(Warper& warper, const WarpTask& task);
+/**
+ * @brief Places the nodes between the corners of curved cells, which follow; on the boundary where
+ * they have motions of their own, there, if the corners came to the end of theirs.
+ * @param rest what the corners started from; with CurvedMesh
+ */
+void followCorners(const RestingMesh& rest, const WarpTask& task, int threads,
+  std::vector<double>& points, double amount);
 /// What the report says of the settings.
 WarpFacts factsOf(const WarpSettings& settings, const WarpTask& task);
 

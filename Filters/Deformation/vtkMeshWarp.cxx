@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMeshWarp.h"
 
+#include "CurvedMesh.h"
 #include "GatheredExecution.h"
 #include "Processes.h"
 #include "WarpPieces.h"
@@ -443,8 +444,10 @@ bool vtkMeshWarp::TakesPieces(vtkInformationVector** inputs)
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
   vtkPointSet* first = sequence ? session.firstPiece(input) : nullptr;
   const bool toTarget = session.settings.motion == tautline::MotionSource::Target;
+  const bool curved = tautline::minimumOverProcesses(tautline::hasCurvedCells(input) ? 0 : 1) == 0;
   const std::string why = sequence && session.gathers ? "its pieces change over time"
     : toTarget                                        ? "a motion to a target needs the whole mesh"
+    : curved                                          ? "it has curved cells"
                                                       : "";
   const bool taken = this->TakePiece(first ? first : input, why);
   if (sequence && !session.begun)

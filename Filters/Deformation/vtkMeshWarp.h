@@ -15,7 +15,16 @@
  * pyramids, too). The elements must be valid to begin with. A mesh reversed throughout is treated
  * as its mirror image, and so is a cell that lists its points in the opposite order of the
  * others. Surfaces in space, parts without a consistent orientation, image data (implicit points),
- * polygons, polyhedra and cells of higher order are refused.
+ * polygons and polyhedra are refused.
+ *
+ * @par Curved cells:
+ * Corners move as those of linear cells by all methods. The nodes between them follow, see
+ * tautline/Mesh/FollowingNodes.h, but nodes on the boundary have the motion that is given for them:
+ * by the transform if all corners of their edge or face have it, by their values of the array, by
+ * their places in the target or at the time step; without one they stay if these corners do. Where
+ * the motion is not completed, they all follow. Validity is certified for the whole cell, before
+ * and after; the other numbers are those of the corners. Cells that ElementType does not support
+ * (orders above 6) are refused.
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) where its boundary goes (TARGET): a data set, or for a mesh of blocks

@@ -165,8 +165,18 @@ int vtkMovingBoundary::RequestData(
         {
           if (block.input->GetNumberOfPoints() > 0 && block.input->GetNumberOfCells() > 0)
           {
-            const tautline::PointFlags moving = session.movingPoints(block, target, moved);
-            addMoving(block.input, session.restingMesh(block.number), moving, found);
+            tautline::PointFlags moving = session.movingPoints(block, target, moved);
+            const tautline::RestingMesh& rest = session.restingMesh(block.number);
+            vtkDataSet* shown = block.input;
+            if (rest.curved) // the straight cells of the corners
+            {
+              shown = rest.curved->corners();
+              for (const tautline::Index point : rest.curved->nodes().points())
+              {
+                moving[point] = 0;
+              }
+            }
+            addMoving(shown, rest, moving, found);
           }
         });
       session.forgetFrom(tautline::countBlocks(input));

@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, shell, wording
+from checks import DATA, OUT, points, quadratic_square, refused, run_tests, shell, wording
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 from vtkmodules.vtkCommonTransforms import vtkTransform
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -163,6 +163,22 @@ def test_refused():
     refused(wording("nan-or-infinite-at-179"), tl.warp, PLATE, np.full((tl.read(PLATE).GetNumberOfPoints(), 3), np.nan))
     refused(wording("regions-are"), tl.warp, PLATE, transform={"rotate": 1}, regions="region")
     refused("mirrors", tl.warp, PLATE, transform=np.diag([-1.0, 1, 1, 1]))
+
+
+def test_curved():
+    """Nodes of curved cells follow: affine motions are exact, and validity holds for the whole cell."""
+    mesh = quadratic_square(6, 0.08)
+    x = points(mesh)
+    d = np.column_stack([0.3 * x[:, 0] + 0.2 * x[:, 1], -0.5 * x[:, 0], 0 * x[:, 0]])
+    for method in ("femwarp", "inverse distance", "radial basis", "weighted laplacian"):
+        moved = tl.warp(mesh, displacement=d, method=method)
+        assert moved.inverted == 0 and np.abs(moved.displacement - d).max() < 1e-10, method
+    # A node in the middle of an edge of the boundary goes beyond a quarter of it.
+    push = np.zeros_like(x)
+    push[1, 0] = 0.05
+    folded = tl.warp(mesh, displacement=push, method="femwarp")
+    assert folded.inverted == 1 == (folded.validity == -1).sum() == tl.quality(folded).inverted
+    refused(wording("inverted-or-degenerate-before-anything-moves"), tl.warp, folded, transform={"rotate": 10})
 
 
 def test_command():

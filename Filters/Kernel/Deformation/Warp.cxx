@@ -84,6 +84,14 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
     throw Error("Only planar and volume meshes can be deformed: this is a surface in space.");
   }
   ranks.together([&] { requireOrdinaryScale(mesh.view(), "Warping"); });
+  const Index curved = ranks.sum(mesh.higherOrderCells());
+  if (curved > 0)
+  {
+    throw Error(counted(curved, "cell") +
+      " of quadratic or higher order: warp the linear cells of the corners, and let the other "
+      "nodes "
+      "follow, as Warp Mesh does (vtkMeshWarp).");
+  }
   for (const CellType type : { CellType::Wedge, CellType::Pyramid })
   {
     Index count = 0;

@@ -38,8 +38,8 @@ TAUTLINE_PART(testRefusals)
   wrong = TAUTLINE_CHANGED(data, addCell(VTK_POLYGON, { 0, 1, 2, 3, 4 }));
   refused(toGrid(wrong), wording("1-polygons-polyhedra-or-other-cells-that"));
   wrong = TAUTLINE_CHANGED(MeshData(), points = data.points);
-  wrong.addCell(VTK_QUADRATIC_TRIANGLE, { 0, 2, 10, 1, 6, 5 });
-  refused(toGrid(wrong), "Tessellate");
+  wrong.addCell(VTK_LAGRANGE_TRIANGLE, { 0, 2, 10, 1 });
+  refused(toGrid(wrong), wording("the-vtk-type-69-with-4-nodes"));
   wrong = TAUTLINE_CHANGED(MeshData(), points = data.points);
   wrong.addCell(VTK_VERTEX, { 0 });
   refused(toGrid(wrong), wording("there-is-no-element"));

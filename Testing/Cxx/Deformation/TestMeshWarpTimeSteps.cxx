@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh over time steps: from the first or from the one before, and what is kept.
+#include "QuadraticMeshes.h"
 #include "Registry.h"
 #include "WarpingMeshes.h"
 #include "vtkInformationVector.h"
@@ -82,16 +83,27 @@ protected:
 };
 vtkStandardNewMacro(MovingMesh);
 
-vtkSmartPointer<MovingMesh> movingMesh()
+/// @param curved of quadratic triangles, which are straight at first
+vtkSmartPointer<MovingMesh> movingMesh(bool curved = false)
 {
   auto source = vtkSmartPointer<MovingMesh>::New();
   source->Data = holedBlock(CellType::Triangle, 7);
   source->Parts = partsOf(source->Data, 7);
+  if (curved)
+  {
+    source->Data = quadraticOf(source->Data);
+    for (Index i = static_cast<Index>(source->Parts.size()); i < source->Data.numberOfPoints(); ++i)
+    {
+      const Vec3 p = source->Data.point(i) - Vec3{ 3.5, 3.5, 0 };
+      const double far = std::max(std::abs(p[0]), std::abs(p[1]));
+      source->Parts.push_back(far == 3.5 ? 1 : far == 0.5 ? 2 : 0);
+    }
+  }
   return source;
 }
 
 /// Any order of times gives the same meshes, from the first or, other ones, from the one before.
-TAUTLINE_PART(testTimeSteps)
+void testTimeSteps(bool curved)
 {
   for (int motion : { vtkMeshWarp::TIME_STEPS, vtkMeshWarp::DISPLACEMENT, vtkMeshWarp::TARGET })
   {
@@ -99,7 +111,7 @@ TAUTLINE_PART(testTimeSteps)
     std::map<int, std::map<double, std::vector<double>>> found; // by start and time
     for (int start : { vtkMeshWarp::FIRST_STEP, vtkMeshWarp::PREVIOUS_STEP })
     {
-      auto source = movingMesh();
+      auto source = movingMesh(curved);
       source->Moves = motion != vtkMeshWarp::DISPLACEMENT;
       vtkNew<vtkMeshWarp> filter;
       Messages messages(filter);
@@ -169,6 +181,16 @@ TAUTLINE_PART(testTimeSteps)
       [&](std::size_t i) { return std::abs(found[0][1][i] - found[1][1][i]); });
     TAUTLINE_CHECK(step < 1e-13); // the first step is the same
   }
+}
+
+TAUTLINE_PART(testLinearTimeSteps)
+{
+  testTimeSteps(false);
+}
+
+TAUTLINE_PART(testCurvedTimeSteps)
+{
+  testTimeSteps(true);
 }
 
 /// Matrices are kept over time; each time is read once; other cells are refused.
