@@ -2,6 +2,7 @@
 #include "vtkMeshPerturbation.h"
 
 #include "Blocks.h"
+#include "CurvedPerturbation.h"
 #include "BlockSeams.h"
 #include "MeshAdapter.h"
 #include "MovableMesh.h"
@@ -23,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <sstream>
 #include <vector>
 
@@ -68,6 +70,19 @@ std::vector<tautline::Index> pointIds(
     id = std::min(id, ids[i]);
   }
   return ids;
+}
+
+std::string describeCurved(const tautline::CurvedMesh& curved, tautline::Index retreated)
+{
+  const std::size_t nodes = curved.nodes().points().size();
+  std::string text = std::to_string(nodes) +
+    " nodes of curved cells followed their corners; inverted is what is so anywhere in the cell.";
+  if (retreated > 0)
+  {
+    text += " " + std::to_string(retreated) +
+      " corners moved less than drawn, so that valid curved cells stayed valid.";
+  }
+  return text;
 }
 }
 
@@ -126,6 +141,13 @@ void vtkMeshPerturbation::Perturb(
   {
     return;
   }
+  // Of curved cells the corners move as those of linear ones, and the nodes between follow.
+  std::unique_ptr<tautline::CurvedMesh> curved;
+  if (tautline::hasCurvedCells(points))
+  {
+    curved = std::make_unique<tautline::CurvedMesh>(points, this->Threads);
+    points = curved->corners();
+  }
   tautline::MeshAdapter adapter(points, this->Threads);
   tautline::JoinedCopies copies;
   if (this->MergeCoincidentPoints)
@@ -167,7 +189,14 @@ void vtkMeshPerturbation::Perturb(
   tautline::Perturbation result = tautline::perturb(mesh, fixed.data(), options);
   tautline::spread(result.points, 3, one);
   result.points = adapter.leaveFrame(result.points);
-  result.largestDisplacement *= adapter.frame().unit();
+  if (curved)
+  {
+    curved->join(one);
+    tautline::CurvedPerturbation follow(*curved, adapter, fixed, type == VTK_FLOAT, this->Threads);
+    const tautline::Index retreated = follow.finish(result, this->TangledFraction == 0);
+    notices += (notices.empty() ? "" : " ") + describeCurved(*curved, retreated);
+  }
+  result.largestDisplacement *= curved ? 1.0 : adapter.frame().unit();
   moved->SetPoints(
     tautline::makePoints(result.points, type == VTK_FLOAT ? points->GetPoints() : nullptr));
   tautline::addDisplacement(moved, adapter.inputView().points, result.points);

@@ -44,8 +44,15 @@
  * cell data pass. The point array `Displacement` (3 components, double) is added: new minus old
  * position.
  *
+ * @par Curved cells:
+ * Corners move as those of linear cells, and the other nodes follow, see
+ * tautline/Mesh/FollowingNodes.h; those on the boundary and fixed ones stay. Without a
+ * TangledFraction, corners retreat towards where they were until each cell that was valid is valid,
+ * certified for the whole cell. So are the numbers of inverted elements. Cells that ElementType
+ * does not support are refused.
+ *
  * @par Limitations:
- * Quadratic cells are refused. Points shared by two blocks are on the boundary of each and stay.
+ * Points shared by two blocks are on the boundary of each and stay.
  *
  * @par Several processes:
  * The pieces are gathered on the first process. Random numbers are drawn by the global ids of the

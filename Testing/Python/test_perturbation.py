@@ -3,7 +3,7 @@
 
 import numpy as np
 import tautline as tl
-from checks import DATA, refused, run_tests, wording
+from checks import DATA, quadratic_square, refused, run_tests, wording
 from vtkmodules.vtkCommonDataModel import vtkImageData
 
 BRACKET = DATA / "bracket.vtu"
@@ -24,6 +24,14 @@ def test_perturb():
     refused("implicit", tl.perturb, vtkImageData())
     refused(wording("fraction-is-1-5"), tl.perturb, mesh, 1.5)
     refused(wording("tangle-is-nan"), tl.perturb, mesh, tangle=float("nan"))
+
+
+def test_curved():
+    mesh = quadratic_square(10, 0.08)
+    moved = tl.perturb(mesh, fraction=1.0, percentage=100)
+    assert moved.inverted == 0 == tl.quality(moved).inverted and moved.moved > 60
+    tangled = tl.perturb(mesh, tangle=0.1)
+    assert tangled.inverted == tl.quality(tangled).inverted >= 18
 
 
 run_tests(globals())

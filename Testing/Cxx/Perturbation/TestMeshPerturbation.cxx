@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Perturbation: nothing inverts, steps are within the fraction, tangling meets its fraction, and
 // the same seed gives the same mesh.
+#include "QuadraticMeshes.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
+#include "tautline/Mesh/CurvedCells.h"
+#include "tautline/Mesh/FollowingNodes.h"
 #include "tautline/Perturbation/Perturb.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkSphereSource.h"
@@ -434,17 +437,62 @@ TAUTLINE_PART(testKindsOfInput)
   TAUTLINE_CHECK(messages.has(wording("run-image-data-to-point-set")));
 
   messages.clear();
-  TAUTLINE_LET(MeshData, quadratic,
-    addPoints({ { 0, 0, 0 }, { 2, 0, 0 }, { 0, 2, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } }),
-    addCell(VTK_QUADRATIC_TRIANGLE, { 0, 1, 2, 3, 4, 5 }));
-  TAUTLINE_SET(filter, SetInputData(toGrid(quadratic)), Update());
-  TAUTLINE_CHECK(messages.has(wording("run-tessellate")));
-
-  messages.clear();
-  MeshData pentagon = TAUTLINE_CHANGED(quadratic, types = {}, offsets = { 0 }, connectivity = {});
+  TAUTLINE_LET(MeshData, pentagon,
+    addPoints({ { 0, 0, 0 }, { 2, 0, 0 }, { 0, 2, 0 }, { 1, 0, 0 }, { 1, 1, 0 }, { 0, 1, 0 } }));
   pentagon.addCell(VTK_POLYGON, { 0, 3, 1, 4, 2 });
   TAUTLINE_SET(filter, SetInputData(toPolyData(pentagon)), Update());
   TAUTLINE_CHECK(messages.has(wording("run-tetrahedralize-first")));
+}
+
+/// Corners move, the other nodes follow; no valid curved cell becomes invalid unless asked.
+TAUTLINE_PART(testCurvedCells)
+{
+  for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
+  {
+    const Context context(topology(type).name);
+    const bool flat = type == CellType::Triangle;
+    const Index n = flat ? 12 : 4;
+    MeshData data = quadraticOf(blockMesh(type, n, n, flat ? 0 : n));
+    data.transform(
+      [&](const Vec3& p)
+      {
+        const double bend =
+          0.2 * std::sin(M_PI * p[0]) * std::sin(M_PI * p[1]) * (flat ? 1 : std::cos(M_PI * p[2]));
+        return p + bend * Vec3{ 1, -0.7, flat ? 0 : 0.5 };
+      });
+    const auto invalid = [&](const MeshData& mesh)
+    {
+      std::vector<signed char> validity(mesh.numberOfCells());
+      const Mesh view(mesh.view());
+      view.classifyCells(validity.data());
+      certifyCurvedCells(view, {}, validity.data(), nullptr);
+      return static_cast<Index>(std::count_if(validity.begin(), validity.end(), isInvalid));
+    };
+    TAUTLINE_CHECK_EQUAL(invalid(data), 0);
+    vtkNew<vtkMeshPerturbation> filter;
+    Messages messages(filter);
+    TAUTLINE_SET(filter, SetInputData(toGrid(data)), SetPercentage(100), SetFraction(1), Update());
+    const MeshData moved = withPointsOf(data, filter->GetOutput());
+    TAUTLINE_CHECK(messages.empty());
+    TAUTLINE_CHECK(filter->GetNumberOfMovedPoints() > (flat ? 60 : 15));
+    TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+    TAUTLINE_CHECK_EQUAL(invalid(moved), 0);
+    TAUTLINE_CHECK(contains(filter->GetSummary(), wording("corners-moved-less-than-drawn")));
+    // Nodes inside have moved, those of the boundary have not.
+    const FollowingNodes nodes(Mesh(data.view()));
+    Index followed = 0;
+    for (const Index i : nodes.points())
+    {
+      const bool still = norm(moved.point(i) - data.point(i)) == 0;
+      TAUTLINE_CHECK(still || !nodes.boundary()[i]);
+      followed += !still;
+    }
+    TAUTLINE_CHECK(followed > (flat ? 200 : 100));
+    TAUTLINE_SET(filter, SetPercentage(20), SetFraction(0.5), SetTangledFraction(0.1), Update());
+    TAUTLINE_CHECK_EQUAL(
+      filter->GetInvertedAfter(), invalid(withPointsOf(data, filter->GetOutput())));
+    TAUTLINE_CHECK(filter->GetTangledFractionReached() >= 0.09);
+  }
 }
 
 TAUTLINE_PART(testAbortAndProgress)
