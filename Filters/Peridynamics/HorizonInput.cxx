@@ -47,6 +47,12 @@ HorizonInput::HorizonInput(
     }
     triangles = block.type == CellType::Triangle ? &block : triangles;
   }
+  if (mesh.higherOrderCells() > 0)
+  {
+    throw Error("the mesh has " + std::to_string(mesh.higherOrderCells()) +
+      " curved cells: nonlocal models are on linear triangles here. Run Curve Mesh with order 1 "
+      "first, or Tessellate, which follows the curves");
+  }
   if (!triangles || triangles->count == 0)
   {
     throw Error("the mesh has no triangles. " + adapter.notice());

@@ -100,8 +100,12 @@ CellKinds::CellKinds(std::map<int, Index> counts)
   if (!ofDimension[this->dimension].empty())
   {
     const char* remedy = this->dimension == 3 ? "Tetrahedralize" : "Triangulate";
+    const bool straight = curved[this->dimension].empty();
     throw Error(listOf(ofDimension[this->dimension]) + ": Improve Mesh takes linear " + cells +
-      " only; run " + (curved[this->dimension].empty() ? remedy : "Tessellate") + " first.");
+      " only; run " +
+      (straight ? remedy + std::string(" first.")
+                : "Curve Mesh with order 1 first, which keeps the corners, and with the order of "
+                  "these cells on the result."));
   }
   if (this->taken == 0)
   {

@@ -5,7 +5,7 @@ import csv
 
 import numpy as np
 import tautline as tl
-from checks import OUT, points, refused, run_tests, shell as run, wording
+from checks import OUT, points, quadratic_square, refused, run_tests, shell as run, wording
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkMultiBlockDataSet, vtkPolyData
 from vtkmodules.vtkFiltersSources import vtkSphereSource
@@ -353,6 +353,7 @@ def test_refused():
     quads = tl.from_arrays([[0, 0], [1, 0], [1, 1], [0, 1], [2, 0]], {
         "quadrilateral": [[0, 1, 2, 3]], "triangle": [[1, 4, 2]]})
     refused(wording("1-quadrilaterals-improve-mesh-takes-linear-triangles"), tl.improve, quads)
+    refused(wording("run-curve-mesh-with-order-1-first"), tl.improve, quadratic_square(2))
     refused(wording("run-untangle-mesh-first"), tl.improve, tl.perturb(sheet(), tangle=0.05))
     refused(wording("there-is-no-such-file"), tl.improve, "absent.vtu")
 

@@ -29,7 +29,8 @@ void requireTetrahedra(const Mesh& mesh)
   if (mesh.higherOrderCells() > 0)
   {
     throw Error(std::to_string(mesh.higherOrderCells()) +
-      " cells of higher order: reconnection takes linear tetrahedra; convert them first");
+      " cells of higher order: reconnection takes linear tetrahedra. Run Curve Mesh with order 1 "
+      "first, and with the order of these cells on the result");
   }
   if (others > 0)
   {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The filters of nonlocal models: arrays, tables, pictures, input of every kind, errors.
-#include "Registry.h"
 #include "HorizonMeshes.h"
+#include "QuadraticMeshes.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 #include "vtkDomainSource.h"
 #include "vtkInteractionLayer.h"
@@ -222,6 +223,8 @@ TAUTLINE_PART(testErrors)
   check(filter, "9 cells that are no triangles (quadrilateral): run Tetrahedralize first");
   filter->SetInputData(toGrid(blockMesh(CellType::Tetrahedron, 2, 2, 2)));
   check(filter, "no triangles (tetrahedron)");
+  filter->SetInputData(toGrid(quadraticOf(blockMesh(CellType::Triangle, 2, 2, 0))));
+  check(filter, "8 curved cells");
   MeshData curved = blockMesh(CellType::Triangle, 4, 4, 0);
   curved.transform(TAUTLINE_PLACE(p[0], p[1], p[0] * p[1]));
   filter->SetInputData(toGrid(curved));
