@@ -4,6 +4,7 @@
 Each function below draws the picture of its name, mostly that of the page of this name; what it returns is saved.
 """
 
+import math
 import sys
 import tempfile
 from pathlib import Path
@@ -13,6 +14,13 @@ sys.path.insert(0, str(HERE))
 
 from paraview import servermanager, simple  # noqa: E402
 from small_png import read, write  # noqa: E402
+from vtkmodules.vtkCommonCore import vtkPoints  # noqa: E402
+from vtkmodules.vtkCommonDataModel import (  # noqa: E402
+    VTK_QUADRATIC_TETRA,
+    VTK_QUADRATIC_TRIANGLE,
+    vtkUnstructuredGrid,
+)
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridWriter  # noqa: E402
 
 DATA = HERE.parents[1] / "Data"
 WIDE, HEIGHT = 660, 280  # pixels: ParaView's help window shows 680 at first
@@ -21,6 +29,7 @@ CELLS, POINTS = 1, 0
 FLAT, LIT = (1, 0), (0.6, 0.5)  # ambient and diffuse light
 DARK = [0.25, 0.25, 0.25]
 PALE_BLUE = [0.62, 0.72, 0.82]
+RED = [0.8, 0.2, 0.15]
 OBLIQUE = ([0.9, -2, 1.0], [0, 0, 1])  # direction to the camera, and up
 
 
@@ -99,6 +108,106 @@ def element_quality():
     draw(simple.ExtractSurface(Input=output(quality, 0)), inside, edges=False, opacity=0.15, light=LIT)
     draw(output(quality, 7), inside, "imr", light=LIT)
     return side_by_side(fit(outside, 1.2), fit(inside, 1.2))
+
+
+def curved_mesh(name, points, cell_type, cells):
+    """Cells of one curved type; edges are drawn as curves."""
+    grid = vtkUnstructuredGrid()
+    places = vtkPoints()
+    places.SetDataTypeToDouble()
+    for point in points:
+        places.InsertNextPoint(point)
+    grid.SetPoints(places)
+    for cell in cells:
+        grid.InsertNextCell(cell_type, len(cell), cell)
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(str(Path(tempfile.mkdtemp()) / f"{name}.vtu"))
+    writer.SetInputData(grid)
+    writer.Write()
+    return simple.OpenDataFile(writer.GetFileName())
+
+
+def draw_curved(source, view, array=None, **options):
+    display = draw(source, view, array, **options)
+    display.NonlinearSubdivisionLevel = 4
+    return display
+
+
+def nonpositive_jacobian_1():
+    """A valid triangle, one with a node beyond a quarter of its edge, one with a curved side near its corner."""
+    views = []
+    for middle, side in (((0.5, 0.5), (0.5, -0.08)), ((0.5, 0.5), (0.12, 0)), ((0.2, 0.2), (0.5, 0))):
+        corners = [(0, 0, 0), (1, 0, 0), (0, 1, 0)]
+        mesh = curved_mesh("triangle", [*corners, (*side, 0), (*middle, 0), (0, 0.5, 0)], VTK_QUADRATIC_TRIANGLE,
+                           [range(6)])  # fmt: skip
+        quality = simple.ElementQuality(Input=mesh)
+        quality.UpdatePipeline()
+        valid = output(quality, 0).CellData["Validity"].GetRange()[0] == 1
+        view = new_view()
+        draw_curved(output(quality, 0), view, colour=PALE_BLUE if valid else RED)
+        views.append(fit(view, 1.3))
+    return side_by_side(*views, size=(WIDE, 220))
+
+
+def coarse_tube():
+    """A tube of few quadratic tetrahedra with its nodes on a cone and a cylinder: folded where it is thin."""
+    around, along, bottom, top = 8, 3, 0.55, 0.8
+    lattice, numbers = [], {}
+
+    def number(across, turn, up):  # in half steps
+        key = (across, turn % (2 * around), up)
+        if key not in numbers:
+            numbers[key] = len(lattice)
+            inner = bottom + (top - bottom) * up / (2 * along)
+            radius = inner + (1 - inner) * across / 2
+            angle = math.pi * key[1] / around
+            lattice.append((radius * math.cos(angle), radius * math.sin(angle), 0.5 * up))
+        return numbers[key]
+
+    corners = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
+    simplices = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
+    edges = [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)]
+    cells = []
+    for turn in range(0, 2 * around, 2):
+        for up in range(0, 2 * along, 2):
+            for simplex in simplices:
+                places = [(corners[k][0], corners[k][1] + turn, corners[k][2] + up) for k in simplex]
+                middles = [tuple((a + b) // 2 for a, b in zip(places[i], places[j])) for i, j in edges]
+                cells.append([number(*place) for place in places + middles])
+    # Nodes inside are where a mesh generator leaves them: in the middle of straight edges.
+    inside = {node for (across, _, _), node in numbers.items() if across == 1}
+    for cell in cells:
+        for (i, j), node in zip(edges, cell[4:]):
+            if node in inside:
+                lattice[node] = tuple((x + y) / 2 for x, y in zip(lattice[cell[i]], lattice[cell[j]]))
+    return curved_mesh("tube", lattice, VTK_QUADRATIC_TETRA, cells)
+
+
+def invalid_inside(quality):
+    view = new_view(OBLIQUE)
+    draw_curved(output(quality, 0), view, edges=False, opacity=0.15, light=LIT)
+    invalid = simple.Threshold(Input=output(quality, 0), Scalars=["CELLS", "Validity"])
+    invalid.ThresholdMethod, invalid.LowerThreshold = "Below Lower Threshold", 0
+    invalid.UpdatePipeline()
+    if invalid.GetDataInformation().GetNumberOfCells():
+        draw_curved(invalid, view, colour=RED, light=LIT)
+    return fit(view, 0.95)
+
+
+def nonpositive_jacobian_2():
+    quality = simple.ElementQuality(Input=coarse_tube())
+    whole = new_view(OBLIQUE)
+    draw_curved(output(quality, 0), whole, light=LIT)
+    return side_by_side(fit(whole, 0.95), invalid_inside(quality))
+
+
+def nonpositive_jacobian_3():
+    tube = coarse_tube()
+    valid = simple.UntangleMesh(Input=tube, Boundary="Slide on smooth parts")
+    quality = simple.ElementQuality(Input=output(valid, 0))
+    whole = new_view(OBLIQUE)
+    draw_curved(output(quality, 0), whole, light=LIT)
+    return side_by_side(fit(whole, 0.95), invalid_inside(quality))
 
 
 def before_and_after(before, after, array="imr", zoom=1.7):
@@ -416,7 +525,7 @@ PICTURES = (
     compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde, condition_estimator,
     solver_study, peridynamic_condition, interaction_layer, horizon_neighbors, silhouette_to_mesh, match_shape,
     shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files, medit_files, mfem_files, off_files,
-    tetgen_files,
+    tetgen_files, nonpositive_jacobian_1, nonpositive_jacobian_2, nonpositive_jacobian_3,
 )  # fmt: skip
 
 
