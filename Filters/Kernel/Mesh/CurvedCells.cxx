@@ -18,8 +18,9 @@ using CellKey = std::tuple<int, int, ElementOrders>; // VTK type, nodes, orders
 constexpr int firstBezier = 75, lastBezier = 81; // of VTK
 constexpr int lagrangeWedge = 73, bezierWedge = 80;
 
-/// The curved cells of each type and order.
-std::map<CellKey, std::vector<Index>> sortCells(const Mesh& mesh, const CurvedCellFacts& facts)
+/// The cells of each type and order.
+std::map<CellKey, std::vector<Index>> sortCells(
+  const Mesh& mesh, const CurvedCellFacts& facts, bool linear)
 {
   const MeshView& view = mesh.view();
   std::map<CellKey, std::vector<Index>> cells;
@@ -27,7 +28,9 @@ std::map<CellKey, std::vector<Index>> sortCells(const Mesh& mesh, const CurvedCe
   {
     const int type = view.cellTypes[c];
     const bool rational = facts.rational && type >= firstBezier && type <= lastBezier;
-    if (!isHigherOrder(type) || rational)
+    const bool wanted =
+      isHigherOrder(type) || (linear && cornerType(type) != CellType::Unsupported);
+    if (!wanted || rational)
     {
       continue;
     }
@@ -60,138 +63,134 @@ const ElementType* typeOf(const CellKey& key)
   return nullptr;
 }
 
-class CurvedBlock
+void certifyCells(JacobianCertifier& certifier, const Mesh& mesh, const CurvedGroup& group,
+  const std::vector<Index>& positions, signed char* validity, double* minimum)
 {
-public:
-  CurvedBlock(const Mesh& mesh, int vtkType, const ElementType& type,
-    const std::vector<Index>& cells, const CurvedCellFacts& facts)
-    : TheMesh(mesh)
-    , Type(type)
-    , Cells(cells)
-    , Reversed(facts.reversed)
-    , Turned(facts.wedgesTurned && (vtkType == lagrangeWedge || vtkType == bezierWedge))
-    , Normal(mesh.dimension() == Dimension::Planar ? mesh.normal() : Vec3{ 0, 0, 0 })
-    , Mirrored(mesh.mirrored())
+  const double* points = mesh.view().points;
+  std::vector<const Index*> nodes;
+  for (Index i : positions)
   {
-    const MeshView& view = mesh.view();
-    for (Index c : cells)
-    {
-      const Index* nodes = view.connectivity + view.offsets[c];
-      this->Nodes.push_back(nodes);
-      if (this->changed(c))
-      {
-        this->Restored.insert(this->Restored.end(), nodes, nodes + type.nodes());
-      }
-    }
-    // In the order of the file; reversed cells have the opposite sign there.
-    Index* own = this->Restored.data();
-    for (std::size_t i = 0; i < cells.size(); ++i)
-    {
-      if (this->changed(cells[i]))
-      {
-        this->restore(cells[i], own);
-        this->Nodes[i] = own;
-        own += type.nodes();
-      }
-    }
-    if (type.shape() == ElementShape::Wedge)
-    {
-      this->Mirrored =
-        orientationOf(type, view.points, this->Nodes.data(), this->count()).mirrored();
-    }
+    nodes.push_back(group.nodes(i));
   }
-
-  void certify(signed char* validity, double* minimum, int threads) const
+  std::vector<ElementValidity> verdicts(nodes.size());
+  if (!minimum)
   {
-    forEachChunk(this->count(), threads,
-      [&](Index, Index begin, Index end)
+    certifier.classify(points, nodes.data(), static_cast<Index>(nodes.size()), verdicts.data());
+  }
+  MinimumTolerance tolerance;
+  tolerance.relative = 1e-8;
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+  {
+    const Index cell = group.cell(positions[n]);
+    if (minimum)
+    {
+      const JacobianBound bound = certifier.minimum(points, nodes[n], tolerance);
+      verdicts[n] = bound.validity;
+      // The bounds of a minimum near 0 may have different signs.
+      const bool below = bound.validity == ElementValidity::Invalid && !(bound.upper < 0);
+      minimum[cell] = bound.validity == ElementValidity::NonFinite ? 0
+        : below                                                    ? bound.lower
+                                                                   : bound.upper;
+    }
+    validity[cell] = static_cast<signed char>(verdicts[n]);
+  }
+}
+
+void certifyGroup(
+  const Mesh& mesh, const CurvedGroup& group, signed char* validity, double* minimum, int threads)
+{
+  forEachChunk(group.count(), threads,
+    [&](Index, Index begin, Index end)
+    {
+      for (bool mirrored : { false, true })
       {
-        for (bool reversed : { false, true })
+        std::vector<Index> positions;
+        for (Index i = begin; i < end; ++i)
         {
-          std::vector<Index> positions;
-          for (Index i = begin; i < end; ++i)
+          if (group.mirrored(i) == mirrored)
           {
-            if (this->reversed(this->Cells[i]) == reversed)
-            {
-              positions.push_back(i);
-            }
-          }
-          if (!positions.empty())
-          {
-            JacobianCertifier certifier(this->Type, this->Normal, this->Mirrored != reversed);
-            this->certifyCells(certifier, positions, validity, minimum);
+            positions.push_back(i);
           }
         }
-      });
-  }
-
-private:
-  Index count() const { return static_cast<Index>(this->Cells.size()); }
-  bool reversed(Index cell) const { return this->Reversed && this->Reversed[cell]; }
-  bool changed(Index cell) const { return this->Turned || this->reversed(cell); }
-
-  void restore(Index cell, Index* nodes) const
-  {
-    if (this->reversed(cell))
-    {
-      reverseCell(cornerType(this->TheMesh.view().cellTypes[cell]), nodes);
-    }
-    if (this->Turned)
-    {
-      std::swap(nodes[1], nodes[2]);
-      std::swap(nodes[4], nodes[5]);
-    }
-  }
-
-  void certifyCells(JacobianCertifier& certifier, const std::vector<Index>& positions,
-    signed char* validity, double* minimum) const
-  {
-    const double* points = this->TheMesh.view().points;
-    std::vector<const Index*> nodes;
-    for (Index i : positions)
-    {
-      nodes.push_back(this->Nodes[i]);
-    }
-    std::vector<ElementValidity> verdicts(nodes.size());
-    if (!minimum)
-    {
-      certifier.classify(points, nodes.data(), static_cast<Index>(nodes.size()), verdicts.data());
-    }
-    MinimumTolerance tolerance;
-    tolerance.relative = 1e-8;
-    for (std::size_t n = 0; n < nodes.size(); ++n)
-    {
-      const Index cell = this->Cells[positions[n]];
-      if (minimum)
-      {
-        const JacobianBound bound = certifier.minimum(points, nodes[n], tolerance);
-        verdicts[n] = bound.validity;
-        // The bounds of a minimum near 0 may have different signs.
-        const bool below = bound.validity == ElementValidity::Invalid && !(bound.upper < 0);
-        minimum[cell] = bound.validity == ElementValidity::NonFinite ? 0
-          : below                                                    ? bound.lower
-                                                                     : bound.upper;
+        if (!positions.empty())
+        {
+          JacobianCertifier certifier(group.type(), group.normal(), mirrored);
+          certifyCells(certifier, mesh, group, positions, validity, minimum);
+        }
       }
-      validity[cell] = static_cast<signed char>(verdicts[n]);
-    }
-  }
-
-  const Mesh& TheMesh;
-  const ElementType& Type;
-  const std::vector<Index>& Cells;
-  const unsigned char* Reversed;
-  bool Turned;
-  Vec3 Normal;
-  bool Mirrored;
-  std::vector<const Index*> Nodes; ///< by position in Cells
-  std::vector<Index> Restored;     ///< nodes of reversed cells
-};
+    });
+}
 
 static_assert(static_cast<int>(ElementValidity::Valid) == Valid &&
     static_cast<int>(ElementValidity::Degenerate) == Degenerate &&
     static_cast<int>(ElementValidity::Invalid) == Inverted &&
     static_cast<int>(ElementValidity::NonFinite) == NonFinite,
   "both have the same codes");
+}
+
+//------------------------------------------------------------------------------
+CurvedGroup::CurvedGroup(const Mesh& mesh, int vtkType, const ElementType& type,
+  std::vector<Index> cells, const CurvedCellFacts& facts)
+  : Type(&type)
+  , Cells(std::move(cells))
+  , Reversed(facts.reversed)
+  , Turned(facts.wedgesTurned && (vtkType == lagrangeWedge || vtkType == bezierWedge))
+  , Normal(mesh.dimension() == Dimension::Planar ? mesh.normal() : Vec3{ 0, 0, 0 })
+  , Mirrored(mesh.mirrored())
+{
+  const MeshView& view = mesh.view();
+  for (Index c : this->Cells)
+  {
+    const Index* nodes = view.connectivity + view.offsets[c];
+    this->Nodes.push_back(nodes);
+    if (this->changed(c))
+    {
+      this->Restored.insert(this->Restored.end(), nodes, nodes + type.nodes());
+    }
+  }
+  // In the order of the file; reversed cells have the opposite sign there.
+  Index* own = this->Restored.data();
+  for (std::size_t i = 0; i < this->Cells.size(); ++i)
+  {
+    if (this->changed(this->Cells[i]))
+    {
+      this->restore(cornerType(vtkType), this->Cells[i], own);
+      this->Nodes[i] = own;
+      own += type.nodes();
+    }
+  }
+  if (type.shape() == ElementShape::Wedge)
+  {
+    this->Mirrored = orientationOf(type, view.points, this->Nodes.data(), this->count()).mirrored();
+  }
+}
+
+//------------------------------------------------------------------------------
+void CurvedGroup::restore(CellType corners, Index cell, Index* nodes) const
+{
+  if (this->reversed(cell))
+  {
+    reverseCell(corners, nodes);
+  }
+  if (this->Turned)
+  {
+    std::swap(nodes[1], nodes[2]);
+    std::swap(nodes[4], nodes[5]);
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<CurvedGroup> curvedGroups(const Mesh& mesh, const CurvedCellFacts& facts, bool linear)
+{
+  std::vector<CurvedGroup> groups;
+  for (auto& [key, cells] : sortCells(mesh, facts, linear))
+  {
+    if (const ElementType* type = typeOf(key))
+    {
+      groups.emplace_back(mesh, std::get<0>(key), *type, std::move(cells), facts);
+    }
+  }
+  return groups;
 }
 
 //------------------------------------------------------------------------------
@@ -203,13 +202,10 @@ Index certifyCurvedCells(const Mesh& mesh, const CurvedCellFacts& facts, signed 
   {
     return certified;
   }
-  for (const auto& [key, cells] : sortCells(mesh, facts))
+  for (const CurvedGroup& group : curvedGroups(mesh, facts))
   {
-    if (const ElementType* type = typeOf(key))
-    {
-      CurvedBlock(mesh, std::get<0>(key), *type, cells, facts).certify(validity, minimum, threads);
-      certified += static_cast<Index>(cells.size());
-    }
+    certifyGroup(mesh, group, validity, minimum, threads);
+    certified += group.count();
   }
   return certified;
 }

@@ -12,6 +12,8 @@
 
 namespace tautline
 {
+class ElementType;
+
 /// What a mesh does not have about its curved cells.
 struct CurvedCellFacts
 {
@@ -27,6 +29,45 @@ struct CurvedCellFacts
   /// Whether Bezier cells have weights of their own: these are not certified.
   bool rational = false;
 };
+
+/// Cells of one type and order, with their nodes in the order of the file.
+class CurvedGroup
+{
+public:
+  CurvedGroup(const Mesh& mesh, int vtkType, const ElementType& type, std::vector<Index> cells,
+    const CurvedCellFacts& facts);
+
+  const ElementType& type() const { return *this->Type; }
+  Index count() const { return static_cast<Index>(this->Cells.size()); }
+  Index cell(Index i) const { return this->Cells[i]; }
+  const Index* nodes(Index i) const { return this->Nodes[i]; }
+  /// Whether an element is taken for its mirror image.
+  bool mirrored(Index i) const { return this->Mirrored != this->reversed(this->Cells[i]); }
+  /// The normal of a mesh in a plane, for JacobianCertifier.
+  const Vec3& normal() const { return this->Normal; }
+
+private:
+  bool reversed(Index cell) const { return this->Reversed && this->Reversed[cell]; }
+  bool changed(Index cell) const { return this->Turned || this->reversed(cell); }
+  void restore(CellType corners, Index cell, Index* nodes) const;
+
+  const ElementType* Type;
+  std::vector<Index> Cells;
+  const unsigned char* Reversed;
+  bool Turned;
+  Vec3 Normal;
+  bool Mirrored;
+  std::vector<const Index*> Nodes; ///< by position in Cells
+  std::vector<Index> Restored;     ///< nodes of reversed cells
+};
+
+/**
+ * @brief The cells of quadratic and higher order that ElementType supports, by type and order;
+ * wedges of one type and order are taken for their mirror images where most of them are reversed.
+ * @param linear whether linear cells are groups, too
+ */
+TAUTLINE_KERNEL_EXPORT std::vector<CurvedGroup> curvedGroups(
+  const Mesh& mesh, const CurvedCellFacts& facts, bool linear = false);
 
 /**
  * @brief Replaces the validity, and the smallest determinant, of the cells of quadratic and higher

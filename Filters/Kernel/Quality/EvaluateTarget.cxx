@@ -2,6 +2,7 @@
 #include "Batch.h"
 #include "CombineCorners.h"
 #include "TargetCorner.h"
+#include "TargetMetricList.h"
 #include "UserMetric.h"
 
 #include <algorithm>
@@ -403,58 +404,6 @@ MetricCode userTargetMetricCode(bool singular)
 
 MetricCode targetMetricCode(Metric metric)
 {
-  switch (metric)
-  {
-    case Metric::InverseMeanRatio:
-      return codeOf<InverseMeanRatio>();
-    case Metric::MeanRatio:
-      return codeOf<MeanRatio>();
-    case Metric::ConditionNumber:
-      return codeOf<ConditionNumber>();
-    case Metric::UntangleBeta:
-      return codeOf<UntangleBeta>();
-    case Metric::ShapeBarrier:
-      return codeOf<ShapeBarrier>();
-    case Metric::ShapeNonBarrier:
-      return codeOf<ShapeNonBarrier>();
-    case Metric::ShapeCondition:
-      return codeOf<ShapeCondition>();
-    case Metric::ShapeConditionSquared:
-      return codeOf<ShapeConditionSquared>();
-    case Metric::ShapeSquared:
-      return codeOf<ShapeSquared>();
-    case Metric::ShapeProduct:
-      return codeOf<ShapeProduct>();
-    case Metric::ShapeCubic:
-      return codeOf<ShapeCubic>();
-    case Metric::ShapeSizeAdjugate:
-      return codeOf<ShapeSizeAdjugate>();
-    case Metric::ShapeSimilarity:
-      return codeOf<ShapeSimilarity>();
-    case Metric::ShapeSizeBarrier:
-      return codeOf<ShapeSizeBarrier>();
-    case Metric::ShapeSizeWeighted:
-      return codeOf<ShapeSizeWeighted>();
-    case Metric::ShapeSizeLogarithm:
-      return codeOf<ShapeSizeLogarithm>();
-    case Metric::SizeNonBarrier:
-      return codeOf<SizeNonBarrier>();
-    case Metric::SizeBarrier:
-      return codeOf<SizeBarrier>();
-    case Metric::SizeBarrierSquared:
-      return codeOf<SizeBarrierSquared>();
-    case Metric::SizeUntangle:
-      return codeOf<SizeUntangle>();
-    case Metric::ShapeOrientation:
-      return codeOf<ShapeOrientation>();
-    case Metric::ShapeOrientationBarrier:
-      return codeOf<ShapeOrientationBarrier>();
-    case Metric::ShapeSizeOrientation:
-      return codeOf<ShapeSizeOrientation>();
-    case Metric::ShapeSizeOrientationBarrier:
-      return codeOf<ShapeSizeOrientationBarrier>();
-    default:
-      return {};
-  }
+  return withTargetMetric(metric, [](auto formula) { return codeOf<decltype(formula)>(); });
 }
 }

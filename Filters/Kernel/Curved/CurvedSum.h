@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file CurvedSum.h
+ * @brief Several energies of curved elements as one function of the points.
+ * Internal: not installed.
+ */
+#ifndef tautline_CurvedSum_h
+#define tautline_CurvedSum_h
+
+#include "CurvedEnergy.h"
+
+#include <functional>
+#include <memory>
+
+namespace tautline
+{
+/// One energy. It is E, or of a p-mean (E / totalWeight)^(1/p).
+template <int Dim>
+struct CurvedTerm
+{
+  std::unique_ptr<CurvedEnergy<Dim>> energy;
+  std::shared_ptr<const SampleFunction<Dim>> function;
+  double power = 0; ///< p; 0: no mean
+  double totalWeight = 1;
+
+  double outer(double e) const
+  {
+    return this->power > 0 ? std::pow(e / this->totalWeight, 1 / this->power) : e;
+  }
+  double slope(double e) const
+  {
+    return this->power > 0 && e > 0 ? this->outer(e) / (this->power * e) : 1;
+  }
+};
+
+/// F of the values of the terms, and its slopes by these where wanted.
+using CurvedScalarization =
+  std::function<double(const std::vector<double>& values, std::vector<double>* slopes)>;
+
+/**
+ * @class CurvedSum
+ * @brief F(E_1, E_2, ...). Its Hessian is taken for the sum of those of the terms times dF/dE.
+ */
+template <int Dim>
+class CurvedSum
+{
+public:
+  /// @param scalarize null: the sum
+  explicit CurvedSum(std::vector<CurvedTerm<Dim>> terms, CurvedScalarization scalarize = nullptr);
+
+  std::vector<CurvedTerm<Dim>>& terms() { return this->Terms; }
+
+  double value(const std::vector<double>& x);
+  double linearize(
+    const std::vector<double>& x, std::vector<double>& gradient, std::vector<PointBlock>& diagonal);
+  void apply(const std::vector<double>& d, std::vector<double>& product);
+  /// The values of the terms at the last place, of their first items only.
+  std::vector<double> values(std::size_t items) const;
+  double combined(const std::vector<double>& values) const;
+
+private:
+  std::vector<CurvedTerm<Dim>> Terms;
+  CurvedScalarization Scalarize;
+  std::vector<double> Slopes;
+};
+}
+#endif

@@ -1,0 +1,584 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "OptimizeCurved.h"
+
+#include "CurvedNewton.h"
+#include "CurvedProblem.h"
+#include "UntangleCurved.h"
+#include "tautline/Core/Stopwatch.h"
+
+#include <Eigen/Eigenvalues>
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <set>
+
+namespace tautline
+{
+namespace
+{
+constexpr int IterationsOfHolding = 8; ///< after which points that were held move again
+constexpr double WeightReduction = 0.1;
+constexpr int Reductions = 3; ///< of the weights of added places, before they are dropped
+
+/// W^-1 times the W of the ideal element, and M^(1/2), of the elements of an objective.
+template <int Dim>
+class CurvedTargets
+{
+public:
+  /// @param reference in a plane in its frame
+  CurvedTargets(const Mesh& mesh, const CurvedObjective& objective, std::vector<double> reference,
+    const CurvedRegion& region)
+    : TheMesh(mesh)
+    , Chosen(objective)
+    , Reference(std::move(reference))
+    , Region(region)
+  {
+    if (objective.target != TargetType::Ideal && !objective.data)
+    {
+      throw Error(
+        "The target of an objective has no data: give sizes, tensors or reference points.");
+    }
+  }
+
+  void apply(SampleItem& item) const
+  {
+    const CurvedElement& element = this->Region.elements[item.element];
+    if (this->Chosen.target == TargetType::Size)
+    {
+      const double size = this->Chosen.data[element.cell];
+      this->require(size > 0 && std::isfinite(size), element.cell, "its size is not positive");
+      const double ideal =
+        topology(cornerType(this->TheMesh.view().cellTypes[element.cell])).sizePerDeterminant;
+      const double determinant = size / ideal;
+      item.perSize = 1 / (Dim == 2 ? std::sqrt(determinant) : std::cbrt(determinant));
+    }
+    else if (this->Chosen.target == TargetType::Tensor)
+    {
+      this->applyTensor(item, this->Chosen.data + 9 * element.cell, element.cell);
+    }
+    else if (this->Chosen.target == TargetType::Reference)
+    {
+      this->applyReference(item, element);
+    }
+  }
+
+private:
+  void require(bool good, Index cell, const char* why) const
+  {
+    if (!good)
+    {
+      throw Error("Cell " + std::to_string(cell) + " has no target: " + why + ".");
+    }
+  }
+
+  void applyTensor(SampleItem& item, const double* tensor, Index cell) const
+  {
+    Eigen::Matrix<double, Dim, Dim> m;
+    for (int i = 0; i < Dim; ++i)
+    {
+      for (int j = 0; j < Dim; ++j)
+      {
+        m(i, j) = 0;
+        for (int r = 0; r < 3; ++r)
+        {
+          for (int c = 0; c < 3; ++c)
+          {
+            const auto axis = [&](int k, int of)
+            { return Dim == 2 ? this->TheMesh.frame()[k][of] : static_cast<double>(k == of); };
+            m(i, j) += axis(i, r) * tensor[3 * r + c] * axis(j, c);
+          }
+        }
+      }
+    }
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, Dim, Dim>> solver(m);
+    this->require(m.allFinite() && solver.eigenvalues().minCoeff() > 0, cell,
+      "its tensor is not positive definite");
+    const Eigen::Matrix<double, Dim, Dim> root = solver.operatorSqrt();
+    item.rooted = true;
+    for (int i = 0; i < Dim; ++i)
+    {
+      for (int j = 0; j < Dim; ++j)
+      {
+        item.root[i][j] = root(i, j);
+      }
+    }
+  }
+
+  /// T = A (A_reference)^-1 = (A W^-1) (A_reference W^-1)^-1, W of the ideal element.
+  void applyReference(SampleItem& item, const CurvedElement& element) const
+  {
+    const SampleTable& table = *item.table;
+    for (int p = 0; p < table.packets(); ++p)
+    {
+      const Packet* g = table.gradients(p);
+      std::array<Eigen::Matrix<double, Dim, Dim>, PacketWidth> inverse;
+      for (int l = 0; l < PacketWidth; ++l)
+      {
+        Eigen::Matrix<double, Dim, Dim> t = Eigen::Matrix<double, Dim, Dim>::Zero();
+        for (int n = 0; n < table.nodes(); ++n)
+        {
+          const Index point = this->Region.points[element.nodes[n]];
+          for (int r = 0; r < Dim; ++r)
+          {
+            for (int c = 0; c < Dim; ++c)
+            {
+              t(r, c) += this->Reference[3 * point + r] * g[n * Dim + c][l];
+            }
+          }
+        }
+        this->require(t.determinant() > 0, element.cell, "that of the reference mesh is not valid");
+        inverse[l] = t.inverse();
+      }
+      for (int r = 0; r < Dim; ++r)
+      {
+        for (int c = 0; c < Dim; ++c)
+        {
+          Packet entry;
+          for (int l = 0; l < PacketWidth; ++l)
+          {
+            entry[l] = inverse[l](r, c);
+          }
+          item.targets.push_back(entry);
+        }
+      }
+    }
+  }
+
+  const Mesh& TheMesh;
+  const CurvedObjective& Chosen;
+  std::vector<double> Reference;
+  const CurvedRegion& Region;
+};
+
+class CurvedOptimization
+{
+public:
+  CurvedOptimization(const Mesh& mesh, const CurvedOptimizeOptions& options)
+    : TheMesh(mesh)
+    , Options(options)
+    , Problem(mesh, options)
+  {
+  }
+
+  CurvedOptimizeResult run();
+
+private:
+  template <int Dim>
+  void optimize();
+  template <int Dim>
+  CurvedSum<Dim> makeSum(const CurvedRegion& region, const std::set<Index>& leftOut);
+  template <int Dim>
+  void applyTargets(
+    const CurvedObjective& chosen, const CurvedRegion& region, std::vector<SampleItem>& items);
+  template <int Dim>
+  bool proceed(CurvedSum<Dim>& sum, const CurvedRegion& region, const std::vector<double>& x,
+    double gradientNorm);
+  template <int Dim>
+  void addPlaces(
+    CurvedSum<Dim>& sum, const CurvedRegion& region, const std::vector<WeakPlace>& places);
+
+  const Mesh& TheMesh;
+  const CurvedOptimizeOptions& Options;
+  CurvedProblem Problem;
+  Stopwatch Clock;
+  CurvedOptimizeResult Result;
+  std::vector<WeakPlace> Invalid; ///< elements left out, of the mesh
+  std::size_t Items = 0;          ///< those of the quadrature
+  std::unique_ptr<Scalarizer> TheScalarizer;
+};
+
+//------------------------------------------------------------------------------
+template <int Dim>
+CurvedSum<Dim> CurvedOptimization::makeSum(
+  const CurvedRegion& region, const std::set<Index>& leftOut)
+{
+  std::map<std::pair<const ElementType*, bool>, std::shared_ptr<const SampleTable>> tables;
+  std::vector<SampleItem> items;
+  for (std::size_t e = 0; e < region.elements.size(); ++e)
+  {
+    const CurvedElement& element = region.elements[e];
+    auto& table = tables[{ element.type, element.mirrored }];
+    if (!table)
+    {
+      table = std::make_shared<const SampleTable>(
+        *element.type, element.mirrored, quadrature(element.type->shape(), element.type->orders()));
+    }
+    SampleItem item;
+    item.element = static_cast<Index>(e);
+    item.table = table;
+    item.weight = leftOut.count(item.element) > 0 ? 0 : 1;
+    items.push_back(item);
+  }
+  this->Items = items.size();
+  std::vector<CurvedTerm<Dim>> terms;
+  for (const CurvedObjective& chosen : this->Options.objectives)
+  {
+    CurvedTerm<Dim> term;
+    term.function = sampleFunction<Dim>(chosen.objective);
+    term.energy.reset(new CurvedEnergy<Dim>(
+      region.elements, static_cast<Index>(region.points.size()), this->Options.threads));
+    std::vector<SampleItem> own = items;
+    term.totalWeight = 0;
+    for (SampleItem& item : own)
+    {
+      if (chosen.objective.elementWeights)
+      {
+        item.weight *= chosen.objective.elementWeights[region.elements[item.element].cell];
+      }
+      term.totalWeight += item.weight;
+    }
+    term.power = chosen.objective.objectiveTemplate == ObjectiveTemplate::PowerMean
+      ? chosen.objective.power
+      : 0;
+    this->applyTargets<Dim>(chosen, region, own);
+    term.energy->setItems(std::move(own));
+    terms.push_back(std::move(term));
+  }
+  CurvedScalarization scalarize;
+  if (terms.size() > 1)
+  {
+    scalarize = [this](const std::vector<double>& values, std::vector<double>* slopes)
+    {
+      return slopes ? this->TheScalarizer->value(values, *slopes)
+                    : this->TheScalarizer->value(values);
+    };
+  }
+  return CurvedSum<Dim>(std::move(terms), scalarize);
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void CurvedOptimization::applyTargets(
+  const CurvedObjective& chosen, const CurvedRegion& region, std::vector<SampleItem>& items)
+{
+  if (chosen.target == TargetType::Ideal)
+  {
+    return;
+  }
+  std::vector<double> reference;
+  if (chosen.target == TargetType::Reference && chosen.data)
+  {
+    reference = this->Problem.inFrame(chosen.data);
+  }
+  const CurvedTargets<Dim> targets(this->TheMesh, chosen, std::move(reference), region);
+  for (SampleItem& item : items)
+  {
+    targets.apply(item);
+  }
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void CurvedOptimization::addPlaces(
+  CurvedSum<Dim>& sum, const CurvedRegion& region, const std::vector<WeakPlace>& places)
+{
+  if (places.empty())
+  {
+    return;
+  }
+  for (std::size_t k = 0; k < sum.terms().size(); ++k)
+  {
+    CurvedEnergy<Dim>& energy = *sum.terms()[k].energy;
+    std::vector<SampleItem> added;
+    for (const WeakPlace& place : places)
+    {
+      const CurvedElement& element = region.elements[place.element];
+      SampleItem item;
+      item.element = place.element;
+      item.weight = energy.items()[place.element].weight;
+      item.table = std::make_shared<const SampleTable>(*element.type, element.mirrored,
+        std::vector<SamplePlace>{ { place.at, CurvedGuard::PlaceShare } });
+      added.push_back(item);
+    }
+    this->applyTargets<Dim>(this->Options.objectives[k], region, added);
+    energy.addItems(added);
+  }
+  this->Result.addedSamples += static_cast<Index>(places.size());
+}
+
+//------------------------------------------------------------------------------
+/// Adds the record of x, where the sum was linearized. @return false if the work is to end
+template <int Dim>
+bool CurvedOptimization::proceed(CurvedSum<Dim>& sum, const CurvedRegion& region,
+  const std::vector<double>& x, double gradientNorm)
+{
+  IterationRecord record;
+  record.iteration = static_cast<int>(this->Result.history.size());
+  record.seconds = this->Clock.seconds();
+  record.objectives = sum.values(this->Items);
+  record.objective = sum.combined(record.objectives);
+  record.gradientNorm = gradientNorm;
+  record.inverted = static_cast<Index>(this->Invalid.size());
+  record.moving = region.free;
+  for (std::size_t k = 0; k < this->Options.objectives.size(); ++k)
+  {
+    Objective own = this->Options.objectives[k].objective;
+    own.objectiveTemplate = ObjectiveTemplate::Sum;
+    const bool larger = metricInfo(own.metric).direction == Direction::LargerIsBetter;
+    const SampleRange range =
+      sum.terms()[k].energy->range(*sampleFunction<Dim>(own), x, this->Items);
+    record.mean.push_back(larger ? -range.mean : range.mean);
+    record.worst.push_back(larger ? -range.largest : range.largest);
+  }
+  this->Result.history.push_back(record);
+  const StoppingCriteria& stopping = this->Options.stopping;
+  const auto write = [&](double* to)
+  {
+    std::vector<double> all = this->Problem.x();
+    for (std::size_t p = 0; p < region.points.size(); ++p)
+    {
+      std::copy_n(x.begin() + 3 * p, 3, all.begin() + 3 * region.points[p]);
+    }
+    const std::vector<double> points = this->Problem.points(all);
+    std::copy(points.begin(), points.end(), to);
+  };
+  double progress =
+    static_cast<double>(this->Result.iterations) / std::max(stopping.maximumIterations, 1);
+  if (stopping.maximumSeconds > 0)
+  {
+    progress = std::max(progress, record.seconds / stopping.maximumSeconds);
+  }
+  const IterationState state = { record, std::min(progress, 1.0), write };
+  if (this->Options.observer && !this->Options.observer(state))
+  {
+    this->Result.reason = StopReason::Aborted;
+    return false;
+  }
+  if (this->Clock.reached(stopping.maximumSeconds))
+  {
+    this->Result.reason = StopReason::TimeLimit;
+    return false;
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void CurvedOptimization::optimize()
+{
+  CurvedRegion region = this->Problem.region({}, -1);
+  this->Result.freePoints = region.free;
+  std::vector<double> x = region.x, trial;
+  std::set<Index> leftOut;
+  const CurvedGuard guard(region.elements, Dim, this->Options.threads);
+  for (const WeakPlace& place : guard.invalid(x))
+  {
+    leftOut.insert(place.element);
+  }
+  CurvedSum<Dim> sum = this->makeSum<Dim>(region, leftOut);
+  if (sum.terms().size() > 1)
+  {
+    std::vector<double> weights, initial;
+    for (std::size_t k = 0; k < sum.terms().size(); ++k)
+    {
+      CurvedTerm<Dim>& term = sum.terms()[k];
+      weights.push_back(this->Options.objectives[k].objective.weight);
+      initial.push_back(term.outer(term.energy->value(*term.function, x)));
+    }
+    this->TheScalarizer.reset(new Scalarizer(this->Options.scalarization, weights, initial));
+  }
+  if (region.free == 0)
+  {
+    this->Result.reason = StopReason::NoFreeVertices;
+    this->Problem.take(region, x);
+    return;
+  }
+
+  CurvedNewton<Dim> newton(sum, *region.slides, this->Options.threads);
+  const StoppingCriteria& stopping = this->Options.stopping;
+  const auto sampled = [&](const std::vector<double>& at)
+  { return sum.terms()[0].energy->leastJacobians(at); };
+  // Places where the mesh given has less than its samples show are samples from the start.
+  const auto counted = [&](std::vector<WeakPlace> places)
+  {
+    places.erase(std::remove_if(places.begin(), places.end(),
+                   [&](const WeakPlace& place) { return leftOut.count(place.element) > 0; }),
+      places.end());
+    return places;
+  };
+  std::vector<double> least;
+  this->addPlaces(sum, region, counted(guard.notRepresented(x, sampled(x), &least)));
+
+  NewtonLimits limits;
+  constexpr int mostInner = 300;
+  limits.iterations = mostInner;
+  double firstNorm = -1, first = 0;
+  int reductions = 0, refusals = 0;
+  bool releasedAtEnd = false;
+  bool fresh = true; // whether x was accepted since the last record
+  for (;;)
+  {
+    newton.linearize(x, limits);
+    const double objective = sum.combined(sum.values(this->Items));
+    if (fresh)
+    {
+      if (firstNorm < 0)
+      {
+        firstNorm = newton.gradientNorm();
+        first = objective;
+      }
+      if (!this->proceed(sum, region, x, newton.gradientNorm()))
+      {
+        break;
+      }
+      fresh = false;
+      limits.relativeResidual =
+        std::min(0.3, std::sqrt(newton.gradientNorm() / std::max(firstNorm, 1e-300)));
+    }
+    if (this->Result.iterations >= stopping.maximumIterations)
+    {
+      this->Result.reason = StopReason::IterationLimit;
+      break;
+    }
+    if (std::isfinite(stopping.bestKnown) && stopping.reduction < 1 &&
+      first - objective >= stopping.reduction * (first - stopping.bestKnown))
+    {
+      this->Result.reason = StopReason::Reduction;
+      break;
+    }
+    const bool small = newton.gradientNorm() <= stopping.gradientNorm * firstNorm;
+    const bool slow = -0.5 * newton.slope() <= stopping.relativeChange * std::abs(objective);
+    if (small || slow || !(newton.slope() < 0))
+    {
+      if (region.slides->held() > 0 && !releasedAtEnd)
+      {
+        region.slides->release();
+        releasedAtEnd = true;
+        continue;
+      }
+      if (this->Result.addedSamples > 0 && reductions < Reductions)
+      {
+        for (CurvedTerm<Dim>& term : sum.terms())
+        {
+          term.energy->scaleWeights(this->Items, WeightReduction);
+        }
+        ++reductions;
+        continue;
+      }
+      this->Result.reason = small ? StopReason::GradientNorm : StopReason::RelativeChange;
+      break;
+    }
+    double length = 1;
+    constexpr int mostRefusals = 12;
+    const Index held = region.slides->held();
+    bool accepted = false;
+    std::vector<WeakPlace> notYet; // represented, after a step that is taken
+    for (;;)
+    {
+      const double value = newton.search(x, length, trial);
+      if (!(value < newton.energy()))
+      {
+        break;
+      }
+      // An element whose smallest determinant has not fallen may go on without representation.
+      std::vector<double> lower;
+      const std::vector<WeakPlace> places =
+        counted(guard.notRepresented(trial, sampled(trial), &lower));
+      const auto worse = [&](const WeakPlace& place)
+      { return !(lower[place.element] > 0) || lower[place.element] < least[place.element]; };
+      if (std::none_of(places.begin(), places.end(), worse))
+      {
+        accepted = true;
+        least = std::move(lower);
+        notYet = places;
+        break;
+      }
+      if (refusals < mostRefusals)
+      {
+        this->addPlaces(sum, region, places);
+        break;
+      }
+      length *= 0.5; // new samples do not help: a shorter step
+      constexpr double shortest = 1e-6;
+      if (length < shortest)
+      {
+        break;
+      }
+    }
+    if (accepted)
+    {
+      x.swap(trial);
+      region.slides->accept();
+      this->addPlaces(sum, region, notYet);
+      ++this->Result.iterations;
+      if (this->Result.iterations % IterationsOfHolding == 0)
+      {
+        region.slides->release();
+      }
+      refusals = 0;
+      fresh = true;
+      continue;
+    }
+    if (region.slides->held() > held)
+    {
+      continue; // another direction
+    }
+    if (refusals >= mostRefusals)
+    {
+      this->Result.reason = StopReason::NoProgress;
+      break;
+    }
+    ++refusals;
+  }
+  this->Problem.take(region, x);
+}
+
+//------------------------------------------------------------------------------
+CurvedOptimizeResult CurvedOptimization::run()
+{
+  if (this->Options.objectives.empty())
+  {
+    throw Error("There is no objective: give at least one.");
+  }
+  const CurvedGuard& guard = this->Problem.guard();
+  const std::vector<WeakPlace> first = guard.invalid(this->Problem.x());
+  this->Result.invalidBefore = static_cast<Index>(first.size());
+  CurvedRegion all = this->Problem.region({}, -1);
+  this->Invalid = guard.invalid(all.x);
+  StopReason before = StopReason::AllValid;
+  if (!this->Invalid.empty() && this->Options.untangleFirst)
+  {
+    CurvedOptions untangling = this->Options;
+    untangling.maximumSeconds = this->Options.stopping.maximumSeconds;
+    CurvedUntangleResult found = untangleCurved(this->Problem, untangling);
+    this->Result.untangled = true;
+    this->Result.history = std::move(found.history);
+    before = found.reason;
+    this->Invalid = guard.invalid(this->Problem.x());
+  }
+  if (before == StopReason::Aborted || before == StopReason::TimeLimit)
+  {
+    this->Result.reason = before;
+  }
+  else if (this->Problem.dimension() == 2)
+  {
+    this->optimize<2>();
+  }
+  else
+  {
+    this->optimize<3>();
+  }
+  std::vector<Index> elements;
+  for (const WeakPlace& place : first)
+  {
+    elements.push_back(place.element);
+  }
+  for (const WeakPlace& place : guard.invalid(this->Problem.x()))
+  {
+    ++this->Result.invalidAfter;
+    this->Result.newlyInvalid +=
+      !std::binary_search(elements.begin(), elements.end(), place.element);
+    this->Result.remaining.push_back(this->Problem.elements()[place.element].cell);
+  }
+  this->Result.points = this->Problem.points();
+  return std::move(this->Result);
+}
+}
+
+//------------------------------------------------------------------------------
+CurvedOptimizeResult optimizeCurved(const Mesh& mesh, const CurvedOptimizeOptions& options)
+{
+  return CurvedOptimization(mesh, options).run();
+}
+}
