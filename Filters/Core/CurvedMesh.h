@@ -53,6 +53,10 @@ public:
   void join(const std::vector<Index>& representative);
   const FollowingNodes& nodes() const { return *this->Nodes; }
 
+  /// The mesh with all nodes, oriented as MeshAdapter::orient() does, and what belongs to it.
+  const Mesh& mesh() const { return this->Adapter.mesh(); }
+  const CurvedCellFacts& facts() const { return this->Facts; }
+
   /**
    * @brief Replaces the validity of curved cells by that in the whole cell, see
    * certifyCurvedCells(). That of other cells, and what is NotMeasured, is kept.

@@ -2,6 +2,7 @@
 // The features of a mesh and how points slide on them.
 #include "OptimizerSetup.h"
 
+#include "GeometryInput.h"
 #include "MeshAdapter.h"
 #include "tautline/Core/Interruption.h"
 
@@ -125,27 +126,6 @@ void OptimizerSetup::slideOnGeometry(const OptimizerSettings& settings, vtkDataS
     throw Error("A planar mesh cannot slide on a Geometry, which is a surface in space: remove "
                 "the Geometry.");
   }
-  if (!geometry || geometry->GetNumberOfCells() == 0)
-  {
-    throw Error("The Geometry is empty: give a surface of triangles or quadrilaterals.");
-  }
-  MeshAdapter adapter(geometry, settings.options.threads);
-  adapter.mergeCoincidentPoints(settings.options.threads);
-  MeshView view = adapter.mesh().view();
-  std::vector<double> points(view.points, view.points + 3 * view.numberOfPoints);
-  this->TheMesh.frame().enter(points);
-  view.points = points.data();
-  const Mesh mesh(view, settings.options.threads);
-  if (mesh.dimension() == Dimension::Volume || mesh.dimension() == Dimension::None)
-  {
-    throw Error(mesh.dimension() == Dimension::Volume
-        ? "The Geometry has volume cells: run Extract Surface on it first."
-        : "The Geometry has no triangles or quadrilaterals: give a surface, for example an STL "
-          "file, or run Tetrahedralize on it first, which cuts polygons into triangles.");
-  }
-  FeatureOptions options;
-  options.angle = settings.featureAngle;
-  options.asSurface = true;
   const auto n = this->Parts.size();
   std::vector<unsigned char> slides(n);
   for (std::size_t p = 0; p < n; ++p)
@@ -153,8 +133,15 @@ void OptimizerSetup::slideOnGeometry(const OptimizerSettings& settings, vtkDataS
     // Points that are fixed for another reason stay where they are.
     slides[p] = !this->Held[p] && (this->Parts[p] >= 0 || this->Found.kind[p] == CornerPoint);
   }
-  this->Match =
-    matchGeometry(this->TheMesh.mesh(), this->Found, slides, mesh, findFeatures(mesh, options));
+  withGeometry(geometry, this->TheMesh.frame(), settings.options.threads,
+    [&](const Mesh& mesh)
+    {
+      FeatureOptions options;
+      options.angle = settings.featureAngle;
+      options.asSurface = true;
+      this->Match =
+        matchGeometry(this->TheMesh.mesh(), this->Found, slides, mesh, findFeatures(mesh, options));
+    });
   this->HasGeometry = true;
   this->Parts = this->Match.parts;
   this->Options.model = &this->Match.model;

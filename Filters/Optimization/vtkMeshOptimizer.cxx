@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMeshOptimizer.h"
 
+#include "CurvedRun.h"
 #include "BeforeAfter.h"
 #include "ContentStamp.h"
 #include "GatheredExecution.h"
@@ -503,9 +504,26 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     tautline::requireLocalSettings(
       settings, tautline::choosesFeatures(settings, block.input), this->Animation);
   }
-  const std::unique_ptr<tautline::MovableMesh> made = this->MakeMesh(block, true);
-  const tautline::MovableMesh& mesh = *made;
-  tautline::OptimizerSetup setup(settings, block, *made);
+  std::unique_ptr<tautline::CurvedMotion> curved;
+  std::unique_ptr<tautline::MovableMesh> linear;
+  if (tautline::hasCurvedCells(block.input))
+  {
+    if (this->ReproducibleOrder)
+    {
+      throw tautline::Error("Curved cells have no reproducible order of several processes: switch "
+                            "Reproducible Order off.");
+    }
+    curved =
+      std::make_unique<tautline::CurvedMotion>(block, this->Threads, this->MergeCoincidentPoints);
+  }
+  else
+  {
+    linear = this->MakeMesh(block, true);
+  }
+  tautline::MovableMesh& made = curved ? curved->corners() : *linear;
+  const tautline::MovableMesh& mesh = made;
+  tautline::OptimizerSetup setup(
+    curved ? tautline::settingsOfCorners(settings) : settings, block, made);
   tautline::OptimizeOptions& options = setup.options();
   const tautline::MeshView& view = mesh.mesh().view();
   if (!done)
@@ -527,10 +545,17 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     };
     run.iterations = -1;
     options.stopping.maximumSeconds = this->GetRemainingSeconds();
-    run.result = setup.run();
-    setup.round(run);
+    if (curved)
+    {
+      run.result = tautline::runCurved(settings, setup, *curved, block);
+    }
+    else
+    {
+      run.result = setup.run();
+      setup.round(run);
+    }
     this->Warn(run.warning);
-    if (&setup.start() != &mesh.mesh() || !mesh.frame().isIdentity())
+    if (curved || &setup.start() != &mesh.mesh() || !mesh.frame().isIdentity())
     {
       run.result.elements = {};
     }
@@ -539,7 +564,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   const std::vector<double> points = run.at(time, view);
   const bool ofResult = points == run.result.points;
   std::string note = ofResult ? run.note : std::string();
-  if (ofResult)
+  if (ofResult && !curved)
   {
     mesh.move(vtkPointSet::SafeDownCast(block.output), points, run.single);
   }
@@ -613,7 +638,9 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
   settings.geometry = vtkDataObject::GetData(inputs[tautline::OptimizerPorts::Geometry]);
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
   const bool features = onAny(tautline::choosesFeatures(settings, vtkDataSet::SafeDownCast(input)));
-  const std::string what = tautline::needOfWholeMesh(settings, features, this->Animation).what;
+  const std::string what = onAny(tautline::hasCurvedCells(input))
+    ? "curved cells"
+    : tautline::needOfWholeMesh(settings, features, this->Animation).what;
   return this->TakePiece(input, what.empty() ? "" : what + " need the whole mesh");
 }
 

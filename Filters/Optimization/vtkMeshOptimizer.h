@@ -14,8 +14,14 @@
  * first (UntangleFirst) where the objectives cannot repair it. Points of a planar mesh stay in its
  * plane, those of a surface stay on it, or on the geometry. A mesh reversed throughout is
  * treated as its mirror image, and so is a cell that lists its points in the opposite order of the
- * others. Parts without a consistent orientation, image data (implicit points) and cells of higher
- * order are refused.
+ * others. Parts without a consistent orientation and image data (implicit points) are refused.
+ *
+ * Of cells of quadratic and higher order, in volumes or in a plane, all nodes move, and no valid
+ * cell becomes invalid anywhere in it at any step, see tautline/Curved/OptimizeCurved.h. Objectives
+ * are then sums over the samples of a quadrature, of metrics that are functions of the Jacobian
+ * matrix; the optimizer is Newton's method; ON_SURFACE means the curved boundary as it was, or the
+ * geometry. WORST_ELEMENT minimizes a p-mean after the sum. Limits, regions, feature kinds and
+ * AllowInversion are errors. The metrics in the output are measured at the corners.
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) a reference mesh with the same cells, for targets of type REFERENCE and

@@ -2,10 +2,13 @@
 #include "vtkMeshUntangler.h"
 
 #include "Blocks.h"
+#include "CurvedMotion.h"
 #include "GatheredExecution.h"
 #include "IterationHistory.h"
 #include "MovableMesh.h"
 #include "ProgressStep.h"
+#include "Processes.h"
+#include "tautline/Curved/UntangleCurved.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include "vtkCellData.h"
@@ -27,8 +30,8 @@ vtkStandardNewMacro(vtkMeshUntangler);
 
 namespace
 {
-constexpr int SelectionPort = 1; // input
-constexpr int NumberOfInputPorts = 2, NumberOfOutputPorts = 2;
+constexpr int SelectionPort = 1, GeometryPort = 2; // input
+constexpr int NumberOfInputPorts = 3, NumberOfOutputPorts = 2;
 constexpr int FixedArray = 0;
 
 constexpr int ListedElements = 10;
@@ -145,7 +148,7 @@ std::string verdict(const tautline::UntangleResult& result, const std::vector<Re
 //------------------------------------------------------------------------------
 vtkMeshUntangler::vtkMeshUntangler()
 {
-  this->DeclarePorts(NumberOfInputPorts, NumberOfOutputPorts, { SelectionPort });
+  this->DeclarePorts(NumberOfInputPorts, NumberOfOutputPorts, { SelectionPort, GeometryPort });
 }
 
 //------------------------------------------------------------------------------
@@ -162,7 +165,13 @@ int vtkMeshUntangler::RequestData(
     {
       tautline::TableRows history;
       this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, !this->FixBoundary,
-        [&](const tautline::InputBlock& block) { this->Untangle(block, history); });
+        [&](const tautline::InputBlock& block)
+        {
+          tautline::hasCurvedCells(block.input)
+            ? this->UntangleCurved(
+                block, vtkDataObject::GetData(inputVector[GeometryPort]), history)
+            : this->Untangle(block, history);
+        });
       if (this->NotValid > 0)
       {
         const bool one = this->GetNumberOfBlocks() == 1;
@@ -224,6 +233,72 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
     this->Warn(unsettled);
   }
 
+  this->Show(block, mesh, result, "", history);
+  this->AddToSummary(result.exceededMemory
+      ? "The whole mesh did not fit into the memory of the first process, where the elements that "
+        "are left would have been untangled: take fewer cells, or more memory."
+      : "");
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshUntangler::UntangleCurved(
+  const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history)
+{
+  if (this->ReproducibleOrder)
+  {
+    throw tautline::Error("Curved cells have no reproducible order of several processes: switch "
+                          "Reproducible Order off.");
+  }
+  tautline::CurvedMotion motion(block, this->Threads, this->MergeCoincidentPoints);
+  motion.fix(tautline::chosenArray(
+    this, FixedArray, block.input, "of fixed points", tautline::ArrayOf::Points));
+  motion.fixSelected(block.selected);
+  if (this->FreeInvalid)
+  {
+    motion.freeInvalid();
+  }
+  tautline::CurvedOptions options = motion.options();
+  options.boundary = static_cast<tautline::CurvedBoundaryMotion>(this->CurvedBoundary);
+  options.featureAngle = this->FeatureAngle;
+  options.midNodesOnly = this->MidNodesOnly;
+  options.straighten = this->Straighten;
+  options.maximumSeconds = this->GetRemainingSeconds();
+  options.observer = [&](const tautline::IterationState& state)
+  { return this->ShowState(state, block.number); };
+  tautline::SurfaceModel model;
+  if (geometry && this->CurvedBoundary == ON_SURFACE)
+  {
+    model = motion.geometry(geometry, this->FeatureAngle, true);
+    options.geometry = &model;
+  }
+  const tautline::CurvedUntangleResult found = tautline::untangleCurved(motion.mesh(), options);
+  tautline::UntangleResult result;
+  result.points = found.points;
+  result.history = found.history;
+  result.reason = found.reason;
+  result.invertedBefore = found.invalidBefore;
+  result.invertedAfter = found.invalidAfter;
+  result.newlyInvalid = found.newlyInvalid;
+  result.obstacles.assign(motion.mesh().view().numberOfCells, 0);
+  for (const tautline::Index cell : found.remaining)
+  {
+    result.obstacles[cell] = static_cast<signed char>(tautline::Obstacle::Unknown);
+  }
+  this->HaveBest();
+  std::string more = "Curved cells are certified in all of the cell.";
+  if (found.straightened > 0)
+  {
+    more += " " + std::to_string(found.straightened) +
+      " cells were straightened and may be off the surface.";
+  }
+  this->Show(block, motion.corners(), result, more, history);
+}
+
+//------------------------------------------------------------------------------
+/// Writes a result to the output and adds to the summary. @param more sentences on it, or ""
+void vtkMeshUntangler::Show(const tautline::InputBlock& block, const tautline::MovableMesh& mesh,
+  tautline::UntangleResult& result, const std::string& more, tautline::TableRows& history)
+{
   const std::string note = mesh.move(vtkPointSet::SafeDownCast(block.output), result.points);
   addFlags(block.output, "Validity", mesh.validityAt(result.points));
   addFlags(block.output, "Obstacle", obstaclesOf(result, mesh));
@@ -248,10 +323,7 @@ void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::Tab
         mesh.mesh().dimension() == tautline::Dimension::Surface
       ? "Improve Mesh removes triangles without area."
       : "");
-  this->AddToSummary(result.exceededMemory
-      ? "The whole mesh did not fit into the memory of the first process, where the elements that "
-        "are left would have been untangled: take fewer cells, or more memory."
-      : "");
+  this->AddToSummary(more);
   if (result.reason == tautline::StopReason::NoFreeVertices)
   {
     this->AddToSummary(mesh.whyNoneIsFree(BoundaryRemedy));
@@ -271,15 +343,20 @@ tautline::UntangleOptions vtkMeshUntangler::GetOptions(const unsigned char* fixe
   options.fixed = fixed;
   options.threads = this->Threads;
   options.observer = [this, block](const tautline::IterationState& state)
-  {
-    this->HaveBest();
-    this->ShowIteration(FilterName, state.record.iteration,
-      { { "objective", state.record.objective },
-        { "inverted", static_cast<double>(state.record.inverted) } });
-    return this->ProceedInBlock(
-      block, std::max(state.progress, tautline::openEnded(state.record.iteration)));
-  };
+  { return this->ShowState(state, block); };
   return options;
+}
+
+//------------------------------------------------------------------------------
+/// Shows the progress. @return false to stop
+bool vtkMeshUntangler::ShowState(const tautline::IterationState& state, int block)
+{
+  this->HaveBest();
+  this->ShowIteration(FilterName, state.record.iteration,
+    { { "objective", state.record.objective },
+      { "inverted", static_cast<double>(state.record.inverted) } });
+  return this->ProceedInBlock(
+    block, std::max(state.progress, tautline::openEnded(state.record.iteration)));
 }
 
 //------------------------------------------------------------------------------
@@ -293,8 +370,12 @@ tautline::GatheredRules vtkMeshUntangler::GetGatheredRules()
 //------------------------------------------------------------------------------
 bool vtkMeshUntangler::TakesPieces(vtkInformationVector** inputs)
 {
-  return this->TakePiece(vtkDataObject::GetData(inputs[MeshPort]),
-    this->FreeInvalid ? "points of invalid elements that are freed need the whole mesh" : "");
+  vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
+  const bool curved = tautline::minimumOverProcesses(tautline::hasCurvedCells(input) ? 0 : 1) == 0;
+  return this->TakePiece(input,
+    curved                ? "curved cells need the whole mesh"
+      : this->FreeInvalid ? "points of invalid elements that are freed need the whole mesh"
+                          : "");
 }
 
 //------------------------------------------------------------------------------
@@ -312,5 +393,9 @@ void vtkMeshUntangler::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Effort: " << this->Effort << "\n";
   os << indent << "FixBoundary: " << this->FixBoundary << "\n";
   os << indent << "FreeInvalid: " << this->FreeInvalid << "\n";
+  os << indent << "CurvedBoundary: " << this->CurvedBoundary << "\n";
+  os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
+  os << indent << "MidNodesOnly: " << this->MidNodesOnly << "\n";
+  os << indent << "Straighten: " << this->Straighten << "\n";
   os << indent << "ReproducibleOrder: " << this->ReproducibleOrder << "\n";
 }

@@ -10,12 +10,16 @@
  * and why.
  *
  * A mesh reversed throughout is treated as its mirror image, and so is a cell that lists its points
- * in the opposite order of the others. Parts without a consistent orientation, image data (implicit
- * points) and cells of higher order are refused. For better elements run vtkMeshOptimizer
- * afterwards.
+ * in the opposite order of the others. Parts without a consistent orientation and image data
+ * (implicit points) are refused. For better elements run vtkMeshOptimizer afterwards.
+ *
+ * Of cells of quadratic and higher order, all nodes move, and the whole cell is certified to be
+ * valid, see tautline/Curved/UntangleCurved.h. They are of volumes, or in a plane. Method, Effort
+ * and FixBoundary are not used then; see CurvedBoundary.
  *
  * @par Input ports:
- * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay.
+ * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay; 2 (optional) the geometry: a
+ * surface of triangles or quadrilaterals that the boundary of curved cells slides on (ON_SURFACE).
  *
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (new minus old) and the cell arrays
@@ -51,9 +55,12 @@
 
 namespace tautline
 {
+class MovableMesh;
 class TableRows;
 struct InputBlock;
+struct IterationState;
 struct UntangleOptions;
+struct UntangleResult;
 }
 
 class TAUTLINEUNTANGLING_EXPORT vtkMeshUntangler : public vtkMeshMotionAlgorithm
@@ -116,6 +123,52 @@ public:
   vtkBooleanMacro(FreeInvalid, bool);
   ///@}
 
+  enum CurvedBoundaries
+  {
+    FIXED = 0,
+    SLIDING = 1,
+    FREE = 2,
+    ON_SURFACE = 3
+  };
+  ///@{
+  /**
+   * What the points of the boundary of a mesh with curved cells do, instead of FixBoundary. FIXED:
+   * they stay. SLIDING: those within flat parts move in these, and along straight edges.
+   * ON_SURFACE: they slide on the curved boundary as it was, or on the geometry at port 2, those on
+   * feature edges along these; corners stay. FREE: they move as all others. The default is
+   * ON_SURFACE: where two faces of an element are on the boundary, the determinant at their common
+   * edge depends on points of the boundary alone.
+   */
+  vtkTautlineSetRangeMacro(CurvedBoundary, int, FIXED, ON_SURFACE);
+  vtkGetMacro(CurvedBoundary, int);
+  ///@}
+
+  ///@{
+  /**
+   * The curved boundary has a feature edge where the normals of its facets differ by more than so
+   * many degrees in the middle of the edge. The default is 40.
+   */
+  vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
+  vtkGetMacro(FeatureAngle, double);
+  ///@}
+
+  ///@{
+  /// Whether only the nodes of curved cells between their corners move. Off.
+  vtkSetMacro(MidNodesOnly, bool);
+  vtkGetMacro(MidNodesOnly, bool);
+  vtkBooleanMacro(MidNodesOnly, bool);
+  ///@}
+
+  ///@{
+  /**
+   * Whether, as a last resort, the nodes of curved cells that remain invalid go to where they are
+   * in a straight cell, which may leave the surface. Off.
+   */
+  vtkSetMacro(Straighten, bool);
+  vtkGetMacro(Straighten, bool);
+  vtkBooleanMacro(Straighten, bool);
+  ///@}
+
   ///@{
   /**
    * Whether one process, too, works in the order that does not depend on how a mesh is spread over
@@ -154,6 +207,11 @@ private:
   void operator=(const vtkMeshUntangler&) = delete;
 
   void Untangle(const tautline::InputBlock& block, tautline::TableRows& history);
+  void UntangleCurved(
+    const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history);
+  void Show(const tautline::InputBlock& block, const tautline::MovableMesh& mesh,
+    tautline::UntangleResult& result, const std::string& more, tautline::TableRows& history);
+  bool ShowState(const tautline::IterationState& state, int block);
 
   tautline::UntangleOptions GetOptions(const unsigned char* fixed, int block);
 
@@ -161,6 +219,10 @@ private:
   int Effort = NORMAL;
   bool FixBoundary = true;
   bool FreeInvalid = false;
+  int CurvedBoundary = ON_SURFACE;
+  double FeatureAngle = 40.0;
+  bool MidNodesOnly = false;
+  bool Straighten = false;
   std::string Reason;
   vtkIdType InvertedBefore = 0;
   vtkIdType InvertedAfter = 0;

@@ -121,12 +121,12 @@ std::vector<double> CurvedProblem::points(const std::vector<double>& x) const
 }
 
 //------------------------------------------------------------------------------
-const CurvedBoundary& CurvedProblem::boundary()
+const SlidingBoundary& CurvedProblem::boundary()
 {
   if (!this->Boundary)
   {
-    this->Boundary.reset(
-      new CurvedBoundary(this->Elements, this->Start, this->Dimension, this->Options.featureAngle));
+    this->Boundary.reset(new SlidingBoundary(
+      this->Elements, this->Start, this->Dimension, this->Options.featureAngle));
   }
   return *this->Boundary;
 }
@@ -149,7 +149,7 @@ void CurvedProblem::matchGeometry()
   {
     this->Geometry.emplace_back(part, nullptr);
   }
-  const CurvedBoundary& boundary = this->boundary();
+  const SlidingBoundary& boundary = this->boundary();
   const std::size_t parts = boundary.parts();
   std::vector<std::vector<double>> sums(parts, std::vector<double>(this->Geometry.size(), 0.0));
   const auto points = static_cast<Index>(this->X.size() / 3);
@@ -251,7 +251,7 @@ void CurvedProblem::makeSlides(CurvedRegion& region, const std::vector<char>& he
       corner[element.nodes[n]] = 1;
     }
   }
-  const CurvedBoundary* boundary =
+  const SlidingBoundary* boundary =
     motion == CurvedBoundaryMotion::Free ? nullptr : &this->boundary();
   if (motion == CurvedBoundaryMotion::OnSurface)
   {

@@ -43,7 +43,7 @@ public:
   std::vector<double> points() const;
   std::vector<double> points(const std::vector<double>& x) const;
   const CurvedGuard& guard() const { return *this->Guard; }
-  const CurvedBoundary& boundary();
+  const SlidingBoundary& boundary();
 
   /**
    * @brief The elements within some rings around others, and what their points may do: those of
@@ -64,7 +64,7 @@ private:
   std::vector<CurvedElement> Elements;
   std::vector<double> X, Start;
   std::unique_ptr<CurvedGuard> Guard;
-  std::unique_ptr<CurvedBoundary> Boundary;
+  std::unique_ptr<SlidingBoundary> Boundary;
   std::vector<SurfaceProjection> Geometry; ///< parts of the geometry
   std::vector<int> GeometryOf;             ///< by part of the boundary
   std::vector<Index> CellsAtOffsets, CellsAt;

@@ -4,7 +4,7 @@
 namespace tautline
 {
 //------------------------------------------------------------------------------
-void CurvedSlides::slide(Index p, const CurvedBoundary& boundary, Index piece)
+void CurvedSlides::slide(Index p, const SlidingBoundary& boundary, Index piece)
 {
   Point& point = this->Points[p];
   point.kind = Kind::OnPiece;

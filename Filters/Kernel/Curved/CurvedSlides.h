@@ -7,7 +7,7 @@
 #ifndef tautline_CurvedSlides_h
 #define tautline_CurvedSlides_h
 
-#include "CurvedBoundary.h"
+#include "SlidingBoundary.h"
 #include "tautline/Optimization/SurfaceProjection.h"
 
 namespace tautline
@@ -24,7 +24,7 @@ public:
   void fix(Index p) { this->Points[p].kind = Kind::Fixed; }
   bool isFixed(Index p) const { return this->Points[p].kind == Kind::Fixed; }
   /// @param piece where the point is; the boundary must outlive this
-  void slide(Index p, const CurvedBoundary& boundary, Index piece);
+  void slide(Index p, const SlidingBoundary& boundary, Index piece);
   /// @param surface must outlive this
   void slide(Index p, const SurfaceProjection& surface);
   bool slides(Index p) const { return this->Points[p].kind >= Kind::OnPiece; }
@@ -61,7 +61,7 @@ private:
     Kind kind = Kind::Free;
     bool curve = false;
     bool held = false;
-    const CurvedBoundary* boundary = nullptr;
+    const SlidingBoundary* boundary = nullptr;
     const SurfaceProjection* surface = nullptr;
     CurvedPlace place, tried;
   };

@@ -544,6 +544,13 @@ CurvedOptimizeResult CurvedOptimization::run()
     CurvedUntangleResult found = untangleCurved(this->Problem, untangling);
     this->Result.untangled = true;
     this->Result.history = std::move(found.history);
+    for (IterationRecord& record : this->Result.history)
+    {
+      const std::size_t count = this->Options.objectives.size();
+      record.objectives.assign(count, 0);
+      record.mean.assign(count, 0);
+      record.worst.assign(count, 0);
+    }
     before = found.reason;
     this->Invalid = guard.invalid(this->Problem.x());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "CurvedBoundary.h"
+#include "SlidingBoundary.h"
 
 #include "ElementFaces.h"
 
@@ -239,7 +239,7 @@ void clamp(const FacetForm& form, double& s, double& t)
 }
 
 //------------------------------------------------------------------------------
-CurvedBoundary::CurvedBoundary(const std::vector<CurvedElement>& elements,
+SlidingBoundary::SlidingBoundary(const std::vector<CurvedElement>& elements,
   const std::vector<double>& points, int dimension, double featureAngle)
   : Dimension(dimension)
   , Kinds(points.size() / 3, NotOnBoundary)
@@ -256,7 +256,7 @@ CurvedBoundary::CurvedBoundary(const std::vector<CurvedElement>& elements,
 }
 
 //------------------------------------------------------------------------------
-Index CurvedBoundary::addPiece(
+Index SlidingBoundary::addPiece(
   const FacetForm& form, std::vector<Vec3> controls, std::vector<Index> points)
 {
   Vec3 center = { 0, 0, 0 };
@@ -274,7 +274,7 @@ Index CurvedBoundary::addPiece(
 }
 
 //------------------------------------------------------------------------------
-void CurvedBoundary::addFacets(
+void SlidingBoundary::addFacets(
   const std::vector<CurvedElement>& elements, const std::vector<double>& points)
 {
   // The faces of all elements by their corners; those that occur once are the boundary.
@@ -401,7 +401,7 @@ void CurvedBoundary::addFacets(
 
 //------------------------------------------------------------------------------
 /// Makes the feature edges pieces.
-void CurvedBoundary::addCurves(double featureAngle)
+void SlidingBoundary::addCurves(double featureAngle)
 {
   std::sort(this->Edges.begin(), this->Edges.end(),
     [](const FacetEdge& a, const FacetEdge& b)
@@ -428,7 +428,7 @@ void CurvedBoundary::addCurves(double featureAngle)
 }
 
 //------------------------------------------------------------------------------
-void CurvedBoundary::classifyPoints(double featureAngle)
+void SlidingBoundary::classifyPoints(double featureAngle)
 {
   for (std::size_t i = 0; i < this->Pieces.size(); ++i)
   {
@@ -486,7 +486,7 @@ void CurvedBoundary::classifyPoints(double featureAngle)
 }
 
 //------------------------------------------------------------------------------
-void CurvedBoundary::joinParts()
+void SlidingBoundary::joinParts()
 {
   UnionFind sets(static_cast<Index>(this->Pieces.size()));
   for (const auto& [a, b] : this->Smooth)
@@ -526,7 +526,7 @@ void CurvedBoundary::joinParts()
 }
 
 //------------------------------------------------------------------------------
-CurvedPlace CurvedBoundary::closestOn(Index index, const Vec3& x) const
+CurvedPlace SlidingBoundary::closestOn(Index index, const Vec3& x) const
 {
   const CurvedPiece& piece = this->Pieces[index];
   const FacetForm& form = *piece.form;
@@ -608,7 +608,7 @@ CurvedPlace CurvedBoundary::closestOn(Index index, const Vec3& x) const
 }
 
 //------------------------------------------------------------------------------
-CurvedPlace CurvedBoundary::closest(Index piece, const Vec3& x) const
+CurvedPlace SlidingBoundary::closest(Index piece, const Vec3& x) const
 {
   CurvedPlace best = this->closestOn(piece, x);
   double least = norm(best.point - x);
@@ -646,7 +646,7 @@ CurvedPlace CurvedBoundary::closest(Index piece, const Vec3& x) const
 }
 
 //------------------------------------------------------------------------------
-CurvedPlace CurvedBoundary::closestOfPart(int part, const Vec3& x) const
+CurvedPlace SlidingBoundary::closestOfPart(int part, const Vec3& x) const
 {
   CurvedPlace best;
   double least = std::numeric_limits<double>::infinity();
@@ -668,7 +668,7 @@ CurvedPlace CurvedBoundary::closestOfPart(int part, const Vec3& x) const
 }
 
 //------------------------------------------------------------------------------
-bool CurvedBoundary::isFlat(Index point, double angle) const
+bool SlidingBoundary::isFlat(Index point, double angle) const
 {
   const Index own = this->PieceOf[point];
   if (own < 0)

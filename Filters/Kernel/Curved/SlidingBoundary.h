@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file CurvedBoundary.h
+ * @file SlidingBoundary.h
  * @brief The curved boundary of a mesh: its facets, edges and features, and the closest places.
  * Internal: not installed.
  *
@@ -9,8 +9,8 @@
  * than the feature angle in the middle are feature edges; curves of these end where they bend by
  * more, and where other than two meet. A patch is what facets form across other edges.
  */
-#ifndef tautline_CurvedBoundary_h
-#define tautline_CurvedBoundary_h
+#ifndef tautline_SlidingBoundary_h
+#define tautline_SlidingBoundary_h
 
 #include "CurvedEnergy.h"
 #include "tautline/Mesh/Features.h"
@@ -51,7 +51,7 @@ struct CurvedPlace
   Vec3 direction = { 0, 0, 0 }; ///< unit normal, of a curve the unit tangent; or zero
 };
 
-class CurvedBoundary
+class SlidingBoundary
 {
 public:
   /**
@@ -59,7 +59,7 @@ public:
    * @param dimension 2 or 3
    * @param featureAngle in degrees
    */
-  CurvedBoundary(const std::vector<CurvedElement>& elements, const std::vector<double>& points,
+  SlidingBoundary(const std::vector<CurvedElement>& elements, const std::vector<double>& points,
     int dimension, double featureAngle);
 
   /// Whether a point is on the boundary.
