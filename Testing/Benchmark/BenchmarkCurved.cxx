@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Curved elements: microseconds of one certified verdict on the validity, and of the bounds of the
-// minimum to 1 %, by type of element; CPU time of one thread.
+// Curved elements: microseconds of one certified verdict on the validity, of the bounds of the
+// minimum to 1 %, and of the certified minima of quality metrics to 1e-3, by type of element; CPU
+// time of one thread.
 //
 // usage: BenchmarkCurved ELEMENTS REPEATS
 //
@@ -10,6 +11,7 @@
 
 #include "Clocks.h"
 #include "Elements/CurvedElements.h"
+#include "tautline/Elements/MetricCertifier.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -101,6 +103,29 @@ void print(const std::string& name, const char* what, double value)
   std::printf("curved %s %s\t%.6g\n", name.c_str(), what, value);
 }
 
+/// Microseconds of a metric of the elements that are valid.
+double measureMetric(const ElementType& type, ElementMetric metric, const ElementSet& set,
+  const std::vector<ElementValidity>& validity, int repeats)
+{
+  std::vector<const Index*> elements;
+  for (std::size_t e = 0; e < validity.size(); ++e)
+  {
+    if (validity[e] == ElementValidity::Valid)
+    {
+      elements.push_back(set.elements[e]);
+    }
+  }
+  MetricCertifier certifier(type, metric, zAxis);
+  return fastest(repeats, static_cast<Index>(elements.size()),
+    [&]
+    {
+      for (const Index* element : elements)
+      {
+        certifier.minimum(set.coordinates(), element);
+      }
+    });
+}
+
 void measure(const std::string& name, const ElementType& type, const ElementSet& set, int repeats)
 {
   JacobianCertifier certifier(type, zAxis);
@@ -127,6 +152,14 @@ void measure(const std::string& name, const ElementType& type, const ElementSet&
   print(name, "splits", static_cast<double>(counts.splits) / elements);
   print(name, "validity", sign);
   print(name, "minimum", minimum);
+  const auto metric = [&](ElementMetric wanted)
+  { return measureMetric(type, wanted, set, validity, std::min(repeats, 3)); };
+  print(name, "mean-ratio", metric(ElementMetric::MeanRatio));
+  print(name, "inverse-condition", metric(ElementMetric::InverseCondition));
+  if (type.shape() != ElementShape::Pyramid)
+  {
+    print(name, "scaled-jacobian", metric(ElementMetric::ScaledJacobian));
+  }
 }
 }
 

@@ -122,7 +122,9 @@ def check_user_metric(output: Path) -> None:
 
 def check_curved(output: Path) -> None:
     measured, ratios = read(output, "curved")
-    assert all(number > 0 for key, number in measured.items() if key.endswith((" validity", " minimum"))), measured
+    timed = (" validity", " minimum", " mean-ratio", " inverse-condition", " scaled-jacobian")
+    assert all(number > 0 for key, number in measured.items() if key.endswith(timed)), measured
+    assert "hex27 scaled-jacobian" in measured and "pyr14 scaled-jacobian" not in measured, measured
     assert all(number == 0 for key, number in measured.items() if key.endswith(" undecided")), measured
     assert measured["tet10 elements"] == 40 and 0 < ratios["hex27: needed a subdivision"] <= 1, (measured, ratios)
 

@@ -13,9 +13,12 @@
 #include "BernsteinSpace.h"
 
 #include <limits>
+#include <memory>
 
 namespace tautline
 {
+class BernsteinHalving;
+
 enum class BernsteinSign : signed char
 {
   Negative = -1, ///< somewhere below the negative of the noise
@@ -52,6 +55,8 @@ class TAUTLINE_KERNEL_EXPORT BernsteinSearch
 public:
   BernsteinSearch(const BernsteinSpace& space, const std::vector<BernsteinBisection>& bisections,
     const std::vector<BernsteinCorner>& corners);
+  ~BernsteinSearch();
+  BernsteinSearch(BernsteinSearch&&) noexcept;
 
   /**
    * @param coefficients of the polynomial
@@ -67,28 +72,9 @@ public:
   static constexpr int MaxSplits = 4000;
 
 private:
-  static constexpr int Lanes = 8;
   static constexpr int MaxVertexEntries = 12;
   static constexpr int MaxDirections = 6;
 
-  /// Lines that are halved side by side, one per lane, longest first.
-  struct Group
-  {
-    int length;                  ///< of the longest line
-    std::size_t entries;         ///< in Entries: Lanes per row, positions of coefficients
-    std::size_t mirrored;        ///< in Entries: the same from the other end of each line
-    std::size_t counts;          ///< in Entries: by row, the lines that reach so far
-    std::array<int, Lanes> last; ///< the last row of each line
-  };
-  /// One edge of a factor.
-  struct Direction
-  {
-    const BernsteinBisection* lines;
-    std::vector<Group> groups; ///< where the lines are not wide
-    int vertices;              ///< where the vertices of the factor begin in Box::vertices
-    int dimension;             ///< of the factor
-    int position;              ///< in Directions
-  };
   struct Box
   {
     double least;
@@ -99,7 +85,6 @@ private:
     int age; ///< bisections since the bends were measured
   };
 
-  void addGroups(Direction& direction);
   Box begin(const double* coefficients);
   void push(const Box& box);
   Box pop();
@@ -109,20 +94,11 @@ private:
   /// Halves a box and returns the other half.
   Box split(Box& box);
   void measureBends(Box& box);
-  void estimateBends(Box& box, const Direction& halved, int kept, int moved) const;
-  double bend(const Direction& direction, const double* c) const;
-  static void halveRows(const BernsteinBisection& lines, double* c, double* other);
-  void halveGroup(const Group& group, double* c, double* other) const;
-  Vec3 place(const Box& box, const BernsteinCorner& corner) const;
   double smallest(const double* c) const;
 
-  const BernsteinSpace& Space;
+  std::unique_ptr<BernsteinHalving> Halving;
   const std::vector<BernsteinCorner>& Corners;
   std::size_t Size;
-  std::vector<Direction> Directions;
-  std::vector<int> Entries;
-  std::array<double, MaxVertexEntries> Vertices = {};
-  std::vector<int> FirstVertex; ///< by factor
   std::vector<double> Pool;
   std::vector<int> Free;
   std::vector<Box> Heap;

@@ -2,6 +2,7 @@
 #include "JacobianCertifier.h"
 
 #include "DeterminantWork.h"
+#include "ElementPlacement.h"
 
 #include <optional>
 
@@ -9,50 +10,16 @@ namespace tautline
 {
 namespace
 {
-/// Extents beyond these are divided by a power of two: products of six lengths would overflow.
-constexpr double smallExtent = 0x1p-64, largeExtent = 0x1p64;
-
 /// De Casteljau's algorithm rounds at most once per coefficient of a line and level.
 constexpr double levelRounding = 64 * 0x1p-53;
-
-double unitOf(double extent)
-{
-  constexpr int farthest = 1022; // so that its reciprocal is normal
-  const bool usual = extent > smallExtent && extent < largeExtent;
-  return usual || !(extent > 0) || !std::isfinite(extent)
-    ? 1.0
-    : std::ldexp(1.0, std::clamp(std::ilogb(extent), -farthest, farthest));
-}
-
-/// Two unit vectors whose cross product is a unit normal; x and y for z.
-std::array<Vec3, 2> frameOf(const Vec3& normal)
-{
-  if (normal[2] == 1)
-  {
-    return { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 } };
-  }
-  int least = 0;
-  for (int c = 1; c < 3; ++c)
-  {
-    least = std::abs(normal[c]) < std::abs(normal[least]) ? c : least;
-  }
-  Vec3 axis = { 0, 0, 0 };
-  axis[least] = 1;
-  Vec3 first = cross(axis, normal);
-  first = (1 / norm(first)) * first;
-  return { first, cross(normal, first) };
-}
 }
 
 //------------------------------------------------------------------------------
-struct JacobianCertifier::Work
+struct JacobianCertifier::Work : ElementPlacement
 {
   Work(const ElementType& elements, const Vec3& normal, bool mirror)
-    : type(elements)
-    , plane(elements.dimension() == 2 && norm(normal) > 0)
-    , surface(elements.dimension() == 2 && !plane)
-    , mirrored(mirror && !surface)
-    , frame(frameOf(plane ? normal : Vec3{ 0, 0, 1 }))
+    : ElementPlacement(elements, normal, mirror)
+    , type(elements)
     , packets(elements, surface)
     , one(elements, surface)
     , coefficients(elements.determinant().space.size())
@@ -73,58 +40,6 @@ struct JacobianCertifier::Work
     splitNoise = degree * levelRounding;
   }
 
-  /// Moves the first node to the origin, and elements of the plane into x y.
-  template <class T>
-  void place(DeterminantWork<T>& work) const
-  {
-    const typename DeterminantWork<T>::Vector first = work.nodes[0];
-    for (auto& node : work.nodes)
-    {
-      for (int c = 0; c < 3; ++c)
-      {
-        node.c[c] -= first.c[c];
-      }
-      if (this->plane)
-      {
-        const auto along = [&](const Vec3& e)
-        { return e[0] * node.c[0] + e[1] * node.c[1] + e[2] * node.c[2]; };
-        const T x = along(this->frame[0]), y = along(this->frame[1]);
-        node.c[0] = x;
-        node.c[1] = y;
-        node.c[2] = T{};
-      }
-      if (this->mirrored)
-      {
-        node.c[0] = -node.c[0];
-      }
-    }
-  }
-
-  /// Loads one element; returns the unit of its coordinates.
-  double load(const double* points, const Index* nodes)
-  {
-    double extent = 0;
-    for (std::size_t k = 0; k < this->one.nodes.size(); ++k)
-    {
-      for (int c = 0; c < 3; ++c)
-      {
-        const double x = points[3 * nodes[k] + c];
-        this->one.nodes[k].c[c] = x;
-        extent = std::max(extent, std::abs(x - points[3 * nodes[0] + c]));
-      }
-    }
-    const double unit = unitOf(extent);
-    for (auto& node : this->one.nodes)
-    {
-      for (double& x : node.c)
-      {
-        x *= 1 / unit;
-      }
-    }
-    this->place(this->one);
-    return unit;
-  }
-
   /// Loads a batch, the last element repeated.
   void loadBatch(const double* points, const Index* const* elements, int count)
   {
@@ -143,9 +58,9 @@ struct JacobianCertifier::Work
         extent = max(extent, abs(node[c] - this->packets.nodes[0].c[c]));
       }
     }
-    if (any(~((extent > smallExtent) & (extent < largeExtent))))
+    if (any(~((extent > SmallExtent) & (extent < LargeExtent))))
     {
-      const Packet perUnit = 1.0 / each(extent, unitOf);
+      const Packet perUnit = 1.0 / each(extent, unitOfElement);
       for (auto& node : this->packets.nodes)
       {
         for (Packet& x : node.c)
@@ -183,10 +98,6 @@ struct JacobianCertifier::Work
   }
 
   const ElementType& type;
-  bool plane;
-  bool surface;
-  bool mirrored;
-  std::array<Vec3, 2> frame;
   DeterminantWork<Packet> packets;
   DeterminantWork<double> one;
   std::vector<double> coefficients; ///< of one element
@@ -337,7 +248,7 @@ void JacobianCertifier::classifyBatch(
     }
     else if (work.surface)
     {
-      work.load(points, elements[l]);
+      work.load(work.one, points, elements[l]);
       work.one.runNormals();
       validity[l] = this->searchSurface();
     }
@@ -368,7 +279,7 @@ JacobianBound JacobianCertifier::minimum(
   DeterminantWork<double>& one = work.one;
   JacobianBound bound;
   ++this->Counts.elements;
-  const double unit = work.load(points, nodes);
+  const double unit = work.load(work.one, points, nodes);
   if (work.surface)
   {
     one.runNormals();
@@ -414,7 +325,7 @@ double JacobianCertifier::meanJacobian(const double* points, const Index* nodes)
 {
   Work& work = *this->Memory;
   DeterminantWork<double>& one = work.one;
-  const double scale = std::pow(work.load(points, nodes), work.type.dimension());
+  const double scale = std::pow(work.load(work.one, points, nodes), work.type.dimension());
   if (work.surface)
   {
     one.runNormals();
