@@ -55,8 +55,8 @@ PieceFindings joined(const std::vector<PieceFindings>& pieces)
 }
 
 //------------------------------------------------------------------------------
-PieceFindings findingsOf(
-  const MeshAdapter& adapter, const unsigned char* reversed, const unsigned char* skip)
+PieceFindings findingsOf(const MeshAdapter& adapter, const unsigned char* reversed,
+  const unsigned char* skip, Index curved)
 {
   const Mesh& mesh = adapter.mesh();
   PieceFindings found;
@@ -70,7 +70,9 @@ PieceFindings findingsOf(
   found.seams.representative.clear();
   found.firstApart = found.seams.apart() > 0 ? placeOf(mesh.view(), found.seams.firstApart) : "";
   found.duplicates = countDuplicates(skin.duplicates, skip);
-  found.text = adapter.notice();
+  MeshRemarks remarks = adapter.remarks();
+  remarks.higherOrderCells = std::max<Index>(0, remarks.higherOrderCells - curved);
+  found.text = describe(remarks);
   add(found.text, describeSeams(found.seams, mesh));
   add(found.text, describeNear(found.near, found.firstNear));
   add(found.text, describeDuplicates(skin.duplicates, skip));

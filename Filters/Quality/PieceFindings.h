@@ -28,9 +28,10 @@ struct PieceFindings
  * @brief What there is to remark.
  * @param reversed one flag per cell of mesh(): it lists its points in the opposite order; or null
  * @param skip one flag per cell: it does not count; or null
+ * @param curved how many cells of higher order are not measured at their corners only
  */
-PieceFindings findingsOf(
-  const MeshAdapter& adapter, const unsigned char* reversed, const unsigned char* skip);
+PieceFindings findingsOf(const MeshAdapter& adapter, const unsigned char* reversed,
+  const unsigned char* skip, Index curved = 0);
 
 /**
  * @brief The remarks on the whole mesh, in sentences, on the first rank; "" on the others.

@@ -39,6 +39,7 @@ void QualityTotals::addBlock(const Mesh& mesh, const signed char* validity,
   const unsigned char* skip, const BlockPlace& place, int threads)
 {
   this->Place = place;
+  this->Places = nullptr;
   this->CellsBefore += this->CellsOfLast;
   this->CellsOfLast = mesh.view().numberOfCells;
   const ValidityCounts counts = countValidity(validity, skip, mesh.view().numberOfCells);
@@ -51,6 +52,16 @@ void QualityTotals::addBlock(const Mesh& mesh, const signed char* validity,
   const auto angles = angleDistribution(mesh, validity, skip, threads);
   std::transform(
     angles.begin(), angles.end(), this->Angles.begin(), this->Angles.begin(), std::plus<Index>());
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::addCurved(const MissedCells& missed, const double* places)
+{
+  this->Missed.curved += missed.curved;
+  this->Missed.invalid += missed.invalid;
+  this->Missed.atCorners += missed.atCorners;
+  this->Missed.atIntegrationPoints += missed.atIntegrationPoints;
+  this->Places = places;
 }
 
 //------------------------------------------------------------------------------
@@ -76,8 +87,10 @@ void QualityTotals::addValues(
   for (const WorstElement& element : worstElements(info, data))
   {
     const CellType type = cornerType(data.cellTypes[element.cell]);
-    Worst entry = { element, mesh.center(element.cell, type), globalIds != nullptr, element.cell,
-      this->Place, 0 };
+    const double* place = this->Places ? this->Places + 3 * element.cell : nullptr;
+    Worst entry = { element,
+      place ? Vec3{ place[0], place[1], place[2] } : mesh.center(element.cell, type),
+      globalIds != nullptr, element.cell, this->Place, 0 };
     entry.element.cell = globalIds ? static_cast<Index>(globalIds->GetComponent(element.cell, 0))
                                    : this->CellsBefore + element.cell;
     worst.push_back(entry);
@@ -110,13 +123,15 @@ void QualityTotals::gather(vtkMultiProcessController* controller)
 
   // Sums of counts; the dimension is the largest.
   std::vector<vtkIdType> mine = { this->Counts.valid, this->Counts.inverted,
-    this->Counts.degenerate, this->Counts.notMeasured, this->Counts.nonFinite };
+    this->Counts.degenerate, this->Counts.notMeasured, this->Counts.nonFinite, this->Missed.curved,
+    this->Missed.invalid, this->Missed.atCorners, this->Missed.atIntegrationPoints };
   mine.insert(mine.end(), this->Angles.begin(), this->Angles.end());
   std::vector<vtkIdType> sums(mine.size());
   controller->AllReduce(
     mine.data(), sums.data(), static_cast<vtkIdType>(mine.size()), vtkCommunicator::SUM_OP);
   this->Counts = { sums[0], sums[1], sums[2], sums[3], sums[4] };
-  std::copy(sums.begin() + 5, sums.end(), this->Angles.begin());
+  this->Missed = { sums[5], sums[6], sums[7], sums[8] };
+  std::copy(sums.begin() + 9, sums.end(), this->Angles.begin());
   int dimension = this->Dimension;
   controller->AllReduce(&dimension, &this->Dimension, 1, vtkCommunicator::MAX_OP);
 
@@ -308,6 +323,9 @@ void QualityTotals::fillStatistics(vtkTable* statistics) const
   counts("Degenerate", [this](S, I) { return this->Counts.degenerate; });
   counts("NotMeasured", [this](S, I) { return this->Counts.notMeasured; });
   counts("NonFinite", [this](S, I) { return this->Counts.nonFinite; });
+  counts("Curved", [this](S, I) { return this->Missed.curved; });
+  counts("MissedAtCorners", [this](S, I) { return this->Missed.atCorners; });
+  counts("MissedAtIntegrationPoints", [this](S, I) { return this->Missed.atIntegrationPoints; });
 }
 
 //------------------------------------------------------------------------------
@@ -423,6 +441,13 @@ std::string QualityTotals::summary() const
   if (n.notMeasured + n.nonFinite > 0)
   {
     text << " " << n.notMeasured << " not measured, " << n.nonFinite << " not finite.";
+  }
+  if (this->Missed.invalid > 0)
+  {
+    text << " Of " << this->Missed.invalid
+         << " curved cells that are not valid, the determinant is positive at all corners of "
+         << this->Missed.atCorners << ", at all integration points of "
+         << this->Missed.atIntegrationPoints << ".";
   }
   for (std::size_t m = 0; m < this->Metrics.size(); ++m)
   {

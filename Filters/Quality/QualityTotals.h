@@ -7,6 +7,7 @@
 #define tautline_QualityTotals_h
 
 #include "Blocks.h"
+#include "tautline/Quality/CurvedQuality.h"
 #include "tautline/Quality/Statistics.h"
 
 #include <string>
@@ -29,6 +30,13 @@ public:
   /// Before the metrics of a block: its dimension, validity and angles. `skip` as in CellValues.
   void addBlock(const Mesh& mesh, const signed char* validity, const unsigned char* skip,
     const BlockPlace& place, int threads);
+
+  /**
+   * @brief After that, of a block with curved cells.
+   * @param places where they are shown among the worst: a point per cell of the mesh; kept alive
+   * until the next block
+   */
+  void addCurved(const MissedCells& missed, const double* places);
 
   /**
    * @brief Adds the values of metric number m of the block added last.
@@ -78,7 +86,9 @@ private:
   std::vector<PerMetric> Results;
   std::array<Index, angleBins.size() - 1> Angles{};
   ValidityCounts Counts;
-  Index CellsBefore = 0; ///< cells of the blocks before the last one
+  MissedCells Missed;
+  const double* Places = nullptr; ///< of the block added last, where it has curved cells
+  Index CellsBefore = 0;          ///< cells of the blocks before the last one
   Index CellsOfLast = 0;
   int Dimension = 2;
   bool HasGlobalIds = false;

@@ -17,7 +17,7 @@
 #include "QualityTotals.h"
 #include "TargetChoice.h"
 #include "tautline/Core/Memory.h"
-#include "tautline/Mesh/CurvedCells.h"
+#include "tautline/Quality/CurvedQuality.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -56,18 +56,13 @@ enum Ports
   NumberOfPorts
 };
 
-bool contains(const std::vector<tautline::Metric>& metrics, tautline::Metric metric)
+vtkSmartPointer<vtkDoubleArray> tripleArray(const char* name, vtkIdType tuples)
 {
-  return std::find(metrics.begin(), metrics.end(), metric) != metrics.end();
-}
-
-/// Takes the values of cells that have one.
-void replaceCurved(const std::vector<double>& curved, double* values)
-{
-  for (std::size_t cell = 0; cell < curved.size(); ++cell)
-  {
-    values[cell] = std::isnan(curved[cell]) ? values[cell] : curved[cell];
-  }
+  auto array = vtkSmartPointer<vtkDoubleArray>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(3);
+  array->SetNumberOfTuples(tuples);
+  return array;
 }
 }
 
@@ -337,22 +332,9 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   validity->SetName("Validity");
   validity->SetNumberOfValues(cells);
   this->SettleOrientation(adapter, piece, validity->GetPointer(0), output);
-  // The smallest determinants of curved cells; empty without these or that metric.
-  std::vector<double> curved(contains(metrics, Metric::MinimumJacobian) ? cells : 0);
-  const Index certified = this->CertifyCurved(input, adapter, validity->GetPointer(0), curved);
-  if (certified > 0 && !whole)
-  {
-    this->AddToNotice("Validity and min_jacobian of " + std::to_string(certified) +
-      " curved cells hold for the whole cell.");
-  }
+  const auto curved = this->CertifyCurved(input, adapter, validity->GetPointer(0));
   const std::vector<unsigned char> skip = cellsToSkip(adapter);
   const unsigned char* skipped = skip.empty() ? nullptr : skip.data();
-  if (!whole && cells > 0)
-  {
-    this->AddToNotice(findingsOf(adapter, nullptr, skipped).text);
-  }
-  totals.addBlock(mesh, validity->GetPointer(0), skipped, block.place, this->Threads);
-
   const Targets targets = this->MakeTargets(input, block.reference, adapter);
   EvaluationOptions options;
   options.parameters = { this->Beta, this->Epsilon };
@@ -360,6 +342,21 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   options.power = this->Power;
   options.targets = this->TargetType == IDEAL ? nullptr : &targets;
   options.threads = this->Threads;
+  if (!whole && cells > 0)
+  {
+    this->AddCurvedNotice(*curved, metrics, options);
+    this->AddToNotice(findingsOf(adapter, nullptr, skipped, curved->cells()).text);
+  }
+  totals.addBlock(mesh, validity->GetPointer(0), skipped, block.place, this->Threads);
+  if (curved->cells() > 0)
+  {
+    const auto places = tripleArray("MinimumCoordinates", cells);
+    const auto points = tripleArray("MinimumPoint", cells);
+    curved->places(places->GetPointer(0), points->GetPointer(0));
+    output->GetCellData()->AddArray(places);
+    output->GetCellData()->AddArray(points);
+    totals.addCurved(curved->missed(validity->GetPointer(0), skipped), points->GetPointer(0));
+  }
   for (std::size_t m = 0; m < metrics.size() && !this->GetAbortExecute(); ++m)
   {
     const MetricInfo& info = metricInfo(metrics[m]);
@@ -368,10 +365,7 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
     values->SetName(info.name);
     values->SetNumberOfValues(cells);
     requireInRange(info, evaluateMetric(mesh, info.metric, options, values->GetPointer(0)));
-    if (info.metric == Metric::MinimumJacobian)
-    {
-      replaceCurved(curved, values->GetPointer(0));
-    }
+    curved->measure(info.metric, options, validity->GetPointer(0), values->GetPointer(0));
     output->GetCellData()->AddArray(values);
     totals.addValues(m, mesh,
       { cells, values->GetPointer(0), validity->GetPointer(0), mesh.view().cellTypes, skipped },
@@ -419,19 +413,13 @@ void vtkElementQuality::SettleOrientation(tautline::MeshAdapter& adapter,
 }
 
 //------------------------------------------------------------------------------
-vtkIdType vtkElementQuality::CertifyCurved(vtkDataSet* input, const tautline::MeshAdapter& adapter,
-  signed char* validity, std::vector<double>& minimum)
+std::unique_ptr<tautline::CurvedQuality> vtkElementQuality::CertifyCurved(
+  vtkDataSet* input, const tautline::MeshAdapter& adapter, signed char* validity)
 {
-  const tautline::Mesh& mesh = adapter.mesh();
-  if (mesh.higherOrderCells() == 0)
-  {
-    minimum.clear();
-    return 0;
-  }
   tautline::CurvedCellFacts facts;
   std::vector<double> degrees;
   vtkDataArray* given = input->GetCellData()->GetHigherOrderDegrees();
-  if (given && given->GetNumberOfComponents() == 3)
+  if (given && given->GetNumberOfComponents() == 3 && adapter.mesh().higherOrderCells() > 0)
   {
     degrees.resize(3 * given->GetNumberOfTuples());
     for (vtkIdType cell = 0; cell < given->GetNumberOfTuples(); ++cell)
@@ -444,10 +432,31 @@ vtkIdType vtkElementQuality::CertifyCurved(vtkDataSet* input, const tautline::Me
   facts.reversed = reversed.empty() ? nullptr : reversed.data();
   facts.wedgesTurned = true; // by MeshAdapter
   facts.rational = input->GetPointData()->GetRationalWeights() != nullptr;
-  // What is not replaced is measured at the corners.
-  std::fill(minimum.begin(), minimum.end(), std::numeric_limits<double>::quiet_NaN());
-  return tautline::certifyCurvedCells(
-    mesh, facts, validity, minimum.empty() ? nullptr : minimum.data(), this->Threads);
+  auto curved = std::make_unique<tautline::CurvedQuality>(adapter.mesh(), facts, this->Threads);
+  curved->certify(validity);
+  return curved;
+}
+
+//------------------------------------------------------------------------------
+void vtkElementQuality::AddCurvedNotice(const tautline::CurvedQuality& curved,
+  const std::vector<tautline::Metric>& metrics, const tautline::EvaluationOptions& options)
+{
+  if (curved.cells() == 0)
+  {
+    return;
+  }
+  std::string wholly, atCorners;
+  for (tautline::Metric metric : metrics)
+  {
+    std::string& list = curved.measures(metric, options) ? wholly : atCorners;
+    if (metric != tautline::Metric::MinimumJacobian)
+    {
+      list += (list.empty() ? "" : ", ") + std::string(tautline::metricInfo(metric).name);
+    }
+  }
+  this->AddToNotice("Validity and min_jacobian of " + std::to_string(curved.cells()) +
+    " curved cells hold for the whole cell" + (wholly.empty() ? "" : ", and so do " + wholly) +
+    (atCorners.empty() ? "" : "; measured at the corners: " + atCorners) + ".");
 }
 
 //------------------------------------------------------------------------------

@@ -4,9 +4,10 @@
  * @brief Measures every element of a mesh by any number of quality metrics.
  *
  * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from any
- * vtkDataSet or composite data set; cells of higher order are measured on their corners, except
- * that their `Validity` and "min_jacobian" hold for the whole curved cell, up to order 6. Whether
- * the mesh is planar, a surface or a volume is detected, and so is its orientation: a mesh that is
+ * vtkDataSet or composite data set. Of cells of higher order, up to order 6, `Validity`, sizes and the
+ * metrics of T = A W^-1 with the ideal target hold for the whole curved cell; lengths, angles and
+ * metrics with another target are measured on the corners (see tautline/Quality/CurvedQuality.h).
+ * Whether the mesh is planar, a surface or a volume is detected, and so is its orientation: a mesh that is
  * reversed throughout is reported and, by default, measured as if it were not; one of mixed
  * orientation is reported.
  *
@@ -17,15 +18,21 @@
  * Values are always finite. A metric that is singular at a degenerate element is 0 there; one that
  * is not defined on a cell is 0. Inverted elements have negative values of signed metrics (see
  * MetricInfo::inverted); hexahedra and wedges that are folded between valid corners are
- * inverted, too, and have a negative "min_jacobian". The first metric is the active cell scalar
+ * inverted, too, and have a negative "min_jacobian". Where there are curved cells, also
+ * `MinimumPoint`, the place where the Jacobian determinant of a curved cell is smallest (of others
+ * the center), and `MinimumCoordinates`, its parametric coordinates (of others 0). The first metric is the active cell scalar
  * array; point arrays pass, none of them active.
  *
  * @par Output port 1 `Statistics`:
  * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (number of elements), `Minimum`,
  * `Maximum`, `Mean`, `RMS`, `StandardDeviation`, `Quantile01`, `05`, `25`, `50`, `75`, `95`, `99`,
  * `Worst`, `OutsideAcceptable`, `AcceptableLow`, `AcceptableHigh`, then the same in each row:
- * `Inverted`, `Degenerate`, `NotMeasured`, `NonFinite`; `WorstCells` (10 components: ids, worst
- * first, -1 where there are fewer) and `WorstPositions` (30 components: their centres). Statistics
+ * `Inverted`, `Degenerate`, `NotMeasured`, `NonFinite`, `Curved` (cells of higher order that are
+ * certified), `MissedAtCorners` and `MissedAtIntegrationPoints` (those of them that are not valid,
+ * though the determinant is positive at all corners, or at all points where solvers integrate: 4
+ * of a quadratic tetrahedron, see tautline/Elements/ElementSamples.h); `WorstCells` (10 components: ids, worst
+ * first, -1 where there are fewer) and `WorstPositions` (30 components: their centers, of curved
+ * cells the places where the determinant is smallest). Statistics
  * are over the measured elements: the valid and the inverted ones of the highest dimension in the
  * data on which the metric is defined; degenerate elements and ghost cells do not count. `Worst` is
  * the value of an inverted element if there are any, else the maximum or minimum, by the direction
@@ -41,7 +48,8 @@
  * `Percent` of the corner angles, in volume meshes of the dihedral angles.
  *
  * @par Output port 4 `Worst`:
- * A vtkPolyData with a vertex at the centre of each of the ten worst elements of each metric; point
+ * A vtkPolyData with a vertex at the center of each of the ten worst elements of each metric, in a
+ * curved one where its determinant is smallest; point
  * arrays `Metric` (number), `Rank` (1 is the worst), `CellId`, `Value`, `Validity`, and where it
  * is: `Process`, `Block` (as in the summary, 0 of a single mesh), `Partition` (from 1; 0 if the
  * mesh has one on the process) and `Cell`, its number there. Zoom to it.
@@ -95,8 +103,9 @@
 #include "vtkMetricAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
+#include <memory> // for curved cells
 #include <string> // for Notice
-#include <vector> // for size and tensor targets
+#include <vector> // for lists of metrics
 
 class vtkDataSet;
 class vtkMultiProcessController;
@@ -107,11 +116,13 @@ namespace tautline
 {
 class BadElements;
 class CriteriaGrader;
+class CurvedQuality;
 class Mesh;
 class MeshAdapter;
 struct OrientedPiece;
 class PieceOrientations;
 class QualityTotals;
+enum class Metric : int;
 struct EvaluationOptions;
 struct InputBlock;
 struct Targets;
@@ -132,9 +143,10 @@ public:
   };
   ///@{
   /**
-   * How target metrics combine the corners of cells other than simplices: their mean, the worst, or
-   * the mean of the power Power (negated where larger is better). If some corners are inverted,
-   * only these are combined, but for metrics that untangle. The default is MEAN.
+   * How target metrics combine the corners of cells other than simplices, and the places of a curved
+   * cell: their mean, the worst, or the mean of the power Power (negated where larger is better). If
+   * some corners or places are inverted, only these are combined, but for metrics that untangle. The
+   * worst imr, mean_ratio and condition_number of a curved cell are certified. The default is MEAN.
    */
   vtkTautlineSetRangeMacro(Combination, int, MEAN, POWER_MEAN);
   vtkGetMacro(Combination, int);
@@ -294,10 +306,12 @@ private:
   /// @param piece what was found of the whole mesh; null: that of this data set is
   void SettleOrientation(tautline::MeshAdapter& adapter, const tautline::OrientedPiece* piece,
     signed char* validity, vtkDataSet* output);
-  /// Validity and smallest determinant of curved cells, NaN for the others; returns how many there
-  /// are.
-  vtkIdType CertifyCurved(vtkDataSet* input, const tautline::MeshAdapter& adapter,
-    signed char* validity, std::vector<double>& minimum);
+  /// The curved cells of a block, certified; adds what is remarked and found to the output.
+  std::unique_ptr<tautline::CurvedQuality> CertifyCurved(
+    vtkDataSet* input, const tautline::MeshAdapter& adapter, signed char* validity);
+  /// Which of the metrics hold for the whole curved cell.
+  void AddCurvedNotice(const tautline::CurvedQuality& curved,
+    const std::vector<tautline::Metric>& metrics, const tautline::EvaluationOptions& options);
   void AddToNotice(const std::string& sentences);
   tautline::Targets MakeTargets(
     vtkDataSet* input, vtkDataSet* reference, const tautline::MeshAdapter& adapter);

@@ -18,9 +18,8 @@ using CellKey = std::tuple<int, int, ElementOrders>; // VTK type, nodes, orders
 constexpr int firstBezier = 75, lastBezier = 81; // of VTK
 constexpr int lagrangeWedge = 73, bezierWedge = 80;
 
-/// The cells of each type and order.
-std::map<CellKey, std::vector<Index>> sortCells(
-  const Mesh& mesh, const CurvedCellFacts& facts, bool linear)
+/// The curved cells of each type and order.
+std::map<CellKey, std::vector<Index>> sortCells(const Mesh& mesh, const CurvedCellFacts& facts)
 {
   const MeshView& view = mesh.view();
   std::map<CellKey, std::vector<Index>> cells;
@@ -28,9 +27,7 @@ std::map<CellKey, std::vector<Index>> sortCells(
   {
     const int type = view.cellTypes[c];
     const bool rational = facts.rational && type >= firstBezier && type <= lastBezier;
-    const bool wanted =
-      isHigherOrder(type) || (linear && cornerType(type) != CellType::Unsupported);
-    if (!wanted || rational)
+    if (!isHigherOrder(type) || rational)
     {
       continue;
     }
@@ -63,17 +60,71 @@ const ElementType* typeOf(const CellKey& key)
   return nullptr;
 }
 
-void certifyCells(JacobianCertifier& certifier, const Mesh& mesh, const CurvedGroup& group,
-  const std::vector<Index>& positions, signed char* validity, double* minimum)
+/// The nodes of a cell in the order of the file.
+void restore(unsigned char vtkType, bool isReversed, bool turned, Index* nodes)
 {
-  const double* points = mesh.view().points;
+  if (isReversed)
+  {
+    reverseCell(cornerType(vtkType), nodes);
+  }
+  if (turned)
+  {
+    std::swap(nodes[1], nodes[2]);
+    std::swap(nodes[4], nodes[5]);
+  }
+}
+
+CurvedBlock blockOf(const Mesh& mesh, int vtkType, const ElementType& type,
+  const std::vector<Index>& cells, const CurvedCellFacts& facts)
+{
+  const MeshView& view = mesh.view();
+  const bool turned = facts.wedgesTurned && (vtkType == lagrangeWedge || vtkType == bezierWedge);
+  const auto reversed = [&](Index cell) { return facts.reversed && facts.reversed[cell]; };
+  const auto changed = [&](Index cell) { return turned || reversed(cell); };
+  CurvedBlock block;
+  block.type = &type;
+  block.cells = cells;
+  block.normal = mesh.dimension() == Dimension::Planar ? mesh.normal() : Vec3{ 0, 0, 0 };
+  for (Index c : cells)
+  {
+    const Index* nodes = view.connectivity + view.offsets[c];
+    block.nodes.push_back(nodes);
+    if (changed(c))
+    {
+      block.restored.insert(block.restored.end(), nodes, nodes + type.nodes());
+    }
+  }
+  // Reversed cells have the opposite sign in the order of the file.
+  Index* own = block.restored.data();
+  for (std::size_t i = 0; i < cells.size(); ++i)
+  {
+    if (changed(cells[i]))
+    {
+      restore(view.cellTypes[cells[i]], reversed(cells[i]), turned, own);
+      block.nodes[i] = own;
+      own += type.nodes();
+    }
+  }
+  const bool mirrored = type.shape() == ElementShape::Wedge
+    ? orientationOf(type, view.points, block.nodes.data(), block.count()).mirrored()
+    : mesh.mirrored();
+  for (Index c : cells)
+  {
+    block.mirrored.push_back(mirrored != reversed(c));
+  }
+  return block;
+}
+
+void certifyCells(const CurvedBlock& block, JacobianCertifier& certifier, const double* points,
+  const std::vector<Index>& positions, signed char* validity, CurvedMinimum* minima)
+{
   std::vector<const Index*> nodes;
   for (Index i : positions)
   {
-    nodes.push_back(group.nodes(i));
+    nodes.push_back(block.nodes[i]);
   }
   std::vector<ElementValidity> verdicts(nodes.size());
-  if (!minimum)
+  if (!minima)
   {
     certifier.classify(points, nodes.data(), static_cast<Index>(nodes.size()), verdicts.data());
   }
@@ -81,44 +132,20 @@ void certifyCells(JacobianCertifier& certifier, const Mesh& mesh, const CurvedGr
   tolerance.relative = 1e-8;
   for (std::size_t n = 0; n < nodes.size(); ++n)
   {
-    const Index cell = group.cell(positions[n]);
-    if (minimum)
+    const Index cell = block.cells[positions[n]];
+    if (minima)
     {
       const JacobianBound bound = certifier.minimum(points, nodes[n], tolerance);
       verdicts[n] = bound.validity;
       // The bounds of a minimum near 0 may have different signs.
       const bool below = bound.validity == ElementValidity::Invalid && !(bound.upper < 0);
-      minimum[cell] = bound.validity == ElementValidity::NonFinite ? 0
-        : below                                                    ? bound.lower
-                                                                   : bound.upper;
+      minima[cell].value = bound.validity == ElementValidity::NonFinite ? 0
+        : below                                                         ? bound.lower
+                                                                        : bound.upper;
+      minima[cell].at = bound.at;
     }
     validity[cell] = static_cast<signed char>(verdicts[n]);
   }
-}
-
-void certifyGroup(
-  const Mesh& mesh, const CurvedGroup& group, signed char* validity, double* minimum, int threads)
-{
-  forEachChunk(group.count(), threads,
-    [&](Index, Index begin, Index end)
-    {
-      for (bool mirrored : { false, true })
-      {
-        std::vector<Index> positions;
-        for (Index i = begin; i < end; ++i)
-        {
-          if (group.mirrored(i) == mirrored)
-          {
-            positions.push_back(i);
-          }
-        }
-        if (!positions.empty())
-        {
-          JacobianCertifier certifier(group.type(), group.normal(), mirrored);
-          certifyCells(certifier, mesh, group, positions, validity, minimum);
-        }
-      }
-    });
 }
 
 static_assert(static_cast<int>(ElementValidity::Valid) == Valid &&
@@ -129,83 +156,78 @@ static_assert(static_cast<int>(ElementValidity::Valid) == Valid &&
 }
 
 //------------------------------------------------------------------------------
-CurvedGroup::CurvedGroup(const Mesh& mesh, int vtkType, const ElementType& type,
-  std::vector<Index> cells, const CurvedCellFacts& facts)
-  : Type(&type)
-  , Cells(std::move(cells))
-  , Reversed(facts.reversed)
-  , Turned(facts.wedgesTurned && (vtkType == lagrangeWedge || vtkType == bezierWedge))
-  , Normal(mesh.dimension() == Dimension::Planar ? mesh.normal() : Vec3{ 0, 0, 0 })
-  , Mirrored(mesh.mirrored())
+std::vector<Index> CurvedBlock::positions(Index begin, Index end, bool isMirrored) const
 {
-  const MeshView& view = mesh.view();
-  for (Index c : this->Cells)
+  std::vector<Index> found;
+  for (Index i = begin; i < end; ++i)
   {
-    const Index* nodes = view.connectivity + view.offsets[c];
-    this->Nodes.push_back(nodes);
-    if (this->changed(c))
+    if (static_cast<bool>(this->mirrored[i]) == isMirrored)
     {
-      this->Restored.insert(this->Restored.end(), nodes, nodes + type.nodes());
+      found.push_back(i);
     }
   }
-  // In the order of the file; reversed cells have the opposite sign there.
-  Index* own = this->Restored.data();
-  for (std::size_t i = 0; i < this->Cells.size(); ++i)
-  {
-    if (this->changed(this->Cells[i]))
-    {
-      this->restore(cornerType(vtkType), this->Cells[i], own);
-      this->Nodes[i] = own;
-      own += type.nodes();
-    }
-  }
-  if (type.shape() == ElementShape::Wedge)
-  {
-    this->Mirrored = orientationOf(type, view.points, this->Nodes.data(), this->count()).mirrored();
-  }
+  return found;
 }
 
 //------------------------------------------------------------------------------
-void CurvedGroup::restore(CellType corners, Index cell, Index* nodes) const
+std::vector<CurvedBlock> curvedBlocks(const Mesh& mesh, const CurvedCellFacts& facts)
 {
-  if (this->reversed(cell))
+  std::vector<CurvedBlock> blocks;
+  if (mesh.higherOrderCells() == 0)
   {
-    reverseCell(corners, nodes);
+    return blocks;
   }
-  if (this->Turned)
-  {
-    std::swap(nodes[1], nodes[2]);
-    std::swap(nodes[4], nodes[5]);
-  }
-}
-
-//------------------------------------------------------------------------------
-std::vector<CurvedGroup> curvedGroups(const Mesh& mesh, const CurvedCellFacts& facts, bool linear)
-{
-  std::vector<CurvedGroup> groups;
-  for (auto& [key, cells] : sortCells(mesh, facts, linear))
+  for (const auto& [key, cells] : sortCells(mesh, facts))
   {
     if (const ElementType* type = typeOf(key))
     {
-      groups.emplace_back(mesh, std::get<0>(key), *type, std::move(cells), facts);
+      blocks.push_back(blockOf(mesh, std::get<0>(key), *type, cells, facts));
     }
   }
-  return groups;
+  return blocks;
+}
+
+//------------------------------------------------------------------------------
+void certifyBlocks(const std::vector<CurvedBlock>& blocks, const double* points,
+  signed char* validity, CurvedMinimum* minima, int threads)
+{
+  for (const CurvedBlock& block : blocks)
+  {
+    forEachChunk(block.count(), threads,
+      [&](Index, Index begin, Index end)
+      {
+        for (bool mirrored : { false, true })
+        {
+          const std::vector<Index> positions = block.positions(begin, end, mirrored);
+          if (!positions.empty())
+          {
+            JacobianCertifier certifier(*block.type, block.normal, mirrored);
+            certifyCells(block, certifier, points, positions, validity, minima);
+          }
+        }
+      });
+  }
 }
 
 //------------------------------------------------------------------------------
 Index certifyCurvedCells(const Mesh& mesh, const CurvedCellFacts& facts, signed char* validity,
   double* minimum, int threads)
 {
+  const std::vector<CurvedBlock> blocks = curvedBlocks(mesh, facts);
+  std::vector<CurvedMinimum> minima(minimum && !blocks.empty() ? mesh.view().numberOfCells : 0);
+  certifyBlocks(
+    blocks, mesh.view().points, validity, minima.empty() ? nullptr : minima.data(), threads);
   Index certified = 0;
-  if (mesh.higherOrderCells() == 0)
+  for (const CurvedBlock& block : blocks)
   {
-    return certified;
-  }
-  for (const CurvedGroup& group : curvedGroups(mesh, facts))
-  {
-    certifyGroup(mesh, group, validity, minimum, threads);
-    certified += group.count();
+    certified += block.count();
+    for (Index cell : block.cells)
+    {
+      if (minimum)
+      {
+        minimum[cell] = minima[cell].value;
+      }
+    }
   }
   return certified;
 }

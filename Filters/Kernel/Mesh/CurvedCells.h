@@ -9,11 +9,10 @@
 #define tautline_CurvedCells_h
 
 #include "Mesh.h"
+#include "tautline/Elements/ElementType.h"
 
 namespace tautline
 {
-class ElementType;
-
 /// What a mesh does not have about its curved cells.
 struct CurvedCellFacts
 {
@@ -30,44 +29,49 @@ struct CurvedCellFacts
   bool rational = false;
 };
 
-/// Cells of one type and order, with their nodes in the order of the file.
-class CurvedGroup
+/// The curved cells of one type and order, as certifiers take them: in the order of the file.
+struct CurvedBlock
 {
-public:
-  CurvedGroup(const Mesh& mesh, int vtkType, const ElementType& type, std::vector<Index> cells,
-    const CurvedCellFacts& facts);
+  const ElementType* type = nullptr;
+  std::vector<Index> cells;
+  std::vector<const Index*> nodes; ///< by position in `cells`; of the view, or of `restored`
+  std::vector<Index> restored;     ///< nodes of cells whose corners the mesh has in another order
+  Vec3 normal = { 0, 0, 0 };       ///< of a planar mesh
+  /// By position, whether the cell is taken for its mirror image.
+  std::vector<unsigned char> mirrored;
 
-  const ElementType& type() const { return *this->Type; }
-  Index count() const { return static_cast<Index>(this->Cells.size()); }
-  Index cell(Index i) const { return this->Cells[i]; }
-  const Index* nodes(Index i) const { return this->Nodes[i]; }
-  /// Whether an element is taken for its mirror image.
-  bool mirrored(Index i) const { return this->Mirrored != this->reversed(this->Cells[i]); }
-  /// The normal of a mesh in a plane, for JacobianCertifier.
-  const Vec3& normal() const { return this->Normal; }
+  CurvedBlock() = default;
+  CurvedBlock(CurvedBlock&&) = default;
+  CurvedBlock(const CurvedBlock&) = delete; // `nodes` has places of `restored`
 
-private:
-  bool reversed(Index cell) const { return this->Reversed && this->Reversed[cell]; }
-  bool changed(Index cell) const { return this->Turned || this->reversed(cell); }
-  void restore(CellType corners, Index cell, Index* nodes) const;
-
-  const ElementType* Type;
-  std::vector<Index> Cells;
-  const unsigned char* Reversed;
-  bool Turned;
-  Vec3 Normal;
-  bool Mirrored;
-  std::vector<const Index*> Nodes; ///< by position in Cells
-  std::vector<Index> Restored;     ///< nodes of reversed cells
+  Index count() const { return static_cast<Index>(this->cells.size()); }
+  /// The positions from `begin` to `end` of cells that are mirrored, or of the others.
+  std::vector<Index> positions(Index begin, Index end, bool isMirrored) const;
 };
 
 /**
- * @brief The cells of quadratic and higher order that ElementType supports, by type and order;
- * wedges of one type and order are taken for their mirror images where most of them are reversed.
- * @param linear whether linear cells are groups, too
+ * @brief The cells of quadratic and higher order that ElementType supports.
+ *
+ * Wedges of one type and order are taken for their mirror images where most of them are reversed:
+ * files have them in two orders.
  */
-TAUTLINE_KERNEL_EXPORT std::vector<CurvedGroup> curvedGroups(
-  const Mesh& mesh, const CurvedCellFacts& facts, bool linear = false);
+TAUTLINE_KERNEL_EXPORT std::vector<CurvedBlock> curvedBlocks(
+  const Mesh& mesh, const CurvedCellFacts& facts);
+
+/// Where the determinant of a cell is smallest.
+struct CurvedMinimum
+{
+  double value = 0;      ///< 0 where a coordinate is not finite
+  Vec3 at = { 0, 0, 0 }; ///< reference coordinates, see ElementType.h
+};
+
+/**
+ * @brief The validity of the cells of some blocks, and their smallest determinants.
+ * @param validity of each cell of the mesh; those of other cells are left as they are
+ * @param minima of each cell of the mesh, or null
+ */
+TAUTLINE_KERNEL_EXPORT void certifyBlocks(const std::vector<CurvedBlock>& blocks,
+  const double* points, signed char* validity, CurvedMinimum* minima, int threads = 0);
 
 /**
  * @brief Replaces the validity, and the smallest determinant, of the cells of quadratic and higher
@@ -75,8 +79,7 @@ TAUTLINE_KERNEL_EXPORT std::vector<CurvedGroup> curvedGroups(
  *
  * The determinant refers to the same reference cells as the metric min_jacobian. In a plane its
  * sign is that of Mesh::normal(); a cell of a surface is valid if its normal vanishes nowhere.
- * Wedges of one type and order are taken for their mirror images where most of them are reversed:
- * files have them in two orders. Cells that ElementType does not support are left as they are.
+ * Cells that ElementType does not support are left as they are.
  *
  * @param validity of each cell
  * @param minimum of each cell; may be null. 0 where a coordinate is not finite.

@@ -236,7 +236,7 @@ TAUTLINE_PART(testIdeal)
   }
   TAUTLINE_CHECK_THROWS(
     MetricCertifier(ElementType::ofVtk(VTK_QUADRATIC_PYRAMID, 13), ElementMetric::ScaledJacobian),
-    "has no scaled Jacobian");
+    wording("a-pyramid-has-no-scaled-jacobian"));
 }
 
 /// The map (u, v) -> (u + a u^2, v): the mean ratio with x_u = 1 + 2 a u is smallest at u = 1.

@@ -6,9 +6,11 @@
 #include "VtkMeshes.h"
 
 #include "tautline/Mesh/CurvedCells.h"
+#include "tautline/Quality/CurvedQuality.h"
 
 #include "vtkCellTypeSource.h"
 #include "vtkElementQuality.h"
+#include "vtkTable.h"
 
 #include <map>
 
@@ -60,6 +62,56 @@ Measured measure(vtkUnstructuredGrid* grid, bool minimum = true)
   }
   return result;
 }
+
+/// The values of some metrics and the statistics.
+struct AllMeasured
+{
+  vtkSmartPointer<vtkDataSet> mesh;
+  vtkSmartPointer<vtkTable> statistics;
+  std::string notice, summary;
+
+  double value(const char* array, vtkIdType cell, int component = 0) const
+  {
+    return this->mesh->GetCellData()->GetArray(array)->GetComponent(cell, component);
+  }
+  double fact(const char* column) const
+  {
+    return this->statistics->GetValueByName(0, column).ToDouble();
+  }
+};
+
+AllMeasured measureAll(vtkDataSet* grid, const std::vector<const char*>& metrics,
+  int combination = vtkElementQuality::MEAN)
+{
+  vtkNew<vtkElementQuality> filter;
+  filter->SetInputData(grid);
+  filter->SetCombination(combination);
+  for (const char* metric : metrics)
+  {
+    filter->AddMetricByName(metric);
+  }
+  filter->Update();
+  AllMeasured all;
+  all.mesh = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  all.statistics = filter->GetStatistics();
+  all.notice = filter->GetNotice();
+  all.summary = filter->GetSummary();
+  return all;
+}
+
+/// A quadrilateral with x = u + u^2 and y = v: x_u = 1 + 2 u.
+vtkSmartPointer<vtkUnstructuredGrid> stretchedQuadrilateral()
+{
+  std::vector<Vec3> points = ElementType::ofVtk(VTK_BIQUADRATIC_QUAD, 9).coordinates();
+  for (Vec3& p : points)
+  {
+    p[0] += p[0] * p[0];
+  }
+  return gridOf(VTK_BIQUADRATIC_QUAD, { points });
+}
+
+constexpr int combinations[] = { vtkElementQuality::MEAN, vtkElementQuality::WORST,
+  vtkElementQuality::POWER_MEAN };
 }
 
 /// The middle node of a slanted edge at (c, c): the smallest determinant is 4 c - 1.
@@ -225,4 +277,191 @@ TAUTLINE_PART(testUnsupported)
   signed char validity = Valid;
   TAUTLINE_CHECK_EQUAL(certifyCurvedCells(mesh, {}, &validity, nullptr), 0);
   TAUTLINE_CHECK_EQUAL(int(validity), int(Valid));
+}
+
+/// Cells with straight edges have the metrics of linear cells: of T, which is the same everywhere.
+TAUTLINE_PART(testStraightCells)
+{
+  struct Pair
+  {
+    int curved, nodes, linear, corners;
+  };
+  for (const Pair& pair :
+    { Pair{ VTK_QUADRATIC_TRIANGLE, 6, VTK_TRIANGLE, 3 },
+      Pair{ VTK_BIQUADRATIC_QUAD, 9, VTK_QUAD, 4 }, Pair{ VTK_QUADRATIC_TETRA, 10, VTK_TETRA, 4 },
+      Pair{ VTK_QUADRATIC_HEXAHEDRON, 20, VTK_HEXAHEDRON, 8 },
+      Pair{ VTK_TRIQUADRATIC_HEXAHEDRON, 27, VTK_HEXAHEDRON, 8 },
+      Pair{ VTK_LAGRANGE_TETRAHEDRON, 20, VTK_TETRA, 4 } })
+  {
+    const Context context("VTK type " + std::to_string(pair.curved));
+    std::vector<Vec3> points = straightElement(ElementType::ofVtk(pair.curved, pair.nodes));
+    for (Vec3& p : points)
+    {
+      // An affine map, in the plane z = 0 for flat cells.
+      p = { 1.3 * p[0] + 0.4 * p[1] + 0.2 * p[2], 0.1 * p[0] + 0.9 * p[1] - 0.3 * p[2],
+        1.7 * p[2] };
+    }
+    const auto curved = gridOf(pair.curved, { points });
+    points.resize(pair.corners);
+    const auto linear = gridOf(pair.linear, { points });
+    std::vector<const char*> metrics;
+    for (const MetricInfo& info : metricRegistry())
+    {
+      const bool here = topology(cornerType(static_cast<unsigned char>(pair.linear))).dimension == 2
+        ? info.in2D
+        : info.in3D;
+      const bool wholly = (info.family == MetricFamily::Target && !info.user) ||
+        info.metric == Metric::Size || info.metric == Metric::ScaledJacobian ||
+        info.metric == Metric::MinimumJacobian;
+      if (here && wholly)
+      {
+        metrics.push_back(info.name);
+      }
+    }
+    for (int combination : combinations)
+    {
+      const AllMeasured a = measureAll(curved, metrics, combination);
+      const AllMeasured b = measureAll(linear, metrics, combination);
+      for (const char* metric : metrics)
+      {
+        const Context name(metric);
+        TAUTLINE_CHECK_NEAR(a.value(metric, 0), b.value(metric, 0),
+          1e-6 * std::max(1.0, std::abs(b.value(metric, 0))));
+      }
+    }
+  }
+}
+
+/// The mean by quadrature, the certified worst value, and which side of it the reciprocal has.
+TAUTLINE_PART(testCombinations)
+{
+  const auto grid = stretchedQuadrilateral();
+  const std::vector<const char*> metrics = { "mean_ratio", "imr", "condition_number",
+    "scaled_jacobian", "size", "mu_shape" };
+  const AllMeasured mean = measureAll(grid, metrics);
+  // The mean of 2 x / (x^2 + 1) over x from 1 to 3, and that of its reciprocal.
+  TAUTLINE_CHECK_NEAR(mean.value("mean_ratio", 0), 0.5 * std::log(5.0), 1e-5);
+  TAUTLINE_CHECK_NEAR(mean.value("imr", 0), 1 + std::log(3.0) / 4, 1e-5);
+  TAUTLINE_CHECK_NEAR(mean.value("mu_shape", 0), std::log(3.0) / 4, 1e-5);
+  TAUTLINE_CHECK_NEAR(mean.value("scaled_jacobian", 0), 1.0, 2e-3);
+  TAUTLINE_CHECK_NEAR(mean.value("size", 0), 2.0, 1e-12);
+  const AllMeasured worst = measureAll(grid, metrics, vtkElementQuality::WORST);
+  TAUTLINE_CHECK_NEAR(worst.value("mean_ratio", 0), 0.6, 1e-9);
+  TAUTLINE_CHECK_NEAR(worst.value("imr", 0), 1 / 0.6, 1e-8);
+  TAUTLINE_CHECK_NEAR(worst.value("condition_number", 0), 1 / 0.6, 1e-8);
+  // Of the samples, which are inside.
+  TAUTLINE_CHECK(worst.value("mu_shape", 0) < 1 / 0.6 - 1 && worst.value("mu_shape", 0) > 0.5);
+  const AllMeasured power = measureAll(grid, metrics, vtkElementQuality::POWER_MEAN);
+  TAUTLINE_CHECK(power.value("imr", 0) > mean.value("imr", 0));
+  TAUTLINE_CHECK(power.value("imr", 0) < worst.value("imr", 0));
+  TAUTLINE_CHECK(power.value("mean_ratio", 0) < mean.value("mean_ratio", 0));
+}
+
+/// A folded cell has negative metrics, though no sample is in the fold; the area is that of the
+/// curved cell, the place of the minimum is on the folded edge.
+TAUTLINE_PART(testFoldOfNoSample)
+{
+  const double c = 0.2499;
+  std::vector<Vec3> points = straightElement(ElementType::ofVtk(VTK_QUADRATIC_TRIANGLE, 6));
+  points[4] = { c, c, 0 };
+  const auto grid = gridOf(VTK_QUADRATIC_TRIANGLE, { points });
+  for (int combination : combinations)
+  {
+    const AllMeasured all = measureAll(grid,
+      { "imr", "mean_ratio", "condition_number", "scaled_jacobian", "mu_shape_nb", "size" },
+      combination);
+    for (const char* metric : { "imr", "mean_ratio", "condition_number", "scaled_jacobian" })
+    {
+      TAUTLINE_CHECK(all.value(metric, 0) < 0);
+    }
+    TAUTLINE_CHECK(all.value("mu_shape_nb", 0) > 0);
+    // Less two thirds of the height of the parabola over the edge.
+    TAUTLINE_CHECK_NEAR(all.value("size", 0), 0.5 + 4.0 / 3 * (c - 0.5), 1e-12);
+    TAUTLINE_CHECK_EQUAL(all.fact("Curved"), 1);
+    TAUTLINE_CHECK_EQUAL(all.fact("MissedAtCorners"), 0);
+    TAUTLINE_CHECK_EQUAL(all.fact("MissedAtIntegrationPoints"), 1);
+    const double u = all.value("MinimumCoordinates", 0), v = all.value("MinimumCoordinates", 0, 1);
+    TAUTLINE_CHECK_NEAR(u + v, 1, 1e-12);
+    // At a corner, where the parabola begins.
+    const Vec3 at = pointAt(ElementType::ofVtk(VTK_QUADRATIC_TRIANGLE, 6), points, { u, v, 0 });
+    for (int k = 0; k < 3; ++k)
+    {
+      TAUTLINE_CHECK_NEAR(all.value("MinimumPoint", 0, k), at[k], 1e-12);
+    }
+  }
+}
+
+/// Reversed cells, wedges of both orders and mirrored meshes have the metrics of valid ones.
+TAUTLINE_PART(testSigns)
+{
+  for (const auto& [vtkType, nodes] : { std::pair<int, int>(VTK_BIQUADRATIC_QUADRATIC_WEDGE, 18),
+         { VTK_LAGRANGE_WEDGE, 18 }, { VTK_QUADRATIC_TETRA, 10 }, { VTK_QUADRATIC_PYRAMID, 13 } })
+  {
+    const Context context("VTK type " + std::to_string(vtkType));
+    std::map<std::string, double> before;
+    for (double side : { 1.0, -1.0 })
+    {
+      SplitMix random(7, 2, nodes);
+      std::vector<Vec3> points = randomElement(ElementType::ofVtk(vtkType, nodes), 0.03, random);
+      for (Vec3& p : points)
+      {
+        p[2] *= side;
+      }
+      const std::vector<const char*> metrics = { "imr", "condition_number", "mu_shape", "size",
+        "mu_shape_size" };
+      for (int combination : combinations)
+      {
+        const AllMeasured all = measureAll(gridOf(vtkType, { points }), metrics, combination);
+        for (const char* metric : metrics)
+        {
+          const std::string key = metric + std::to_string(combination);
+          TAUTLINE_CHECK(all.value(metric, 0) > 0);
+          TAUTLINE_CHECK(side > 0 || std::abs(before[key] - all.value(metric, 0)) < 1e-9);
+          before[key] = all.value(metric, 0);
+        }
+      }
+    }
+  }
+}
+
+/// Metrics that are left at the corners, and other targets.
+TAUTLINE_PART(testMeasuredAtCorners)
+{
+  const auto grid = stretchedQuadrilateral();
+  const AllMeasured all = measureAll(grid, { "edge_ratio", "imr" });
+  TAUTLINE_CHECK_NEAR(all.value("edge_ratio", 0), 2.0, 1e-12);
+  TAUTLINE_CHECK(contains(all.notice, "imr"));
+  TAUTLINE_CHECK(contains(all.notice, "edge_ratio"));
+  const Mesh mesh(MeshData().view());
+  const CurvedQuality none(mesh, {});
+  TAUTLINE_CHECK(!none.measures(Metric::MeanRatio, {}));
+}
+
+/// Known numbers of the mesh of MFEM: 4 integration points find 109 of 219 invalid cells.
+TAUTLINE_PART(testCubeHoles)
+{
+  const auto elements =
+    elementsOf(readMfem(externalData("curved") + "/cube-holes-inv.mesh", false), FileTetrahedron10);
+  const auto grid = gridOf(VTK_QUADRATIC_TETRA, elements);
+  const AllMeasured all = measureAll(
+    grid, { "mean_ratio", "imr", "condition_number", "scaled_jacobian" }, vtkElementQuality::WORST);
+  double sums[3] = {};
+  const vtkIdType cells = all.mesh->GetNumberOfCells();
+  for (vtkIdType cell = 0; cell < cells; ++cell)
+  {
+    const bool valid = all.value("Validity", cell) == double(Valid);
+    for (const char* metric : { "mean_ratio", "imr", "condition_number", "scaled_jacobian" })
+    {
+      TAUTLINE_CHECK_EQUAL(all.value(metric, cell) > 0, valid);
+    }
+    sums[0] += valid ? all.value("mean_ratio", cell) : 0;
+    sums[1] += valid ? 1 / all.value("condition_number", cell) : 0;
+    sums[2] += valid ? all.value("scaled_jacobian", cell) : 0;
+  }
+  TAUTLINE_CHECK_NEAR(sums[0] / static_cast<double>(cells), 0.65723, 1e-5);
+  TAUTLINE_CHECK_NEAR(sums[1] / static_cast<double>(cells), 0.63933, 1e-5);
+  TAUTLINE_CHECK_NEAR(sums[2] / static_cast<double>(cells), 0.43193, 1e-5);
+  TAUTLINE_CHECK_EQUAL(all.fact("Inverted") + all.fact("Degenerate"), 219);
+  TAUTLINE_CHECK_EQUAL(all.fact("MissedAtIntegrationPoints"), 219 - 109);
+  std::printf("corners %g\n", all.fact("MissedAtCorners"));
 }
