@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "QualityTotals.h"
 
+#include "tautline/Quality/ElementChecks.h"
+
 #include "vtkCellArray.h"
 #include "vtkDataArray.h"
 #include "vtkDoubleArray.h"
@@ -17,6 +19,7 @@
 #include <cstdio>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <sstream>
 
 namespace tautline
@@ -62,6 +65,30 @@ void QualityTotals::addCurved(const MissedCells& missed, const double* places)
   this->Missed.atCorners += missed.atCorners;
   this->Missed.atIntegrationPoints += missed.atIntegrationPoints;
   this->Places = places;
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::setChecks(const std::vector<int>& checks)
+{
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (int check : checks)
+  {
+    this->Checks[check] = { infinity, -infinity };
+  }
+}
+
+//------------------------------------------------------------------------------
+void QualityTotals::addCheck(int check, const signed char* validity, const unsigned char* skip,
+  const double* values, Index cells)
+{
+  CheckRange& range = this->Checks.at(check);
+  for (Index cell = 0; cell < cells; ++cell)
+  {
+    const bool counts =
+      !(skip && skip[cell]) && validity[cell] != NotMeasured && validity[cell] != NonFinite;
+    range.least = counts ? std::min(range.least, values[cell]) : range.least;
+    range.most = counts ? std::max(range.most, values[cell]) : range.most;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -132,6 +159,12 @@ void QualityTotals::gather(vtkMultiProcessController* controller)
   this->Counts = { sums[0], sums[1], sums[2], sums[3], sums[4] };
   this->Missed = { sums[5], sums[6], sums[7], sums[8] };
   std::copy(sums.begin() + 9, sums.end(), this->Angles.begin());
+  for (auto& [check, range] : this->Checks)
+  {
+    const CheckRange own = range;
+    controller->AllReduce(&own.least, &range.least, 1, vtkCommunicator::MIN_OP);
+    controller->AllReduce(&own.most, &range.most, 1, vtkCommunicator::MAX_OP);
+  }
   int dimension = this->Dimension;
   controller->AllReduce(&dimension, &this->Dimension, 1, vtkCommunicator::MAX_OP);
 
@@ -465,6 +498,14 @@ std::string QualityTotals::summary() const
     {
       text << (i == 0 ? "\nWorst: " : ", ") << this->nameOf(worst[i]) << " ("
            << worst[i].element.value << ")" << (i + 1 == listed ? "." : "");
+    }
+  }
+  for (const auto& [check, range] : this->Checks)
+  {
+    const ElementCheckInfo& info = elementChecks()[check];
+    if (range.least <= range.most)
+    {
+      text << "\n" << info.label << ": " << range.least << " to " << range.most << ".";
     }
   }
   return text.str();

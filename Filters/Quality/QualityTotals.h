@@ -10,6 +10,7 @@
 #include "tautline/Quality/CurvedQuality.h"
 #include "tautline/Quality/Statistics.h"
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -44,6 +45,12 @@ public:
    */
   void addValues(std::size_t m, const Mesh& mesh, const CellValues& data, vtkDataArray* globalIds);
 
+  /// The checks of solvers, the same on all processes.
+  void setChecks(const std::vector<int>& checks);
+  /// Adds the values of a check of solvers on the block added last, see ElementChecks.h.
+  void addCheck(int check, const signed char* validity, const unsigned char* skip,
+    const double* values, Index cells);
+
   /// Brings everything to process 0. Collective; without a controller, nothing.
   void gather(vtkMultiProcessController* controller);
 
@@ -73,6 +80,11 @@ private:
     std::vector<Worst> worst;
     MetricStatistics statistics;
   };
+  /// The range of a check over the measured cells.
+  struct CheckRange
+  {
+    double least, most;
+  };
   void mergeWorst(std::size_t m, std::vector<Worst> more);
   void fillDistribution(int bins, vtkTable* table);
   void fillHistogram(int bins, vtkTable* table) const;
@@ -87,6 +99,7 @@ private:
   std::array<Index, angleBins.size() - 1> Angles{};
   ValidityCounts Counts;
   MissedCells Missed;
+  std::map<int, CheckRange> Checks;
   const double* Places = nullptr; ///< of the block added last, where it has curved cells
   Index CellsBefore = 0;          ///< cells of the blocks before the last one
   Index CellsOfLast = 0;

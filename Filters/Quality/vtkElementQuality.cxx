@@ -18,6 +18,7 @@
 #include "TargetChoice.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Quality/CurvedQuality.h"
+#include "tautline/Quality/ElementChecks.h"
 
 #include "vtkCellData.h"
 #include "vtkDataSet.h"
@@ -127,6 +128,35 @@ void vtkElementQuality::SetCriteria(const char* criteria)
 }
 
 //------------------------------------------------------------------------------
+void vtkElementQuality::SetChecks(const char* checks)
+{
+  const std::string text = checks ? checks : "";
+  if (text != this->Checks)
+  {
+    this->Checks = text;
+    this->Modified();
+  }
+}
+
+//------------------------------------------------------------------------------
+int vtkElementQuality::GetNumberOfKnownChecks()
+{
+  return static_cast<int>(tautline::elementChecks().size());
+}
+
+//------------------------------------------------------------------------------
+std::string vtkElementQuality::GetKnownCheck(int i)
+{
+  if (i < 0 || i >= GetNumberOfKnownChecks())
+  {
+    return std::string();
+  }
+  const tautline::ElementCheckInfo& info = tautline::elementChecks()[i];
+  return std::string(info.name) + "\t" + info.label + "\t" + info.formula + "\t" + info.source +
+    "\t" + info.note;
+}
+
+//------------------------------------------------------------------------------
 std::string vtkElementQuality::GetCriteriaPresets()
 {
   std::string names;
@@ -233,7 +263,13 @@ void vtkElementQuality::MeasureAll(
 {
   vtkDataObject* input = vtkDataObject::GetData(inputVector[0]);
   tautline::CriteriaGrader grader;
-  this->Together("use fewer criteria", [&] { grader = tautline::CriteriaGrader(this->Criteria); });
+  std::vector<int> checks;
+  this->Together("use fewer criteria",
+    [&]
+    {
+      grader = tautline::CriteriaGrader(this->Criteria);
+      checks = tautline::parseElementChecks(this->Checks);
+    });
   tautline::PieceOrientations orientations;
   const bool several = this->Controller && this->Controller->GetNumberOfProcesses() > 1;
   if (several || tautline::hasPartitions(input))
@@ -253,6 +289,7 @@ void vtkElementQuality::MeasureAll(
     this->Notice = orientations.notice();
   }
   tautline::QualityTotals totals(grader.withMetrics(this->GetSelection().metrics()));
+  totals.setChecks(checks);
   tautline::BadElements bad;
   this->Together("choose fewer metrics or measure the mesh in parts",
     [&]
@@ -372,6 +409,7 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
       input->GetCellData()->GetGlobalIds());
   }
   progress.emplace(this, stepAt(metrics.size() + 1), stepAt(metrics.size() + 2));
+  this->MeasureChecks(input, adapter, validity->GetPointer(0), skipped, totals, output);
   // Ghosts have the grades of the cells that they are copies of, but do not count.
   const std::vector<unsigned char> beside = facesBesideVolumes(mesh);
   grader.grade(
@@ -413,11 +451,10 @@ void vtkElementQuality::SettleOrientation(tautline::MeshAdapter& adapter,
 }
 
 //------------------------------------------------------------------------------
-std::unique_ptr<tautline::CurvedQuality> vtkElementQuality::CertifyCurved(
-  vtkDataSet* input, const tautline::MeshAdapter& adapter, signed char* validity)
+tautline::CurvedCellFacts vtkElementQuality::CurvedFacts(
+  vtkDataSet* input, const tautline::MeshAdapter& adapter, std::vector<double>& degrees)
 {
   tautline::CurvedCellFacts facts;
-  std::vector<double> degrees;
   vtkDataArray* given = input->GetCellData()->GetHigherOrderDegrees();
   if (given && given->GetNumberOfComponents() == 3 && adapter.mesh().higherOrderCells() > 0)
   {
@@ -432,9 +469,38 @@ std::unique_ptr<tautline::CurvedQuality> vtkElementQuality::CertifyCurved(
   facts.reversed = reversed.empty() ? nullptr : reversed.data();
   facts.wedgesTurned = true; // by MeshAdapter
   facts.rational = input->GetPointData()->GetRationalWeights() != nullptr;
-  auto curved = std::make_unique<tautline::CurvedQuality>(adapter.mesh(), facts, this->Threads);
+  return facts;
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<tautline::CurvedQuality> vtkElementQuality::CertifyCurved(
+  vtkDataSet* input, const tautline::MeshAdapter& adapter, signed char* validity)
+{
+  std::vector<double> degrees;
+  auto curved = std::make_unique<tautline::CurvedQuality>(
+    adapter.mesh(), CurvedFacts(input, adapter, degrees), this->Threads);
   curved->certify(validity);
   return curved;
+}
+
+//------------------------------------------------------------------------------
+void vtkElementQuality::MeasureChecks(vtkDataSet* input, const tautline::MeshAdapter& adapter,
+  const signed char* validity, const unsigned char* skip, tautline::QualityTotals& totals,
+  vtkDataSet* output)
+{
+  using namespace tautline;
+  std::vector<double> degrees;
+  const CurvedCellFacts facts = CurvedFacts(input, adapter, degrees);
+  const Index cells = adapter.mesh().view().numberOfCells;
+  for (int check : parseElementChecks(this->Checks))
+  {
+    vtkNew<vtkDoubleArray> values;
+    values->SetName(elementChecks()[check].name);
+    values->SetNumberOfValues(cells);
+    evaluateElementCheck(adapter.mesh(), facts, check, values->GetPointer(0), this->Threads);
+    output->GetCellData()->AddArray(values);
+    totals.addCheck(check, validity, skip, values->GetPointer(0), cells);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -498,6 +564,7 @@ void vtkElementQuality::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ExtractBad: " << this->ExtractBad << "\n";
   os << indent << "HistogramBins: " << this->HistogramBins << "\n";
   os << indent << "Criteria: " << this->Criteria << "\n";
+  os << indent << "Checks: " << this->Checks << "\n";
   os << indent << "Verdict: " << this->Verdict << "\n";
   os << indent << "QualityIndex: " << this->QualityIndex << "\n";
   os << indent << "Controller: " << this->Controller << "\n";

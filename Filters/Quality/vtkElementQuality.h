@@ -4,12 +4,12 @@
  * @brief Measures every element of a mesh by any number of quality metrics.
  *
  * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from any
- * vtkDataSet or composite data set. Of cells of higher order, up to order 6, `Validity`, sizes and the
- * metrics of T = A W^-1 with the ideal target hold for the whole curved cell; lengths, angles and
- * metrics with another target are measured on the corners (see tautline/Quality/CurvedQuality.h).
- * Whether the mesh is planar, a surface or a volume is detected, and so is its orientation: a mesh that is
- * reversed throughout is reported and, by default, measured as if it were not; one of mixed
- * orientation is reported.
+ * vtkDataSet or composite data set. Of cells of higher order, up to order 6, `Validity`, sizes and
+ * the metrics of T = A W^-1 with the ideal target hold for the whole curved cell; lengths, angles
+ * and metrics with another target are measured on the corners (see
+ * tautline/Quality/CurvedQuality.h). Whether the mesh is planar, a surface or a volume is detected,
+ * and so is its orientation: a mesh that is reversed throughout is reported and, by default,
+ * measured as if it were not; one of mixed orientation is reported.
  *
  * @par Output port 0 `Mesh`:
  * The input with cell arrays: one per metric (double, named by the metric: "imr", "mean_ratio",
@@ -17,11 +17,13 @@
  * type), -3 not finite (coordinates NaN, infinite, or beyond 1e100 where most cells are not).
  * Values are always finite. A metric that is singular at a degenerate element is 0 there; one that
  * is not defined on a cell is 0. Inverted elements have negative values of signed metrics (see
- * MetricInfo::inverted); hexahedra and wedges that are folded between valid corners are
- * inverted, too, and have a negative "min_jacobian". Where there are curved cells, also
- * `MinimumPoint`, the place where the Jacobian determinant of a curved cell is smallest (of others
- * the center), and `MinimumCoordinates`, its parametric coordinates (of others 0). The first metric is the active cell scalar
- * array; point arrays pass, none of them active.
+ * MetricInfo::inverted); hexahedra and wedges that are folded between valid corners are inverted,
+ * too, and have a negative "min_jacobian". Where there are curved cells, also `MinimumPoint`, the
+ * place where the Jacobian determinant of a curved cell is smallest (of others the center), and
+ * `MinimumCoordinates`, its parametric coordinates (of others 0). The first metric is the active
+ * cell scalar array; point arrays pass, none of them active.
+ *
+ * Checks of solvers, if any are chosen, have cell arrays of their names.
  *
  * @par Output port 1 `Statistics`:
  * A vtkTable with a row per metric: `Metric`, `Label`, `Measured` (number of elements), `Minimum`,
@@ -29,15 +31,14 @@
  * `Worst`, `OutsideAcceptable`, `AcceptableLow`, `AcceptableHigh`, then the same in each row:
  * `Inverted`, `Degenerate`, `NotMeasured`, `NonFinite`, `Curved` (cells of higher order that are
  * certified), `MissedAtCorners` and `MissedAtIntegrationPoints` (those of them that are not valid,
- * though the determinant is positive at all corners, or at all points where solvers integrate: 4
- * of a quadratic tetrahedron, see tautline/Elements/ElementSamples.h); `WorstCells` (10 components: ids, worst
- * first, -1 where there are fewer) and `WorstPositions` (30 components: their centers, of curved
- * cells the places where the determinant is smallest). Statistics
- * are over the measured elements: the valid and the inverted ones of the highest dimension in the
- * data on which the metric is defined; degenerate elements and ghost cells do not count. `Worst` is
- * the value of an inverted element if there are any, else the maximum or minimum, by the direction
- * of the metric. The ten worst elements are the inverted, then the degenerate, then the worst
- * others.
+ * though the determinant is positive at all corners, or at all points where solvers integrate: 4 of
+ * a quadratic tetrahedron, see tautline/Elements/ElementSamples.h); `WorstCells` (10 components:
+ * ids, worst first, -1 where there are fewer) and `WorstPositions` (30 components: their centers,
+ * of curved cells the places where the determinant is smallest). Statistics are over the measured
+ * elements: the valid and the inverted ones of the highest dimension in the data on which the
+ * metric is defined; degenerate elements and ghost cells do not count. `Worst` is the value of an
+ * inverted element if there are any, else the maximum or minimum, by the direction of the metric.
+ * The ten worst elements are the inverted, then the degenerate, then the worst others.
  *
  * @par Output port 2 `Distribution`:
  * A vtkTable with HistogramBins rows; for each metric the columns `<metric> value` (middle of the
@@ -119,6 +120,7 @@ class CriteriaGrader;
 class CurvedQuality;
 class Mesh;
 class MeshAdapter;
+struct CurvedCellFacts;
 struct OrientedPiece;
 class PieceOrientations;
 class QualityTotals;
@@ -143,10 +145,11 @@ public:
   };
   ///@{
   /**
-   * How target metrics combine the corners of cells other than simplices, and the places of a curved
-   * cell: their mean, the worst, or the mean of the power Power (negated where larger is better). If
-   * some corners or places are inverted, only these are combined, but for metrics that untangle. The
-   * worst imr, mean_ratio and condition_number of a curved cell are certified. The default is MEAN.
+   * How target metrics combine the corners of cells other than simplices, and the places of a
+   * curved cell: their mean, the worst, or the mean of the power Power (negated where larger is
+   * better). If some corners or places are inverted, only these are combined, but for metrics that
+   * untangle. The worst imr, mean_ratio and condition_number of a curved cell are certified. The
+   * default is MEAN.
    */
   vtkTautlineSetRangeMacro(Combination, int, MEAN, POWER_MEAN);
   vtkGetMacro(Combination, int);
@@ -239,6 +242,25 @@ public:
 
   ///@{
   /**
+   * Checks of solvers and preprocessors by their own definitions: names, separated by commas, or
+   * "all"; see GetKnownCheck() and tautline/Quality/ElementChecks.h. Each is a cell array of its
+   * name, 0 where a cell has no value; the summary has its range. Whether they are known is
+   * checked on execution. The default, "", is none.
+   */
+  void SetChecks(const char* checks);
+  const char* GetChecks() const { return this->Checks.c_str(); }
+  ///@}
+  ///@{
+  /**
+   * The checks as text: check i as one line of tab-separated fields (name, label, formula, source,
+   * note; empty if there is no such check).
+   */
+  static int GetNumberOfKnownChecks();
+  static std::string GetKnownCheck(int i);
+  ///@}
+
+  ///@{
+  /**
    * The verdict of the last execution by the criteria: "passed", "warning", "failed", "none" if no
    * element could be graded, or "" without criteria; and the quality index of the mesh, 0 (ideal)
    * to 1. On several processes, of the whole.
@@ -309,6 +331,12 @@ private:
   /// The curved cells of a block, certified; adds what is remarked and found to the output.
   std::unique_ptr<tautline::CurvedQuality> CertifyCurved(
     vtkDataSet* input, const tautline::MeshAdapter& adapter, signed char* validity);
+  /// The orders of cells and the like; `degrees` keeps what the result points to.
+  static tautline::CurvedCellFacts CurvedFacts(
+    vtkDataSet* input, const tautline::MeshAdapter& adapter, std::vector<double>& degrees);
+  void MeasureChecks(vtkDataSet* input, const tautline::MeshAdapter& adapter,
+    const signed char* validity, const unsigned char* skip, tautline::QualityTotals& totals,
+    vtkDataSet* output);
   /// Which of the metrics hold for the whole curved cell.
   void AddCurvedNotice(const tautline::CurvedQuality& curved,
     const std::vector<tautline::Metric>& metrics, const tautline::EvaluationOptions& options);
@@ -327,6 +355,7 @@ private:
   vtkMultiProcessController* Controller = nullptr;
   std::string Notice;
   std::string Criteria;
+  std::string Checks;
   std::string Verdict;
   double QualityIndex = 0;
   double WorkingBytes = 0;

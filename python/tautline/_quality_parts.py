@@ -52,10 +52,13 @@ class QualityResult(Result):
     statistics : dict[str, dict[str, Any]]
         Per metric: label, measured, minimum, maximum, mean, rms, standard_deviation, quantile_01 to quantile_99, worst
         (nan if nothing was measured), outside_acceptable, acceptable_low, acceptable_high, inverted, degenerate,
-        not_measured, non_finite. All are over the measured elements: the valid and the inverted ones on which the
-        metric is defined. The worst value is that of an inverted element if there are any, else the maximum or minimum,
-        by the direction of the metric. Of the k elements to repair first, at most ten: worst_cells (k), worst_values
-        (k), worst_positions (k x 3); inverted elements come first, then degenerate ones, then the worst of the others.
+        not_measured, non_finite, curved (cells of higher order that are certified), missed_at_corners and
+        missed_at_integration_points (those of them that are not valid, though the determinant is positive at all
+        corners, or at all integration points of solvers). All are over the measured elements: the valid and the
+        inverted ones on which the metric is defined. The worst value is that of an inverted element if there are any,
+        else the maximum or minimum, by the direction of the metric. Of the k elements to repair first, at most ten:
+        worst_cells (k), worst_values (k), worst_positions (k x 3); inverted elements come first, then degenerate ones,
+        then the worst of the others.
     distribution : dict[str, dict[str, Array]]
         Per metric the histogram of the measured elements: value (centers of the bins) and count.
     histogram : dict[str, dict[str, Array]]
@@ -64,7 +67,8 @@ class QualityResult(Result):
     angles : dict[str, Array]
         angles (of volumes: dihedral angles) in the five bins of Table 2.7: from, to (degrees), count, percent.
     worst : vtkPolyData
-        A point at the center of each of the worst elements, with the arrays Metric, Rank, CellId, Value, Validity.
+        A point at the center of each of the worst elements, in curved ones where the determinant is smallest, with the
+        arrays Metric, Rank, CellId, Value, Validity.
     inverted, degenerate : int
         Number of inverted elements, and of elements without area or volume.
     verdict : str | None
@@ -75,13 +79,15 @@ class QualityResult(Result):
         Grade of each cell, m: 0 passed, 1 warning, 2 failed, -1 none; None without criteria.
     criteria : dict[str, dict[str, Any]]
         Per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
+    checks : dict[str, Array]
+        Per check of solvers, if any were chosen, its value on each cell, m.
     notice : str
         A note on the mesh (reversed orientation, cells left out), or "".
     summary : str
         The result in a few lines.
     """
 
-    _per_element: ClassVar[tuple[str, ...]] = ("values", "validity", "indices", "grades")
+    _per_element: ClassVar[tuple[str, ...]] = ("values", "validity", "indices", "grades", "checks")
     mesh: vtkDataObject
     values: dict[str, Array]
     validity: Array
@@ -97,6 +103,7 @@ class QualityResult(Result):
     indices: Array | None
     grades: Array | None
     criteria: dict[str, dict[str, Any]]
+    checks: dict[str, Array]
     notice: str
     summary: str
 
@@ -258,9 +265,16 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
         indices=cell_array(mesh, "QualityIndex") if graded else None,
         grades=cell_array(mesh, "Grade") if graded else None,
         criteria=by_metric(_by_metric(columns(filter_.GetCriteriaTable())) if graded else {}),
+        checks={name: cell_array(mesh, name) for name in _chosen_checks(filter_)},
         notice=filter_.GetNotice(),
         summary=filter_.GetSummary(),
     )
+
+
+def _chosen_checks(filter_: Any) -> list[str]:
+    wanted = {name.strip() for name in filter_.GetChecks().split(",")}
+    known = [filter_.GetKnownCheck(i).split("\t")[0] for i in range(filter_.GetNumberOfKnownChecks())]
+    return [name for name in known if name in wanted or "all" in wanted]
 
 
 def _statistics(table: dict[str, Any], worst: vtkPolyData) -> dict[str, dict[str, Any]]:

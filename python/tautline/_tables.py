@@ -39,6 +39,9 @@ def quality_text(result: QualityResult, worst: int = 0) -> str:
     counts += f"{result.inverted} inverted, {result.degenerate} degenerate"
     for key, text in (("not_measured", "not measured"), ("non_finite", "not finite")):
         counts += f", {total[key]} {text}" if total[key] else ""
+    if total["missed_at_corners"] or total["missed_at_integration_points"]:
+        counts += f"\nnot valid, but valid at all corners: {total['missed_at_corners']}, at all integration points: "
+        counts += f"{total['missed_at_integration_points']}"
     rows = [[name, *(facts[key] for key in _STATISTICS)] for name, facts in result.statistics.items()]
     table = align(rows, ["metric", *(_HEADINGS.get(key, key) for key in _STATISTICS)])
     parts = [_verdict(result), counts, result.notice, table]
@@ -48,11 +51,18 @@ def quality_text(result: QualityResult, worst: int = 0) -> str:
         for low, high, count, percent in zip(angles["from"], angles["to"], angles["count"], angles["percent"])
     ]
     parts.append(align(rows, ["angle (degrees)", "count", "share"]))
+    if result.checks:
+        ranges = [[name, *_range(values[result.validity >= -1])] for name, values in result.checks.items()]
+        parts.append(align(ranges, ["check", "minimum", "maximum"]))
     for name, facts in result.statistics.items() if worst else ():
         listed = zip(facts["worst_cells"][:worst], facts["worst_values"], facts["worst_positions"])
         rows = [[cell.item(), value.item(), *xyz.tolist()] for cell, value, xyz in listed]
         parts.append(align(rows, ["worst cell", name, "x", "y", "z"]))
     return "\n\n".join(part for part in parts if part)
+
+
+def _range(values: np.ndarray) -> tuple[Any, Any]:
+    return (values.min().item(), values.max().item()) if len(values) else ("", "")
 
 
 def _verdict(result: QualityResult) -> str:

@@ -19,7 +19,8 @@ constexpr int firstBezier = 75, lastBezier = 81; // of VTK
 constexpr int lagrangeWedge = 73, bezierWedge = 80;
 
 /// The curved cells of each type and order.
-std::map<CellKey, std::vector<Index>> sortCells(const Mesh& mesh, const CurvedCellFacts& facts)
+std::map<CellKey, std::vector<Index>> sortCells(
+  const Mesh& mesh, const CurvedCellFacts& facts, bool linear)
 {
   const MeshView& view = mesh.view();
   std::map<CellKey, std::vector<Index>> cells;
@@ -27,7 +28,9 @@ std::map<CellKey, std::vector<Index>> sortCells(const Mesh& mesh, const CurvedCe
   {
     const int type = view.cellTypes[c];
     const bool rational = facts.rational && type >= firstBezier && type <= lastBezier;
-    if (!isHigherOrder(type) || rational)
+    const bool wanted = isHigherOrder(type) ||
+      (linear && cornerType(static_cast<unsigned char>(type)) != CellType::Unsupported);
+    if (!wanted || rational)
     {
       continue;
     }
@@ -170,14 +173,14 @@ std::vector<Index> CurvedBlock::positions(Index begin, Index end, bool isMirrore
 }
 
 //------------------------------------------------------------------------------
-std::vector<CurvedBlock> curvedBlocks(const Mesh& mesh, const CurvedCellFacts& facts)
+std::vector<CurvedBlock> curvedBlocks(const Mesh& mesh, const CurvedCellFacts& facts, bool linear)
 {
   std::vector<CurvedBlock> blocks;
-  if (mesh.higherOrderCells() == 0)
+  if (mesh.higherOrderCells() == 0 && !linear)
   {
     return blocks;
   }
-  for (const auto& [key, cells] : sortCells(mesh, facts))
+  for (const auto& [key, cells] : sortCells(mesh, facts, linear))
   {
     if (const ElementType* type = typeOf(key))
     {

@@ -54,9 +54,10 @@ struct CurvedBlock
  *
  * Wedges of one type and order are taken for their mirror images where most of them are reversed:
  * files have them in two orders.
+ * @param linear whether also linear cells, whose map has the same form
  */
 TAUTLINE_KERNEL_EXPORT std::vector<CurvedBlock> curvedBlocks(
-  const Mesh& mesh, const CurvedCellFacts& facts);
+  const Mesh& mesh, const CurvedCellFacts& facts, bool linear = false);
 
 /// Where the determinant of a cell is smallest.
 struct CurvedMinimum
