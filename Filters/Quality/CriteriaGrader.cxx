@@ -90,12 +90,28 @@ std::vector<Metric> CriteriaGrader::withMetrics(std::vector<Metric> metrics) con
 {
   for (const QualityCriterion& criterion : this->Criteria.criteria)
   {
-    if (std::find(metrics.begin(), metrics.end(), criterion.metric) == metrics.end())
+    const bool listed =
+      std::find(metrics.begin(), metrics.end(), criterion.metric) != metrics.end();
+    if (criterion.check < 0 && !listed)
     {
       metrics.push_back(criterion.metric);
     }
   }
   return metrics;
+}
+
+//------------------------------------------------------------------------------
+std::vector<int> CriteriaGrader::withChecks(std::vector<int> checks) const
+{
+  for (const QualityCriterion& criterion : this->Criteria.criteria)
+  {
+    const bool listed = std::find(checks.begin(), checks.end(), criterion.check) != checks.end();
+    if (criterion.check >= 0 && !listed)
+    {
+      checks.push_back(criterion.check);
+    }
+  }
+  return checks;
 }
 
 //------------------------------------------------------------------------------
@@ -109,8 +125,7 @@ void CriteriaGrader::grade(const Mesh& mesh, const signed char* validity,
   std::vector<const double*> values;
   for (const QualityCriterion& criterion : this->Criteria.criteria)
   {
-    auto* array = vtkDoubleArray::SafeDownCast(
-      output->GetCellData()->GetArray(metricInfo(criterion.metric).name));
+    auto* array = vtkDoubleArray::SafeDownCast(output->GetCellData()->GetArray(criterion.name()));
     if (!array)
     {
       return; // aborted before it was measured
@@ -167,11 +182,11 @@ void CriteriaGrader::tabulate(vtkTable* table) const
   TableRows rows;
   for (std::size_t c = 0; c < this->Criteria.criteria.size(); ++c)
   {
-    const MetricInfo& info = metricInfo(this->Criteria.criteria[c].metric);
+    const QualityCriterion& criterion = this->Criteria.criteria[c];
     const CriteriaTotals::PerCriterion& total = this->Totals.criteria[c];
     rows.begin();
-    rows.addText("Metric", info.name);
-    rows.addText("Label", info.label);
+    rows.addText("Metric", criterion.name());
+    rows.addText("Label", criterion.label());
     const auto add = [&rows](const char* name, Index n) { rows.add(name, static_cast<double>(n)); };
     rows.add("Weight", this->Criteria.criteria[c].weight);
     add("Graded", total.graded);
@@ -218,8 +233,7 @@ std::string CriteriaGrader::summary() const
     {
       if (t.criteria[c].failed > 0)
       {
-        text << before << metricInfo(this->Criteria.criteria[c].metric).name << " "
-             << t.criteria[c].failed;
+        text << before << this->Criteria.criteria[c].name() << " " << t.criteria[c].failed;
         before = ", ";
       }
     }

@@ -32,8 +32,11 @@ public:
   /// These metrics, then those of the criteria that are not among them.
   std::vector<Metric> withMetrics(std::vector<Metric> metrics) const;
 
-  /// Grades the cells of a block by its cell arrays of the metrics; adds the arrays `Grade` and
-  /// `QualityIndex`. `uncounted` and `skip` as for gradeCells().
+  /// The same of the checks of solvers.
+  std::vector<int> withChecks(std::vector<int> checks) const;
+
+  /// Grades the cells of a block by its cell arrays of the metrics and checks; adds the arrays
+  /// `Grade` and `QualityIndex`. `uncounted` and `skip` as for gradeCells().
   void grade(const Mesh& mesh, const signed char* validity, const unsigned char* uncounted,
     const unsigned char* skip, vtkDataSet* output);
 

@@ -78,6 +78,17 @@ void QualityTotals::setChecks(const std::vector<int>& checks)
 }
 
 //------------------------------------------------------------------------------
+std::vector<int> QualityTotals::checks() const
+{
+  std::vector<int> checks;
+  for (const auto& [check, range] : this->Checks)
+  {
+    checks.push_back(check);
+  }
+  return checks;
+}
+
+//------------------------------------------------------------------------------
 void QualityTotals::addCheck(int check, const signed char* validity, const unsigned char* skip,
   const double* values, Index cells)
 {

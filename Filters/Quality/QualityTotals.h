@@ -47,6 +47,7 @@ public:
 
   /// The checks of solvers, the same on all processes.
   void setChecks(const std::vector<int>& checks);
+  std::vector<int> checks() const;
   /// Adds the values of a check of solvers on the block added last, see ElementChecks.h.
   void addCheck(int check, const signed char* validity, const unsigned char* skip,
     const double* values, Index cells);

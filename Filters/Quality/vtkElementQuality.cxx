@@ -268,7 +268,7 @@ void vtkElementQuality::MeasureAll(
     [&]
     {
       grader = tautline::CriteriaGrader(this->Criteria);
-      checks = tautline::parseElementChecks(this->Checks);
+      checks = grader.withChecks(tautline::parseElementChecks(this->Checks));
     });
   tautline::PieceOrientations orientations;
   const bool several = this->Controller && this->Controller->GetNumberOfProcesses() > 1;
@@ -492,7 +492,7 @@ void vtkElementQuality::MeasureChecks(vtkDataSet* input, const tautline::MeshAda
   std::vector<double> degrees;
   const CurvedCellFacts facts = CurvedFacts(input, adapter, degrees);
   const Index cells = adapter.mesh().view().numberOfCells;
-  for (int check : parseElementChecks(this->Checks))
+  for (int check : totals.checks())
   {
     vtkNew<vtkDoubleArray> values;
     values->SetName(elementChecks()[check].name);

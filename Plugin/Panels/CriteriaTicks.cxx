@@ -49,7 +49,7 @@ std::vector<double> criteriaLimits(const std::string& criteria, const std::strin
   {
     for (const QualityCriterion& criterion : parsed(criteria).criteria)
     {
-      if (metricInfo(criterion.metric).name != metric)
+      if (criterion.name() != metric)
       {
         continue;
       }

@@ -12,6 +12,7 @@
 #include "pqUndoStack.h"
 #include "pqView.h"
 
+#include "vtkDataObject.h"
 #include "vtkNew.h"
 #include "vtkPVDataInformation.h"
 #include "vtkSMParaViewPipelineControllerWithRendering.h"
@@ -36,6 +37,14 @@ constexpr const char* Style = "Representation";
 constexpr const char* WorstPort = "Worst";
 constexpr double WorstSize = 12.0; // pixels
 
+/// Cell array of the mesh where it has curved cells.
+constexpr const char* CurvedArray = "MinimumPoint";
+constexpr const char* Subdivision = "NonlinearSubdivisionLevel";
+/// Subdivisions of an edge, 2^3, with which it looks curved; ParaView's default is one.
+constexpr int CurvedLevel = 3, DefaultLevel = 1;
+/// Property of a representation whose edges were made to look curved.
+constexpr const char* Refined = "TautlineRefined";
+
 pqServerManagerModel* model()
 {
   pqApplicationCore* core = pqApplicationCore::instance();
@@ -54,6 +63,31 @@ pqOutputPort* insideOf(pqPipelineSource* source)
 {
   pqOutputPort* bad = source->getOutputPort(tautline::BadElementsPort);
   return bad ? bad : source->getOutputPort(tautline::SectionsPort);
+}
+
+bool isCurved(pqDataRepresentation* mesh)
+{
+  vtkPVDataInformation* info = mesh->getOutputPortFromInput()->getDataInformation();
+  return info->GetArrayInformation(CurvedArray, vtkDataObject::CELL) != nullptr;
+}
+
+/// Draws the edges of curved cells as curves, unless the user has chosen how, once.
+void refine(pqDataRepresentation* elements)
+{
+  if (!elements || elements->property(Refined).isValid() ||
+    !elements->getProxy()->GetProperty(Subdivision))
+  {
+    return;
+  }
+  elements->setProperty(Refined, true);
+  vtkSMPropertyHelper level(elements->getProxy(), Subdivision);
+  if (level.GetAsInt() == DefaultLevel)
+  {
+    SM_SCOPED_TRACE(PropertiesModified).arg("proxy", elements->getProxy());
+    level.Set(CurvedLevel);
+    elements->getProxy()->UpdateVTKObjects();
+    elements->renderViewEventually();
+  }
 }
 
 /// Draws points as spheres.
@@ -135,6 +169,18 @@ void pqTautlineBadElements::arrange(pqPipelineSource* source)
       elements = inside->getRepresentation(view);
     }
     pqDataRepresentation* points = worst ? worst->getRepresentation(view) : nullptr;
+    if (isCurved(mesh))
+    {
+      refine(mesh);
+      refine(elements);
+      // Where the determinant of the worst curved cells is smallest, which their faces hide.
+      if (some && worst && mesh->isVisible() && !points)
+      {
+        vtkNew<vtkSMParaViewPipelineControllerWithRendering> controller;
+        controller->Show(source->getSourceProxy(), worst->getPortNumber(), view->getViewProxy());
+        points = worst->getRepresentation(view);
+      }
+    }
     const bool pointsInside = points && points->isVisible() && isSolid(mesh);
     if (pointsInside)
     {

@@ -9,6 +9,10 @@
  * user set is kept. The output Worst is drawn as spheres, in a translucent mesh, too. With
  * criteria, the legend of the mesh has labels at their limits. The sections of Solve PDE are shown
  * in the same way.
+ *
+ * The edges of curved cells are subdivided so that they look curved (unless the user has changed
+ * Nonlinear Subdivision Level), and where such a mesh has bad elements, Worst is shown as well: its
+ * spheres are where the Jacobian determinant is smallest.
  */
 
 #ifndef pqTautlineBadElements_h

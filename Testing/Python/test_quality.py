@@ -103,6 +103,37 @@ def test_criteria():
     refused(wording("no-key-limit"), tl.quality, ONE, criteria={"limit": 1})
 
 
+def folded_tetrahedron(c: float):
+    """A quadratic tetrahedron with the middle node of edge 1 2 at (c, c, 0): the smallest determinant is 4 c - 1."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+    middles = [(corners[a] + corners[b]) / 2 for a, b in ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))]
+    middles[1] = np.array([c, c, 0])
+    return np.array([*corners, *middles]), {"tetra10": [list(range(10))]}
+
+
+def test_curved():
+    """The whole curved cell is measured, and what the integration points miss is counted."""
+    result = tl.quality(folded_tetrahedron(0.24), ["mean_ratio", "min_jacobian"], checks="all")
+    facts = result.statistics["mean_ratio"]
+    assert result.validity.tolist() == [-1] and abs(result.values["min_jacobian"][0] + 0.04) < 1e-7, result.values
+    assert result.values["mean_ratio"][0] < 0, result.values
+    missed = (facts["curved"], facts["missed_at_corners"], facts["missed_at_integration_points"])
+    assert missed == (1, 0, 1), missed
+    assert len(result.checks) == 13 and result.checks["calculix_jacobian"][0] > 0, result.checks
+    assert result.checks["jacobian_ratio"][0] < 0 and result.checks["midnode_angle"][0] > 0, result.checks
+    # The worst element is shown where the determinant is smallest: on the edge, whose places have z = 0.
+    x, y, z = facts["worst_positions"][0]
+    assert z == 0 and 0 <= x <= 1 and 0 <= y <= 1, facts["worst_positions"]
+    worst = tl.quality(folded_tetrahedron(0.4), "mean_ratio", combination="worst").values["mean_ratio"][0]
+    mean = tl.quality(folded_tetrahedron(0.4), "mean_ratio").values["mean_ratio"][0]
+    assert 0 < worst < mean < 1, (worst, mean)
+    # Presets have criteria of checks.
+    graded = tl.quality(folded_tetrahedron(0.3), criteria="nastran_solids")
+    assert graded.criteria["midnode_angle"]["warning"] == 1 and graded.verdict == "warning", graded.criteria
+    assert list(graded.checks) == ["midnode_angle"] and tl.quality(ONE).checks == {}
+    refused(wording("there-is-no-check-jacobi"), tl.quality, ONE, checks="jacobi")
+
+
 def test_targets():
     assert abs(tl.quality(ONE, "mu_size", size=2**0.5 / 12).values["mu_size"][0]) < 1e-12, "its own volume"
     twice = tl.quality(ONE, "mu_size", size=[2**0.5 / 6])

@@ -273,6 +273,8 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
 
 def _chosen_checks(filter_: Any) -> list[str]:
     wanted = {name.strip() for name in filter_.GetChecks().split(",")}
+    if filter_.GetVerdict():
+        wanted |= set(columns(filter_.GetCriteriaTable())["Metric"])
     known = [filter_.GetKnownCheck(i).split("\t")[0] for i in range(filter_.GetNumberOfKnownChecks())]
     return [name for name in known if name in wanted or "all" in wanted]
 

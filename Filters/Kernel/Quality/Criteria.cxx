@@ -2,6 +2,7 @@
 #include "Criteria.h"
 
 #include "CriteriaPresets.h"
+#include "ElementChecks.h"
 
 #include <nlohmann/json.hpp>
 
@@ -170,6 +171,23 @@ void parseTypes(
   }
 }
 
+/// A check by its name, with what the limits of a metric depend on.
+bool findCheck(const std::string& name, int& number, MetricInfo& info)
+{
+  const std::vector<ElementCheckInfo>& checks = elementChecks();
+  const auto found = std::find_if(
+    checks.begin(), checks.end(), [&](const ElementCheckInfo& c) { return c.name == name; });
+  if (found == checks.end())
+  {
+    return false;
+  }
+  number = static_cast<int>(found - checks.begin());
+  info.name = found->name;
+  info.direction = found->direction;
+  info.cellTypes = ~0u;
+  return true;
+}
+
 QualityCriterion parseCriterion(const Json& json, const std::string& place)
 {
   checkObject(json, place, { "metric", "weight", "limits" });
@@ -178,13 +196,21 @@ QualityCriterion parseCriterion(const Json& json, const std::string& place)
     refuse(place, "\"metric\" and \"limits\" are needed");
   }
   const std::string name = text(json["metric"], place + ", metric");
+  QualityCriterion criterion;
+  MetricInfo check = {};
   const MetricInfo* info = findMetric(name);
-  if (!info)
+  if (info)
+  {
+    criterion.metric = info->metric;
+  }
+  else if (findCheck(name, criterion.check, check))
+  {
+    info = &check;
+  }
+  else
   {
     refuse(place, "there is no metric \"" + name + "\"; see the list of metrics");
   }
-  QualityCriterion criterion;
-  criterion.metric = info->metric;
   if (json.contains("weight"))
   {
     criterion.weight = number(json["weight"], place + ", weight");
@@ -212,11 +238,11 @@ QualityCriteria parse(const Json& json)
   {
     const std::string place = "criterion " + std::to_string(result.criteria.size() + 1);
     result.criteria.push_back(parseCriterion(item, place));
-    const Metric metric = result.criteria.back().metric;
+    const std::string name = result.criteria.back().name();
     if (std::count_if(result.criteria.begin(), result.criteria.end(),
-          [metric](const QualityCriterion& c) { return c.metric == metric; }) > 1)
+          [&name](const QualityCriterion& c) { return c.name() == name; }) > 1)
     {
-      refuse(place, std::string(metricInfo(metric).name) + " has a criterion already");
+      refuse(place, name + " has a criterion already");
     }
     weights += result.criteria.back().weight;
   }
@@ -226,6 +252,18 @@ QualityCriteria parse(const Json& json)
   }
   return result;
 }
+}
+
+//------------------------------------------------------------------------------
+const char* QualityCriterion::name() const
+{
+  return this->check >= 0 ? elementChecks()[this->check].name : metricInfo(this->metric).name;
+}
+
+//------------------------------------------------------------------------------
+const char* QualityCriterion::label() const
+{
+  return this->check >= 0 ? elementChecks()[this->check].label : metricInfo(this->metric).label;
 }
 
 //------------------------------------------------------------------------------

@@ -23,9 +23,10 @@
  *         { "metric": "min_angle", "weight": 1, "limits": {
  *             "triangle": { "ideal": 60, "good": 40, "warn": 20, "fail": 5, "worst": 0 } } } ] }
  *
- * `limits` is by cell type (triangle, quadrilateral, tetrahedron, hexahedron, wedge, pyramid) or
- * "all" for those that are not named and that the metric is defined on. `name`, `source`, a text or
- * a list of its lines, and `weight` (1) may be left out.
+ * `metric` is also the name of a check of solvers (see ElementChecks.h): these are defined on all
+ * types. `limits` is by cell type (triangle, quadrilateral, tetrahedron, hexahedron, wedge,
+ * pyramid) or "all" for those that are not named and that the metric is defined on. `name`,
+ * `source`, a text or a list of its lines, and `weight` (1) may be left out.
  */
 #ifndef tautline_Criteria_h
 #define tautline_Criteria_h
@@ -54,12 +55,17 @@ enum class Grade : signed char
 /// "passed", "warning", "failed" or "none".
 TAUTLINE_KERNEL_EXPORT const char* gradeName(Grade grade);
 
-/// The limits of one metric.
+/// The limits of one metric, or of a check of solvers.
 struct QualityCriterion
 {
   Metric metric = Metric::InverseMeanRatio;
+  int check = -1; ///< a position in elementChecks(), see ElementChecks.h; negative: the metric
   double weight = 1;
   std::array<std::optional<QualityLimits>, NumberOfCellTypes> limits; ///< by topologyIndex()
+
+  /// Of the metric or the check.
+  TAUTLINE_KERNEL_EXPORT const char* name() const;
+  TAUTLINE_KERNEL_EXPORT const char* label() const;
 };
 
 /// Criteria with the name and source of their limits.

@@ -119,9 +119,18 @@ constexpr std::array<CriteriaPreset, 10> CriteriaPresetTexts = { {
   "source": [
     "Altair HyperMesh 2021 reference guide, *elementtestequiaskew, equiangle skew of 2D and 3D",
     "elements: the threshold of its example, as the reference gives no default; an element beyond",
-    "it fails. Not here, as no metric has their definition: aspect ratio, warpage, skew, Jacobian,",
-    "interior angles of faces, tetra collapse, volumetric skew and volumetric aspect ratio" ],
+    "it fails; 2024 help, Element Quality Calculations, HyperMesh, Jacobian: at Gauss points",
+    "values of 0.7 and above are generally acceptable, below it there is a warning; there is no",
+    "limit of failure, so that elements fail where it is negative. Not here, as no metric has their",
+    "definition: aspect ratio, warpage, skew, interior angles of faces, tetra collapse, volumetric",
+    "skew and volumetric aspect ratio" ],
   "criteria": [
+    { "metric": "jacobian_integration", "weight": 1,
+      "limits": {
+        "tetrahedron": { "ideal": 1, "good": 0.85, "warn": 0.7, "fail": 0, "worst": 0 },
+        "hexahedron": { "ideal": 1, "good": 0.85, "warn": 0.7, "fail": 0, "worst": 0 },
+        "wedge": { "ideal": 1, "good": 0.85, "warn": 0.7, "fail": 0, "worst": 0 },
+        "pyramid": { "ideal": 1, "good": 0.85, "warn": 0.7, "fail": 0, "worst": 0 } } },
     { "metric": "equiangle_skew", "weight": 1,
       "limits": {
         "tetrahedron": { "ideal": 0, "good": 0.5, "warn": 0.7, "fail": 0.7, "worst": 1 },
@@ -136,9 +145,15 @@ constexpr std::array<CriteriaPreset, 10> CriteriaPresetTexts = { {
   "source": [
     "Autodesk Nastran 2025 reference, section 5, geometry processor parameters TRIMINIATOL,",
     "TRIMAXIATOL, QUADMINIATOL, QUADMAXIATOL: default tolerances of warnings; there are none of",
-    "errors by default, so that elements fail at 0 and 180 degrees. Not here, as no metric has",
-    "their definition: skew, taper, warping, and angles of the faces of solids" ],
+    "errors by default, so that elements fail at 0 and 180 degrees; TRIMAXEPADTOL, QUADMAXEPADTOL",
+    "(30): edge-point angular deviation, whose formula the reference does not state. Not here, as",
+    "no metric has their definition: skew, taper, warping, edge-point length ratio, and angles of",
+    "the faces of solids" ],
   "criteria": [
+    { "metric": "midnode_angle", "weight": 1,
+      "limits": {
+        "triangle": { "ideal": 0, "good": 15, "warn": 30, "fail": 180, "worst": 180 },
+        "quadrilateral": { "ideal": 0, "good": 15, "warn": 30, "fail": 180, "worst": 180 } } },
     { "metric": "min_angle", "weight": 1,
       "limits": {
         "triangle": { "ideal": 60, "good": 40, "warn": 10, "fail": 0, "worst": 0 },
@@ -156,9 +171,13 @@ constexpr std::array<CriteriaPreset, 10> CriteriaPresetTexts = { {
     "Autodesk Nastran 2019 and 2023 reference, section 5, geometry processor parameters",
     "TETFACEMINIATOL (5) and TETFACEMAXIATOL (170): default tolerances of the angles of faces",
     "(degrees); both are an equiangle skew of 55 / 60 = 110 / 120. There are no errors by default,",
-    "so that elements fail at 1. Not here, as no metric has their definition: aspect ratio, skew,",
-    "edge points; and the other solids, whose two tolerances are different skews" ],
+    "so that elements fail at 1; TETMAXEPADTOL (30): edge-point angular deviation, whose formula",
+    "the reference does not state. Not here, as no metric has their definition: aspect ratio, skew,",
+    "edge-point length ratio; and the other solids, whose two tolerances are different skews" ],
   "criteria": [
+    { "metric": "midnode_angle", "weight": 1,
+      "limits": {
+        "tetrahedron": { "ideal": 0, "good": 15, "warn": 30, "fail": 180, "worst": 180 } } },
     { "metric": "equiangle_skew", "weight": 1,
       "limits": {
         "tetrahedron": { "ideal": 0, "good": 0.5, "warn": 0.9166666666666666, "fail": 1,

@@ -112,7 +112,7 @@ TAUTLINE_PART(testPresets)
     for (const QualityCriterion& criterion : criteria.criteria)
     {
       const auto& found = criterion.limits[topologyIndex(type)];
-      if (criterion.metric == findMetric(metric)->metric && found)
+      if (criterion.name() == std::string(metric) && found)
       {
         return Limits{ found->warn, found->fail };
       }
@@ -143,6 +143,10 @@ TAUTLINE_PART(testPresets)
     (limits("hypermesh_solids", "equiangle_skew", CellType::Wedge) == Limits{ 0.7, 0.7 }));
   TAUTLINE_CHECK((limits("nastran_solids", "equiangle_skew", tet) == Limits{ 55.0 / 60, 1 }));
   TAUTLINE_CHECK_NEAR(55.0 / 60, (170.0 - 60) / (180 - 60), 1e-15);
+  // Checks of solvers, which no metric has the definition of.
+  TAUTLINE_CHECK((limits("hypermesh_solids", "jacobian_integration", tet) == Limits{ 0.7, 0 }));
+  TAUTLINE_CHECK((limits("nastran_solids", "midnode_angle", tet) == Limits{ 30, 180 }));
+  TAUTLINE_CHECK((limits("nastran", "midnode_angle", quad) == Limits{ 30, 180 }));
   const double quality = std::pow(0.05, 2.0 / 3);
   TAUTLINE_CHECK_NEAR(limits("ansys_solids", "mean_ratio", tet)[1], quality, 1e-15);
   TAUTLINE_CHECK_EQUAL(criteriaPresets().size(), std::size_t{ 10 });

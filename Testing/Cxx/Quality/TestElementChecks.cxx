@@ -8,6 +8,7 @@
 #include "tautline/Quality/ElementChecks.h"
 
 #include "vtkCellType.h"
+#include "vtkCellData.h"
 #include "vtkElementQuality.h"
 
 #include <map>
@@ -160,6 +161,11 @@ TAUTLINE_PART(testFilter)
   TAUTLINE_CHECK(mesh->GetCellData()->GetArray("midnode_angle")->GetTuple1(0) > 30);
   TAUTLINE_CHECK(!mesh->GetCellData()->GetArray("distortion"));
   TAUTLINE_CHECK(contains(filter->GetSummary(), elementChecks()[0].label));
+  // A preset measures its checks, too: the bend of 2 atan(0.8 / 2) has a warning.
+  TAUTLINE_SET(*filter, SetChecks(""), SetCriteria("nastran_solids"), Update());
+  mesh = vtkDataSet::SafeDownCast(filter->GetOutputDataObject(0));
+  TAUTLINE_CHECK(mesh->GetCellData()->GetArray("midnode_angle"));
+  TAUTLINE_CHECK_EQUAL(mesh->GetCellData()->GetArray("Grade")->GetTuple1(0), 1);
   TAUTLINE_CHECK_EQUAL(vtkElementQuality::GetNumberOfKnownChecks(), 13);
   TAUTLINE_CHECK(vtkElementQuality::GetKnownCheck(13).empty());
 }
