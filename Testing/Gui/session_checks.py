@@ -14,11 +14,14 @@ import traceback
 import numpy
 from paraview import servermanager, simple
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructuredGridWriter
 
 PUSHED, BEYOND = 3, 0.3  # corners of the bracket, and how far behind the opposite face, of their height
 WORST_PORT, BAD_PORT = 4, 7  # of Element Quality
 SECTIONS_PORT = 2  # of Solve PDE
+QUADRATIC_TETRAHEDRON = 24  # of VTK
 TURN = 20  # degrees
 QUERY, RIGHT, WRONG = (120, 120, 120), (0, 150, 60), (215, 25, 30)  # frames on the sheet of Shape Retrieval
 WORST = (99.9, 2.87)  # of the valid elements of the bracket, tangled and optimized: inverse mean ratio
@@ -635,6 +638,41 @@ def bad_inside():
     values = vtk_to_numpy(servermanager.Fetch(quality).GetCellData().GetArray("imr"))
     outside = int(((values < 1) | (values > 3)).sum())
     assert bad.GetDataInformation().GetNumberOfCells() == outside > 200, outside
+
+
+@check
+def open_curved():
+    """A row of quadratic tetrahedra, one of them folded along an edge."""
+    corners = numpy.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+    middles = numpy.array([(corners[a] + corners[b]) / 2 for a, b in ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))])
+    grid, points = vtkUnstructuredGrid(), vtkPoints()
+    points.SetDataTypeToDouble()
+    for number in range(3):
+        nodes = numpy.concatenate([corners, middles])
+        nodes[5] = (0.2, 0.2, 0) if number == 1 else nodes[5]  # of the edge 1 2
+        ids = [points.InsertNextPoint(node + [2 * number, 0, 0]) for node in nodes]
+        grid.InsertNextCell(QUADRATIC_TETRAHEDRON, len(ids), ids)
+    grid.SetPoints(points)
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(os.path.join(os.environ["TAUTLINE_TEST_DIR"], "curved.vtu"))
+    writer.SetInputData(grid)
+    assert writer.Write()
+    reader = simple.XMLUnstructuredGridReader(FileName=[writer.GetFileName()])
+    simple.Show(reader)
+    simple.SetActiveSource(reader)
+
+
+@check
+def curved_shown():
+    """Curved edges are subdivided, and the worst elements are drawn where their determinant is smallest."""
+    quality = find("ElementQuality")
+    bad, worst = simple.OutputPort(quality, BAD_PORT), simple.OutputPort(quality, WORST_PORT)
+    for port in (quality, bad):
+        assert simple.GetDisplayProperties(port).NonlinearSubdivisionLevel == 3, port
+    shown = simple.GetDisplayProperties(worst)
+    assert shown.Visibility and shown.RenderPointsAsSpheres, shown.Visibility
+    first = servermanager.Fetch(quality, idx=WORST_PORT).GetPoint(0)
+    assert 2 <= first[0] <= 3 and first[2] == 0, first  # on the folded edge of the second tetrahedron
 
 
 @check

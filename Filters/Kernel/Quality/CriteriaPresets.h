@@ -121,9 +121,9 @@ constexpr std::array<CriteriaPreset, 10> CriteriaPresetTexts = { {
     "elements: the threshold of its example, as the reference gives no default; an element beyond",
     "it fails; 2024 help, Element Quality Calculations, HyperMesh, Jacobian: at Gauss points",
     "values of 0.7 and above are generally acceptable, below it there is a warning; there is no",
-    "limit of failure, so that elements fail where it is negative. Not here, as no metric has their",
-    "definition: aspect ratio, warpage, skew, interior angles of faces, tetra collapse, volumetric",
-    "skew and volumetric aspect ratio" ],
+    "limit of failure, so that elements fail where it is negative. Not here, as no metric has",
+    "their definition: aspect ratio, warpage, skew, interior angles of faces, tetra collapse,",
+    "volumetric skew and volumetric aspect ratio" ],
   "criteria": [
     { "metric": "jacobian_integration", "weight": 1,
       "limits": {
@@ -172,8 +172,9 @@ constexpr std::array<CriteriaPreset, 10> CriteriaPresetTexts = { {
     "TETFACEMINIATOL (5) and TETFACEMAXIATOL (170): default tolerances of the angles of faces",
     "(degrees); both are an equiangle skew of 55 / 60 = 110 / 120. There are no errors by default,",
     "so that elements fail at 1; TETMAXEPADTOL (30): edge-point angular deviation, whose formula",
-    "the reference does not state. Not here, as no metric has their definition: aspect ratio, skew,",
-    "edge-point length ratio; and the other solids, whose two tolerances are different skews" ],
+    "the reference does not state. Not here, as no metric has their definition: aspect ratio,",
+    "skew, edge-point length ratio; and the other solids, whose two tolerances are different",
+    "skews" ],
   "criteria": [
     { "metric": "midnode_angle", "weight": 1,
       "limits": {
