@@ -6,6 +6,7 @@ import json
 import numpy as np
 import tautline as tl
 from checks import DATA, OUT, refused, run_tests, wording
+from tautline._tables import quality_text
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 BRACKET, TANGLED, PLATE = (DATA / f"{name}.vtu" for name in ("bracket", "bracket-tangled", "plate"))
@@ -127,6 +128,8 @@ def test_curved():
     worst = tl.quality(folded_tetrahedron(0.4), "mean_ratio", combination="worst").values["mean_ratio"][0]
     mean = tl.quality(folded_tetrahedron(0.4), "mean_ratio").values["mean_ratio"][0]
     assert 0 < worst < mean < 1, (worst, mean)
+    text = quality_text(tl.quality(folded_tetrahedron(0.24), checks="distortion"))
+    assert "distortion" in text and "at all integration points: 1" in text, text
     # Presets have criteria of checks.
     graded = tl.quality(folded_tetrahedron(0.3), criteria="nastran_solids")
     assert graded.criteria["midnode_angle"]["warning"] == 1 and graded.verdict == "warning", graded.criteria

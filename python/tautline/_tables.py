@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Sequence
 import numpy as np
 
 if TYPE_CHECKING:
+    from ._arrays import Array
     from ._comparison_parts import CompareResult
     from ._quality_parts import QualityResult
 
@@ -52,7 +53,7 @@ def quality_text(result: QualityResult, worst: int = 0) -> str:
     ]
     parts.append(align(rows, ["angle (degrees)", "count", "share"]))
     if result.checks:
-        ranges = [[name, *_range(values[result.validity >= -1])] for name, values in result.checks.items()]
+        ranges = [[name, *_extremes(values[result.validity >= -1])] for name, values in result.checks.items()]
         parts.append(align(ranges, ["check", "minimum", "maximum"]))
     for name, facts in result.statistics.items() if worst else ():
         listed = zip(facts["worst_cells"][:worst], facts["worst_values"], facts["worst_positions"])
@@ -61,7 +62,7 @@ def quality_text(result: QualityResult, worst: int = 0) -> str:
     return "\n\n".join(part for part in parts if part)
 
 
-def _range(values: np.ndarray) -> tuple[Any, Any]:
+def _extremes(values: Array) -> tuple[Any, Any]:
     return (values.min().item(), values.max().item()) if len(values) else ("", "")
 
 
