@@ -20,14 +20,14 @@ CurvedProblem::CurvedProblem(const Mesh& mesh, const CurvedOptions& options)
   }
   const MeshView& view = mesh.view();
   Index elements = 0;
-  for (const CurvedGroup& group : curvedGroups(mesh, options.facts, true))
+  for (const CurvedBlock& block : curvedBlocks(mesh, options.facts, true))
   {
-    elements += group.type().dimension() == this->Dimension ? group.count() : 0;
-    for (Index i = 0; group.type().dimension() == this->Dimension && i < group.count(); ++i)
+    const ElementType& type = *block.type;
+    elements += type.dimension() == this->Dimension ? block.count() : 0;
+    for (Index i = 0; type.dimension() == this->Dimension && i < block.count(); ++i)
     {
-      const Index* nodes = group.nodes(i);
-      this->Elements.push_back({ &group.type(), group.mirrored(i), group.cell(i),
-        std::vector<Index>(nodes, nodes + group.type().nodes()) });
+      this->Elements.push_back({ &type, block.mirrored[i] != 0, block.cells[i],
+        std::vector<Index>(block.nodes[i], block.nodes[i] + type.nodes()) });
     }
   }
   Index supported = 0;

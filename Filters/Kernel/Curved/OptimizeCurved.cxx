@@ -202,7 +202,7 @@ CurvedSum<Dim> CurvedOptimization::makeSum(
     if (!table)
     {
       table = std::make_shared<const SampleTable>(
-        *element.type, element.mirrored, quadrature(element.type->shape(), element.type->orders()));
+        *element.type, element.mirrored, quadrature(*element.type));
     }
     SampleItem item;
     item.element = static_cast<Index>(e);

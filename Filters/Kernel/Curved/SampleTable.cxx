@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SampleTable.h"
 
+#include "tautline/Elements/ElementSamples.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -107,32 +109,6 @@ std::vector<SamplePlace> tetrahedronRule(int n)
   return places;
 }
 
-/// Walkington's rule of degree 5: two orbits of four places and one of six.
-std::vector<SamplePlace> walkingtonRule()
-{
-  constexpr double a = 0.31088591926330060980, ofA = 0.11268792571801585080;
-  constexpr double b = 0.092735250310891226402, ofB = 0.073493043116361949544;
-  constexpr double c = 0.045503704125649649492, ofC = 0.042546020777081466438;
-  std::vector<SamplePlace> places;
-  for (const auto& [x, weight] : { std::make_pair(a, ofA), std::make_pair(b, ofB) })
-  {
-    places.push_back({ { x, x, x }, weight });
-    for (int k = 0; k < 3; ++k)
-    {
-      Vec3 at = { x, x, x };
-      at[k] = 1 - 3 * x;
-      places.push_back({ at, weight });
-    }
-  }
-  constexpr double d = 0.5 - c;
-  for (const Vec3& at : { Vec3{ c, c, d }, Vec3{ c, d, c }, Vec3{ d, c, c }, Vec3{ c, d, d },
-         Vec3{ d, c, d }, Vec3{ d, d, c } })
-  {
-    places.push_back({ at, ofC });
-  }
-  return places;
-}
-
 /// All combinations of places over two factors; the second one is the line of w.
 std::vector<SamplePlace> times(const std::vector<SamplePlace>& base, const LineRule& line)
 {
@@ -165,8 +141,10 @@ constexpr int LeastSquarePlaces = 6;
 }
 
 //------------------------------------------------------------------------------
-std::vector<SamplePlace> quadrature(ElementShape shape, const ElementOrders& orders)
+std::vector<SamplePlace> quadrature(const ElementType& type)
 {
+  const ElementShape shape = type.shape();
+  const ElementOrders& orders = type.orders();
   const auto line = [](int order) { return order + 2; };
   std::vector<SamplePlace> places;
   switch (shape)
@@ -179,7 +157,16 @@ std::vector<SamplePlace> quadrature(ElementShape shape, const ElementOrders& ord
         std::max(LeastSquarePlaces, line(orders[0])), std::max(LeastSquarePlaces, line(orders[1])));
       break;
     case ElementShape::Tetrahedron:
-      places = orders[0] <= 2 ? walkingtonRule() : tetrahedronRule(orders[0] + 1);
+      if (orders[0] <= 2)
+      {
+        const ElementRule rule = quadratureOf(type); // of degree 5
+        for (std::size_t i = 0; i < rule.places.size(); ++i)
+        {
+          places.push_back({ rule.places[i], rule.weights[i] });
+        }
+        break;
+      }
+      places = tetrahedronRule(orders[0] + 1);
       break;
     case ElementShape::Hexahedron:
       places = times(squareRule(line(orders[0]), line(orders[1])), gaussLobatto(line(orders[2])));
@@ -286,13 +273,14 @@ SampleTable::SampleTable(const ElementType& type, bool mirrored, std::vector<Sam
   const int packets = (count + PacketWidth - 1) / PacketWidth;
   this->Weights.assign(packets, Packet{});
   this->Gradients.resize(static_cast<std::size_t>(packets) * this->Stride);
+  const ElementSamples samples(type, {});
   std::vector<Vec3> gradients;
   for (int sample = 0; sample < packets * PacketWidth; ++sample)
   {
     const int packet = sample / PacketWidth, lane = sample % PacketWidth;
     if (sample < count)
     {
-      gradients = type.shapeGradients(this->Places[sample].at);
+      gradients = samples.gradientsAt(this->Places[sample].at);
       this->Weights[packet][lane] = this->Places[sample].weight;
     }
     Packet* to = this->Gradients.data() + static_cast<std::size_t>(packet) * this->Stride;

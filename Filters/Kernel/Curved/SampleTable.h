@@ -7,8 +7,7 @@
  * The standard places are those of a quadrature whose weights are positive: with a negative one a
  * sum of barriers has no minimum. Intervals have Gauss-Lobatto rules, whose places include the
  * corners; triangles and tetrahedra products of Gauss-Jacobi rules (A. H. Stroud, "Approximate
- * calculation of multiple integrals", 1971), tetrahedra of order 2 the rule of degree 5 with 14
- * places (N. J. Walkington, "Quadrature on simplices of arbitrary dimension", 2000).
+ * calculation of multiple integrals", 1971), tetrahedra up to order 2 quadratureOf().
  */
 #ifndef tautline_SampleTable_h
 #define tautline_SampleTable_h
@@ -26,8 +25,8 @@ struct SamplePlace
   double weight; ///< share of the element
 };
 
-/// The places and weights of the quadrature over a shape; the weights add up to 1.
-std::vector<SamplePlace> quadrature(ElementShape shape, const ElementOrders& orders);
+/// The places and weights of the quadrature over an element; the weights add up to 1.
+std::vector<SamplePlace> quadrature(const ElementType& type);
 
 /// A matrix of the dimension of the element in the leading rows and columns.
 using SmallMatrix = std::array<std::array<double, 3>, 3>;

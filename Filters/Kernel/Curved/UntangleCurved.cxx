@@ -18,7 +18,7 @@ constexpr int DenseAfter = 2;                      ///< steps for which an eleme
 /// The samples of the quadrature and the nodes.
 std::shared_ptr<const SampleTable> tableOf(const CurvedElement& element)
 {
-  std::vector<SamplePlace> places = quadrature(element.type->shape(), element.type->orders());
+  std::vector<SamplePlace> places = quadrature(*element.type);
   for (SamplePlace& place : places)
   {
     place.weight *= RuleShare;

@@ -123,56 +123,24 @@ std::vector<long double> BernsteinSpace::valuesAt(const std::array<long double, 
   std::vector<long double> values(this->Exponents.size());
   for (int k = 0; k < this->size(); ++k)
   {
-    values[k] = this->productAt(at, k, -1, 0);
-  }
-  return values;
-}
-
-//------------------------------------------------------------------------------
-std::vector<long double> BernsteinSpace::derivativesAt(
-  const std::array<long double, 3>& at, int coordinate) const
-{
-  int factor = 0;
-  while (coordinate >= this->First[factor] + this->Factors[factor].dimension)
-  {
-    ++factor;
-  }
-  // By the coordinate itself, less by that of the vertex at the origin, which is one less the sum.
-  const int own = coordinate - this->First[factor] + 1;
-  std::vector<long double> slopes(this->Exponents.size());
-  for (int k = 0; k < this->size(); ++k)
-  {
-    slopes[k] = this->productAt(at, k, factor, own) - this->productAt(at, k, factor, 0);
-  }
-  return slopes;
-}
-
-//------------------------------------------------------------------------------
-/// A polynomial at a point; with a factor, its derivative by the barycentric coordinate of a vertex.
-long double BernsteinSpace::productAt(
-  const std::array<long double, 3>& at, int k, int factor, int derived) const
-{
-  long double value = this->Multinomials[k];
-  for (std::size_t f = 0; f < this->Factors.size(); ++f)
-  {
-    long double origin = 1;
-    for (int vertex = this->Factors[f].dimension; vertex >= 0; --vertex)
+    long double value = this->Multinomials[k];
+    for (std::size_t f = 0; f < this->Factors.size(); ++f)
     {
-      const long double coordinate = vertex > 0 ? at[this->First[f] + vertex - 1] : origin;
-      origin -= vertex > 0 ? coordinate : 0;
-      int exponent = this->vertexExponent(static_cast<int>(f), vertex, this->Exponents[k]);
-      if (static_cast<int>(f) == factor && vertex == derived)
+      long double origin = 1;
+      for (int vertex = this->Factors[f].dimension; vertex >= 0; --vertex)
       {
-        value *= exponent;
-        exponent = std::max(exponent - 1, 0);
-      }
-      for (int e = 0; e < exponent; ++e)
-      {
-        value *= coordinate;
+        const long double coordinate = vertex > 0 ? at[this->First[f] + vertex - 1] : origin;
+        origin -= vertex > 0 ? coordinate : 0;
+        const int exponent = this->vertexExponent(static_cast<int>(f), vertex, this->Exponents[k]);
+        for (int e = 0; e < exponent; ++e)
+        {
+          value *= coordinate;
+        }
       }
     }
+    values[k] = value;
   }
-  return value;
+  return values;
 }
 
 //------------------------------------------------------------------------------

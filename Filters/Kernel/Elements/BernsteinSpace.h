@@ -60,16 +60,11 @@ public:
 
   /// The values of all polynomials at a point.
   std::vector<long double> valuesAt(const std::array<long double, 3>& at) const;
-  /// Their derivatives by one coordinate.
-  std::vector<long double> derivativesAt(
-    const std::array<long double, 3>& at, int coordinate) const;
 
   /// The space of the products of polynomials of two spaces over the same factors.
   BernsteinSpace times(const BernsteinSpace& other) const;
 
 private:
-  long double productAt(const std::array<long double, 3>& at, int k, int factor, int derived) const;
-
   std::vector<BernsteinFactor> Factors;
   std::vector<int> First, Strides;
   std::vector<BernsteinExponents> Exponents;

@@ -68,8 +68,11 @@ public:
   void determinants(const double* points, const Index* nodes, const Vec3& normal, bool mirrored,
     double* result) const;
 
-private:
+  /// The gradients of the shape functions at a place, one per node; of a pyramid by the coordinates
+  /// that are not collapsed.
   std::vector<Vec3> gradientsAt(const Vec3& at) const;
+
+private:
   std::array<Vec3, 3> columns(
     const Vec3* gradients, const double* points, const Index* nodes) const;
 

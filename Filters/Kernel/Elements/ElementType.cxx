@@ -248,39 +248,4 @@ std::vector<double> ElementType::shapeFunctions(const Vec3& at) const
   }
   return values;
 }
-
-//------------------------------------------------------------------------------
-std::vector<Vec3> ElementType::shapeGradients(const Vec3& at) const
-{
-  std::array<long double, 3> place = { at[0], at[1], at[2] };
-  const bool pyramid = this->Shape == ElementShape::Pyramid;
-  if (pyramid)
-  {
-    place[2] = std::min<long double>(place[2], LargestPyramidHeight);
-  }
-  std::vector<Vec3> gradients(this->Coordinates.size(), Vec3{ 0, 0, 0 });
-  for (int axis = 0; axis < this->dimension(); ++axis)
-  {
-    const std::vector<long double> slopes = this->Space.derivativesAt(place, axis);
-    for (int k = 0; k < this->Controls.rows(); ++k)
-    {
-      for (int e = this->Controls.offsets[k]; e < this->Controls.offsets[k + 1]; ++e)
-      {
-        gradients[this->Controls.columns[e]][axis] +=
-          static_cast<double>(slopes[k]) * this->Controls.values[e];
-      }
-    }
-  }
-  for (Vec3& g : gradients)
-  {
-    if (pyramid)
-    {
-      // The chain rule from the collapsed cube: u = r / (1 - t), v = s / (1 - t), w = t.
-      const auto u = static_cast<double>(place[0]), v = static_cast<double>(place[1]);
-      const double perWidth = 1 / static_cast<double>(1 - place[2]);
-      g = { g[0] * perWidth, g[1] * perWidth, g[2] + (u * g[0] + v * g[1]) * perWidth };
-    }
-  }
-  return gradients;
-}
 }

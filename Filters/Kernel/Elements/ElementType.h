@@ -80,15 +80,6 @@ public:
   /// The values of the shape functions at a point of the reference element, one per node.
   std::vector<double> shapeFunctions(const Vec3& at) const;
 
-  /**
-   * @brief The gradients of the shape functions at a point of the reference element, one per node,
-   * with respect to its own coordinates: of a pyramid to (r, s, t) = (u (1 - w), v (1 - w), w). Its
-   * gradients depend on the direction from which the apex is approached; w is at most
-   * LargestPyramidHeight there.
-   */
-  std::vector<Vec3> shapeGradients(const Vec3& at) const;
-  static constexpr double LargestPyramidHeight = 1 - 1e-6;
-
 private:
   explicit ElementType(const VtkElement& element);
 
