@@ -4,9 +4,11 @@
  * @brief Gmsh's .msh 1, 2, 4.0 and 4.1, text and binary, and FreeFem++'s .msh, which has the same
  * ending.
  *
- * Points keep the order of the file, numbers with gaps are closed. Elements up to second order are
- * read; of a 14-node pyramid the node in its base is left out. Elements of third and fourth order
- * are read as linear ones, without the nodes that are no corners, with a warning. `Reference` is
+ * Points keep the order of the file, numbers with gaps are closed. Complete elements of orders 1 to
+ * 4 and the incomplete ones of second order (8, 13, 15 and 20 nodes) become VTK's cells: linear,
+ * quadratic, of order 3 and 4 Lagrange cells. Of a 14-node pyramid the node in its base is left out,
+ * with a warning. Refused by name, with the remedy: incomplete elements of order 3 and 4, pyramids
+ * of these orders, and elements of order 5 and more. `Reference` is
  * the physical tag (the first, where an entity has several), `Entity` the elementary one. $NodeData
  * and $ElementData become arrays (NaN where a node or element has no value), of several steps the
  * last one. Names of physical groups become the field arrays `PhysicalNames` and `PhysicalGroups`
@@ -54,18 +56,20 @@ struct GmshCell
 {
   int code;
   unsigned char type; ///< VTK's
-  int nodes;          ///< in Gmsh; more than VTK's where one is left out
-  /// Node i of VTK's cell is node order[i] of Gmsh's; null where they are the same.
-  const int* order;
-  bool onlyCorners = false; ///< of an element of higher order: the nodes after them are left out
+  int nodes;          ///< in Gmsh; one more than VTK's where it is left out
+  /// Node i of VTK's cell is node order[i] of Gmsh's; empty where they are the same.
+  std::vector<int> order;
 };
 
 /// Nodes of an element of Gmsh, at most.
 constexpr int MaxGmshNodes = 128;
 
-/// Null for an unknown code or type.
+/// The cell that elements of a code are read as; null for an unknown code.
 const GmshCell* gmshCellByCode(Index code);
-const GmshCell* gmshCellByType(unsigned char type);
+/// Null for a cell that Gmsh does not have.
+const GmshCell* gmshCellByType(unsigned char type, Index nodes);
+/// Why elements of an unknown code are not read, and the remedy.
+std::string gmshRefusal(Index code);
 
 /// Numbers of nodes or elements to positions.
 class GmshTags
@@ -96,8 +100,7 @@ struct GmshInput
   std::vector<Index> references, entities;
   std::size_t dataBudget = 0; ///< bytes that $NodeData and $ElementData may still take
   double version = 0.0;
-  Index elementsOfHighOrder = 0;
-  std::vector<unsigned char> inner; ///< per point: a node of such an element, but no corner
+  Index basesLeftOut = 0; ///< pyramids of 14 nodes
 
   Index integer(const char* what, Index low, Index high); ///< text: in any line
   double coordinate(const char* what);

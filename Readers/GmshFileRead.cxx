@@ -216,57 +216,14 @@ void findDimensions(GmshInput& input)
   }
 }
 
-/// Removes the nodes of elements of high order that no cell has.
-void dropInnerNodes(GmshInput& input)
-{
-  MeshFile& mesh = input.mesh;
-  if (input.elementsOfHighOrder == 0)
-  {
-    return;
-  }
-  for (const Index point : mesh.connectivity)
-  {
-    input.inner[static_cast<std::size_t>(point)] = 0;
-  }
-  const std::size_t count = input.inner.size();
-  std::vector<Index> place(count);
-  std::size_t kept = 0;
-  for (std::size_t p = 0; p < count; ++p)
-  {
-    place[p] = static_cast<Index>(kept);
-    if (input.inner[p])
-    {
-      continue;
-    }
-    std::copy_n(&mesh.points[3 * p], 3, &mesh.points[3 * kept]);
-    for (MeshArray& array : mesh.pointArrays)
-    {
-      const auto width = static_cast<std::size_t>(array.components);
-      for (std::size_t c = 0; c < width; ++c)
-      {
-        setValue(array, width * kept + c, array.at(width * p + c));
-      }
-    }
-    ++kept;
-  }
-  mesh.points.resize(3 * kept);
-  for (MeshArray& array : mesh.pointArrays)
-  {
-    array.resize(kept * static_cast<std::size_t>(array.components));
-  }
-  for (Index& point : mesh.connectivity)
-  {
-    point = place[static_cast<std::size_t>(point)];
-  }
-  mesh.warnings.push_back(std::to_string(input.elementsOfHighOrder) +
-    " elements of third or fourth order are read as linear ones; " + std::to_string(count - kept) +
-    " nodes that are no corners are left out.");
-}
-
 MeshFile finish(GmshInput& input)
 {
   findDimensions(input);
-  dropInnerNodes(input);
+  if (input.basesLeftOut > 0)
+  {
+    input.mesh.warnings.push_back("VTK's quadratic pyramids have no node in their base: of " +
+      std::to_string(input.basesLeftOut) + " pyramids of 14 nodes it is left out.");
+  }
   MeshFile mesh = std::move(input.mesh);
   if (!input.references.empty())
   {
@@ -435,11 +392,15 @@ void readGmshElements2(GmshInput& input)
       tags = next("number of tags");
     }
     const GmshCell* cell = gmshCellByCode(code);
-    if (!cell || inBlock < 1 || tags < 0 || tags > 1000)
+    if (!cell)
+    {
+      cursor.failAt(place, gmshRefusal(code));
+    }
+    if (inBlock < 1 || tags < 0 || tags > 1000)
     {
       cursor.failAt(place,
-        "an element of type " + std::to_string(code) + " with " + std::to_string(tags) +
-          " tags cannot be read; elements up to fourth order can");
+        "a block of " + std::to_string(inBlock) + " elements with " + std::to_string(tags) +
+          " tags cannot be read");
     }
     number = input.binary ? next("element number") : number;
     Index reference = 0, entity = 0;
@@ -484,11 +445,15 @@ void readGmshElements1(GmshInput& input)
     input.entities.push_back(cursor.integer("entity"));
     const Index size = cursor.integer("number of nodes");
     const GmshCell* cell = gmshCellByCode(code);
-    if (!cell || size != cell->nodes)
+    if (!cell)
+    {
+      cursor.failAt(place, gmshRefusal(code));
+    }
+    if (size != cell->nodes)
     {
       cursor.failAt(place,
         "an element of type " + std::to_string(code) + " with " + std::to_string(size) +
-          " nodes cannot be read; elements up to fourth order can");
+          " nodes, " + std::to_string(cell->nodes) + " are expected");
     }
     Index nodes[MaxGmshNodes];
     for (int n = 0; n < cell->nodes; ++n)
@@ -506,7 +471,7 @@ MeshFile readGmsh(const std::string& name, bool lowerCells)
   const FileContent file(name);
   // values for a few nodes only make arrays larger than the file; nothing sensible makes them huge
   const std::size_t budget = 1048576 + 64 * static_cast<std::size_t>(file.end() - file.begin());
-  GmshInput input{ TextCursor(file), false, {}, {}, {}, {}, {}, budget, 0.0, 0, {} };
+  GmshInput input{ TextCursor(file), false, {}, {}, {}, {}, {}, budget, 0.0, 0 };
   if (!input.cursor.skipToToken())
   {
     input.cursor.fail("the file is empty");

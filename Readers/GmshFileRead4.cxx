@@ -193,8 +193,7 @@ void readGmshElements4(GmshInput& input, const GmshPhysical& physical)
     const GmshCell* cell = gmshCellByCode(code);
     if (!cell)
     {
-      input.cursor.fail("elements of type " + std::to_string(code) +
-        " cannot be read; elements up to fourth order can");
+      input.cursor.fail(gmshRefusal(code));
     }
     if (size > count - input.mesh.numberOfCells())
     {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "GmshFile.h"
 
+#include "CellPlaces.h"
 #include "TextOutput.h"
 
 #include <algorithm>
@@ -225,6 +226,11 @@ void writeNodes(TextOutput& out, const MeshFile& mesh, const WrittenEntity& enti
   out << (binary ? "\n" : "") << "$EndNodes\n";
 }
 
+Index nodesOf(const MeshFile& mesh, std::size_t cell)
+{
+  return mesh.offsets[cell + 1] - mesh.offsets[cell];
+}
+
 /// Ends of the runs of cells of one type and entity.
 std::vector<std::size_t> findBlocks(const MeshFile& mesh, const Entities& entities)
 {
@@ -232,6 +238,7 @@ std::vector<std::size_t> findBlocks(const MeshFile& mesh, const Entities& entiti
   for (std::size_t cell = 1; cell <= mesh.cellTypes.size(); ++cell)
   {
     if (cell == mesh.cellTypes.size() || mesh.cellTypes[cell] != mesh.cellTypes[cell - 1] ||
+      nodesOf(mesh, cell) != nodesOf(mesh, cell - 1) ||
       entities.ofCell[cell] != entities.ofCell[cell - 1])
     {
       ends.push_back(cell);
@@ -251,12 +258,12 @@ void writeElements(TextOutput& out, const MeshFile& mesh, const Entities& entiti
   for (const std::size_t end : ends)
   {
     const WrittenEntity& entity = entities.list[entities.ofCell[cell]];
-    const GmshCell& gmsh = *gmshCellByType(mesh.cellTypes[cell]);
+    const GmshCell& gmsh = *gmshCellByType(mesh.cellTypes[cell], nodesOf(mesh, cell));
     record.tag(entity.dimension).tag(entity.tag).tag(gmsh.code).size(end - cell).endLine();
-    std::array<int, 32> place{}; // of VTK's node in Gmsh's order
-    for (int i = 0; i < gmsh.nodes; ++i)
+    std::array<int, MaxGmshNodes> place{}; // of VTK's node in Gmsh's order
+    for (std::size_t i = 0; i < static_cast<std::size_t>(gmsh.nodes); ++i)
     {
-      place[static_cast<std::size_t>(gmsh.order ? gmsh.order[i] : i)] = i;
+      place[gmsh.order.empty() ? i : static_cast<std::size_t>(gmsh.order[i])] = static_cast<int>(i);
     }
     for (; cell < end; ++cell)
     {
@@ -298,10 +305,15 @@ void refuseUnknown(const MeshFile& mesh, const std::string& name)
 {
   for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
   {
-    if (!gmshCellByType(mesh.cellTypes[cell]))
+    const unsigned char type = mesh.cellTypes[cell];
+    if (!gmshCellByType(type, nodesOf(mesh, cell)))
     {
-      throw FileError(name + ": Gmsh files cannot hold " + cellPlural(mesh.cellTypes[cell]) +
-        " (cell " + std::to_string(cell) + "); run Triangulate first");
+      const bool curved = linearType(type) != type;
+      throw FileError(name + ": Gmsh files cannot hold " + cellPlural(type) + " (cell " +
+        std::to_string(cell) + ")" +
+        (curved ? " of " + std::to_string(nodesOf(mesh, cell)) +
+              " nodes: those of orders 1 to 4, the same along all axes, are written; write .vtu"
+                : std::string("; run Triangulate first")));
     }
   }
 }

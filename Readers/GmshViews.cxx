@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "CellPlaces.h"
 #include "GmshFile.h"
 #include "TextOutput.h"
 
@@ -19,33 +20,6 @@ struct ViewCell
 };
 constexpr std::array<ViewCell, 8> ViewCells = { { { 0, 1, 'P' }, { 1, 2, 'L' }, { 2, 3, 'T' },
   { 2, 4, 'Q' }, { 3, 4, 'S' }, { 3, 8, 'H' }, { 3, 6, 'I' }, { 3, 5, 'Y' } } };
-
-/// VTK's linear cell with the corners of a cell; its nodes come first in both.
-unsigned char linearType(unsigned char type)
-{
-  switch (type)
-  {
-    case FileLine3:
-      return FileLine;
-    case FileTriangle6:
-      return FileTriangle;
-    case FileQuadrilateral8:
-    case FileQuadrilateral9:
-      return FileQuadrilateral;
-    case FileTetrahedron10:
-      return FileTetrahedron;
-    case FileHexahedron20:
-    case FileHexahedron27:
-      return FileHexahedron;
-    case FileWedge15:
-    case FileWedge18:
-      return FileWedge;
-    case FilePyramid13:
-      return FilePyramid;
-    default:
-      return type;
-  }
-}
 
 const ViewCell& viewCell(unsigned char type)
 {
@@ -72,13 +46,14 @@ bool writeElement(TextOutput& out, const MeshFile& mesh, const View& view, std::
 {
   const unsigned char type = linearType(mesh.cellTypes[cell]);
   const ViewCell& form = viewCell(type);
-  const int* order = gmshCellByType(type)->order;
+  const Index size = mesh.offsets[cell + 1] - mesh.offsets[cell];
+  const std::vector<int>& order = gmshCellByType(mesh.cellTypes[cell], size)->order;
   const auto stride = static_cast<std::size_t>(view.array.components);
   std::array<std::size_t, 8> nodes{};
   for (std::size_t i = 0; i < form.corners; ++i)
   {
     const auto place = static_cast<std::size_t>(mesh.offsets[cell]) +
-      (order ? static_cast<std::size_t>(order[i]) : i);
+      (order.empty() ? i : static_cast<std::size_t>(order[i]));
     nodes[i] = static_cast<std::size_t>(mesh.connectivity[place]);
     for (std::size_t c = 0; c < view.count; ++c)
     {
@@ -154,7 +129,7 @@ std::vector<std::string> writeGmshViews(
 {
   for (std::size_t cell = 0; cell < mesh.cellTypes.size(); ++cell)
   {
-    if (!gmshCellByType(mesh.cellTypes[cell]))
+    if (!gmshCellByType(mesh.cellTypes[cell], mesh.offsets[cell + 1] - mesh.offsets[cell]))
     {
       throw FileError(name + ": Gmsh's views cannot hold " + cellPlural(mesh.cellTypes[cell]) +
         " (cell " + std::to_string(cell) + "); run Triangulate first");

@@ -19,7 +19,7 @@
 #ifndef tautline_MfemFile_h
 #define tautline_MfemFile_h
 
-#include "MeshFile.h"
+#include "CellPlaces.h"
 
 #include "tautline/Elements/ElementType.h"
 
@@ -32,9 +32,6 @@ constexpr int MaxMfemOrder = MaxElementOrder;
 
 /// Reads a mesh; `lowerCells`: with the boundary elements.
 TAUTLINEREADERS_EXPORT MeshFile readMfem(const std::string& name, bool lowerCells);
-
-/// A place in an element: the multiples of 1 / order of its reference coordinates.
-using LatticePoint = std::array<int, 3>;
 
 /// An element shape of MFEM, by its number in the files.
 struct MfemShape

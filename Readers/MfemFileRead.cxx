@@ -354,15 +354,13 @@ private:
     const MfemShape& shape = mfemShape(geometry);
     const int order = this->Space.order;
     const std::vector<LatticePoint> lattice = shape.lattice(order);
-    // VTK's linear and quadratic wedges list a triangle in the opposite order.
-    const bool mirrored = geometry == Prism && order <= 2;
+    const unsigned char type = cellCode(geometry, order);
     std::vector<Vec3> places;
-    for (LatticePoint place : this->nodePlaces(geometry))
+    // A pyramid is of first order, and has its corners alone.
+    for (const LatticePoint& place : shape.dimension == 0 || geometry == Pyramid
+        ? shape.corners
+        : cellPlaces(type, static_cast<Index>(lattice.size())))
     {
-      if (mirrored)
-      {
-        std::swap(place[0], place[1]);
-      }
       const auto found = std::find(lattice.begin(), lattice.end(), place);
       this->Orders[at].push_back(static_cast<std::size_t>(found - lattice.begin()));
       places.push_back({ static_cast<double>(place[0]) / order,
@@ -372,35 +370,6 @@ private:
     {
       this->Evaluations[at] = this->Space.evaluation(shape, places);
     }
-  }
-
-  /// Where VTK's cell has its nodes in the lattice.
-  std::vector<LatticePoint> nodePlaces(int geometry) const
-  {
-    const MfemShape& shape = mfemShape(geometry);
-    const int order = this->Space.order;
-    std::vector<LatticePoint> places = shape.corners;
-    if (shape.dimension == 1)
-    {
-      places[1][0] = order;
-      for (int i = 1; i < order; ++i)
-      {
-        places.push_back({ i, 0, 0 });
-      }
-      return places;
-    }
-    if (order == 1)
-    {
-      return places;
-    }
-    places.clear();
-    const int nodes = static_cast<int>(shape.lattice(order).size());
-    for (const Vec3& node : ElementType::ofVtk(cellCode(geometry, order), nodes).coordinates())
-    {
-      const auto nearest = [order](double x) { return static_cast<int>(std::lround(x * order)); };
-      places.push_back({ nearest(node[0]), nearest(node[1]), nearest(node[2]) });
-    }
-    return places;
   }
 
   Vec3 value(const std::vector<double>& values, Index node) const
