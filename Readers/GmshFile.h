@@ -6,10 +6,10 @@
  *
  * Points keep the order of the file, numbers with gaps are closed. Complete elements of orders 1 to
  * 4 and the incomplete ones of second order (8, 13, 15 and 20 nodes) become VTK's cells: linear,
- * quadratic, of order 3 and 4 Lagrange cells. Of a 14-node pyramid the node in its base is left out,
- * with a warning. Refused by name, with the remedy: incomplete elements of order 3 and 4, pyramids
- * of these orders, and elements of order 5 and more. `Reference` is
- * the physical tag (the first, where an entity has several), `Entity` the elementary one. $NodeData
+ * quadratic, of order 3 and 4 Lagrange cells. Of a 14-node pyramid the node in its base is left
+ * out, with a warning. Refused by name, with the remedy: incomplete elements of order 3 and 4,
+ * pyramids of these orders, and elements of order 5 and more. `Reference` is the physical tag (the
+ * first, where an entity has several), `Entity` the elementary one. $NodeData
  * and $ElementData become arrays (NaN where a node or element has no value), of several steps the
  * last one. Names of physical groups become the field arrays `PhysicalNames` and `PhysicalGroups`
  * (dimension, tag). A file that gives no dimension of a group: that of its elements; of no element,

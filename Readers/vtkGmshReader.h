@@ -4,8 +4,8 @@
  * @brief Reads Gmsh's .msh 1, 2, 4.0 and 4.1, text and binary, and FreeFem++'s .msh.
  *
  * Cell arrays: `Reference` (physical tag; FreeFem++: label), `Entity` (elementary tag). $NodeData
- * and $ElementData come as arrays of their names. Complete elements of orders 1 to 4, those of order
- * 3 and 4 as Lagrange cells, and the incomplete ones of second order; others are refused by name.
+ * and $ElementData come as arrays of their names. Complete elements of orders 1 to 4, of order 3
+ * and 4 as Lagrange cells, and the incomplete ones of second order; others are refused by name.
  *
  * Limits: periodic, ghost and partition data are skipped; of a field with several time steps the
  * last is kept.

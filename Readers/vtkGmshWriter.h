@@ -7,8 +7,8 @@
  * tautline::writeGmshViews. The rest is about .msh.
  *
  * `Reference` (else `BoundaryMarker`) becomes the physical tag, `Entity` the elementary one; all
- * other numeric arrays become $NodeData and $ElementData, as doubles. Linear and quadratic cells, and
- * Lagrange cells of orders 1 to 4 that are the same along all axes, mixed.
+ * other numeric arrays become $NodeData and $ElementData, as doubles. Linear and quadratic cells,
+ * and Lagrange cells of orders 1 to 4 that are the same along all axes, mixed.
  *
  * Limits: Gmsh itself shows data of 1, 3 or 9 components; others are written all the same.
  *

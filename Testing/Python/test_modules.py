@@ -20,7 +20,7 @@ PARTS = tuple(path.stem for path in PACKAGE.glob("_*_parts.py"))
 FLOORS = (
     ("_build", "_start"),
     ("_choices", "_vtk"),
-    ("_cell_names", "_classes", "_interrupts", "_names"),
+    ("_cell_names", "_classes", "_deck_numbers", "_interrupts", "_names"),
     ("_errors",),
     ("_arrays", "_files", "_formats", "_tables"),
     ("_binary_coordinates", "_grid_checks", "_views"),

@@ -16,6 +16,7 @@ from vtkmodules.vtkCommonDataModel import (
     vtkCellArray,
     vtkDataObject,
     vtkDataSet,
+    vtkDataSetAttributes,
     vtkPointSet,
     vtkPolyData,
     vtkUnstructuredGrid,
@@ -146,3 +147,33 @@ def writable(mesh: vtkDataSet) -> vtkDataSet:
     if bare_cells:
         made.SetCells(numpy_to_vtk(np.zeros(0, np.uint8), deep=True), vtkCellArray())
     return made
+
+
+#: What VTK's legacy files have no section for: the name of the array, whether it belongs to the points, and the number
+#: of its attribute.
+_ATTRIBUTES = (("HigherOrderDegrees", False, vtkDataSetAttributes.HIGHERORDERDEGREES),
+               ("RationalWeights", True, vtkDataSetAttributes.RATIONALWEIGHTS))  # fmt: skip
+
+
+def without_marks(mesh: vtkDataSet) -> vtkDataSet:
+    """The mesh in which the orders and weights of Lagrange and Bezier cells are plain arrays of these names.
+
+    The legacy writer of VTK leaves them out else.
+    """
+    made = mesh.NewInstance()
+    made.ShallowCopy(mesh)
+    for name, of_points, attribute in _ATTRIBUTES:
+        data = made.GetPointData() if of_points else made.GetCellData()
+        if (array := data.GetAbstractAttribute(attribute)) is not None:
+            data.SetActiveAttribute(-1, attribute)
+            if array.GetName() != name:
+                array.SetName(name)
+    return made
+
+
+def mark_attributes(mesh: vtkDataSet) -> None:
+    """Make the arrays of these names the attributes that VTK's cells take their orders and weights from."""
+    for name, of_points, attribute in _ATTRIBUTES:
+        data = mesh.GetPointData() if of_points else mesh.GetCellData()
+        if data.GetAbstractAttribute(attribute) is None and data.HasArray(name):
+            data.SetActiveAttribute(name, attribute)

@@ -27,7 +27,7 @@ from ._files import check_input, check_target, file_name, require_memory
 from ._formats import FORMATS, Format
 from ._groups import Groups, with_groups
 from ._interrupts import Progress, updating
-from ._grid_checks import check_grid, same_cells, writable
+from ._grid_checks import check_grid, mark_attributes, same_cells, writable
 from ._legacy import check_counts, scan_legacy
 from ._mesh import from_arrays
 from ._meshio import MESHIO_FORMATS, check_installed, from_meshio, is_meshio, meshio_of, read_meshio, write_meshio
@@ -608,6 +608,8 @@ def _read_vtk(name: str, form: Format) -> vtkDataObject:
         raise Error(f"{name}: holds no mesh ({mesh.GetClassName() if mesh else 'nothing'})")
     if legacy:
         check_counts(name, mesh, announced)
+        for leaf in leaves(mesh):
+            mark_attributes(leaf)
     if Path(name).suffix.lower() in _IN_PIECES:
         _remove_ghosts(mesh)
     return mesh

@@ -19,6 +19,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPointSet, vtkUnstructuredGrid
 
 from ._arrays import Array
+from ._deck_numbers import with_short_numbers
 from ._errors import Error
 from ._files import replacing_by_name
 from ._grid_checks import check_block
@@ -62,6 +63,7 @@ _LINES_ONLY = (".f3grid",)
 _ONE_LABEL = (".ugrid",)
 _LABELS = ("Reference", "ugrid:ref", "BoundaryMarker")
 _DIMENSION = {"line": 1, "triangle": 2, "quad": 2, "tetra": 3, "hexahedron": 3, "wedge": 3, "pyramid": 3}
+_MISSING_DIMENSIONS = {"wedge15": 3, "pyramid13": 3, "triangle7": 2}
 PACKAGE = "meshio (Debian: apt-get install python3-meshio)"
 _MOAB = ".h5m"
 _HDF5_FORMATS = (".med", _MOAB)
@@ -71,6 +73,7 @@ _ONLY_CELLS = {
     ".f3grid": ("FLAC3D", {"tetra", "pyramid", "wedge", "hexahedron", "triangle", "quad"}, 3),
     ".xml": ("DOLFIN", {"triangle", "tetra"}, 2),
     _MOAB: ("MOAB's format, as meshio writes it,", {"line", "triangle", "tetra"}, 0),
+    ".med": ("Salome MED, as meshio writes it,", set(_CELLS) - {"quad9", "hexahedron27", "triangle7"}, 0),
     # meshio writes line3 as B33H, which has two nodes
     ".inp": ("Abaqus", set(_CELLS) - {"line3", "vertex", "pyramid", "pyramid13", "triangle7", "hexahedron27"}, 0),
 }
@@ -169,6 +172,11 @@ def write_meshio(data: vtkDataSet, name: str, groups: Groups | None = None) -> l
     made = _labeled(made) if ending in _ONE_LABEL else made
     with replacing_by_name(name) as temporary:
         _quietly(name, "write", lambda: meshio.write(temporary, made), temporary)
+        if ending == ".inp":
+            with open(temporary, encoding="latin-1") as file:
+                lines = list(with_short_numbers(file))
+            with open(temporary, "w", encoding="latin-1") as file:
+                file.writelines(lines)
         if sets and ending == ".inp":
             with open(temporary, "a", encoding="ascii", errors="replace") as file:
                 file.write(element_sets(sets))
@@ -241,7 +249,16 @@ def _quietly(name: str, verb: str, action: Callable[[], Any], temporary: str = "
 
 def _module(name: str) -> Any:
     check_installed(name)
-    return import_module("meshio")
+    return _imported()
+
+
+def _imported() -> Any:
+    """meshio, whose meshes of version 5.0 fail for some of the cells that its formats have."""
+    meshio = import_module("meshio")
+    known = getattr(import_module("meshio._mesh"), "topological_dimension", {})
+    for kind, dimension in _MISSING_DIMENSIONS.items():
+        known.setdefault(kind, dimension)
+    return meshio
 
 
 def from_meshio(mesh: Any) -> vtkUnstructuredGrid:
@@ -326,7 +343,7 @@ def _add(fields: Any, name: str, values: Any) -> None:
 def meshio_of(data: vtkDataSet) -> Any:
     """The mesh of meshio of a data set. Raises Error if meshio is not installed, and for cells that it lacks."""
     try:
-        import meshio
+        meshio = _imported()
     except ImportError:
         raise Error(f"{PACKAGE} is not installed") from None
     count = data.GetNumberOfPoints()

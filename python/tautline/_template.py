@@ -25,6 +25,7 @@ from ._binary_coordinates import (
     foam_list,
     with_coordinates,
 )
+from ._deck_numbers import WIDEST, deck_number
 from ._errors import Error
 from ._files import replace_bytes
 from ._foam_case import copy_case
@@ -88,6 +89,8 @@ def rewritten(source: str, ending: str, content: bytes, before: Array, after: Ar
             if before[i, axis] == after[i, axis]:
                 continue
             new = _nastran(after[i, axis], content[a:b]) if nastran else _text(after[i, axis], layout, b - a)
+            if ending == _DECK and len(new.strip()) > WIDEST:
+                new = deck_number(after[i, axis]).encode()
             rounding = max(rounding, abs(_value(new) - after[i, axis]))
             begin = a
             if layout and len(new) > b - a:  # in a column of fixed width, into the blanks before it
@@ -104,7 +107,7 @@ def _other_coordinates(ending: str, content: bytes) -> str:
             "points of GRID are in coordinate systems of their own: save the model with GRID in the basic system, "
             "or write .vtu or .msh"
         )
-    if ending == ".inp" and _PLACED.search(content):
+    if ending == _DECK and _PLACED.search(content):
         return (
             "the points are those of parts, which instances place in the model: save it without parts and assemblies "
             "(Abaqus/CAE: model attributes), or write .vtu or .msh"
@@ -408,6 +411,7 @@ def _free_grid(line: bytes, place: int) -> Iterator[list[_Span]]:
 
 
 _NASTRAN = (".bdf", ".nas", ".fem")
+_DECK = ".inp"
 _GMSH = (".msh", ".msh2", ".msh4")
 #: How the coordinates of each format are found.
 LOCATORS: dict[str, Callable[[bytes], Iterator[list[_Span]]]] = {
@@ -418,7 +422,7 @@ LOCATORS: dict[str, Callable[[bytes], Iterator[list[_Span]]]] = {
     ".unv": _unv,
     FOAM: _foam,
     ".off": _off,
-    ".inp": _abaqus,
+    _DECK: _abaqus,
     ".bdf": _nastran_grids,
     ".nas": _nastran_grids,
     ".fem": _nastran_grids,

@@ -27,7 +27,7 @@ from vtkmodules.vtkCommonDataModel import (
 from ._errors import Error, watch
 from ._files import check_target, locked, replace_bytes, require_memory, sync_folder, temporary_name
 from ._formats import FORMATS, Format
-from ._grid_checks import writable
+from ._grid_checks import without_marks, writable
 from ._interrupts import updating
 from ._vtk import CLASSES
 
@@ -109,7 +109,9 @@ def _content(data: vtkDataObject, name: str, form: Format) -> bytes:
     writer = form.make_writer()
     for binary in ("SetFileTypeToBinary", "SetDataModeToBinary"):  # not appended data, see _io.py
         getattr(writer, binary, int)()
-    writer.SetInputData(writable(data) if isinstance(data, vtkDataSet) else data)
+    if isinstance(data, vtkDataSet):
+        data = writable(without_marks(data) if form.module == "vtkIOLegacy" else data)
+    writer.SetInputData(data)
     messages = watch(writer)
     require_memory(_MEMORY_OF_WRITERS * data.GetActualMemorySize(), f"writing {name}")
     content, written = _through_memory(writer)

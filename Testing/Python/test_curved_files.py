@@ -1,0 +1,212 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files of quadratic and Lagrange cells come back without loss: nodes, orders, types; by every format that has them."""
+
+import subprocess
+import sys
+import warnings
+from importlib.util import find_spec
+
+import numpy as np
+import tautline as tl
+from checks import DATA, OUT, points, refused, run_tests, wording
+from tautline._arrays import leaves
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
+
+FOLDER = OUT / "curved-files"
+FOLDER.mkdir(exist_ok=True)
+ORDERS = DATA / "orders.msh"
+#: VTK's linear cells, and its quadratic ones.
+LINES, LINEAR = (3, 21, 68), (5, 9, 10, 12, 13, 14)
+QUADRATIC = (22, 23, 24, 25, 26, 27, 28, 29, 32)
+MESHIO = find_spec("meshio") is not None
+
+
+def grid_of(wanted) -> vtkUnstructuredGrid:
+    """The cells of some types of the sample file, curved by a quadratic map that no symmetry leaves as it is."""
+    mesh = tl.read(ORDERS, lower_cells=True)
+    made = vtkUnstructuredGrid()
+    made.SetPoints(mesh.GetPoints())
+    for cell in range(mesh.GetNumberOfCells()):
+        if mesh.GetCellType(cell) in wanted:
+            made.InsertNextCell(mesh.GetCellType(cell), mesh.GetCell(cell).GetPointIds())
+    x = np.array(vtk_to_numpy(made.GetPoints().GetData()))
+    u = x - 2 * np.floor(x[:, :1] / 2) * [1, 0, 0]
+    bent = x + 0.03 * np.stack([u[:, 1] * u[:, 2], u[:, 0] ** 2, u[:, 0] * u[:, 1] + u[:, 2] ** 2], axis=1)
+    made.GetPoints().SetData(numpy_to_vtk(bent, deep=True))
+    return made
+
+
+def cells(mesh) -> list[tuple[int, list[list[float]]]]:
+    """The type and the places of the nodes of each cell, whatever numbers these have."""
+    x = points(mesh)
+    return [(mesh.GetCellType(c), [x[mesh.GetCell(c).GetPointId(i)].tolist()
+                                   for i in range(mesh.GetCell(c).GetNumberOfPoints())])
+            for c in range(mesh.GetNumberOfCells())]  # fmt: skip
+
+
+def check_same(found, expected, tolerance: float, name: str) -> None:
+    mine, its = cells(found), cells(expected)
+    assert [kind for kind, _ in mine] == [kind for kind, _ in its], (name, [k for k, _ in mine], [k for k, _ in its])
+    for (kind, here), (_, there) in zip(mine, its):
+        assert np.allclose(here, there, rtol=0, atol=tolerance), (name, kind)
+
+
+def test_vtk_files():
+    """Every type, orders that differ by axis, and the array HigherOrderDegrees."""
+    grid = grid_of((*LINES, *LINEAR, *QUADRATIC, 69, 70, 71, 72, 73))
+    assert grid.GetNumberOfCells() == 29
+    first = grid.GetNumberOfPoints()
+    for j in range(3):  # a quadrilateral of the orders 3 and 2
+        for i in range(4):
+            grid.GetPoints().InsertNextPoint(70 + i / 3, j / 2 + 0.05 * i * i, 0)
+    nodes = [first + i for i in (0, 3, 11, 8, 1, 2, 7, 9, 10, 4, 5, 6)]
+    grid.InsertNextCell(70, len(nodes), nodes)
+    third = [c for c in range(29) if grid.GetCell(c).GetNumberOfPoints() in (4, 10, 16, 20, 64, 40)]
+    rows = [[3 if c in third else 4] * 3 for c in range(29)] + [[3, 2, 0]]
+    degrees = numpy_to_vtk(np.array(rows, float), deep=True)
+    degrees.SetName("HigherOrderDegrees")
+    grid.GetCellData().SetHigherOrderDegrees(degrees)
+    quality = tl.quality(grid, "min_jacobian")
+    for name in ("a.vtu", "a.vtk"):
+        tl.write(grid, FOLDER / name)
+        found = tl.read(FOLDER / name)
+        check_same(found, grid, 0, name)
+        orders = found.GetCellData().GetHigherOrderDegrees()
+        assert orders is not None and orders.GetTuple3(29) == (3, 2, 0), name
+        again = tl.quality(found, "min_jacobian")
+        assert np.array_equal(again.values["min_jacobian"], quality.values["min_jacobian"]), name
+
+
+def test_gmsh():
+    grid = grid_of((*LINES, *LINEAR, *QUADRATIC, 69, 70, 71, 72, 73))
+    for binary in (False, True):
+        tl.write(grid, FOLDER / "a.msh", binary=binary)
+        check_same(tl.read(FOLDER / "a.msh", lower_cells=True), grid, 0, "a.msh")
+        moved = tl.read(FOLDER / "a.msh", lower_cells=True)
+        moved.GetPoints().SetPoint(300, 1.0, 2.0, 1 / 3)
+        tl.write(moved, FOLDER / "b.msh", template=FOLDER / "a.msh")
+        check_same(tl.read(FOLDER / "b.msh", lower_cells=True), moved, 0, "b.msh")
+
+
+def test_solver_files():
+    """Abaqus, Nastran and MED by meshio; the first has no pyramids and no hexahedra of 27 nodes as meshio writes it."""
+    if not MESHIO:
+        return
+    kinds = {".inp": (24, 25, 26, 22, 23), ".med": (24, 25, 26, 27)}
+    for ending, wanted in kinds.items():
+        if ending == ".med" and find_spec("h5py") is None:
+            continue
+        for kind in wanted:
+            grid = grid_of((kind,))
+            name = FOLDER / f"cell-{kind}{ending}"
+            tl.write(grid, name)
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                check_same(tl.read(name), grid, 1e-11, str(name))
+
+
+def test_deck_numbers():
+    """CalculiX reads twenty characters of a number: no coordinate of a deck is longer, written anew or as a copy."""
+    if not MESHIO:
+        return
+    grid = grid_of((24,))
+    x = points(grid)
+    x[grid.GetCell(0).GetPointId(3)] = (-1.2345678901234567e-16, 1 / 3, -2 / 3e5)
+    grid.GetPoints().SetData(numpy_to_vtk(x, deep=True))
+    tl.write(grid, FOLDER / "deck.inp")
+    moved = tl.read(FOLDER / "deck.inp")
+    moved.GetPoints().SetPoint(0, -7.910973071234567e-16, -1 / 7e4, 2 / 3)
+    tl.write(moved, FOLDER / "moved.inp", template=FOLDER / "deck.inp")
+    for name, expected in (("deck.inp", grid), ("moved.inp", moved)):
+        rows = (FOLDER / name).read_text().split("*ELEMENT")[0].split("*NODE")[1].splitlines()[1:]
+        assert max(len(word.strip()) for row in rows for word in row.split(",")) <= 20, name
+        used = sorted({expected.GetCell(0).GetPointId(i) for i in range(10)})
+        assert np.allclose(points(tl.read(FOLDER / name))[used], points(expected)[used], rtol=1e-12, atol=0), name
+
+
+def test_exodus():
+    """What VTK's writer has: tetrahedra; as a copy with other coordinates, too."""
+    from vtkmodules.vtkIOExodus import vtkExodusIIWriter
+
+    grid = grid_of((24,))
+    writer = vtkExodusIIWriter()
+    writer.SetInputData(grid)
+    writer.SetFileName(str(FOLDER / "cell.e"))
+    writer.Write()
+    found = tl.read(FOLDER / "cell.e")
+    (leaf,) = leaves(found)
+    check_same(leaf, grid, 0, "cell.e")
+    leaf.GetPoints().SetPoint(4, 1.0, 2.0, 3.0)
+    leaf.Modified()
+    tl.write(found, FOLDER / "moved.e", template=FOLDER / "cell.e")
+    (again,) = leaves(tl.read(FOLDER / "moved.e"))
+    check_same(again, leaf, 0, "moved.e")
+
+
+GMSH = """
+import gmsh, sys
+order, name = int(sys.argv[1]), sys.argv[2]
+gmsh.initialize()
+gmsh.option.setNumber("General.Verbosity", 1)
+gmsh.model.occ.addTorus(0, 0, 0, 1, 0.35)
+gmsh.model.occ.synchronize()
+for option, value in (("MeshSizeMax", 0.5), ("ElementOrder", order), ("HighOrderOptimize", 0)):
+    gmsh.option.setNumber("Mesh." + option, value)
+gmsh.model.mesh.generate(3)
+gmsh.write(name)
+kind = gmsh.model.mesh.getElementTypes(3)[0]
+weights, places = gmsh.model.mesh.getIntegrationPoints(kind, "Gauss12")[::-1]
+determinants = gmsh.model.mesh.getJacobians(kind, places)[1]
+print(sum(d * weights[i % len(weights)] for i, d in enumerate(determinants)))
+at = [k / 12 for k in range(13)]
+grid = [x for r in at for s in at for t in at if r + s + t < 1 + 1e-9 for x in (r, s, t)]
+d = gmsh.model.mesh.getJacobians(kind, grid)[1]
+n = len(grid) // 3
+print(sum(min(d[i : i + n]) <= 0 for i in range(0, len(d), n)))
+"""
+
+
+def test_against_gmsh():
+    """Volume and invalid elements of curved meshes of orders 2 to 4 by Gmsh itself (its rule has 11 digits), and here."""
+    if find_spec("gmsh") is None:
+        return
+    for order in (2, 3, 4):
+        name = FOLDER / f"torus{order}.msh"
+        done = subprocess.run([sys.executable, "-c", GMSH, str(order), str(name)], capture_output=True, text=True)
+        volume, invalid = done.stdout.split()[-2:]
+        mesh = tl.read(name)
+        found = tl.quality(mesh, "min_jacobian")
+        assert found.inverted == int(invalid), (order, found.inverted, invalid)
+        own = curved_volume(mesh)
+        assert mesh.GetNumberOfCells() > 100 and abs(own - float(volume)) < 1e-9 * own, (order, own, volume)
+
+
+def curved_volume(mesh) -> float:
+    """By VTK's own shape functions and the points of a fine rule of Gauss, collapsed onto the tetrahedron."""
+    at, weight = np.polynomial.legendre.leggauss(8)
+    at, weight = (at + 1) / 2, weight / 2
+    total, x = 0.0, points(mesh)
+    ids = np.array([[mesh.GetCell(c).GetPointId(i) for i in range(mesh.GetCell(c).GetNumberOfPoints())]
+                    for c in range(mesh.GetNumberOfCells())])  # fmt: skip
+    cell, nodes = mesh.GetCell(0), ids.shape[1]
+    for i, u in enumerate(at):
+        for j, v in enumerate(at):
+            for k, w in enumerate(at):
+                place = (u, v * (1 - u), w * (1 - u) * (1 - v))
+                slopes = [0.0] * (3 * nodes)
+                cell.InterpolateDerivs(place, slopes)
+                jacobian = np.einsum("cnx,dn->cxd", x[ids], np.reshape(slopes, (3, nodes)))
+                share = weight[i] * weight[j] * weight[k] * (1 - u) ** 2 * (1 - v)
+                total += share * np.linalg.det(jacobian).sum()
+    return total
+
+
+def test_refused():
+    grid = vtkUnstructuredGrid()
+    grid.SetPoints(grid_of((9,)).GetPoints())
+    grid.InsertNextCell(70, 6, [0, 1, 2, 3, 4, 5])
+    refused(wording("gmsh-orders-1-to-4"), tl.write, grid, FOLDER / "c.msh")
+
+
+run_tests(globals())
