@@ -33,6 +33,32 @@ constexpr int MaxMfemOrder = MaxElementOrder;
 /// Reads a mesh; `lowerCells`: with the boundary elements.
 TAUTLINEREADERS_EXPORT MeshFile readMfem(const std::string& name, bool lowerCells);
 
+/**
+ * @brief Writes version 1.0. Curved meshes have nodes of the order of their cells at the points of
+ * Gauss and Lobatto; those of lower order and the incomplete ones of second order are raised to it,
+ * which does not change their shape.
+ *
+ * Cells of the highest dimension are elements, those of one dimension less boundary elements;
+ * `Reference` is the attribute where it is above 0, else 1. Throws FileError for cells that MFEM
+ * does not have, and for curved pyramids.
+ *
+ * @param continuous whether nodes are of H1; else of L2 (Gauss-Lobatto), as neighbors need whose
+ * points differ at a common node; H1 is refused for such
+ */
+TAUTLINEREADERS_EXPORT std::vector<std::string> writeMfem(
+  const MeshFile& mesh, const std::string& name, bool continuous = true);
+
+/**
+ * @brief Writes a copy of a curved file in which the nodes are those of a mesh: the space, the
+ * ordering and all other text stay, also numbers of nodes whose elements have not moved.
+ *
+ * @param mesh the file as readMfem() reads it, with other points
+ * @param source the file
+ * @throws FileError where the mesh has other cells than the file, or the file no nodes
+ */
+TAUTLINEREADERS_EXPORT std::vector<std::string> rewriteMfem(
+  const MeshFile& mesh, const std::string& source, const std::string& name);
+
 /// An element shape of MFEM, by its number in the files.
 struct MfemShape
 {

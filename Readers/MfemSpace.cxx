@@ -225,4 +225,57 @@ std::vector<double> MfemSpace::evaluation(
   }
   return matrix;
 }
+
+//------------------------------------------------------------------------------
+std::vector<double> MfemSpace::interpolation(
+  const MfemShape& shape, unsigned char type, Index nodes) const
+{
+  std::vector<double> matrix;
+  const auto addRow = [&](const auto& row) { matrix.insert(matrix.end(), row.begin(), row.end()); };
+  if (this->basis == Bernstein)
+  {
+    std::vector<Vec3> places;
+    for (const LatticePoint& place : cellPlaces(type, nodes))
+    {
+      const double step = 1.0 / this->order;
+      places.push_back({ step * place[0], step * place[1], step * place[2] });
+    }
+    const ElementType element(
+      shape.shape, { this->order, this->order, shape.dimension > 2 ? this->order : 0 }, places);
+    const ControlMatrix& controls = element.controls();
+    for (int row = 0; row < controls.rows(); ++row)
+    {
+      std::vector<double> entries(static_cast<std::size_t>(nodes));
+      for (int i = controls.offsets[static_cast<std::size_t>(row)];
+           i < controls.offsets[static_cast<std::size_t>(row) + 1]; ++i)
+      {
+        const auto entry = static_cast<std::size_t>(i);
+        entries[static_cast<std::size_t>(controls.columns[entry])] = controls.values[entry];
+      }
+      addRow(entries);
+    }
+    return matrix;
+  }
+  const ElementType& element = ElementType::ofVtk(type, static_cast<int>(nodes));
+  // VTK's linear and quadratic wedges list a triangle in the opposite order.
+  const bool mirrored = shape.shape == ElementShape::Wedge && type != FileLagrangeWedge;
+  for (const LatticePoint& place : shape.lattice(this->order))
+  {
+    Vec3 at = nodeAt(shape, this->basis, this->order, place);
+    if (mirrored)
+    {
+      std::swap(at[0], at[1]);
+    }
+    addRow(element.shapeFunctions(at));
+  }
+  return matrix;
+}
+
+//------------------------------------------------------------------------------
+std::string MfemSpace::name(int dimension) const
+{
+  const std::string size = std::to_string(dimension) + "D_P" + std::to_string(this->order);
+  return this->continuous ? "H1_" + size
+                          : "L2_T" + std::to_string(static_cast<int>(this->basis)) + "_" + size;
+}
 }

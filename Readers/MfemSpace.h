@@ -45,6 +45,18 @@ struct MfemSpace
    * MfemShape::lattice(); empty where the nodes are evenly spaced
    */
   std::vector<double> evaluation(const MfemShape& shape, const std::vector<Vec3>& places) const;
+
+  /**
+   * @brief How the values of the space follow from those at the nodes of a cell: the other way.
+   * @param type VTK's, of the shape and of an order up to the one of the space; with Bernstein
+   * polynomials of this order, with all nodes
+   * @param nodes of the cell
+   * @return a matrix, row by row, its rows in the order of MfemShape::lattice()
+   */
+  std::vector<double> interpolation(const MfemShape& shape, unsigned char type, Index nodes) const;
+
+  /// The name of the finite element collection.
+  std::string name(int dimension) const;
 };
 }
 #endif

@@ -157,8 +157,19 @@ def gmsh_binary() -> bytes:
     return text + b"\n$EndNodes\n$Elements\n1\n" + element + b"\n$EndElements\n"
 
 
+def gmsh_cubic() -> str:
+    """Version 2.2: a triangle and a line of third order, a quadrilateral of fourth order, a pyramid of 14 nodes."""
+    nodes = "".join(f"{n} {n % 5} {n % 7 * 0.5} {n % 3}\n" for n in range(1, 26))
+    rows = [(21, 10), (26, 4), (37, 25), (14, 14)]
+    elements = "".join(f"{i} {code} 2 1 1 {' '.join(map(str, range(1, count + 1)))}\n"
+                       for i, (code, count) in enumerate(rows, 1))  # fmt: skip
+    return (f"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n25\n{nodes}$EndNodes\n$Elements\n{len(rows)}\n"
+            f"{elements}$EndElements\n")  # fmt: skip
+
+
 GMSH = {
     "text-41": GMSH_41,
+    "cubic": gmsh_cubic(),
     "text-22": GMSH_22,
     "binary-22": gmsh_binary(),
     "freefem-2d": "3 1 3\n0 0 1\n1 0 1\n0 1 2\n1 2 3 0\n1 2 1\n2 3 2\n3 1 2\n",

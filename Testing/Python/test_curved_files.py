@@ -8,7 +8,7 @@ from importlib.util import find_spec
 
 import numpy as np
 import tautline as tl
-from checks import DATA, OUT, points, refused, run_tests, wording
+from checks import DATA, OUT, points, refused, run_tests, shell, wording
 from tautline._arrays import leaves
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
@@ -90,10 +90,10 @@ def test_gmsh():
 
 
 def test_solver_files():
-    """Abaqus, Nastran and MED by meshio; the first has no pyramids and no hexahedra of 27 nodes as meshio writes it."""
+    """Abaqus and MED by meshio, which has not all cells of these formats, and Nastran."""
     if not MESHIO:
         return
-    kinds = {".inp": (24, 25, 26, 22, 23), ".med": (24, 25, 26, 27)}
+    kinds = {".inp": (24, 25, 26, 22, 23), ".bdf": (22, 23, 24, 25, 26, 27, 13), ".med": (24, 25, 26, 27)}
     for ending, wanted in kinds.items():
         if ending == ".med" and find_spec("h5py") is None:
             continue
@@ -168,7 +168,7 @@ print(sum(min(d[i : i + n]) <= 0 for i in range(0, len(d), n)))
 
 
 def test_against_gmsh():
-    """Volume and invalid elements of curved meshes of orders 2 to 4 by Gmsh itself (its rule has 11 digits), and here."""
+    """Volume (Gmsh's rule has 11 digits) and invalid elements of curved meshes of orders 2 to 4, by Gmsh and here."""
     if find_spec("gmsh") is None:
         return
     for order in (2, 3, 4):
@@ -200,6 +200,38 @@ def curved_volume(mesh) -> float:
                 share = weight[i] * weight[j] * weight[k] * (1 - u) ** 2 * (1 - v)
                 total += share * np.linalg.det(jacobian).sum()
     return total
+
+
+def test_mfem():
+    """Written for MFEM and read back; as a copy of a file with nodes, unchanged and moved; by the shell."""
+    pipe = tl.read(DATA / "pipe.mesh", lower_cells=True)
+    for space in ("H1", "L2"):
+        tl.write(pipe, FOLDER / "pipe.mesh", mfem=space)
+        text = (FOLDER / "pipe.mesh").read_text()
+        assert text.startswith("MFEM mesh v1.0") and f"FiniteElementCollection: {space}_" in text
+        check_same(tl.read(FOLDER / "pipe.mesh", lower_cells=True), pipe, 1e-14, space)
+    quadratic = grid_of((24, 25, 26, 29, 32))
+    tl.write(quadratic, FOLDER / "quadratic.mesh", mfem="H1")
+    found = tl.read(FOLDER / "quadratic.mesh")
+    full = {24: 24, 25: 29, 26: 32, 29: 29, 32: 32}
+    kinds = [quadratic.GetCellType(c) for c in range(quadratic.GetNumberOfCells())]
+    assert [found.GetCellType(c) for c in range(found.GetNumberOfCells())] == [full[kind] for kind in kinds]
+    least = [tl.quality(mesh, "min_jacobian").values["min_jacobian"] for mesh in (quadratic, found)]
+    assert np.allclose(*least, rtol=0, atol=1e-7), "incomplete cells keep their shapes"
+
+    tl.write(pipe, FOLDER / "copy.mesh", template=DATA / "pipe.mesh")
+    assert (FOLDER / "copy.mesh").read_bytes() == (DATA / "pipe.mesh").read_bytes()
+    x = points(pipe)
+    x[:, 2] += 0.01 * x[:, 0] ** 2
+    pipe.GetPoints().SetData(numpy_to_vtk(x, deep=True))
+    tl.write(pipe, FOLDER / "copy.mesh", template=DATA / "pipe.mesh")
+    check_same(tl.read(FOLDER / "copy.mesh", lower_cells=True), pipe, 1e-14, "copy.mesh")
+    heads = [path.read_text().split("Ordering")[0] for path in (FOLDER / "copy.mesh", DATA / "pipe.mesh")]
+    assert heads[0] == heads[1]
+    shell("convert", ORDERS, FOLDER / "shell.mesh", "--mfem", "L2", code=1)  # pyramids
+    shell("convert", DATA / "pipe.mesh", FOLDER / "shell.mesh", "--mfem", "L2")
+    assert "L2_T1_3D_P3" in (FOLDER / "shell.mesh").read_text()
+    refused(wording("has-other-cells"), tl.write, quadratic, FOLDER / "no.mesh", template=DATA / "pipe.mesh")
 
 
 def test_refused():

@@ -382,7 +382,7 @@ def test_meshio():
         import meshio
     except ImportError:
         refused(wording("meshio-debian-apt-get-install-python3-meshio"), tl.to_meshio, mesh)
-        refused(wording("which-is-not-installed"), tl.write, mesh, FOLDER / "x.bdf")
+        refused(wording("which-is-not-installed"), tl.write, mesh, FOLDER / "x.mdpa")
         return
     measured = tl.quality(tl.perturb(mesh, seed=3), ["imr", "rr"])
     there = tl.to_meshio(measured)

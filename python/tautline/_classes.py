@@ -33,6 +33,7 @@ from ._vtk import vtkMeshWarp as vtkMeshWarp
 from ._vtk import vtkMetricAlgorithm as vtkMetricAlgorithm
 from ._vtk import vtkMetricField as vtkMetricField
 from ._vtk import vtkMfemReader as vtkMfemReader
+from ._vtk import vtkMfemWriter as vtkMfemWriter
 from ._vtk import vtkMovingBoundary as vtkMovingBoundary
 from ._vtk import vtkNastranReader as vtkNastranReader
 from ._vtk import vtkOffReader as vtkOffReader

@@ -11,12 +11,13 @@ from ._errors import checked
 from ._formats import FORMATS
 from ._io import SU2, UNV, is_template, read, readable
 from ._meshio import MESHIO_FORMATS, installed
+from ._nastran import NASTRAN_ENDINGS
 from ._tables import align
 from ._vtk_readers import SERIES, SOLVER_FORMATS
 
 _OWN = {
     ".node": "TetGen, Triangle", ".ele": "TetGen, Triangle", ".face": "TetGen, Triangle", ".edge": "TetGen, Triangle",
-    ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit", ".meshb": "Medit, binary",
+    ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit, MFEM", ".meshb": "Medit, binary",
     ".sol": "Medit", ".msh": "Gmsh, FreeFem++",
     ".pos": "Gmsh's views", ".msh2": "Gmsh", ".msh4": "Gmsh",
     ".off": "OFF", ".coff": "OFF", ".noff": "OFF", ".cnoff": "OFF", ".ply": "PLY", ".stl": "STL",
@@ -54,6 +55,8 @@ def _facts(ending: str) -> dict[str, Any]:
             facts |= {"format": MESHIO_FORMATS[ending], "write": installed(ending)}
         if ending == ".inp":  # of two formats: AVS UCD is read by VTK
             facts["format"] = f"{facts['format']}, AVS UCD"
+        if ending in NASTRAN_ENDINGS:
+            facts |= {"format": "Nastran", "write": True}
     elif ending == SU2:
         facts |= {"format": "SU2", "write": True, "by": "Tautline"}
     elif ending == UNV:
@@ -85,6 +88,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--lower-cells", action="store_true", help="keep boundary faces and edges")
     parser.add_argument("--time", type=float, help="the time step to read, the nearest to this number")
     parser.add_argument("--binary", action="store_true", help="write .msh as bytes")
+    parser.add_argument("--mfem", choices=("H1", "L2"), help="write .mesh for MFEM, with nodes of this space")
 
 
     parser = _commands.add_command(
@@ -103,4 +107,5 @@ def _run(arguments: argparse.Namespace) -> None:
     chosen = {"lower_cells": arguments.lower_cells or None, "time": arguments.time}
     mesh = read(arguments.input, **{name: value for name, value in chosen.items() if value is not None})
     options: dict[str, Any] = {"binary": True} if arguments.binary else {}
+    options |= {"mfem": arguments.mfem} if arguments.mfem else {}
     _commands.finish(arguments, mesh, _commands.counts(mesh), **options)

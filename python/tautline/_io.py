@@ -21,7 +21,7 @@ from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vt
 
 from ._array_templates import ARRAY_TEMPLATES, rewrite_arrays
 from ._arrays import Array, keep_source, leaves, source_of
-from ._arguments import number
+from ._arguments import number, picked
 from ._errors import Error, checked, interruptible, plain, run, watch
 from ._files import check_input, check_target, file_name, require_memory
 from ._formats import FORMATS, Format
@@ -31,11 +31,13 @@ from ._grid_checks import check_grid, mark_attributes, same_cells, writable
 from ._legacy import check_counts, scan_legacy
 from ._mesh import from_arrays
 from ._meshio import MESHIO_FORMATS, check_installed, from_meshio, is_meshio, meshio_of, read_meshio, write_meshio
+from ._nastran import NASTRAN_ENDINGS, write_nastran
 from ._reading import answer, read_apart
 from ._su2 import read_su2, write_su2
 from ._surfaces import check_surface
 from ._template import LOCATORS, rewrite
 from ._unv import read_unv
+from ._vtk import CLASSES
 from ._views import MeshViews, viewed
 from ._vtk_readers import (
     EXODUS_ENDINGS,
@@ -84,6 +86,7 @@ _OF_ONE_FILE = (
     ".vtp", ".stl", ".ply", ".obj",
 )  # fmt: skip
 _ALWAYS_BINARY = ".meshb"
+_MFEM, _MFEM_SPACES = ".mesh", ("H1", "L2")
 # Formats whose readers in VTK crash on damaged files.
 _UNSAFE = (".ply", ".obj")
 # Formats of VTK that are templates by their data.
@@ -356,7 +359,7 @@ def write(
     file : str or path
         VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .ply .stl), always binary and compressed where the format can be; or,
         where the module of readers was built, TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh
-        .meshb), Gmsh (.msh, and .pos: a view for each array), OFF (.off).
+        .meshb), MFEM (.mesh, see options), Gmsh (.msh, and .pos: a view for each array), OFF (.off).
     groups : Groups, optional
         Sets of cells by name: numbers of cells from 0, or a mask of one value per cell; see QualityResult.groups().
         They are element sets in Abaqus's .inp and groups in Salome's .med, in other files cell arrays of 0 and 1.
@@ -370,7 +373,8 @@ def write(
         the results of these functions: the file that the mesh was read from if it is of the same format, except VTK's.
         False: none; the mesh is written with its arrays.
     **options
-        binary (False): write .msh as bytes. Not for formats of VTK.
+        binary (False): write .msh as bytes. Not for formats of VTK. mfem: "H1" or "L2" write .mesh for MFEM, with nodes
+        that neighbors share, or with nodes of each element; the default is Medit's .mesh, which has no curved cells.
     progress : bool or callable, optional
         True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
         0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
@@ -409,12 +413,13 @@ def write(
         _check_options(name, ending, options, None)
         one = as_data_set(mesh)
         check_grid(one)
-        if ending != SU2:
+        if ending in MESHIO_FORMATS:
             return write_meshio(one, name, groups)
         if groups is not None:
-            raise Error(f"{name}: SU2 has no groups of cells; write .vtu, .inp or .med")
-        return write_su2(one, name)
-    _check_options(name, ending, options, "binary" if form.own else None)
+            raise Error(f"{name}: '{ending}' has no groups of cells; write .vtu, .inp or .med")
+        return write_su2(one, name) if ending == SU2 else write_nastran(one, name)
+    known = {key: value for key, value in options.items() if key != "mfem" or ending != _MFEM}
+    _check_options(name, ending, known, "binary" if form.own else None)
     data = as_mesh(mesh) if groups is None else with_groups(as_mesh(mesh), groups)
     for leaf in leaves(data):
         check_grid(leaf)
@@ -422,7 +427,7 @@ def write(
         able = [key for key, other in FORMATS.items() if other.writer and not other.own and _holds(other, data)]
         raise Error(f"{name}: '{ending}' cannot hold a {data.GetClassName()}; {' '.join(able)} can")
     if form.own:
-        return _write_own(data, name, form, options.get("binary", False))
+        return _write_own(data, name, _own_writer(form, name, **options))
     return write_composite(data, name) if ending == ".vtm" else write_data(data, name, form)
 
 
@@ -493,6 +498,10 @@ def _write_like(data: vtkDataObject, name: str, source: str) -> list[str]:
     before, after = ([_coordinates(leaf) for leaf in parts] for parts in (its, mine))
     if not all(np.isfinite(part).all() for part in after):
         raise Error(f"{name}: a coordinate is not finite")
+    if _is_curved_mfem(source):
+        writer = CLASSES["vtkMfemWriter"]()
+        writer.SetTemplateFileName(os.path.abspath(source))
+        return _write_own(mine[0], name, writer)
     if ending in ARRAY_TEMPLATES:
         rounding = rewrite_arrays(source, name, ending, before, after)
     else:
@@ -536,14 +545,14 @@ def to_meshio(mesh: Mesh) -> Any:
 
 
 def check_output(file: str | PathLike[str], source: str = "") -> Format | None:
-    """The format of a mesh to be written; None: SU2, or meshio writes it, or it is a copy of `source`.
+    """The format of a mesh to be written; None: SU2, Nastran, or meshio writes it, or it is a copy of `source`.
 
     source: the file the mesh was read from. Raises Error if there is no writer for the format or no file can be made
     there.
     """
     name = file_name(file)
     ending = Path(name).suffix.lower()
-    if ending == SU2:
+    if ending == SU2 or ending in NASTRAN_ENDINGS:
         check_target(name)
         return None
     if ending in MESHIO_FORMATS:
@@ -626,12 +635,29 @@ def _remove_ghosts(mesh: vtkDataSet) -> None:
         cells.GetConnectivityArray().SetNumberOfTuples(last)
 
 
-def _write_own(data: vtkDataSet, name: str, form: Format, binary: bool) -> list[str]:
+def _own_writer(form: Format, name: str, binary: bool = False, mfem: str | None = None) -> Any:
+    """The writer of one of the formats of mesh generators, with the options of write()."""
+    if mfem is not None:
+        writer = CLASSES["vtkMfemWriter"]()
+        writer.SetContinuous(picked("mfem", mfem, _MFEM_SPACES) == _MFEM_SPACES[0])
+        return writer
     writer = form.make_writer()
     if hasattr(writer, "SetBinary"):
         writer.SetBinary(binary)
     elif binary and Path(name).suffix.lower() != _ALWAYS_BINARY:
         raise Error(f"{name}: '{Path(name).suffix}' is always text")
+    return writer
+
+
+def _is_curved_mfem(source: str) -> bool:
+    """Whether a file is one of MFEM with nodes, which are not the coordinates of the points."""
+    if Path(source).suffix.lower() != _MFEM:
+        return False
+    content = Path(source).read_bytes()
+    return content.lstrip().startswith(b"MFEM") and b"FiniteElementCollection" in content
+
+
+def _write_own(data: vtkDataSet, name: str, writer: Any) -> list[str]:
     writer.SetInputData(writable(data))
     writer.SetFileName(name)
     messages = watch(writer)

@@ -38,9 +38,6 @@ _BY_NUMBER = {number: (name, size) for name, (number, size) in _CELLS.items()}
 #: Formats that meshio reads and VTK or Tautline do not, by ending: what they are.
 MESHIO_FORMATS = {
     ".inp": "Abaqus",
-    ".bdf": "Nastran",
-    ".nas": "Nastran",
-    ".fem": "Nastran",
     ".med": "Salome MED",
     ".vol": "Netgen",
     ".h5m": "MOAB",

@@ -25,7 +25,8 @@ from ._binary_coordinates import (
     foam_list,
     with_coordinates,
 )
-from ._deck_numbers import WIDEST, deck_number
+from ._deck_numbers import LARGE_FIELD, SMALL_FIELD, WIDEST, deck_number, nastran_number
+from ._deck_numbers import value_of as _value
 from ._errors import Error
 from ._files import replace_bytes
 from ._foam_case import copy_case
@@ -39,12 +40,10 @@ _OTHER_SYSTEM = re.compile(rb"^CORD[123][RCS]", re.MULTILINE | re.IGNORECASE)
 _PLACED = re.compile(rb"^\*(INSTANCE|SYSTEM)\b", re.MULTILINE | re.IGNORECASE)
 #: Numbers of a file are written with as many digits as they have in it, where that is a fixed number of at least this.
 _FEWEST_DIGITS = 8
-_EXACT_DIGITS = 17  # of a double
 _UNV_SHORT, _UNV_HEAD = NODES_OF_ONE_LINE.encode(), 4  # numbers before the coordinates
 _UNV_NODES = (*(number.encode() for number in NODES), _UNV_SHORT)
 _VECTOR = re.compile(rb"\(([^()]*)\)")
 _VOLUME = 3  # dimension of an entity without parametric coordinates
-_SMALL_FIELD, _LARGE_FIELD = 8, 16  # characters, of Nastran
 _GRID_FIELD, _LARGE_GRID_FIELD = 24, 40  # where x begins
 
 
@@ -126,21 +125,6 @@ def _check(source: str, numbers: list[list[bytes]], before: Array) -> None:
 # --- numbers ---------------------------------------------------------------------------------------------------
 
 
-def _value(text: bytes) -> float:
-    """A number of any of the formats: 1.5, 1.5E3, 1.5D3, Nastran's 1.5+3; nothing is 0."""
-    word = text.strip().decode("latin-1").upper().replace("D", "E")
-    if not word:
-        return 0.0
-    try:
-        return float(word)
-    except ValueError:
-        pass
-    try:
-        return float(re.sub(r"(?<=[\d.])([+-])", r"E\1", word))
-    except ValueError:
-        return float("nan")
-
-
 def _layout(texts: list[bytes]) -> tuple[int, str] | None:
     """Digits after the point and the letter of the exponent ("" without one) if all numbers have the same."""
     found = set()
@@ -176,26 +160,10 @@ def _blanks_before(content: bytes, a: int) -> int:
 def _nastran(value: float, old: bytes) -> bytes:
     """A number in a field of Nastran: as many digits as the field has room for; of a free field all digits."""
     width = len(old)
-    if width not in (_SMALL_FIELD, _LARGE_FIELD):
+    if width not in (SMALL_FIELD, LARGE_FIELD):
         text = repr(float(value))
         return (text if "." in text else text.replace("e", ".e") if "e" in text else text + ".").encode()
-    best = ""
-    for digits in range(_EXACT_DIGITS, -1, -1):
-        for text in (f"{value:.{digits}f}", _short_exponent(f"{value:.{digits}e}")):
-            text = text.replace("0.", ".", 1) if text.lstrip("-").startswith("0.") and len(text) > width else text
-            if "." not in text:
-                text += "."
-            better = not best or abs(_value(text.encode()) - value) < abs(_value(best.encode()) - value)
-            if len(text) <= width and better:
-                best = text
-    return best.rjust(width).encode()
-
-
-def _short_exponent(text: str) -> str:
-    """1.5e-03 as Nastran's 1.5-3."""
-    mantissa, _, exponent = text.partition("e")
-    mantissa = mantissa if "." in mantissa else mantissa + "."
-    return f"{mantissa}{int(exponent):+d}"
+    return nastran_number(value, width).encode()
 
 
 # --- where the coordinates stand, by format -----------------------------------------------------------------------
@@ -384,15 +352,15 @@ def _nastran_grids(content: bytes) -> Iterator[list[_Span]]:
     lines = content.splitlines(keepends=True)
     places = np.cumsum([0] + [len(line) for line in lines]).tolist()
     for i, line in enumerate(lines):
-        word = line[:_SMALL_FIELD].strip().upper()
-        if b"," in line[:_SMALL_FIELD + 2] and line.upper().startswith((b"GRID,", b"GRID ", b"GRID*")):
+        word = line[:SMALL_FIELD].strip().upper()
+        if b"," in line[:SMALL_FIELD + 2] and line.upper().startswith((b"GRID,", b"GRID ", b"GRID*")):
             yield from _free_grid(line, places[i])
         elif word == b"GRID":
-            yield _fields(line, places[i], _GRID_FIELD, 3, _SMALL_FIELD)
+            yield _fields(line, places[i], _GRID_FIELD, 3, SMALL_FIELD)
         elif word == b"GRID*":
-            row = _fields(line, places[i], _LARGE_GRID_FIELD, 2, _LARGE_FIELD)
+            row = _fields(line, places[i], _LARGE_GRID_FIELD, 2, LARGE_FIELD)
             more = lines[i + 1] if i + 1 < len(lines) and lines[i + 1][:1] in (b"*", b" ") else b""
-            yield row + (_fields(more, places[i + 1], _SMALL_FIELD, 1, _LARGE_FIELD) if more else [])
+            yield row + (_fields(more, places[i + 1], SMALL_FIELD, 1, LARGE_FIELD) if more else [])
 
 
 def _fields(line: bytes, place: int, begin: int, count: int, width: int) -> list[_Span]:

@@ -8,6 +8,7 @@
 #include "vtkHorizonNeighbors.h"
 #include "vtkInteractionLayer.h"
 #include "vtkMeditWriter.h"
+#include "vtkMfemWriter.h"
 #include "vtkMeshComparison.h"
 #include "vtkMeshImprover.h"
 #include "vtkMeshOptimizer.h"
@@ -304,6 +305,7 @@ std::vector<HostileFilter> hostileFilters(const std::string& directory)
   const std::string name = directory + "/hostile";
   addWriter<vtkGmshWriter>(list, "vtkGmshWriter", name + ".msh", triangles);
   addWriter<vtkMeditWriter>(list, "vtkMeditWriter", name + ".mesh", triangles);
+  addWriter<vtkMfemWriter>(list, "vtkMfemWriter", name + "-mfem.mesh", triangles);
   addWriter<vtkOffWriter>(list, "vtkOffWriter", name + ".off", triangles);
   addWriter<vtkTetGenWriter>(list, "vtkTetGenWriter", name + ".node", tetrahedra);
   return list;

@@ -129,11 +129,72 @@ std::string header(const Sample& sample, const std::string& collection)
   return lines.str();
 }
 
+/// The places of all nodes of the cells, one cell after the other.
+std::vector<double> places(const MeshFile& mesh)
+{
+  std::vector<double> result;
+  for (const Index point : mesh.connectivity)
+  {
+    result.insert(result.end(), &mesh.points[static_cast<std::size_t>(3 * point)],
+      &mesh.points[static_cast<std::size_t>(3 * point)] + 3);
+  }
+  return result;
+}
+
+double largestDifference(const std::vector<double>& a, const std::vector<double>& b)
+{
+  TAUTLINE_CHECK_EQUAL(a.size(), b.size());
+  double largest = a.size() == b.size() ? 0.0 : INFINITY;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+  {
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+  }
+  return largest;
+}
+
+/// Written for MFEM, cells and attributes read back; as a copy of the file they came from, the file
+/// is the same, and has other nodes where the mesh has moved.
+void checkWritten(const MeshFile& mesh, const std::string& source, bool lowerCells)
+{
+  const std::string copy = output + "/copy.mesh";
+  const bool periodic = !mesh.warnings.empty();
+  for (const bool continuous : { true, false })
+  {
+    if (continuous && periodic)
+    {
+      continue;
+    }
+    writeMfem(mesh, copy, continuous);
+    const MeshFile again = readMfem(copy, lowerCells);
+    TAUTLINE_CHECK(again.cellTypes == mesh.cellTypes);
+    TAUTLINE_CHECK_NEAR(largestDifference(places(again), places(mesh)), 0.0, 1e-13);
+    TAUTLINE_CHECK(findArray(again.cellArrays, "Reference")->values ==
+      findArray(mesh.cellArrays, "Reference")->values);
+  }
+  rewriteMfem(mesh, source, copy);
+  TAUTLINE_CHECK(readText(copy) == readText(source));
+  MeshFile moved = mesh;
+  for (std::size_t i = 0; i < moved.points.size(); i += 3)
+  {
+    moved.points[i] += 0.01 * moved.points[i + 1] * moved.points[i + 1];
+    moved.points[i + 1] -= 0.02 * moved.points[i];
+  }
+  rewriteMfem(moved, source, copy);
+  const MeshFile again = readMfem(copy, lowerCells);
+  TAUTLINE_CHECK(again.connectivity == mesh.connectivity);
+  TAUTLINE_CHECK_NEAR(largestDifference(again.points, moved.points), 0.0, 1e-13);
+}
+
 MeshFile readLines(const std::string& lines, bool lowerCells = false)
 {
   const std::string name = output + "/sample.mesh";
   writeText(name, lines);
-  return readMfem(name, lowerCells);
+  MeshFile mesh = readMfem(name, lowerCells);
+  if (lines.find("FiniteElementSpace") != lines.npos)
+  {
+    checkWritten(mesh, name, lowerCells);
+  }
+  return mesh;
 }
 
 /// Whether each point of each cell is where the map has it.
