@@ -370,6 +370,10 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   validity->SetNumberOfValues(cells);
   this->SettleOrientation(adapter, piece, validity->GetPointer(0), output);
   const auto curved = this->CertifyCurved(input, adapter, validity->GetPointer(0));
+  if (this->JacobianBounds)
+  {
+    this->AddBounds(input, adapter, output);
+  }
   const std::vector<unsigned char> skip = cellsToSkip(adapter);
   const unsigned char* skipped = skip.empty() ? nullptr : skip.data();
   const Targets targets = this->MakeTargets(input, block.reference, adapter);
@@ -526,6 +530,20 @@ void vtkElementQuality::AddCurvedNotice(const tautline::CurvedQuality& curved,
 }
 
 //------------------------------------------------------------------------------
+void vtkElementQuality::AddBounds(
+  vtkDataSet* input, const tautline::MeshAdapter& adapter, vtkDataSet* output)
+{
+  const tautline::Mesh& mesh = adapter.mesh();
+  std::vector<double> degrees;
+  const tautline::CurvedCellFacts facts = CurvedFacts(input, adapter, degrees);
+  vtkNew<vtkDoubleArray> bounds;
+  bounds->SetName("JacobianBound");
+  bounds->SetNumberOfValues(mesh.view().numberOfCells);
+  tautline::boundJacobians(mesh, facts, bounds->GetPointer(0), this->Threads);
+  output->GetCellData()->AddArray(bounds);
+}
+
+//------------------------------------------------------------------------------
 void vtkElementQuality::AddToNotice(const std::string& sentences)
 {
   this->Notice += (this->Notice.empty() || sentences.empty() ? "" : " ") + sentences;
@@ -561,6 +579,7 @@ void vtkElementQuality::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Beta: " << this->Beta << "\n";
   os << indent << "Epsilon: " << this->Epsilon << "\n";
   os << indent << "ReversedMesh: " << this->ReversedMesh << "\n";
+  os << indent << "JacobianBounds: " << this->JacobianBounds << "\n";
   os << indent << "ExtractBad: " << this->ExtractBad << "\n";
   os << indent << "HistogramBins: " << this->HistogramBins << "\n";
   os << indent << "Criteria: " << this->Criteria << "\n";

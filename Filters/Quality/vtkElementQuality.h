@@ -221,6 +221,18 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Whether the mesh gets the cell array JacobianBound: a certified lower bound of the smallest
+   * Jacobian determinant in the cell, as min_jacobian has it; of a cell of a surface in space, of
+   * the component of its normal along the mean normal. 0 where it is not measured. The default is
+   * off.
+   */
+  vtkSetMacro(JacobianBounds, bool);
+  vtkGetMacro(JacobianBounds, bool);
+  vtkBooleanMacro(JacobianBounds, bool);
+  ///@}
+
+  ///@{
   /// Whether the output Bad is filled. The default is off.
   vtkSetMacro(ExtractBad, bool);
   vtkGetMacro(ExtractBad, bool);
@@ -340,6 +352,8 @@ private:
   /// Which of the metrics hold for the whole curved cell.
   void AddCurvedNotice(const tautline::CurvedQuality& curved,
     const std::vector<tautline::Metric>& metrics, const tautline::EvaluationOptions& options);
+  /// The cell array JacobianBound.
+  void AddBounds(vtkDataSet* input, const tautline::MeshAdapter& adapter, vtkDataSet* output);
   void AddToNotice(const std::string& sentences);
   tautline::Targets MakeTargets(
     vtkDataSet* input, vtkDataSet* reference, const tautline::MeshAdapter& adapter);
@@ -351,6 +365,7 @@ private:
   double Epsilon = 1e-4;
   int ReversedMesh = MEASURE_FLIPPED;
   int HistogramBins = 32;
+  bool JacobianBounds = false;
   bool ExtractBad = false;
   vtkMultiProcessController* Controller = nullptr;
   std::string Notice;

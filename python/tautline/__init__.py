@@ -26,6 +26,7 @@ if _start.is_command():
 _build.check()  # before the first compiled module
 
 from . import _vtk
+from ._certificate import Verification, certificate, verify_certificate
 from ._comparison import compare
 from ._comparison_parts import CompareResult
 from ._conversion import formats
@@ -46,7 +47,7 @@ __version__ = _build.VERSION
 __all__ = [
     "CompareResult", "compare", "Aborted", "Error", "MissingKey", "Mesh", "read", "write", "from_arrays",
     "MetricFieldResult", "metric_field", "load_metrics", "metrics", "register_metric", "unregister_metric",
-    "QualityResult", "criteria",
+    "QualityResult", "criteria", "Verification", "certificate", "verify_certificate",
     "quality", "ReportResult", "report", "StepsResult", "run_steps", "StateResult", "run_state",
     "formats", "times", "to_meshio",
 ]

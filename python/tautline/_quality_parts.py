@@ -17,6 +17,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 from . import _commands, _vtk
 from ._arguments import picked, sets
 from ._arrays import Array, InputArrays, Values, cell_array, columns, is_number, point_array, snake
+from ._certificate import REFUTED, certificate, certificate_text, verify_certificate
 from ._choices import TARGETS, Target
 from ._errors import Aborted, Error, checked, unknown, wrong_usage
 from ._files import file_name, replace_text
@@ -77,6 +78,8 @@ class QualityResult(Result):
         Quality index of the mesh, 0 (ideal) to 1 (worst), and of each cell, m; None without criteria.
     grades : Array | None
         Grade of each cell, m: 0 passed, 1 warning, 2 failed, -1 none; None without criteria.
+    bounds : Array | None
+        With jacobian_bounds, a certified lower bound of the smallest Jacobian determinant in each cell, m; else None.
     criteria : dict[str, dict[str, Any]]
         Per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
     checks : dict[str, Array]
@@ -87,7 +90,7 @@ class QualityResult(Result):
         The result in a few lines.
     """
 
-    _per_element: ClassVar[tuple[str, ...]] = ("values", "validity", "indices", "grades", "checks")
+    _per_element: ClassVar[tuple[str, ...]] = ("values", "validity", "indices", "grades", "bounds", "checks")
     mesh: vtkDataObject
     values: dict[str, Array]
     validity: Array
@@ -102,6 +105,7 @@ class QualityResult(Result):
     index: float | None
     indices: Array | None
     grades: Array | None
+    bounds: Array | None
     criteria: dict[str, dict[str, Any]]
     checks: dict[str, Array]
     notice: str
@@ -264,6 +268,7 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
         index=filter_.GetQualityIndex() if graded else None,
         indices=cell_array(mesh, "QualityIndex") if graded else None,
         grades=cell_array(mesh, "Grade") if graded else None,
+        bounds=cell_array(mesh, "JacobianBound") if filter_.GetJacobianBounds() else None,
         criteria=by_metric(_by_metric(columns(filter_.GetCriteriaTable())) if graded else {}),
         checks={name: cell_array(mesh, name) for name in _chosen_checks(filter_)},
         notice=filter_.GetNotice(),
@@ -325,6 +330,10 @@ def add_quality_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--groups", action="store_true",
                         help="write the bad elements as groups (.inp, .med) or cell arrays")  # fmt: skip
     parser.add_argument("--report", metavar="FILE", help="write an HTML report, see the command report")
+    parser.add_argument("--certificate", metavar="FILE",
+                        help="write a proof for each element that it is valid, as JSON")  # fmt: skip
+    parser.add_argument("--verify", metavar="FILE",
+                        help="check such a proof by other means; exits with 3 if it does not hold")  # fmt: skip
 
 
 def quality_options(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -339,8 +348,22 @@ def finish_quality(arguments: argparse.Namespace, filter_: Any, options: dict[st
     if arguments.report:
         texts[arguments.report] = html_report(filter_, arguments.mesh, options)
     rows, facts = quality_rows(result), json.loads(quality_json(result))
+    text, mesh = quality_text(result, arguments.worst), filter_.GetInputDataObject(0, 0)
+    if arguments.certificate:
+        made = certificate(mesh)
+        texts[arguments.certificate] = certificate_text(made)
+        text += f"\n\ncertificate: {made['valid']} of {made['cells']} elements are proved to be valid"
+    refuted = False
+    if arguments.verify:
+        checked_ = verify_certificate(mesh, arguments.verify)
+        refuted = not checked_
+        facts["certificate"] = {"holds": checked_.holds, "valid": checked_.valid, "problems": checked_.problems}
+        found = " ".join(checked_.problems) or f"holds: {checked_.valid} of {checked_.cells} elements are valid"
+        text += f"\n\n{arguments.verify}: {found}"
     sets_ = {"groups": result.groups()} if arguments.groups else {}
-    _commands.finish(arguments, result, quality_text(result, arguments.worst), rows, texts, facts, **sets_)
+    _commands.finish(arguments, result, text, rows, texts, facts, **sets_)
+    if refuted:
+        return REFUTED
     return FAILED if result.verdict in ("failed", "none") else 0
 
 
@@ -349,7 +372,7 @@ def finish_quality_of_several(arguments: argparse.Namespace, measured: Callable[
 
     Returns 1 if a file could not be measured, else 3 if a mesh fails its criteria.
     """
-    for name in ("output", "report"):
+    for name in ("output", "report", "certificate", "verify"):
         if getattr(arguments, name):
             raise wrong_usage(f"--{name} is for one mesh, {1 + len(arguments.more)} are given")
     rows: list[dict[str, Any]] = []

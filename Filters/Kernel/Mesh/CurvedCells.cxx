@@ -145,6 +145,7 @@ void certifyCells(const CurvedBlock& block, JacobianCertifier& certifier, const 
       minima[cell].value = bound.validity == ElementValidity::NonFinite ? 0
         : below                                                         ? bound.lower
                                                                         : bound.upper;
+      minima[cell].lower = bound.validity == ElementValidity::NonFinite ? 0 : bound.lower;
       minima[cell].at = bound.at;
     }
     validity[cell] = static_cast<signed char>(verdicts[n]);
@@ -233,5 +234,17 @@ Index certifyCurvedCells(const Mesh& mesh, const CurvedCellFacts& facts, signed 
     }
   }
   return certified;
+}
+
+//------------------------------------------------------------------------------
+void boundJacobians(const Mesh& mesh, const CurvedCellFacts& facts, double* lower, int threads)
+{
+  const Index cells = mesh.view().numberOfCells;
+  std::vector<signed char> validity(cells);
+  std::vector<CurvedMinimum> minima(cells);
+  certifyBlocks(
+    curvedBlocks(mesh, facts, true), mesh.view().points, validity.data(), minima.data(), threads);
+  std::transform(minima.begin(), minima.end(), lower,
+    [](const CurvedMinimum& minimum) { return minimum.lower; });
 }
 }

@@ -63,6 +63,7 @@ TAUTLINE_KERNEL_EXPORT std::vector<CurvedBlock> curvedBlocks(
 struct CurvedMinimum
 {
   double value = 0;      ///< 0 where a coordinate is not finite
+  double lower = 0;      ///< a certified lower bound; 0 where a coordinate is not finite
   Vec3 at = { 0, 0, 0 }; ///< reference coordinates, see ElementType.h
 };
 
@@ -88,5 +89,18 @@ TAUTLINE_KERNEL_EXPORT void certifyBlocks(const std::vector<CurvedBlock>& blocks
  */
 TAUTLINE_KERNEL_EXPORT Index certifyCurvedCells(const Mesh& mesh, const CurvedCellFacts& facts,
   signed char* validity, double* minimum, int threads = 0);
+
+/**
+ * @brief Certified lower bounds of the smallest determinant of all cells that ElementType supports,
+ * linear ones too.
+ *
+ * The determinant is as in certifyCurvedCells(); of a cell of a surface in space, the bound is of
+ * the component of its normal along the mean normal. A bound is below the minimum by 1e-8 of the
+ * largest coefficient of the determinant at most, also where the minimum is not positive.
+ *
+ * @param lower of each cell; 0 of other cells, and where a coordinate is not finite
+ */
+TAUTLINE_KERNEL_EXPORT void boundJacobians(
+  const Mesh& mesh, const CurvedCellFacts& facts, double* lower, int threads = 0);
 }
 #endif
