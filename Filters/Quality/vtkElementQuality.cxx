@@ -484,6 +484,12 @@ std::unique_ptr<tautline::CurvedQuality> vtkElementQuality::CertifyCurved(
   auto curved = std::make_unique<tautline::CurvedQuality>(
     adapter.mesh(), CurvedFacts(input, adapter, degrees), this->Threads);
   curved->certify(validity);
+  if (curved->turnedWedges() > 0)
+  {
+    this->AddToNotice(std::to_string(curved->turnedWedges()) +
+      " curved wedges list their nodes in the opposite order, as files of other versions of VTK do, "
+      "and are taken for their mirror images.");
+  }
   return curved;
 }
 

@@ -98,6 +98,20 @@ def test_sample():
         assert abs(tl.certificate(mesh)["elements"][0][1] - least) < 1e-7
 
 
+def test_turned_wedges():
+    """Curved wedges in the order of nodes that fewer programs have are valid, too, and announced."""
+    for kind in (26, 32, 73):
+        for turned in (False, True):
+            mesh = cells_of((kind,))
+            x = np.array(points(mesh))
+            x[:, 2] *= -1 if turned else 1
+            mesh.GetPoints().SetData(numpy_to_vtk(x, deep=True))
+            result = tl.quality(mesh, "min_jacobian")
+            assert (result.validity == 1).all() and (result.values["min_jacobian"] > 0.5).all(), (kind, turned)
+            assert (wording("curved-wedges-list-their-nodes") in result.notice) == turned, (kind, turned, result.notice)
+            assert tl.verify_certificate(mesh, tl.certificate(mesh)), (kind, turned)
+
+
 def test_tampering():
     mesh = cells_of((24, 25), 0.02)
     made = tl.certificate(mesh, FOLDER / "part.json")

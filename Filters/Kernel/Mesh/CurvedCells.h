@@ -39,6 +39,9 @@ struct CurvedBlock
   Vec3 normal = { 0, 0, 0 };       ///< of a planar mesh
   /// By position, whether the cell is taken for its mirror image.
   std::vector<unsigned char> mirrored;
+  /// Whether these are wedges in the less common order: quadratic ones usually list their triangles
+  /// as VTK's linear ones do, Lagrange and Bezier wedges in the opposite order.
+  bool turned = false;
 
   CurvedBlock() = default;
   CurvedBlock(CurvedBlock&&) = default;

@@ -435,4 +435,15 @@ MissedCells CurvedQuality::missed(const signed char* validity, const unsigned ch
   }
   return missed;
 }
+
+//------------------------------------------------------------------------------
+Index CurvedQuality::turnedWedges() const
+{
+  Index count = 0;
+  for (const CurvedBlock& block : this->Blocks)
+  {
+    count += block.turned ? block.count() : 0;
+  }
+  return count;
+}
 }

@@ -45,6 +45,8 @@ class TAUTLINE_KERNEL_EXPORT CurvedQuality
 public:
   CurvedQuality(const Mesh& mesh, const CurvedCellFacts& facts, int threads = 0);
 
+  /// Wedges in the less common order, see CurvedBlock::turned.
+  Index turnedWedges() const;
   /// The cells that are measured as curved ones.
   Index cells() const { return this->Count; }
 
