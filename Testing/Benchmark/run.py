@@ -9,7 +9,8 @@ elements, optimization.json and .csv of the optimizer (see optimization.py), def
 and .csv of stretched meshes (see stiff.py), peers.json and .csv of meshes that other programs were run on (see
 peers.py), user-metric.json and .csv of metrics of one's own, and curved.json and .csv of curved elements (see
 curved.py) to the output directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh
-compares with the program gmsh, where that is installed (see gmsh_comparison.py).
+compares with the program gmsh, where that is installed (see gmsh_comparison.py). With --only calculix, repairs decks
+that CalculiX refuses, and gives them to CalculiX again (see calculix_decks.py).
 """
 
 import argparse
@@ -251,8 +252,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
     parts = ("quality", "optimization", "deformation", "reconnection", "reconnection-aims", "stiff", "peers",
-             "user-metric", "curved", "gmsh")
-    parser.add_argument("--only", choices=parts, help="one part; all but reconnection-aims otherwise")
+             "user-metric", "curved", "gmsh", "calculix")
+    parser.add_argument("--only", choices=parts, help="one part; all but reconnection-aims and calculix otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
     parser.add_argument("--quick", action="store_true", help="tiny meshes only, but for quality")
@@ -289,6 +290,8 @@ def main() -> int:
         run_curved(options.build, output, options.repeats or 5, options.quick)
     if options.only in (None, "gmsh"):
         subprocess.run([sys.executable, str(Path(__file__).with_name("gmsh_comparison.py"))], check=False)
+    if options.only == "calculix":
+        return subprocess.run([sys.executable, str(Path(__file__).with_name("calculix_decks.py"))]).returncode
     return 0
 
 

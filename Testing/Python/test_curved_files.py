@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Files of quadratic and Lagrange cells come back without loss: nodes, orders, types; by every format that has them."""
 
+import struct
 import subprocess
 import sys
 import warnings
@@ -142,6 +143,65 @@ def test_exodus():
     tl.write(found, FOLDER / "moved.e", template=FOLDER / "cell.e")
     (again,) = leaves(tl.read(FOLDER / "moved.e"))
     check_same(again, leaf, 0, "moved.e")
+
+
+#: Where Exodus' elements have the nodes of VTK's cells. S. Sjaardema et al., "EXODUS II: A finite element data model"
+#: (2006), section 4.8: of hexahedra and wedges, edges along the axis come before those of the second face; of the
+#: hexahedron of 27 nodes the center comes before the faces: bottom, top, left, right, front, back.
+EXODUS = {
+    24: ("TETRA10", list(range(10))), 22: ("TRI6", list(range(6))), 23: ("QUAD8", list(range(8))),
+    28: ("QUAD9", list(range(9))), 25: ("HEX20", [*range(12), *range(16, 20), *range(12, 16)]),
+    26: ("WEDGE15", [*range(9), *range(12, 15), *range(9, 12)]), 27: ("PYRAMID13", list(range(13))),
+    29: ("HEX27", [*range(12), *range(16, 20), *range(12, 16), 26, 24, 25, 20, 21, 22, 23]),
+}  # fmt: skip
+
+
+def exodus_file(name, kind: str, x, cells) -> None:
+    """An Exodus file with one block, in the older form of netCDF; cells: nodes from 0, n x nodes."""
+    def text(value: str) -> bytes:
+        return struct.pack(">I", len(value)) + value.encode() + b"\0" * (-len(value) % 4)
+
+    dimensions = {"time_step": 0, "num_dim": 3, "num_nodes": len(x), "num_elem": len(cells), "num_el_blk": 1,
+                  "num_el_in_blk1": len(cells), "num_nod_per_el1": cells.shape[1]}  # fmt: skip
+    order = list(dimensions)
+    one = struct.pack(">i", 1)
+    variables = [("eb_status", ["num_el_blk"], b"", 4, one), ("eb_prop1", ["num_el_blk"], b"\0\0\0\1" + text("name")
+                  + struct.pack(">I", 2) + text("ID"), 4, one)]  # fmt: skip
+    for axis, letter in enumerate("xyz"):
+        variables.append((f"coord{letter}", ["num_nodes"], b"", 6, x[:, axis].astype(">f8").tobytes()))
+    of_type = struct.pack(">I", 1) + text("elem_type") + struct.pack(">I", 2) + text(kind)
+    numbers = (cells + 1).astype(">i4").tobytes()
+    variables.append(("connect1", ["num_el_in_blk1", "num_nod_per_el1"], of_type, 4, numbers))
+    variables.append(("time_whole", ["time_step"], b"", 6, b""))
+    reals = [("api_version", 4.98), ("version", 4.98)]
+    attributes = b"".join(text(key) + struct.pack(">IIf", 5, 1, value) for key, value in reals)
+    for key, number in (("floating_point_word_size", 8), ("file_size", 1)):
+        attributes += text(key) + struct.pack(">IIi", 4, 1, number)
+    attributes += text("title") + struct.pack(
+        ">I", 2) + text("made by a test")  # fmt: skip
+
+    def header(begin: int) -> bytes:
+        made = b"CDF\1" + struct.pack(">III", 0, 10, len(order))
+        made += b"".join(text(key) + struct.pack(">I", dimensions[key]) for key in order)
+        made += struct.pack(">II", 12, 5) + attributes + struct.pack(">II", 11, len(variables))
+        for key, shape, more, code, content in variables:
+            made += text(key) + struct.pack(f">{len(shape) + 1}I", len(shape), *(order.index(n) for n in shape))
+            made += struct.pack(">I", 12) + more if more else struct.pack(">II", 0, 0)
+            made += struct.pack(">III", code, len(content) or 8, begin)
+            begin += len(content)
+        return made
+
+    name.write_bytes(header(len(header(0))) + b"".join(variable[-1] for variable in variables))
+
+
+def test_exodus_orders():
+    """The orders of nodes that the manual of Exodus has arrive in VTK's."""
+    for kind, (title, order) in EXODUS.items():
+        grid = grid_of((kind,))
+        ids = np.array([grid.GetCell(0).GetPointId(i) for i in range(len(order))])
+        exodus_file(FOLDER / "order.e", title, points(grid), ids[order][None])
+        (found,) = leaves(tl.read(FOLDER / "order.e"))
+        check_same(found, grid, 0, title)
 
 
 GMSH = """
