@@ -2,7 +2,7 @@
 #include "CurvedMotion.h"
 
 #include "Blocks.h"
-#include "GeometryInput.h"
+#include "GeometrySurface.h"
 #include "tautline/Mesh/Features.h"
 
 #include "vtkDataSet.h"
@@ -72,15 +72,11 @@ void CurvedMotion::freeInvalid()
 //------------------------------------------------------------------------------
 SurfaceModel CurvedMotion::geometry(vtkDataObject* surface, double featureAngle, bool smooth) const
 {
-  SurfaceModel model;
-  withGeometry(vtkDataSet::SafeDownCast(surface), this->Corners.frame(), this->Threads,
-    [&](const Mesh& facets)
-    {
-      FeatureOptions options;
-      options.angle = featureAngle;
-      options.asSurface = true;
-      model = makeSurfaceModel(facets, findFeatures(facets, options), smooth);
-    });
-  return model;
+  const GeometrySurface facets(
+    vtkDataSet::SafeDownCast(surface), this->Corners.frame(), false, this->Threads);
+  FeatureOptions options;
+  options.angle = featureAngle;
+  options.asSurface = true;
+  return makeSurfaceModel(facets.mesh(), findFeatures(facets.mesh(), options), smooth);
 }
 }

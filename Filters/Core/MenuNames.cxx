@@ -24,6 +24,7 @@ constexpr MenuName Names[] = {
   { "vtkInteractionLayer", "Interaction Layer" },
   { "vtkMeditReader", "Medit Reader" },
   { "vtkMeshComparison", "Compare Meshes" },
+  { "vtkMeshCurving", "Curve Mesh" },
   { "vtkMeshImprover", "Improve Mesh" },
   { "vtkMeshOptimizer", "Optimize Mesh" },
   { "vtkMeshPerturbation", "Perturb Mesh" },

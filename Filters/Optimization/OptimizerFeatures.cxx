@@ -2,8 +2,7 @@
 // The features of a mesh and how points slide on them.
 #include "OptimizerSetup.h"
 
-#include "GeometryInput.h"
-#include "MeshAdapter.h"
+#include "GeometrySurface.h"
 #include "tautline/Core/Interruption.h"
 
 #include "vtkCellData.h"
@@ -126,6 +125,11 @@ void OptimizerSetup::slideOnGeometry(const OptimizerSettings& settings, vtkDataS
     throw Error("A planar mesh cannot slide on a Geometry, which is a surface in space: remove "
                 "the Geometry.");
   }
+  const GeometrySurface surface(geometry, this->TheMesh.frame(), false, settings.options.threads);
+  const Mesh& mesh = surface.mesh();
+  FeatureOptions options;
+  options.angle = settings.featureAngle;
+  options.asSurface = true;
   const auto n = this->Parts.size();
   std::vector<unsigned char> slides(n);
   for (std::size_t p = 0; p < n; ++p)
@@ -133,15 +137,8 @@ void OptimizerSetup::slideOnGeometry(const OptimizerSettings& settings, vtkDataS
     // Points that are fixed for another reason stay where they are.
     slides[p] = !this->Held[p] && (this->Parts[p] >= 0 || this->Found.kind[p] == CornerPoint);
   }
-  withGeometry(geometry, this->TheMesh.frame(), settings.options.threads,
-    [&](const Mesh& mesh)
-    {
-      FeatureOptions options;
-      options.angle = settings.featureAngle;
-      options.asSurface = true;
-      this->Match =
-        matchGeometry(this->TheMesh.mesh(), this->Found, slides, mesh, findFeatures(mesh, options));
-    });
+  this->Match =
+    matchGeometry(this->TheMesh.mesh(), this->Found, slides, mesh, findFeatures(mesh, options));
   this->HasGeometry = true;
   this->Parts = this->Match.parts;
   this->Options.model = &this->Match.model;

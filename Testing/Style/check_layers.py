@@ -32,7 +32,7 @@ FLOORS = (
     ("Objectives", "Patches", "Solvers"),
     ("Untangling", "Elliptic", "Peridynamics"),
     ("Optimization",),
-    ("Curved", "Deformation", "Reconnection"),
+    ("Curved", "Curving", "Deformation", "Reconnection"),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS, 1) for room in rooms}
 #: The rooms of TautlineSolvers; those of the other libraries need no PETSc and no MPI.

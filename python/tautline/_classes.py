@@ -21,6 +21,7 @@ from ._vtk import vtkKrylovAlgorithm as vtkKrylovAlgorithm
 from ._vtk import vtkMeditReader as vtkMeditReader
 from ._vtk import vtkMeditWriter as vtkMeditWriter
 from ._vtk import vtkMeshComparison as vtkMeshComparison
+from ._vtk import vtkMeshCurving as vtkMeshCurving
 from ._vtk import vtkMeshDecomposition as vtkMeshDecomposition
 from ._vtk import vtkMeshFileReader as vtkMeshFileReader
 from ._vtk import vtkMeshFileWriter as vtkMeshFileWriter

@@ -32,6 +32,7 @@ CAPABILITIES = {
     "_metrics": "TautlineQuality",
     "_optimization": "TautlineOptimization",
     "_untangling": "TautlineUntangling",
+    "_curving": "TautlineCurving",
     "_reconnection": "TautlineReconnection",
     "_deformation": "TautlineDeformation",
     "_shapes": "TautlineShapes",

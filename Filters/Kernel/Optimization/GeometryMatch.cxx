@@ -43,8 +43,8 @@ public:
 
   GeometryMatch run()
   {
-    const std::vector<int> patches = this->matchPatches();
-    const std::vector<int> curves = this->matchCurves();
+    this->Match.partOfPatch = this->matchPatches();
+    this->Match.partOfCurve = this->matchCurves();
     this->Match.parts.assign(this->View.numberOfPoints, -1);
     this->Match.points.assign(this->View.points, this->View.points + 3 * this->View.numberOfPoints);
     for (Index p = 0; p < this->View.numberOfPoints; ++p)
@@ -60,7 +60,8 @@ public:
         this->place(p, this->cornerFor(p));
         continue;
       }
-      const int part = kind == CurvePoint ? curves[curve] : patches[patch];
+      const int part =
+        kind == CurvePoint ? this->Match.partOfCurve[curve] : this->Match.partOfPatch[patch];
       this->Match.parts[p] = part;
       this->place(p, this->Parts[part].closest(pointOf(this->View, p)));
     }
@@ -90,6 +91,13 @@ private:
     }
     const auto samples = static_cast<double>((places.size() + step - 1) / step);
     return { best.first, std::sqrt(best.second / samples) };
+  }
+  /// The nearest patch; the nearest curve of a geometry without patches.
+  int nearestSurface(const std::vector<Vec3>& places) const
+  {
+    const int patches = this->Match.model.patches;
+    const int end = patches > 0 ? patches : static_cast<int>(this->Parts.size());
+    return this->nearestPart(places, 0, end).first;
   }
   std::vector<int> matchPatches() const;
   std::vector<int> matchCurves();
@@ -125,7 +133,7 @@ std::vector<int> Matcher::matchPatches() const
   std::vector<int> found;
   for (const std::vector<Vec3>& places : centers)
   {
-    found.push_back(std::max(0, this->nearestPart(places, 0, this->Match.model.patches).first));
+    found.push_back(std::max(0, this->nearestSurface(places)));
   }
   return found;
 }
@@ -156,7 +164,7 @@ std::vector<int> Matcher::matchCurves()
     const double edge = length[i] / static_cast<double>(places[i].size());
     const bool matched = curve >= 0 && distance <= matchingDistance * edge;
     this->Match.curves += matched;
-    found.push_back(matched ? curve : std::max(0, this->nearestPart(places[i], 0, patches).first));
+    found.push_back(matched ? curve : std::max(0, this->nearestSurface(places[i])));
   }
   return found;
 }
@@ -183,8 +191,8 @@ Vec3 Matcher::cornerFor(Index p)
     ++this->Match.corners;
     return best;
   }
-  const int patch = this->nearestPart({ x }, 0, this->Match.model.patches).first;
-  return patch < 0 ? x : this->Parts[patch].closest(x);
+  const int part = this->nearestSurface({ x });
+  return part < 0 ? x : this->Parts[part].closest(x);
 }
 }
 
@@ -194,8 +202,9 @@ GeometryMatch matchGeometry(const Mesh& mesh, const Features& features,
 {
   const auto empty = [](const SurfacePart& part) { return part.pieces.empty(); };
   Matcher matcher(mesh, features, slides, geometry, geometryFeatures);
-  GeometryMatch match = geometryFeatures.patches > 0 ? matcher.run() : GeometryMatch();
-  if (match.model.patches == 0 ||
+  const bool outline = features.patches == 0 && geometryFeatures.curves > 0;
+  GeometryMatch match = geometryFeatures.patches > 0 || outline ? matcher.run() : GeometryMatch();
+  if (match.model.parts.empty() ||
     std::all_of(match.model.parts.begin(), match.model.parts.end(), empty))
   {
     throw Error("The geometry has no triangles or quadrilaterals to slide on.");

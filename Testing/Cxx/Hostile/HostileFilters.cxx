@@ -10,6 +10,7 @@
 #include "vtkMeditWriter.h"
 #include "vtkMfemWriter.h"
 #include "vtkMeshComparison.h"
+#include "vtkMeshCurving.h"
 #include "vtkMeshImprover.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"
@@ -240,6 +241,12 @@ void addFilters(std::vector<HostileFilter>& list)
   module = "Untangling";
   add("", triangles, MADE(vtkMeshUntangler, SetTimeLimit(Seconds)), 0, true, 1);
   add("solid", tetrahedra, MADE(vtkMeshUntangler, SetTimeLimit(Seconds)));
+  module = "Curving";
+  add("", triangles, PLAIN(vtkMeshCurving), 0, false);
+  add("cubic", tetrahedra,
+    MADE(vtkMeshCurving, SetOrder(3), SetInputArrayToProcess(0, 0, 0, cells, "Material")), 0, false);
+  // The input is the geometry of a tetrahedral mesh.
+  add("geometry", triangles, MADE(vtkMeshCurving, SetInputDataObject(0, tetrahedra())), 1, false);
   module = "Reconnection";
   add("", tetrahedra, MADE(vtkMeshImprover, SetTimeLimit(Seconds)), 0, false, 1);
   add("flat", tetrahedra,

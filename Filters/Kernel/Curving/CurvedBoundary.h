@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file CurvedBoundary.h
+ * @brief The edges and faces of a boundary as pieces of smooth curves and surfaces.
+ * Internal: not installed.
+ */
+#ifndef tautline_CurvedBoundary_h
+#define tautline_CurvedBoundary_h
+
+#include "tautline/Mesh/Features.h"
+#include "tautline/Optimization/SurfaceModel.h"
+
+#include <vector>
+
+namespace tautline
+{
+/// A cubic curve by its Bezier points.
+using CubicCurve = std::array<Vec3, 4>;
+
+/// An edge of the boundary on its curve.
+struct BoundaryEdge
+{
+  Index first, second;
+  int part; ///< of partsOfPoints(): a patch, or patches + a curve
+  CubicCurve curve;
+};
+
+/// A facet of the boundary: a cubic triangle, or a quadrilateral between its curves.
+struct BoundaryFace
+{
+  std::array<Index, MaxFaceNodes> nodes;
+  int size, patch;
+  std::array<CubicCurve, MaxFaceNodes> edges; ///< from each node to the next
+  Vec3 center;                                ///< the middle Bezier point of a triangle
+};
+
+struct CurvedBoundary
+{
+  std::vector<BoundaryEdge>
+    edges; ///< of curves, which come first, and of facets, each at least once
+  std::vector<BoundaryFace> faces;
+};
+
+/**
+ * @brief The edges and facets of the features of a mesh without NaN coordinates, with the smooth
+ * curves and surfaces of makeSurfaceModel().
+ */
+CurvedBoundary curvedBoundary(const Mesh& mesh, const Features& features);
+
+/// The point of a curve at t, 0 to 1.
+Vec3 pointOn(const CubicCurve& curve, double t);
+
+/**
+ * @brief The point of a face with these shares of its corners: of a quadrilateral the Coons patch
+ * of its edges (S. A. Coons, "Surfaces for computer-aided design of space forms", 1967).
+ */
+Vec3 pointOn(const BoundaryFace& face, const std::array<double, MaxFaceNodes>& shares);
+}
+#endif
