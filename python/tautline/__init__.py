@@ -65,6 +65,10 @@ if _vtk.available("_untangling"):
     from ._untangling import untangle
     from ._untangling_parts import UntangleResult
     __all__ += ["UntangleResult", "untangle"]
+if _vtk.available("_curving"):
+    from ._curving import curve
+    from ._curving_parts import CurveResult
+    __all__ += ["CurveResult", "curve"]
 if _vtk.available("_reconnection"):
     from ._reconnection import improve
     from ._reconnection_parts import ImproveResult

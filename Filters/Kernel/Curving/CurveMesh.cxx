@@ -196,6 +196,7 @@ void Curver::findFeaturesOf()
   FeatureOptions options;
   options.angle = this->Options.featureAngle;
   options.regions = this->Options.regions;
+  options.coarse = true;
   this->Found = findFeatures(this->TheMesh, options);
   this->Result.corners = this->Found.corners;
   this->Result.curves = this->Found.curves;

@@ -44,9 +44,20 @@ struct Candidate
   double cosine; ///< between the two facets; -2 on a border or junction
   bool sharp;
   FacetClass of;
+  std::array<Index, 2> facets = { -1, -1 }; ///< where there are two of one class
 };
 
 constexpr double borderCosine = -2;
+
+/// FeatureOptions::coarse: the largest bend that may be smooth, as a multiple of the angle, and how
+/// far the surface has to bend on, as a fraction of the bend.
+constexpr double coarsest = 1.5, alike = 1.0 / 3;
+
+/// The angle from one vector to another.
+double angleBetween(const Vec3& from, const Vec3& to)
+{
+  return std::atan2(norm(cross(from, to)), dot(from, to));
+}
 
 class FeatureFinder
 {
@@ -76,6 +87,10 @@ public:
     {
       this->judgeSides();
     }
+    if (this->Options.coarse && !this->Planar)
+    {
+      this->relaxEdges();
+    }
     this->obeyKinds();
     this->classifyPoints();
     this->findCurves();
@@ -98,8 +113,12 @@ private:
   bool adopt(const std::vector<Side>& sides, bool overLongest);
   double longestEdge(const Features::Facet& facet) const;
   void judge(const Side* sides, Index count);
+  void relaxEdges();
+  bool bendsOn(const Candidate& edge, int side) const;
+  void findFacetsOfPoints();
   void obeyKinds();
   void classifyPoints();
+  void relaxPoints(const std::vector<std::array<Index, 2>>& edges, const std::vector<Index>& count);
   bool bends(Index point, const Candidate& e, const Candidate& f) const;
   void findCurves();
   void findPatches();
@@ -115,6 +134,7 @@ private:
   std::vector<Vec3> Normals;       ///< per facet, zero if it has none
   std::vector<Index> CellOf;       ///< per facet of a surface mesh
   std::vector<Candidate> Candidates;
+  std::vector<Index> Starts, FacetsAt; ///< facets of each point, for relaxEdges()
 };
 
 //------------------------------------------------------------------------------
@@ -341,11 +361,85 @@ void FeatureFinder::judge(const Side* sides, Index count)
     const Vec3 &m = this->Normals[sides[0].facet], &n = this->Normals[other];
     const bool known = dot(m, m) > 0 && dot(n, n) > 0;
     candidate.cosine = known ? sign * dot(m, n) : 1.0;
+    candidate.facets = { sides[0].facet, other };
     candidate.sharp = candidate.cosine < this->Limit;
   }
   if (candidate.sharp || this->Options.kinds)
   {
     this->Candidates.push_back(candidate);
+  }
+}
+
+//------------------------------------------------------------------------------
+void FeatureFinder::findFacetsOfPoints()
+{
+  const auto forEach = [this](const auto& visit)
+  {
+    for (std::size_t f = 0; f < this->Result.facets.size(); ++f)
+    {
+      for (int k = 0; k < this->Result.facets[f].size; ++k)
+      {
+        visit(this->Result.facets[f].nodes[k], static_cast<Index>(f));
+      }
+    }
+  };
+  this->Starts.assign(this->View.numberOfPoints + 1, 0);
+  forEach([this](Index p, Index) { ++this->Starts[p + 1]; });
+  std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
+  this->FacetsAt.resize(this->Starts.back());
+  std::vector<Index> next(this->Starts.begin(), this->Starts.end() - 1);
+  forEach([&](Index p, Index f) { this->FacetsAt[next[p]++] = f; });
+}
+
+//------------------------------------------------------------------------------
+/// Whether the surface behind one of the two facets of an edge bends on about the edge, by a
+/// similar angle.
+bool FeatureFinder::bendsOn(const Candidate& edge, int side) const
+{
+  const Vec3 &own = this->Normals[edge.facets[side]], &other = this->Normals[edge.facets[1 - side]];
+  const Vec3 along = pointOf(this->View, edge.b) - pointOf(this->View, edge.a);
+  const double bend = angleBetween(other, own);
+  const Vec3 axis = (dot(cross(other, own), along) > 0 ? 1 : -1) / norm(along) * along;
+  const Features::Facet& facet = this->Result.facets[edge.facets[side]];
+  for (int k = 0; k < facet.size; ++k)
+  {
+    const Index p = facet.nodes[k];
+    for (Index i = this->Starts[p]; p != edge.a && p != edge.b && i < this->Starts[p + 1]; ++i)
+    {
+      const Vec3& next = this->Normals[this->FacetsAt[i]];
+      // Of facets that face along the edge, as the end of a cylinder, there is no telling.
+      constexpr double least = 0.5;
+      const Vec3 across = next - dot(next, axis) * axis;
+      const double turn = std::atan2(dot(cross(own, across), axis), dot(own, across));
+      if (norm(across) > least && turn >= alike * bend &&
+        turn <= coarsest * this->Options.angle / DegreesPerRadian)
+      {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+/// Makes edges smooth that are sharp only because the mesh is coarse, see FeatureOptions::coarse.
+void FeatureFinder::relaxEdges()
+{
+  const double limit =
+    std::cos(std::min(Pi, coarsest * this->Options.angle / DegreesPerRadian)) - roundingOfCosine;
+  this->findFacetsOfPoints();
+  std::vector<Candidate*> smooth;
+  for (Candidate& edge : this->Candidates)
+  {
+    if (edge.sharp && edge.facets[0] >= 0 && edge.cosine >= limit && this->bendsOn(edge, 0) &&
+      this->bendsOn(edge, 1))
+    {
+      smooth.push_back(&edge);
+    }
+  }
+  for (Candidate* edge : smooth)
+  {
+    edge->sharp = false;
   }
 }
 
@@ -429,6 +523,58 @@ void FeatureFinder::classifyPoints()
       kind = corner ? CornerPoint : CurvePoint;
     }
     this->Result.kind[p] = static_cast<signed char>(given == CornerPoint ? CornerPoint : kind);
+  }
+  if (this->Options.coarse)
+  {
+    this->relaxPoints(edges, count);
+  }
+}
+
+//------------------------------------------------------------------------------
+/// Makes points of curves smooth that bend only because the mesh is coarse.
+/// @param edges of each point the first two features, of `count`
+void FeatureFinder::relaxPoints(
+  const std::vector<std::array<Index, 2>>& edges, const std::vector<Index>& count)
+{
+  const double limit = coarsest * this->Options.angle / DegreesPerRadian * (1 + roundingOfCosine);
+  const auto across = [this](Index edge, Index p)
+  { return this->Candidates[edge].a == p ? this->Candidates[edge].b : this->Candidates[edge].a; };
+  const auto step = [this](Index from, Index to)
+  { return pointOf(this->View, to) - pointOf(this->View, from); };
+  std::vector<Index> smooth;
+  for (Index p = 0; p < this->View.numberOfPoints; ++p)
+  {
+    const int given = this->Options.kinds ? this->Options.kinds[p] : int(DetectKind);
+    if (this->Result.kind[p] != CornerPoint || count[p] != 2 || given == CornerPoint ||
+      this->Candidates[edges[p][0]].of != this->Candidates[edges[p][1]].of)
+    {
+      continue;
+    }
+    int agree = 0, differ = 0;
+    const Vec3 in = step(across(edges[p][0], p), p), out = step(p, across(edges[p][1], p));
+    const double bend = angleBetween(in, out);
+    for (int end = 0; end < 2; ++end)
+    {
+      const Index q = across(edges[p][end], p);
+      if (count[q] != 2)
+      {
+        continue; // the end of the curve
+      }
+      const Index r = across(edges[q][0] == edges[p][end] ? edges[q][1] : edges[q][0], q);
+      const Vec3 first = end == 0 ? step(r, q) : step(p, q),
+                 second = end == 0 ? step(q, p) : step(q, r);
+      const bool same = dot(cross(first, second), cross(in, out)) > 0;
+      const double next = angleBetween(first, second);
+      (same && next >= alike * bend && next <= limit ? agree : differ) += 1;
+    }
+    if (bend <= limit && agree > 0 && differ == 0)
+    {
+      smooth.push_back(p);
+    }
+  }
+  for (Index p : smooth)
+  {
+    this->Result.kind[p] = CurvePoint;
   }
 }
 

@@ -40,6 +40,12 @@ struct FeatureOptions
   const signed char* kinds = nullptr;
   /// Takes a planar mesh as a surface in space: its cells are facets.
   bool asSurface = false;
+  /**
+   * @brief Whether edges, and points of curves, that bend by up to half more than the angle are
+   * smooth where the surface, or curve, bends on in the same sense on both sides, by at least a
+   * third as much: on a cylinder with 6 to 8 facets around, but not at a chamfer.
+   */
+  bool coarse = false;
 };
 
 struct Features

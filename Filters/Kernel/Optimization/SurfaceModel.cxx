@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "SurfaceModel.h"
 
+#include "tautline/Core/UnionFind.h"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -36,6 +38,12 @@ Vec3 controlAt(const Vec3& from, const Vec3& to, const Vec3& direction)
   return from + (2.0 * length / (3.0 * (1.0 + cosine))) * direction;
 }
 
+/// Facets that differ by less than so many radians are flat together. A part of at least so many of
+/// them is a flat face; a point on it has its normal if its area is so many times that of any other.
+constexpr double flatAngle = 0.1 / DegreesPerRadian;
+constexpr Index leastFlatFacets = 6;
+constexpr double largerArea = 2;
+
 /// An edge of a curve with the directions, from the first to the second point, at its ends.
 struct CurveEdge
 {
@@ -62,6 +70,7 @@ public:
     {
       this->findDirections();
       this->findFacetsOfPoints();
+      this->findFlatFaces();
       this->Normal.assign(this->View.numberOfPoints, Vec3{ 0, 0, 0 });
     }
     this->addCurves();
@@ -74,6 +83,9 @@ private:
   Vec3 at(Index p) const { return pointOf(this->View, p); }
   void findDirections();
   void findFacetsOfPoints();
+  Vec3 areaOf(const Features::Facet& facet) const;
+  void findFlatFaces();
+  Vec3 flatNormal(Index point, int patch) const;
   void findNormals(const std::vector<Index>& facets);
   void chooseNormals(const std::vector<Index>& facets, const std::vector<Index>& points,
     const std::vector<Vec3>& fitted);
@@ -92,6 +104,9 @@ private:
   SurfaceModel Model;
   std::vector<CurveEdge> Edges;        ///< sorted by points
   std::vector<Index> Starts, FacetsAt; ///< facets of each point
+  std::vector<Index> FlatFace;         ///< per facet: the first facet that is flat with it
+  std::vector<Index> FlatFacets;       ///< per such first facet: how many there are
+  std::vector<double> FlatArea;        ///< and twice their area
   std::vector<Vec3> Normal;            ///< of the points of the patch that is being made
 };
 
@@ -158,6 +173,89 @@ void ModelMaker::findFacetsOfPoints()
       this->FacetsAt[next[facets[f].nodes[k]]++] = static_cast<Index>(f);
     }
   }
+}
+
+//------------------------------------------------------------------------------
+/// Twice the area, along the normal.
+Vec3 ModelMaker::areaOf(const Features::Facet& facet) const
+{
+  const auto at = [&](int k) { return this->at(facet.nodes[k]); };
+  return facet.size == 3 ? cross(at(1) - at(0), at(2) - at(0))
+                         : cross(at(2) - at(0), at(3) - at(1));
+}
+
+//------------------------------------------------------------------------------
+/// Joins facets of a patch that have an edge and the normal in common.
+void ModelMaker::findFlatFaces()
+{
+  const auto& facets = this->TheFeatures.facets;
+  UnionFind joined(static_cast<Index>(facets.size()));
+  const auto haveEdge = [](const Features::Facet& a, const Features::Facet& b)
+  {
+    int shared = 0;
+    for (int k = 0; k < a.size; ++k)
+    {
+      const auto end = b.nodes.begin() + b.size;
+      shared += std::find(b.nodes.begin(), end, a.nodes[k]) != end;
+    }
+    return shared > 1;
+  };
+  for (std::size_t p = 0; p + 1 < this->Starts.size(); ++p)
+  {
+    for (Index i = this->Starts[p]; i < this->Starts[p + 1]; ++i)
+    {
+      for (Index j = this->Starts[p]; j < i; ++j)
+      {
+        const Index f = this->FacetsAt[i], g = this->FacetsAt[j];
+        const Vec3 a = this->areaOf(facets[f]), b = this->areaOf(facets[g]);
+        if (facets[f].patch == facets[g].patch &&
+          std::atan2(norm(cross(a, b)), dot(a, b)) < flatAngle && haveEdge(facets[f], facets[g]))
+        {
+          joined.join(f, g);
+        }
+      }
+    }
+  }
+  this->FlatFace.resize(facets.size());
+  this->FlatFacets.assign(facets.size(), 0);
+  this->FlatArea.assign(facets.size(), 0.0);
+  for (std::size_t f = 0; f < facets.size(); ++f)
+  {
+    const Index face = this->FlatFace[f] = joined.find(static_cast<Index>(f));
+    ++this->FlatFacets[face];
+    this->FlatArea[face] += norm(this->areaOf(facets[f]));
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The normal of the flat face of a patch that a point is on, as where a fillet begins; zero if
+/// there is none, or several, as on the strips of a cylinder.
+Vec3 ModelMaker::flatNormal(Index point, int patch) const
+{
+  Index best = -1;
+  double largest = 0, second = 0;
+  for (Index i = this->Starts[point]; i < this->Starts[point + 1]; ++i)
+  {
+    const Index facet = this->FacetsAt[i], face = this->FlatFace[facet];
+    if (this->TheFeatures.facets[facet].patch == patch && face != best)
+    {
+      const double area = this->FlatArea[face];
+      second = std::max(second, std::min(area, largest));
+      best = area > largest ? face : best;
+      largest = std::max(largest, area);
+    }
+  }
+  Vec3 normal = { 0, 0, 0 };
+  for (Index i = this->Starts[point]; i < this->Starts[point + 1]; ++i)
+  {
+    if (this->FlatFace[this->FacetsAt[i]] == best)
+    {
+      normal += this->areaOf(this->TheFeatures.facets[this->FacetsAt[i]]);
+    }
+  }
+  const bool flat =
+    best >= 0 && this->FlatFacets[best] >= leastFlatFacets && largest >= largerArea * second;
+  return flat ? unitOf(normal) : Vec3{ 0, 0, 0 };
 }
 
 //------------------------------------------------------------------------------
@@ -283,8 +381,9 @@ void ModelMaker::findNormals(const std::vector<Index>& facets)
 
 //------------------------------------------------------------------------------
 /**
- * @brief Takes the fitted normal of a point where it agrees better with those of its neighbours
- * than the normal of the facets; on the border of a patch always, as the facets' are biased there.
+ * @brief Takes the fitted normal of a point where it agrees clearly better with those of its
+ * neighbours than the normal of the facets; on the border of a patch, where the facets' is biased,
+ * where it agrees better. Points on flat faces have the normal of these.
  *
  * Along an arc of a circle a chord d is at the same angle to both normals, d . (n + n') = 0; on any
  * smooth surface this is of the third order of |d|. The facets' normals are exact on spheres and
@@ -293,6 +392,7 @@ void ModelMaker::findNormals(const std::vector<Index>& facets)
 void ModelMaker::chooseNormals(const std::vector<Index>& facets, const std::vector<Index>& points,
   const std::vector<Vec3>& fitted)
 {
+  const int patch = facets.empty() ? -1 : this->TheFeatures.facets[facets[0]].patch;
   constexpr double clearly = 0.5; // both contain what the curvature changes along the chords
   const auto place = [&](Index p)
   { return std::lower_bound(points.begin(), points.end(), p) - points.begin(); };
@@ -318,10 +418,13 @@ void ModelMaker::chooseNormals(const std::vector<Index>& facets, const std::vect
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     const Index p = points[i];
-    if (this->TheFeatures.kind[p] != PatchPoint || ofFit[i] < clearly * ofFacets[i])
+    const bool border = this->TheFeatures.kind[p] != PatchPoint;
+    if (ofFit[i] < (border ? 1 : clearly) * ofFacets[i])
     {
       this->Normal[p] = fitted[i];
     }
+    const Vec3 flat = this->flatNormal(p, patch);
+    this->Normal[p] = dot(flat, flat) > 0 ? flat : this->Normal[p];
   }
 }
 
