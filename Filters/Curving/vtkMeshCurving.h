@@ -4,16 +4,17 @@
  * @brief Makes the cells of a mesh curved, of order 2 to 4, on a geometry or on the smooth surface
  * through their points; and linear again.
  *
- * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed and beside
- * lines and vertices, linear or curved, of planes, surfaces in space and volumes. Nodes of order 2 to
- * 4 are added on their edges and faces and inside; cells share those of common edges and faces. Those
- * on the boundary are placed
+ * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed and
+ * beside lines and vertices, linear or curved, of planes, surfaces in space and volumes. Nodes of
+ * order 2 to 4 are added on their edges and faces and inside; cells share those of common edges and
+ * faces. Those on the boundary are placed
  *
  * - on a Geometry (port 1), if there is one;
  * - else on a smooth surface that is reconstructed from the facets, with cubic curves in place of
  *   edges (tautline/Optimization/SurfaceModel.h). Sharp edges (FeatureAngle) and borders become
  *   smooth curves of their own, corners stay;
- * - or in the middle of the straight edges, if Surface is STRAIGHT. This straightens curved cells, too.
+ * - or in the middle of the straight edges, if Surface is STRAIGHT. This straightens curved cells,
+ *   too.
  *
  * The nodes inside follow, by transfinite interpolation. Cells that are curved already keep their
  * shape if they get the same or a higher order; a lower order interpolates it at its nodes, order 1
@@ -28,18 +29,18 @@
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) the geometry: a surface of triangles or quadrilaterals (STL, a finer
- * mesh); of a planar mesh the outline: lines, or cells in its plane. Its corners, curves and patches
- * are matched to those of the mesh, as in vtkMeshOptimizer. The corners of the boundary are placed
- * on it, too.
+ * mesh); of a planar mesh the outline: lines, or cells in its plane. Its corners, curves and
+ * patches are matched to those of the mesh, as in vtkMeshOptimizer. The corners of the boundary are
+ * placed on it, too.
  *
  * @par Input array 0 (optional, SetInputArrayToProcess):
  * A cell array with regions, between which boundaries are curved, too.
  *
  * @par Output:
- * An unstructured grid with points in double precision. The points of the input come first, in their
- * order, without nodes of curved cells; then the new ones, whose point data are interpolated by the
- * functions of the given cells. Global ids of points and flags of ghost points are dropped; cell data
- * and field data are kept. The cell array `Validity` is added (see vtkElementQuality).
+ * An unstructured grid with points in double precision. The points of the input come first, in
+ * their order, without nodes of curved cells; then the new ones, whose point data are interpolated
+ * by the functions of the given cells. Global ids of points and flags of ghost points are dropped;
+ * cell data and field data are kept. The cell array `Validity` is added (see vtkElementQuality).
  *
  * @par Several processes:
  * The pieces are gathered on the first process.
@@ -90,7 +91,8 @@ public:
   ///@}
 
   ///@{
-  /// Of order 2: no nodes on quadrilaterals and inside, as most solvers have it. The default is off.
+  /// Of order 2: no nodes on quadrilaterals and inside, as most solvers have it. The default is
+  /// off.
   vtkSetMacro(Serendipity, bool);
   vtkGetMacro(Serendipity, bool);
   vtkBooleanMacro(Serendipity, bool);

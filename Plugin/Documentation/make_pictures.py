@@ -290,6 +290,18 @@ def perturb_mesh():
     return layout
 
 
+def curve_mesh():
+    coarse = simple.MeshDomain(Domain="Disk (3D)", NumberOfCells=300)
+    views = []
+    for surface in ("Straight", "Smooth"):
+        view = new_view(OBLIQUE)
+        curved = simple.CurveMesh(Input=coarse, Surface=surface)
+        display = draw(curved, view, light=LIT)
+        display.NonlinearSubdivisionLevel = 4
+        views.append(fit(view, 1.3))
+    return side_by_side(*views)
+
+
 def compare_meshes():
     plate = sample("plate.vtu")
     changes = simple.CompareMeshes(Input=plate, Other=simple.OptimizeMesh(Input=plate))
@@ -526,6 +538,10 @@ PICTURES = (
     solver_study, peridynamic_condition, interaction_layer, horizon_neighbors, silhouette_to_mesh, match_shape,
     shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files, medit_files, mfem_files, off_files,
     tetgen_files, nonpositive_jacobian_1, nonpositive_jacobian_2, nonpositive_jacobian_3,
+    curve_mesh, compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde,
+    condition_estimator, solver_study, peridynamic_condition, interaction_layer, horizon_neighbors,
+    silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files,
+    medit_files, mfem_files, off_files, tetgen_files,
 )  # fmt: skip
 
 

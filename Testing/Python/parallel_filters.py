@@ -116,6 +116,8 @@ def motions(name, cut, **given):
     options = {"Percentage": 80, "Fraction": 0.7, "TangledFraction": 0.02, "FixedPoints": ["POINTS", "stay"]}
     moved = update(PerturbMesh(source, **options))
     results[f"tangle {name}"] = [values(moved, ["points", "Displacement"]), moved.Summary]
+    curved = update(CurveMesh(source, Order=3))
+    results[f"curve {name}"] = [values(curved, ["Validity", "cell"], "cell"), int(curved.AddedNodes), curved.Summary]
     pieces = update(PerturbMesh(source, **{**options, "TangledFraction": 0}))
     results[f"perturb {name}"] = [values(pieces, ["points", "Displacement"]), pieces.Summary]
     graded = update(ElementQuality(source, Metrics=["Mean ratio"], Criteria=CRITERIA))

@@ -129,6 +129,7 @@ def cases():
     yield "filters", "MeshPerturbation", {"Input": cube}, {}
     yield "filters", "MeshOptimizer", {"Input": perturbed}, {}
     yield "filters", "MeshUntangler", {"Input": tangled}, {}
+    yield "filters", "MeshCurving", {"Input": cube}, {"Order": 3}
     yield "filters", "MeshImprover", {"Input": perturbed}, {"TargetAngle": 40}
     yield "filters", "MeshWarp", {"Input": read("plate.vtu")}, {"Transform": rotation()}
     yield "filters", "EllipticSolver", {"Input": cube}, {}

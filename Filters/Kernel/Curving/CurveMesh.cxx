@@ -141,7 +141,7 @@ private:
   Vec3 baseOf(const CellPlan& plan, int node, const Index* cell) const;
   void placeBoundary();
   void placeNode(const NodeName& name, const Vec3& target, int part);
-  void placeFace(const BoundaryFace& face, const std::vector<CurvedNode>& nodes);
+  void placeFace(const CurvedFace& face, const std::vector<CurvedNode>& nodes);
   void followBoundary();
   void writePoints();
   void certify();
@@ -416,7 +416,7 @@ void Curver::placeNode(const NodeName& name, const Vec3& target, int part)
 }
 
 //------------------------------------------------------------------------------
-void Curver::placeFace(const BoundaryFace& face, const std::vector<CurvedNode>& nodes)
+void Curver::placeFace(const CurvedFace& face, const std::vector<CurvedNode>& nodes)
 {
   for (const CurvedNode& node : nodes)
   {
@@ -443,7 +443,7 @@ void Curver::placeBoundary()
   for (std::size_t e = 0; e < boundary.edges.size(); ++e)
   {
     pollInterruption(static_cast<Index>(e));
-    const BoundaryEdge& edge = boundary.edges[e];
+    const CurvedEdge& edge = boundary.edges[e];
     for (int i = 1; i < order; ++i)
     {
       const int share = NameUnits * i / order;
@@ -460,7 +460,7 @@ void Curver::placeBoundary()
   for (std::size_t f = 0; f < boundary.faces.size(); ++f)
   {
     pollInterruption(static_cast<Index>(f));
-    const BoundaryFace& face = boundary.faces[f];
+    const CurvedFace& face = boundary.faces[f];
     this->placeFace(face, face.size == 3 ? ofTriangles : ofQuadrilaterals);
   }
   double sum = 0;

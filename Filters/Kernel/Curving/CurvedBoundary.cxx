@@ -42,9 +42,9 @@ CubicCurve edgeOf(const CubicControls* controls, int k, const Vec3& a, const Vec
   return controls ? CubicCurve{ a, (*controls)[2 * k], (*controls)[2 * k + 1], b } : straight(a, b);
 }
 
-BoundaryFace faceOf(const MeshView& view, const Features::Facet& facet, PieceReader& pieces)
+CurvedFace faceOf(const MeshView& view, const Features::Facet& facet, PieceReader& pieces)
 {
-  BoundaryFace face = { facet.nodes, facet.size, facet.patch, {}, { 0, 0, 0 } };
+  CurvedFace face = { facet.nodes, facet.size, facet.patch, {}, { 0, 0, 0 } };
   const auto at = [&](int k) { return pointOf(view, facet.nodes[k % facet.size]); };
   const CubicControls* first = pieces.next(facet.patch);
   if (facet.size == 3)
@@ -80,7 +80,7 @@ CurvedBoundary curvedBoundary(const Mesh& mesh, const Features& features)
   for (std::size_t f = 0; f < features.facets.size(); ++f)
   {
     pollInterruption(static_cast<Index>(f));
-    const BoundaryFace face = faceOf(view, features.facets[f], pieces);
+    const CurvedFace face = faceOf(view, features.facets[f], pieces);
     for (int k = 0; k < face.size; ++k)
     {
       boundary.edges.push_back(
@@ -99,7 +99,7 @@ Vec3 pointOn(const CubicCurve& c, double t)
 }
 
 //------------------------------------------------------------------------------
-Vec3 pointOn(const BoundaryFace& face, const std::array<double, MaxFaceNodes>& shares)
+Vec3 pointOn(const CurvedFace& face, const std::array<double, MaxFaceNodes>& shares)
 {
   Vec3 point = { 0, 0, 0 };
   if (face.size == 3)

@@ -18,7 +18,7 @@ namespace tautline
 using CubicCurve = std::array<Vec3, 4>;
 
 /// An edge of the boundary on its curve.
-struct BoundaryEdge
+struct CurvedEdge
 {
   Index first, second;
   int part; ///< of partsOfPoints(): a patch, or patches + a curve
@@ -26,7 +26,7 @@ struct BoundaryEdge
 };
 
 /// A facet of the boundary: a cubic triangle, or a quadrilateral between its curves.
-struct BoundaryFace
+struct CurvedFace
 {
   std::array<Index, MaxFaceNodes> nodes;
   int size, patch;
@@ -36,9 +36,8 @@ struct BoundaryFace
 
 struct CurvedBoundary
 {
-  std::vector<BoundaryEdge>
-    edges; ///< of curves, which come first, and of facets, each at least once
-  std::vector<BoundaryFace> faces;
+  std::vector<CurvedEdge> edges; ///< of curves, which come first, and of facets, each at least once
+  std::vector<CurvedFace> faces;
 };
 
 /**
@@ -54,6 +53,6 @@ Vec3 pointOn(const CubicCurve& curve, double t);
  * @brief The point of a face with these shares of its corners: of a quadrilateral the Coons patch
  * of its edges (S. A. Coons, "Surfaces for computer-aided design of space forms", 1967).
  */
-Vec3 pointOn(const BoundaryFace& face, const std::array<double, MaxFaceNodes>& shares);
+Vec3 pointOn(const CurvedFace& face, const std::array<double, MaxFaceNodes>& shares);
 }
 #endif

@@ -39,7 +39,7 @@ Vec3 controlAt(const Vec3& from, const Vec3& to, const Vec3& direction)
 }
 
 /// Facets that differ by less than so many radians are flat together. A part of at least so many of
-/// them is a flat face; a point on it has its normal if its area is so many times that of any other.
+/// them is a flat face; a point on it has its normal if no other is larger than a part of it.
 constexpr double flatAngle = 0.1 / DegreesPerRadian;
 constexpr Index leastFlatFacets = 6;
 constexpr double largerArea = 2;

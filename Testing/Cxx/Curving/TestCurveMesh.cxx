@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Curved cells share their nodes, have the boundary on the true surface, keep the shape of cells that
-// are curved, and are certified.
+// Curved cells share their nodes, have the boundary on the true surface, keep the shape of cells
+// that are curved, and are certified.
 #include "Registry.h"
 #include "Surfaces.h"
 #include "tautline/Curving/CurveMesh.h"

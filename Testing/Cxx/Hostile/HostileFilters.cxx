@@ -244,7 +244,8 @@ void addFilters(std::vector<HostileFilter>& list)
   module = "Curving";
   add("", triangles, PLAIN(vtkMeshCurving), 0, false);
   add("cubic", tetrahedra,
-    MADE(vtkMeshCurving, SetOrder(3), SetInputArrayToProcess(0, 0, 0, cells, "Material")), 0, false);
+    MADE(vtkMeshCurving, SetOrder(3), SetInputArrayToProcess(0, 0, 0, cells, "Material")), 0,
+    false);
   // The input is the geometry of a tetrahedral mesh.
   add("geometry", triangles, MADE(vtkMeshCurving, SetInputDataObject(0, tetrahedra())), 1, false);
   module = "Reconnection";
