@@ -291,14 +291,20 @@ def perturb_mesh():
 
 
 def curve_mesh():
-    coarse = simple.MeshDomain(Domain="Disk (3D)", NumberOfCells=300)
+    """A cylinder of twelve facets around; edges are drawn as lines between their nodes."""
+    cylinder = simple.Cylinder(Resolution=12, Height=0.8)
     views = []
     for surface in ("Straight", "Smooth"):
+        curved = simple.CurveMesh(Input=simple.Triangulate(Input=cylinder), Order=4, Surface=surface)
+        skin = simple.ExtractSurface(Input=curved)
+        skin.NonlinearSubdivisionLevel = 4
         view = new_view(OBLIQUE)
-        curved = simple.CurveMesh(Input=coarse, Surface=surface)
-        display = draw(curved, view, light=LIT)
-        display.NonlinearSubdivisionLevel = 4
-        views.append(fit(view, 1.3))
+        draw(skin, view, light=LIT, edges=False)
+        lines = simple.Show(simple.ExtractEdges(Input=curved), view)
+        lines.AmbientColor = lines.DiffuseColor = DARK
+        lines.ColorArrayName = [None, ""]
+        lines.RenderLinesAsTubes, lines.LineWidth = 1, 2
+        views.append(fit(view, 1.15))
     return side_by_side(*views)
 
 

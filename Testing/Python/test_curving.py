@@ -64,7 +64,7 @@ def test_smooth():
     assert abs(outer[1] - 1).max() < 1e-4, outer
     assert 0.033 < smooth.largest_offset < 0.035 and straight.largest_offset == 0
     # What is sharp stays: below the angle of the polygon, all points are corners.
-    assert tl.curve(mesh, feature_angle=10).largest_offset == 0
+    assert tl.curve(mesh, feature_angle=10).largest_offset < 1e-12
     # Curved cells keep their shape at a higher order.
     again = tl.curve(smooth, 4)
     assert types(again.mesh) == {70} and again.largest_offset < 1e-12
@@ -113,12 +113,12 @@ def test_refused():
     refused(wording("no-pyramids-of-order"), tl.curve, pyramid, 3)
     broken = square(2)
     points(broken)[0, 0] = np.nan
-    refused(wording("nan-or-infinite"), tl.curve, broken)
+    refused(wording("not-a-finite-number"), tl.curve, broken)
 
 
 def test_command():
     out = OUT / "curved.vtu"
-    printed = shell("curve", BRACKET, "--order", 2, "--serendipity", "-o", out)
+    printed = shell("curve", DATA / "cylinder.msh", "--order", 2, "--serendipity", "-o", out)
     assert wording("invalid-elements-certified") in printed
     assert types(tl.read(out)) == {24}
 
