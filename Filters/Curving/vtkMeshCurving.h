@@ -62,7 +62,7 @@
 #define vtkMeshCurving_h
 
 #include "TautlineCurvingModule.h" // for export macro
-#include "vtkTautlineAlgorithm.h"
+#include "vtkTautlineTimedAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
 #include <string> // for the notices
@@ -77,11 +77,11 @@ struct CurvingOptions;
 struct InputBlock;
 }
 
-class TAUTLINECURVING_EXPORT vtkMeshCurving : public vtkTautlineAlgorithm
+class TAUTLINECURVING_EXPORT vtkMeshCurving : public vtkTautlineTimedAlgorithm
 {
 public:
   static vtkMeshCurving* New();
-  vtkTypeMacro(vtkMeshCurving, vtkTautlineAlgorithm);
+  vtkTypeMacro(vtkMeshCurving, vtkTautlineTimedAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   ///@{

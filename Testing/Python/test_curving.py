@@ -120,7 +120,7 @@ def test_command():
     out = OUT / "curved.vtu"
     printed = shell("curve", DATA / "cylinder.msh", "--order", 2, "--serendipity", "-o", out)
     assert wording("invalid-elements-certified") in printed
-    assert types(tl.read(out)) == {24}
+    assert types(tl.read(out)) == {22}
 
 
 run_tests(globals())

@@ -412,7 +412,7 @@ bool FeatureFinder::bendsOn(const Candidate& edge, int side) const
       const Vec3 across = next - dot(next, axis) * axis;
       const double turn = std::atan2(dot(cross(own, across), axis), dot(own, across));
       if (norm(across) > least && turn >= alike * bend &&
-        turn <= coarsest * this->Options.angle / DegreesPerRadian)
+        turn <= coarsest * this->Options.angle / DegreesPerRadian * (1 + roundingOfCosine))
       {
         return true;
       }

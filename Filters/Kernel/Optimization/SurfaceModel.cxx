@@ -39,7 +39,7 @@ Vec3 controlAt(const Vec3& from, const Vec3& to, const Vec3& direction)
 }
 
 /// Facets that differ by less than so many radians are flat together. A part of at least so many of
-/// them is a flat face; a point on it has its normal if no other is larger than a part of it.
+/// them is a flat face whose points have its normal, if it is so many times larger than any beside.
 constexpr double flatAngle = 0.1 / DegreesPerRadian;
 constexpr Index leastFlatFacets = 6;
 constexpr double largerArea = 2;
@@ -50,6 +50,13 @@ struct CurveEdge
   Index a, b; ///< the smaller and the larger point
   int curve;
   Vec3 atA = { 0, 0, 0 }, atB = { 0, 0, 0 };
+};
+
+/// Facets that are flat together.
+struct FlatPart
+{
+  Index facets = 0;
+  double area = 0, beside = 0; ///< twice their area, and the largest of a part at their edges
 };
 
 class ModelMaker
@@ -105,8 +112,7 @@ private:
   std::vector<CurveEdge> Edges;        ///< sorted by points
   std::vector<Index> Starts, FacetsAt; ///< facets of each point
   std::vector<Index> FlatFace;         ///< per facet: the first facet that is flat with it
-  std::vector<Index> FlatFacets;       ///< per such first facet: how many there are
-  std::vector<double> FlatArea;        ///< and twice their area
+  std::vector<FlatPart> FlatFaces;     ///< by such first facets
   std::vector<Vec3> Normal;            ///< of the points of the patch that is being made
 };
 
@@ -189,16 +195,16 @@ Vec3 ModelMaker::areaOf(const Features::Facet& facet) const
 void ModelMaker::findFlatFaces()
 {
   const auto& facets = this->TheFeatures.facets;
-  UnionFind joined(static_cast<Index>(facets.size()));
-  const auto haveEdge = [](const Features::Facet& a, const Features::Facet& b)
+  std::vector<std::array<Index, 2>> neighbors;
+  const auto shared = [&](Index f, Index g)
   {
-    int shared = 0;
-    for (int k = 0; k < a.size; ++k)
+    int count = 0;
+    const auto end = facets[g].nodes.begin() + facets[g].size;
+    for (int k = 0; k < facets[f].size; ++k)
     {
-      const auto end = b.nodes.begin() + b.size;
-      shared += std::find(b.nodes.begin(), end, a.nodes[k]) != end;
+      count += std::find(facets[g].nodes.begin(), end, facets[f].nodes[k]) != end;
     }
-    return shared > 1;
+    return count;
   };
   for (std::size_t p = 0; p + 1 < this->Starts.size(); ++p)
   {
@@ -207,55 +213,63 @@ void ModelMaker::findFlatFaces()
       for (Index j = this->Starts[p]; j < i; ++j)
       {
         const Index f = this->FacetsAt[i], g = this->FacetsAt[j];
-        const Vec3 a = this->areaOf(facets[f]), b = this->areaOf(facets[g]);
-        if (facets[f].patch == facets[g].patch &&
-          std::atan2(norm(cross(a, b)), dot(a, b)) < flatAngle && haveEdge(facets[f], facets[g]))
+        if (facets[f].patch == facets[g].patch && shared(f, g) > 1)
         {
-          joined.join(f, g);
+          neighbors.push_back({ f, g });
         }
       }
     }
   }
+  UnionFind joined(static_cast<Index>(facets.size()));
+  for (const auto& [f, g] : neighbors)
+  {
+    const Vec3 a = this->areaOf(facets[f]), b = this->areaOf(facets[g]);
+    if (std::atan2(norm(cross(a, b)), dot(a, b)) < flatAngle)
+    {
+      joined.join(f, g);
+    }
+  }
   this->FlatFace.resize(facets.size());
-  this->FlatFacets.assign(facets.size(), 0);
-  this->FlatArea.assign(facets.size(), 0.0);
+  this->FlatFaces.assign(facets.size(), {});
   for (std::size_t f = 0; f < facets.size(); ++f)
   {
     const Index face = this->FlatFace[f] = joined.find(static_cast<Index>(f));
-    ++this->FlatFacets[face];
-    this->FlatArea[face] += norm(this->areaOf(facets[f]));
+    ++this->FlatFaces[face].facets;
+    this->FlatFaces[face].area += norm(this->areaOf(facets[f]));
+  }
+  for (const auto& [f, g] : neighbors)
+  {
+    FlatPart &a = this->FlatFaces[this->FlatFace[f]], &b = this->FlatFaces[this->FlatFace[g]];
+    a.beside = &a != &b ? std::max(a.beside, b.area) : a.beside;
+    b.beside = &a != &b ? std::max(b.beside, a.area) : b.beside;
   }
 }
 
 //------------------------------------------------------------------------------
 /// The normal of the flat face of a patch that a point is on, as where a fillet begins; zero if
-/// there is none, or several, as on the strips of a cylinder.
+/// there is none, or one beside it is about as large, as on the strips of a cylinder.
 Vec3 ModelMaker::flatNormal(Index point, int patch) const
 {
   Index best = -1;
-  double largest = 0, second = 0;
-  for (Index i = this->Starts[point]; i < this->Starts[point + 1]; ++i)
-  {
-    const Index facet = this->FacetsAt[i], face = this->FlatFace[facet];
-    if (this->TheFeatures.facets[facet].patch == patch && face != best)
-    {
-      const double area = this->FlatArea[face];
-      second = std::max(second, std::min(area, largest));
-      best = area > largest ? face : best;
-      largest = std::max(largest, area);
-    }
-  }
   Vec3 normal = { 0, 0, 0 };
   for (Index i = this->Starts[point]; i < this->Starts[point + 1]; ++i)
   {
-    if (this->FlatFace[this->FacetsAt[i]] == best)
+    const Features::Facet& facet = this->TheFeatures.facets[this->FacetsAt[i]];
+    const Index face = this->FlatFace[this->FacetsAt[i]];
+    const FlatPart& part = this->FlatFaces[face];
+    if (facet.patch != patch || part.facets < leastFlatFacets ||
+      part.area < largerArea * part.beside)
     {
-      normal += this->areaOf(this->TheFeatures.facets[this->FacetsAt[i]]);
+      continue;
     }
+    if (best < 0 || part.area > this->FlatFaces[best].area)
+    {
+      best = face;
+      normal = { 0, 0, 0 };
+    }
+    normal += face == best ? this->areaOf(facet) : Vec3{ 0, 0, 0 };
   }
-  const bool flat =
-    best >= 0 && this->FlatFacets[best] >= leastFlatFacets && largest >= largerArea * second;
-  return flat ? unitOf(normal) : Vec3{ 0, 0, 0 };
+  return unitOf(normal);
 }
 
 //------------------------------------------------------------------------------
@@ -298,7 +312,6 @@ Vec3 ModelMaker::fitNormal(Index point, int patch, const Vec3& first) const
   {
     return first;
   }
-  const int unknowns = ring.size() >= enoughForCubic ? cubic : quadric;
   const Vec3 axis = std::abs(first[0]) < 0.5 ? Vec3{ 1, 0, 0 } : Vec3{ 0, 1, 0 };
   const Vec3 u = unitOf(cross(first, axis)), v = cross(first, u), center = this->at(point);
   double size = 0;
@@ -306,7 +319,7 @@ Vec3 ModelMaker::fitNormal(Index point, int patch, const Vec3& first) const
   {
     size += norm(this->at(p) - center) / static_cast<double>(ring.size());
   }
-  Eigen::MatrixXd rows(ring.size(), unknowns);
+  Eigen::MatrixXd rows(ring.size(), cubic);
   Eigen::VectorXd heights(ring.size());
   for (std::size_t i = 0; i < ring.size(); ++i)
   {
@@ -315,21 +328,25 @@ Vec3 ModelMaker::fitNormal(Index point, int patch, const Vec3& first) const
     const double terms[cubic] = { x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y,
       y * y * y };
     const auto row = static_cast<Eigen::Index>(i);
-    for (int k = 0; k < unknowns; ++k)
+    for (int k = 0; k < cubic; ++k)
     {
       rows(row, k) = weight * terms[k];
     }
     heights[row] = weight * dot(d, first);
   }
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(rows);
-  solver.setThreshold(1e-3);
-  if (solver.rank() < unknowns)
+  // Few rows of neighbors, as on a border, do not determine a cubic.
+  for (int unknowns : { cubic, quadric })
   {
-    return first;
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(rows.leftCols(unknowns));
+    solver.setThreshold(1e-3);
+    if (solver.rank() == unknowns && (unknowns == quadric || ring.size() >= enoughForCubic))
+    {
+      const Eigen::VectorXd c = solver.solve(heights);
+      const Vec3 fitted = unitOf(first - c[0] * u - c[1] * v);
+      return dot(fitted, first) > minCosine ? fitted : first;
+    }
   }
-  const Eigen::VectorXd c = solver.solve(heights);
-  const Vec3 fitted = unitOf(first - c[0] * u - c[1] * v);
-  return dot(fitted, first) > minCosine ? fitted : first;
+  return first;
 }
 
 //------------------------------------------------------------------------------
