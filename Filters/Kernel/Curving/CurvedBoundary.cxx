@@ -68,7 +68,7 @@ CurvedFace faceOf(const MeshView& view, const Features::Facet& facet, PieceReade
 CurvedBoundary curvedBoundary(const Mesh& mesh, const Features& features)
 {
   const MeshView& view = mesh.view();
-  const SurfaceModel model = makeSurfaceModel(mesh, features, true);
+  const SurfaceModel model = makeSurfaceModel(mesh, features, true, true);
   PieceReader pieces(model);
   CurvedBoundary boundary;
   for (const Features::Edge& e : features.edges)

@@ -62,10 +62,11 @@ struct FlatPart
 class ModelMaker
 {
 public:
-  ModelMaker(const Mesh& mesh, const Features& features, bool smooth)
+  ModelMaker(const Mesh& mesh, const Features& features, bool smooth, bool coarse)
     : View(mesh.view())
     , TheFeatures(features)
     , Smooth(smooth)
+    , Coarse(coarse)
   {
   }
 
@@ -77,7 +78,10 @@ public:
     {
       this->findDirections();
       this->findFacetsOfPoints();
-      this->findFlatFaces();
+      if (this->Coarse)
+      {
+        this->findFlatFaces();
+      }
       this->Normal.assign(this->View.numberOfPoints, Vec3{ 0, 0, 0 });
     }
     this->addCurves();
@@ -107,7 +111,7 @@ private:
 
   const MeshView& View;
   const Features& TheFeatures;
-  bool Smooth;
+  bool Smooth, Coarse;
   SurfaceModel Model;
   std::vector<CurveEdge> Edges;        ///< sorted by points
   std::vector<Index> Starts, FacetsAt; ///< facets of each point
@@ -399,8 +403,8 @@ void ModelMaker::findNormals(const std::vector<Index>& facets)
 //------------------------------------------------------------------------------
 /**
  * @brief Takes the fitted normal of a point where it agrees clearly better with those of its
- * neighbours than the normal of the facets; on the border of a patch, where the facets' is biased,
- * where it agrees better. Points on flat faces have the normal of these.
+ * neighbours than the normal of the facets; on the border of a patch, where that is biased, always,
+ * unless the mesh is coarse. Then points on flat faces have the normal of these.
  *
  * Along an arc of a circle a chord d is at the same angle to both normals, d . (n + n') = 0; on any
  * smooth surface this is of the third order of |d|. The facets' normals are exact on spheres and
@@ -436,11 +440,11 @@ void ModelMaker::chooseNormals(const std::vector<Index>& facets, const std::vect
   {
     const Index p = points[i];
     const bool border = this->TheFeatures.kind[p] != PatchPoint;
-    if (ofFit[i] < (border ? 1 : clearly) * ofFacets[i])
+    if ((border && !this->Coarse) || ofFit[i] < clearly * ofFacets[i])
     {
       this->Normal[p] = fitted[i];
     }
-    const Vec3 flat = this->flatNormal(p, patch);
+    const Vec3 flat = this->Coarse ? this->flatNormal(p, patch) : Vec3{ 0, 0, 0 };
     this->Normal[p] = dot(flat, flat) > 0 ? flat : this->Normal[p];
   }
 }
@@ -594,9 +598,9 @@ void ModelMaker::addTriangle(Index a, Index b, Index c, SurfacePart& part) const
 }
 
 //------------------------------------------------------------------------------
-SurfaceModel makeSurfaceModel(const Mesh& mesh, const Features& features, bool smooth)
+SurfaceModel makeSurfaceModel(const Mesh& mesh, const Features& features, bool smooth, bool coarse)
 {
-  return ModelMaker(mesh, features, smooth).make();
+  return ModelMaker(mesh, features, smooth, coarse).make();
 }
 
 //------------------------------------------------------------------------------

@@ -52,9 +52,11 @@ struct SurfaceModel
 /**
  * @brief The model of the features of a mesh, in its coordinates.
  * @param smooth whether it is smooth within patches and along curves, or made of facets
+ * @param coarse whether facets may bend by large angles: fitted normals are used less, and flat
+ * faces of several facets stay flat where they pass into curved ones
  */
 TAUTLINE_KERNEL_EXPORT SurfaceModel makeSurfaceModel(
-  const Mesh& mesh, const Features& features, bool smooth);
+  const Mesh& mesh, const Features& features, bool smooth, bool coarse = false);
 
 /// Per point: the part of the model made of the same features that it is on; -1 for corners and
 /// points within the mesh.
