@@ -282,6 +282,62 @@ TAUTLINE_PART(testPipe)
   }
 }
 
+// The nodes inside do not depend on which of the cells beside them is first, also of two types:
+// they follow the boundary in the same way on both sides of a face.
+TAUTLINE_PART(testInside)
+{
+  const auto placesOf = [](const MeshData& data)
+  {
+    std::set<std::array<long, 3>> found;
+    for (Index p = 0; p < data.numberOfPoints(); ++p)
+    {
+      const Vec3 x = data.point(p);
+      constexpr double grid = 1e6;
+      found.insert({ std::lround(grid * x[0] + 0.25), std::lround(grid * x[1] + 0.25),
+        std::lround(grid * x[2] + 0.25) });
+    }
+    return found;
+  };
+  const MeshData hexahedra = pipe(CellType::Hexahedron, 3);
+  TAUTLINE_LET(MeshData, mixed, points = hexahedra.points);
+  for (Index cell = 0; cell < hexahedra.numberOfCells(); ++cell)
+  {
+    const std::vector<Index> p = hexahedra.nodes(cell);
+    if (cell % 3 % 2 == cell / 3 % 3 % 2)
+    {
+      mixed.addCell(CellType::Hexahedron, p);
+      continue;
+    }
+    mixed.addCell(CellType::Wedge, { p[0], p[2], p[1], p[4], p[6], p[5] });
+    mixed.addCell(CellType::Wedge, { p[0], p[3], p[2], p[4], p[7], p[6] });
+  }
+  for (const MeshData& data : { mixed, pipe(CellType::Tetrahedron, 3), pipe(CellType::Wedge, 3) })
+  {
+    TAUTLINE_LET(MeshData, backwards, points = data.points);
+    for (Index cell = data.numberOfCells() - 1; cell >= 0; --cell)
+    {
+      backwards.addCell(data.types[cell], data.nodes(cell));
+    }
+    for (int order : { 2, 3, 4 })
+    {
+      const CurvedMesh one = curve(data, order), other = curve(backwards, order);
+      TAUTLINE_CHECK(placesOf(dataOf(one)) == placesOf(dataOf(other)));
+      TAUTLINE_CHECK_EQUAL(invalid(one), Index(0));
+    }
+  }
+  const CurvedMesh curved = curve(hexahedra, 2);
+  for (Index cell = 0; cell < hexahedra.numberOfCells(); ++cell)
+  {
+    // Straight, and half of the offset of the side that is on the boundary.
+    constexpr int last = 26;
+    const double flat = std::cos(Pi / 12), layer = double(cell % 3);
+    const double side = layer == 0 ? 1 : layer == 1 ? 0 : 2;
+    const double expected = flat * (1 + (layer + 0.5) / 3) + 0.5 * (1 - flat) * side;
+    const Vec3 middle = dataOf(curved).point(curved.connectivity[curved.offsets[cell] + last]);
+    TAUTLINE_CHECK_NEAR(radius(middle), expected, 0.01);
+  }
+}
+
 // A circle of few edges is round, a chamfer and a hexagonal prism of two cells around are not.
 TAUTLINE_PART(testCoarse)
 {
