@@ -3,6 +3,8 @@
 
 #include "tautline/Core/Interruption.h"
 
+#include <cmath>
+
 namespace tautline
 {
 namespace
@@ -23,9 +25,14 @@ public:
   {
   }
 
-  /// The control points of the next piece of a part; null if it is flat.
-  const CubicControls* next(int part)
+  /// The control points of the next piece of a part; null if it is flat. The model leaves out
+  /// pieces whose squares of coordinates are not finite.
+  const CubicControls* next(int part, const Vec3& a, const Vec3& b, const Vec3& c)
   {
+    if (!std::isfinite(dot(a, a) + dot(b, b) + dot(c, c)))
+    {
+      return nullptr;
+    }
     const SurfacePart& of = this->Model.parts[part];
     const std::int32_t controls = of.controlsOf[this->Next[part]++];
     return controls < 0 ? nullptr : &of.controls[controls];
@@ -46,7 +53,7 @@ CurvedFace faceOf(const MeshView& view, const Features::Facet& facet, PieceReade
 {
   CurvedFace face = { facet.nodes, facet.size, facet.patch, {}, { 0, 0, 0 } };
   const auto at = [&](int k) { return pointOf(view, facet.nodes[k % facet.size]); };
-  const CubicControls* first = pieces.next(facet.patch);
+  const CubicControls* first = pieces.next(facet.patch, at(0), at(1), at(2));
   if (facet.size == 3)
   {
     for (int k = 0; k < 3; ++k)
@@ -57,7 +64,7 @@ CurvedFace faceOf(const MeshView& view, const Features::Facet& facet, PieceReade
     return face;
   }
   // Two triangles, 0 1 2 and 0 2 3.
-  const CubicControls* second = pieces.next(facet.patch);
+  const CubicControls* second = pieces.next(facet.patch, at(0), at(2), at(3));
   face.edges = { edgeOf(first, 0, at(0), at(1)), edgeOf(first, 1, at(1), at(2)),
     edgeOf(second, 1, at(2), at(3)), edgeOf(second, 2, at(3), at(0)) };
   return face;
@@ -75,7 +82,8 @@ CurvedBoundary curvedBoundary(const Mesh& mesh, const Features& features)
   {
     const int part = features.patches + e.curve;
     const Vec3 a = pointOf(view, e.first), b = pointOf(view, e.second);
-    boundary.edges.push_back({ e.first, e.second, part, edgeOf(pieces.next(part), 0, a, b) });
+    boundary.edges.push_back(
+      { e.first, e.second, part, edgeOf(pieces.next(part, a, b, b), 0, a, b) });
   }
   for (std::size_t f = 0; f < features.facets.size(); ++f)
   {
