@@ -540,14 +540,11 @@ def tetgen_files():
 
 PICTURES = (
     element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, untangle_mesh, warp_mesh, perturb_mesh,
-    compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde, condition_estimator,
-    solver_study, peridynamic_condition, interaction_layer, horizon_neighbors, silhouette_to_mesh, match_shape,
-    shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files, medit_files, mfem_files, off_files,
-    tetgen_files, nonpositive_jacobian_1, nonpositive_jacobian_2, nonpositive_jacobian_3,
     curve_mesh, compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde,
     condition_estimator, solver_study, peridynamic_condition, interaction_layer, horizon_neighbors,
     silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files,
-    medit_files, mfem_files, off_files, tetgen_files,
+    medit_files, mfem_files, off_files, tetgen_files, nonpositive_jacobian_1, nonpositive_jacobian_2,
+    nonpositive_jacobian_3,
 )  # fmt: skip
 
 
