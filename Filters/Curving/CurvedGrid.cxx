@@ -58,7 +58,7 @@ vtkSmartPointer<vtkUnstructuredGrid> gridOf(vtkDataSet* data)
 }
 
 /// The data of the points that stay, and those of the nodes by interpolation.
-void writePointData(const CurvedMesh& curved, vtkPointData* from, vtkPointData* to)
+void writePointData(const CurvingResult& curved, vtkPointData* from, vtkPointData* to)
 {
   const auto kept = static_cast<vtkIdType>(curved.kept.size());
   const auto nodes = static_cast<vtkIdType>(curved.starts.size()) - 1;
@@ -82,7 +82,7 @@ void writePointData(const CurvedMesh& curved, vtkPointData* from, vtkPointData* 
 }
 
 /// Points where they were have exactly the coordinates that they had.
-std::vector<double> pointsOf(const CurvedMesh& curved, const MeshAdapter& adapter)
+std::vector<double> pointsOf(const CurvingResult& curved, const MeshAdapter& adapter)
 {
   std::vector<double> points = curved.points;
   adapter.frame().leave(points);
@@ -131,7 +131,7 @@ vtkSmartPointer<vtkDataObject> asGrids(vtkDataObject* data)
 }
 
 //------------------------------------------------------------------------------
-void writeCurved(const CurvedMesh& curved, const MeshAdapter& adapter, vtkDataSet* input,
+void writeCurved(const CurvingResult& curved, const MeshAdapter& adapter, vtkDataSet* input,
   vtkUnstructuredGrid* output)
 {
   output->Initialize();

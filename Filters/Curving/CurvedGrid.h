@@ -17,7 +17,7 @@ class vtkUnstructuredGrid;
 namespace tautline
 {
 class MeshAdapter;
-struct CurvedMesh;
+struct CurvingResult;
 
 /// The same with an unstructured grid for each data set that is none; throws Error for adaptive
 /// grids (AMR), which cannot hold them.
@@ -27,7 +27,7 @@ vtkSmartPointer<vtkDataObject> asGrids(vtkDataObject* data);
  * @brief Fills the output.
  * @param adapter of the input, in the frame of the result
  */
-void writeCurved(const CurvedMesh& curved, const MeshAdapter& adapter, vtkDataSet* input,
+void writeCurved(const CurvingResult& curved, const MeshAdapter& adapter, vtkDataSet* input,
   vtkUnstructuredGrid* output);
 }
 #endif

@@ -7,6 +7,7 @@
 #include "GeometrySurface.h"
 #include "MeshAdapter.h"
 #include "PointMerge.h"
+#include "tautline/Curved/UntangleCurved.h"
 #include "tautline/Curving/CurveMesh.h"
 
 #include "vtkCellData.h"
@@ -162,7 +163,7 @@ void vtkMeshCurving::Curve(const tautline::InputBlock& block, vtkDataObject* geo
   { return this->Proceed((block.number + fraction) / blocks); };
   const std::string oriented = adapter.orient(nullptr, false);
   vtkIdType invalidBefore = 0;
-  const tautline::CurvedMesh curved = this->Run(block, adapter, options, invalidBefore);
+  const tautline::CurvingResult curved = this->Run(block, adapter, options, invalidBefore);
   tautline::writeCurved(
     curved, adapter, block.input, vtkUnstructuredGrid::SafeDownCast(block.output));
   this->Report(block, adapter, curved, invalidBefore);
@@ -171,7 +172,7 @@ void vtkMeshCurving::Curve(const tautline::InputBlock& block, vtkDataObject* geo
 
 //------------------------------------------------------------------------------
 /// Curves a block. What is to be repaired of the result is to be repaired here.
-tautline::CurvedMesh vtkMeshCurving::Run(const tautline::InputBlock& block,
+tautline::CurvingResult vtkMeshCurving::Run(const tautline::InputBlock& block,
   const tautline::MeshAdapter& adapter, tautline::CurvingOptions& options, vtkIdType& invalidBefore)
 {
   const tautline::Mesh& mesh = adapter.mesh();
@@ -190,20 +191,59 @@ tautline::CurvedMesh vtkMeshCurving::Run(const tautline::InputBlock& block,
   cells.points = mesh.view().points;
   const std::vector<tautline::Index>& one = adapter.coincident().representative;
   options.representative = one.empty() ? nullptr : one.data();
-  return tautline::curveMesh(mesh, cells, facts, options);
+  tautline::CurvingResult curved = tautline::curveMesh(mesh, cells, facts, options);
+  if (this->Repair)
+  {
+    this->RepairResult(curved, adapter);
+  }
+  return curved;
+}
+
+//------------------------------------------------------------------------------
+/// Moves the nodes around invalid cells.
+void vtkMeshCurving::RepairResult(
+  tautline::CurvingResult& curved, const tautline::MeshAdapter& adapter)
+{
+  const bool surface = adapter.mesh().dimension() == tautline::Dimension::Surface;
+  if (surface || !adapter.reversedCells().empty() || countInvalid(curved.validity) == 0)
+  {
+    return; // reversed cells are listed as the input has them, and have no common orientation
+  }
+  tautline::MeshView view;
+  view.numberOfPoints = static_cast<tautline::Index>(curved.points.size() / 3);
+  view.points = curved.points.data();
+  view.numberOfCells = static_cast<tautline::Index>(curved.types.size());
+  view.cellTypes = curved.types.data();
+  view.offsets = curved.offsets.data();
+  view.connectivity = curved.connectivity.data();
+  tautline::Mesh mesh(view, this->Threads);
+  mesh.setMirrored(adapter.mesh().mirrored());
+  tautline::CurvedOptions options;
+  options.featureAngle = this->FeatureAngle;
+  options.threads = this->Threads;
+  options.maximumSeconds = this->GetRemainingSeconds();
+  tautline::CurvedUntangleResult repaired = tautline::untangleCurved(mesh, options);
+  for (tautline::Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    this->RepairedNodes +=
+      !std::equal(&repaired.points[3 * p], &repaired.points[3 * p] + 3, &curved.points[3 * p]);
+  }
+  curved.points = std::move(repaired.points);
+  tautline::certifyCurvedCells(
+    mesh.at(curved.points.data()), {}, curved.validity.data(), nullptr, this->Threads);
 }
 
 //------------------------------------------------------------------------------
 void vtkMeshCurving::ClearResult()
 {
   this->Superclass::ClearResult();
-  this->AddedNodes = this->InvalidBefore = this->InvalidAfter = 0;
+  this->AddedNodes = this->InvalidBefore = this->InvalidAfter = this->RepairedNodes = 0;
   this->LargestOffset = this->MeanOffset = this->DistanceBefore = this->DistanceAfter = 0.0;
 }
 
 //------------------------------------------------------------------------------
 void vtkMeshCurving::Report(const tautline::InputBlock& block, const tautline::MeshAdapter& adapter,
-  const tautline::CurvedMesh& curved, vtkIdType invalidBefore)
+  const tautline::CurvingResult& curved, vtkIdType invalidBefore)
 {
   const double unit = adapter.frame().unit();
   const auto added = static_cast<vtkIdType>(curved.starts.size()) - 1;
@@ -220,9 +260,9 @@ void vtkMeshCurving::Report(const tautline::InputBlock& block, const tautline::M
   }
   text << ".\nInvalid elements, certified: " << invalidBefore << " before, " << invalid
        << " after.";
-  if (invalid > 0)
+  if (this->RepairedNodes > 0)
   {
-    text << " Untangle Mesh repairs them.";
+    text << "\n" << counted(this->RepairedNodes, "node", "nodes") << " moved to make cells valid.";
   }
   if (this->Order > 1 && this->Surface == SMOOTH)
   {
@@ -280,5 +320,6 @@ void vtkMeshCurving::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Serendipity: " << this->Serendipity << "\n";
   os << indent << "Surface: " << this->Surface << "\n";
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
+  os << indent << "Repair: " << this->Repair << "\n";
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
 }

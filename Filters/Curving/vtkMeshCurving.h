@@ -72,7 +72,7 @@ class vtkUnstructuredGrid;
 namespace tautline
 {
 class MeshAdapter;
-struct CurvedMesh;
+struct CurvingResult;
 struct CurvingOptions;
 struct InputBlock;
 }
@@ -124,6 +124,17 @@ public:
 
   ///@{
   /**
+   * Whether nodes around the cells that curving has made invalid move, corners too, until all cells
+   * are valid; those of the boundary slide on the curved boundary, see
+   * tautline/Curved/UntangleCurved.h. Not of surfaces in space. The default is on.
+   */
+  vtkSetMacro(Repair, bool);
+  vtkGetMacro(Repair, bool);
+  vtkBooleanMacro(Repair, bool);
+  ///@}
+
+  ///@{
+  /**
    * Whether points with the same coordinates on facets that match are treated as one, as on the
    * seams of a mesh in pieces; the output keeps them all. The default is on. See
    * tautline/Mesh/CoincidentPoints.h.
@@ -165,20 +176,24 @@ private:
   void operator=(const vtkMeshCurving&) = delete;
 
   void Curve(const tautline::InputBlock& block, vtkDataObject* geometry);
-  tautline::CurvedMesh Run(const tautline::InputBlock& block, const tautline::MeshAdapter& adapter,
-    tautline::CurvingOptions& options, vtkIdType& invalidBefore);
+  void RepairResult(tautline::CurvingResult& curved, const tautline::MeshAdapter& adapter);
+  tautline::CurvingResult Run(const tautline::InputBlock& block,
+    const tautline::MeshAdapter& adapter, tautline::CurvingOptions& options,
+    vtkIdType& invalidBefore);
   void Report(const tautline::InputBlock& block, const tautline::MeshAdapter& adapter,
-    const tautline::CurvedMesh& curved, vtkIdType invalidBefore);
+    const tautline::CurvingResult& curved, vtkIdType invalidBefore);
 
   int Order = 2;
   bool Serendipity = false;
   int Surface = SMOOTH;
   double FeatureAngle = 40.0;
+  bool Repair = true;
   bool MergeCoincidentPoints = true;
 
   vtkIdType AddedNodes = 0;
   vtkIdType InvalidBefore = 0;
   vtkIdType InvalidAfter = 0;
+  vtkIdType RepairedNodes = 0;
   double LargestOffset = 0.0;
   double MeanOffset = 0.0;
   double DistanceBefore = 0.0;

@@ -106,7 +106,7 @@ public:
   {
   }
 
-  CurvedMesh run()
+  CurvingResult run()
   {
     this->Plans.requireSupported();
     this->findFeaturesOf();
@@ -178,7 +178,7 @@ private:
   std::vector<Index> PlaceOf;           ///< per node, with merged points
   std::vector<Place> Places;
   std::map<CellType, FacetSamples> Samples;
-  CurvedMesh Result;
+  CurvingResult Result;
 };
 
 //------------------------------------------------------------------------------
@@ -641,7 +641,7 @@ void Curver::sampleFacet(const SurfaceProjection& geometry, CellType shape, cons
 }
 
 //------------------------------------------------------------------------------
-CurvedMesh curveMesh(const Mesh& mesh, const MeshView& cells, const CurvedCellFacts& facts,
+CurvingResult curveMesh(const Mesh& mesh, const MeshView& cells, const CurvedCellFacts& facts,
   const CurvingOptions& options)
 {
   checkOptions(options);

@@ -8,7 +8,7 @@
  *
  *     tautline::CurvingOptions options;
  *     options.order = 2;
- *     tautline::CurvedMesh curved = tautline::curveMesh(mesh, mesh.view(), {}, options);
+ *     tautline::CurvingResult curved = tautline::curveMesh(mesh, mesh.view(), {}, options);
  *     // curved.validity has a verdict on each cell, proved for the whole cell
  */
 #ifndef tautline_CurveMesh_h
@@ -50,7 +50,7 @@ struct CurvingOptions
   std::function<bool(double)> progress;
 };
 
-struct CurvedMesh
+struct CurvingResult
 {
   std::vector<double> points; ///< 3 each
   std::vector<unsigned char> types;
@@ -90,7 +90,7 @@ struct CurvedMesh
  * Throws Error for options out of range, cells that cannot be curved (polygons, polyhedra, strips),
  * rational cells, pyramids of order 3 and above, and geometries that do not fit.
  */
-TAUTLINE_KERNEL_EXPORT CurvedMesh curveMesh(const Mesh& mesh, const MeshView& cells,
+TAUTLINE_KERNEL_EXPORT CurvingResult curveMesh(const Mesh& mesh, const MeshView& cells,
   const CurvedCellFacts& facts, const CurvingOptions& options);
 }
 #endif

@@ -10,7 +10,7 @@ using namespace tautline;
 
 namespace
 {
-CurvedMesh curve(const MeshData& data, int order,
+CurvingResult curve(const MeshData& data, int order,
   const std::function<void(CurvingOptions&)>& set = {}, const CurvedCellFacts& facts = {})
 {
   const Mesh mesh(data.view());
@@ -22,14 +22,14 @@ CurvedMesh curve(const MeshData& data, int order,
   return curveMesh(mesh, data.view(), facts, options);
 }
 
-MeshData dataOf(const CurvedMesh& curved)
+MeshData dataOf(const CurvingResult& curved)
 {
   TAUTLINE_LET(MeshData, data, points = curved.points, types = curved.types,
     offsets = curved.offsets, connectivity = curved.connectivity);
   return data;
 }
 
-Index invalid(const CurvedMesh& curved)
+Index invalid(const CurvingResult& curved)
 {
   return std::count_if(curved.validity.begin(), curved.validity.end(), isInvalid);
 }
@@ -127,7 +127,7 @@ struct Errors
 };
 
 template <class Distance>
-Errors errorsOf(const CurvedMesh& curved, double edge, const Distance& distance)
+Errors errorsOf(const CurvingResult& curved, double edge, const Distance& distance)
 {
   Errors errors;
   const MeshData data = dataOf(curved);
@@ -164,7 +164,7 @@ TAUTLINE_PART(testShared)
       {
         const Context context(std::string(topology(type).name) + " of order " +
           std::to_string(order) + (serendipity ? ", serendipity" : ""));
-        const CurvedMesh curved =
+        const CurvingResult curved =
           curve(data, order, [&](CurvingOptions& o) { o.serendipity = serendipity; });
         const MeshData result = dataOf(curved);
         TAUTLINE_CHECK_EQUAL(places(result), static_cast<std::size_t>(result.numberOfPoints()));
@@ -203,7 +203,7 @@ TAUTLINE_PART(testSphere)
     const MeshData data = sphereSurface(type, 6);
     for (int order : { 2, 3, 4 })
     {
-      const CurvedMesh curved = curve(data, order);
+      const CurvingResult curved = curve(data, order);
       const Errors errors =
         errorsOf(curved, edgeOf(data), [](const Vec3& x) { return norm(x) - 1; });
       std::cout << "sphere, " << topology(type).plural << " of order " << order << ": mean "
@@ -222,7 +222,7 @@ TAUTLINE_PART(testTorus)
     const MeshData data = torus(type, 30, 12);
     for (int order : { 2, 3, 4 })
     {
-      const CurvedMesh curved = curve(data, order);
+      const CurvingResult curved = curve(data, order);
       const Errors errors = errorsOf(curved, edgeOf(data),
         [](const Vec3& x) { return std::hypot(std::hypot(x[0], x[1]) - 3, x[2]) - 1; });
       std::cout << "torus, " << topology(type).plural << " of order " << order << ": mean "
@@ -234,7 +234,7 @@ TAUTLINE_PART(testTorus)
 }
 
 /// How far the nodes of the arcs of the pipe are from these: those between two points of an arc.
-double errorOfArcs(const MeshData& data, const CurvedMesh& curved)
+double errorOfArcs(const MeshData& data, const CurvingResult& curved)
 {
   double error = 0;
   const auto onArc = [](const Vec3& x, double r)
@@ -264,7 +264,7 @@ TAUTLINE_PART(testPipe)
     {
       const Context context(
         std::string(topology(type).plural) + " of order " + std::to_string(order));
-      const CurvedMesh curved = curve(data, order);
+      const CurvingResult curved = curve(data, order);
       const Errors errors = errorsOf(curved, 0.5, distanceOfPipe);
       const double arcs = errorOfArcs(data, curved);
       std::cout << "pipe, " << topology(type).plural << " of order " << order << ": mean "
@@ -276,7 +276,8 @@ TAUTLINE_PART(testPipe)
       TAUTLINE_CHECK_EQUAL(curved.patches, Index(6));
       const MeshData result = dataOf(curved);
       TAUTLINE_CHECK_EQUAL(places(result), static_cast<std::size_t>(result.numberOfPoints()));
-      const CurvedMesh straight = curve(data, order, [](CurvingOptions& o) { o.smooth = false; });
+      const CurvingResult straight =
+        curve(data, order, [](CurvingOptions& o) { o.smooth = false; });
       TAUTLINE_CHECK(errorOfArcs(data, straight) > 0.03);
     }
   }
@@ -320,12 +321,12 @@ TAUTLINE_PART(testInside)
     }
     for (int order : { 2, 3, 4 })
     {
-      const CurvedMesh one = curve(data, order), other = curve(backwards, order);
+      const CurvingResult one = curve(data, order), other = curve(backwards, order);
       TAUTLINE_CHECK(placesOf(dataOf(one)) == placesOf(dataOf(other)));
       TAUTLINE_CHECK_EQUAL(invalid(one), Index(0));
     }
   }
-  const CurvedMesh curved = curve(hexahedra, 2);
+  const CurvingResult curved = curve(hexahedra, 2);
   for (Index cell = 0; cell < hexahedra.numberOfCells(); ++cell)
   {
     // Straight, and half of the offset of the side that is on the boundary.
@@ -361,7 +362,7 @@ TAUTLINE_PART(testCoarse)
   };
   for (Index around : { 6, 7, 8, 12 })
   {
-    const CurvedMesh curved = prism(around, 40);
+    const CurvingResult curved = prism(around, 40);
     TAUTLINE_CHECK_EQUAL(curved.corners, Index(0));
     TAUTLINE_CHECK_EQUAL(curved.patches, Index(1));
     TAUTLINE_CHECK(errorsOf(curved, 1, [](const Vec3& x) { return radius(x) - 1; }).largest < 1e-6);
@@ -379,7 +380,7 @@ TAUTLINE_PART(testCoarse)
   {
     strip.addCell(CellType::Quadrilateral, { i, i + 1, i + 7, i + 6 });
   }
-  const CurvedMesh chamfer = curve(strip, 2);
+  const CurvingResult chamfer = curve(strip, 2);
   TAUTLINE_CHECK_EQUAL(chamfer.patches, Index(3));
   TAUTLINE_CHECK(chamfer.largestOffset < 1e-12);
 }
@@ -395,7 +396,7 @@ TAUTLINE_PART(testFlatFace)
       return p[0] <= 5 ? Vec3{ p[0], p[1], 0 }
                        : Vec3{ 5 + 2 * std::sin(a), p[1], 2 - 2 * std::cos(a) };
     });
-  const CurvedMesh curved = curve(data, 3);
+  const CurvingResult curved = curve(data, 3);
   TAUTLINE_CHECK_EQUAL(curved.patches, Index(1));
   double off = 0;
   const MeshData result = dataOf(curved);
@@ -434,7 +435,7 @@ TAUTLINE_PART(testKeptShape)
         {
           const Context context(std::string(topology(type).name) + " of order " +
             std::to_string(from) + " to " + std::to_string(to) + (serendipity ? ", s" : ""));
-          const CurvedMesh curved = curve(data, to);
+          const CurvingResult curved = curve(data, to);
           const MeshData result = dataOf(curved);
           TAUTLINE_CHECK_EQUAL(curved.curvedBefore, data.numberOfCells());
           double error = 0;
@@ -451,7 +452,7 @@ TAUTLINE_PART(testKeptShape)
           TAUTLINE_CHECK(error < 1e-13);
         }
         // Back: the corners, in their order.
-        const CurvedMesh back = curve(data, 1);
+        const CurvingResult back = curve(data, 1);
         TAUTLINE_CHECK_EQUAL(back.points.size(), linear.points.size());
         TAUTLINE_CHECK(back.types == linear.types);
         TAUTLINE_CHECK(back.connectivity == linear.connectivity);
@@ -460,7 +461,7 @@ TAUTLINE_PART(testKeptShape)
           TAUTLINE_CHECK(dataOf(back).point(p) == data.point(p));
         }
         // Straight: where the corners have the nodes.
-        const CurvedMesh straight = curve(data, from,
+        const CurvingResult straight = curve(data, from,
           [&](CurvingOptions& o)
           {
             o.smooth = false;
@@ -498,7 +499,7 @@ TAUTLINE_PART(testGeometry)
     const MeshData data = pipe(type, 4);
     for (int order : { 2, 4 })
     {
-      const CurvedMesh curved =
+      const CurvingResult curved =
         curve(data, order, [&](CurvingOptions& o) { o.geometry = &geometry; });
       std::cout << "on a geometry, " << topology(type).plural << " of order " << order
                 << ": distance " << curved.distanceBefore << " before, " << curved.distanceAfter
@@ -533,7 +534,7 @@ TAUTLINE_PART(testOutline)
     lines.addCell(line, { p, (p + 1) % (4 * steps) });
   }
   const Mesh outline(lines.view());
-  const CurvedMesh curved = curve(data, 2, [&](CurvingOptions& o) { o.geometry = &outline; });
+  const CurvingResult curved = curve(data, 2, [&](CurvingOptions& o) { o.geometry = &outline; });
   TAUTLINE_CHECK_EQUAL(curved.corners, Index(4));
   TAUTLINE_CHECK_EQUAL(curved.curves, Index(4));
   TAUTLINE_CHECK(curved.distanceBefore > 0.02);
@@ -544,7 +545,7 @@ TAUTLINE_PART(testOutline)
     TAUTLINE_CHECK_EQUAL(dataOf(curved).point(p)[2], 0.0);
   }
   // Without it, the cubic curve through the points is nearly the parabola.
-  const CurvedMesh smooth = curve(data, 2);
+  const CurvingResult smooth = curve(data, 2);
   const Errors errors = errorsOf(smooth, 1,
     [](const Vec3& x)
     {
@@ -579,7 +580,7 @@ TAUTLINE_PART(testBeside)
   alone.connectivity.resize(alone.offsets.back());
   for (int order : { 2, 3, 4 })
   {
-    const CurvedMesh curved = curve(data, order);
+    const CurvingResult curved = curve(data, order);
     TAUTLINE_CHECK_EQUAL(curved.points.size(), curve(alone, order).points.size());
     TAUTLINE_CHECK(curved.points == curve(alone, order).points);
     const MeshData result = dataOf(curved);
@@ -594,7 +595,7 @@ TAUTLINE_PART(testReversed)
 {
   // Cells in the opposite order are certified as the others, and listed as they were.
   MeshData data = pipe(CellType::Hexahedron, 2);
-  const CurvedMesh plain = curve(data, 2);
+  const CurvingResult plain = curve(data, 2);
   const MeshData oriented = data;
   std::vector<unsigned char> reversed(data.numberOfCells(), 0);
   for (Index cell : { 1, 4 })
@@ -607,7 +608,7 @@ TAUTLINE_PART(testReversed)
   CurvedCellFacts facts;
   facts.reversed = reversed.data();
   TAUTLINE_LET(CurvingOptions, options, order = 2);
-  const CurvedMesh curved = curveMesh(Mesh(oriented.view()), data.view(), facts, options);
+  const CurvingResult curved = curveMesh(Mesh(oriented.view()), data.view(), facts, options);
   TAUTLINE_CHECK(curved.validity == plain.validity);
   TAUTLINE_CHECK_EQUAL(curved.points.size(), plain.points.size());
   TAUTLINE_CHECK_EQUAL(curved.connectivity[curved.offsets[1] + 1], data.nodes(1)[1]);
@@ -643,8 +644,8 @@ TAUTLINE_PART(testSeam)
     p = representative[p];
   }
   TAUTLINE_LET(CurvingOptions, options, order = 3, representative = representative.data());
-  const CurvedMesh apart = curveMesh(Mesh(merged.view()), two.view(), {}, options);
-  const CurvedMesh whole = curve(one, 3);
+  const CurvingResult apart = curveMesh(Mesh(merged.view()), two.view(), {}, options);
+  const CurvingResult whole = curve(one, 3);
   TAUTLINE_CHECK(apart.points.size() > whole.points.size());
   TAUTLINE_CHECK_EQUAL(places(dataOf(apart)), places(dataOf(whole)));
   TAUTLINE_CHECK_EQUAL(apart.curves, whole.curves);
@@ -660,8 +661,8 @@ TAUTLINE_PART(testRegions)
   {
     regions[cell] = cell / 2 % 2;
   }
-  const CurvedMesh without = curve(data, 2);
-  const CurvedMesh with = curve(data, 2, [&](CurvingOptions& o) { o.regions = regions.data(); });
+  const CurvingResult without = curve(data, 2);
+  const CurvingResult with = curve(data, 2, [&](CurvingOptions& o) { o.regions = regions.data(); });
   TAUTLINE_CHECK(with.patches > without.patches);
   TAUTLINE_CHECK(std::count(with.onBoundary.begin(), with.onBoundary.end(), 1) >
     std::count(without.onBoundary.begin(), without.onBoundary.end(), 1));
