@@ -117,6 +117,65 @@ void adjugateGradient(const Packet (&t)[Dim][Dim], Packet norm2, Packet (&g)[Dim
   }
 }
 
+/// Its change where T changes by dt and |T|^2 by dNorm2:
+/// 2 (dNorm2 T + |T|^2 dT - dT T^t T - T (dT^t T + T^t dT)).
+template <int Dim>
+void adjugateGradientChange(const Packet (&t)[Dim][Dim], Packet norm2, const Packet (&dt)[Dim][Dim],
+  Packet dNorm2, Packet (&change)[Dim][Dim])
+{
+  Packet gram[Dim][Dim], gramChange[Dim][Dim], first[Dim][Dim], last[Dim][Dim];
+  gramOf<Dim>(t, gram);
+  for (int r = 0; r < Dim; ++r)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      gramChange[r][c] = Packet{};
+      for (int k = 0; k < Dim; ++k)
+      {
+        gramChange[r][c] += dt[k][r] * t[k][c] + t[k][r] * dt[k][c];
+      }
+    }
+  }
+  product<Dim>(dt, gram, first);
+  product<Dim>(t, gramChange, last);
+  for (int r = 0; r < Dim; ++r)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      change[r][c] = 2.0 * (dNorm2 * t[r][c] + norm2 * dt[r][c] - first[r][c] - last[r][c]);
+    }
+  }
+}
+
+/// R^t B R
+template <int Dim>
+void conjugate(const SmallMatrix& root, Packet (&block)[Dim][Dim])
+{
+  Packet half[Dim][Dim];
+  for (int r = 0; r < Dim; ++r)
+  {
+    for (int s = 0; s < Dim; ++s)
+    {
+      half[r][s] = Packet{};
+      for (int k = 0; k < Dim; ++k)
+      {
+        half[r][s] += block[r][k] * root[k][s];
+      }
+    }
+  }
+  for (int r = 0; r < Dim; ++r)
+  {
+    for (int s = 0; s < Dim; ++s)
+    {
+      block[r][s] = Packet{};
+      for (int k = 0; k < Dim; ++k)
+      {
+        block[r][s] += root[k][r] * half[k][s];
+      }
+    }
+  }
+}
+
 template <int Dim>
 TargetInvariants<Dim> invariantsOf(
   const Packet (&t)[Dim][Dim], const Packet (&cofactors)[Dim][Dim], bool adjugate)
@@ -601,29 +660,7 @@ void CurvedEnergy<Dim>::addDiagonal(
     }
     if (item.rooted)
     {
-      Packet half[Dim][Dim];
-      for (int r = 0; r < Dim; ++r)
-      {
-        for (int s = 0; s < Dim; ++s)
-        {
-          half[r][s] = Packet{};
-          for (int k = 0; k < Dim; ++k)
-          {
-            half[r][s] += block[r][k] * item.root[k][s];
-          }
-        }
-      }
-      for (int r = 0; r < Dim; ++r)
-      {
-        for (int s = 0; s < Dim; ++s)
-        {
-          block[r][s] = Packet{};
-          for (int k = 0; k < Dim; ++k)
-          {
-            block[r][s] += item.root[k][r] * half[k][s];
-          }
-        }
-      }
+      conjugate<Dim>(item.root, block);
     }
     for (int r = 0; r < Dim; ++r)
     {
@@ -632,6 +669,53 @@ void CurvedEnergy<Dim>::addDiagonal(
         to[secondDerivative(r, s)] += block[r][s];
       }
     }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// The change of the derivative by T where T changes by dt.
+template <int Dim>
+void CurvedEnergy<Dim>::changeOf(
+  const Kept& kept, const Packet (&dt)[Dim][Dim], Packet (&derivative)[Dim][Dim]) const
+{
+  Packet cofactors[Dim][Dim], ofCofactors[Dim][Dim];
+  cofactorsOf<Dim>(kept.t, cofactors);
+  cofactorChange<Dim>(kept.t, dt, ofCofactors);
+  Packet change[NumberOfInvariants] = { 2.0 * inner<Dim>(kept.t, dt), Packet{},
+    inner<Dim>(cofactors, dt), Packet{} };
+  Packet ofAdjugate[Dim][Dim], second[Dim][Dim];
+  if (this->Adjugate)
+  {
+    const Packet norm2 = inner<Dim>(kept.t, kept.t);
+    adjugateGradient<Dim>(kept.t, norm2, ofAdjugate);
+    change[1] = inner<Dim>(ofAdjugate, dt);
+    adjugateGradientChange<Dim>(kept.t, norm2, dt, change[0], second);
+  }
+  for (int r = 0; this->Trace && r < Dim; ++r)
+  {
+    change[3] += dt[r][r];
+  }
+  Packet slopes[NumberOfInvariants];
+  for (int k = 0; k < NumberOfInvariants; ++k)
+  {
+    slopes[k] = Packet{};
+    for (int j = 0; j < NumberOfInvariants; ++j)
+    {
+      slopes[k] += kept.curvatures[secondDerivative(std::max(k, j), std::min(k, j))] * change[j];
+    }
+  }
+  for (int r = 0; r < Dim; ++r)
+  {
+    for (int c = 0; c < Dim; ++c)
+    {
+      derivative[r][c] = 2.0 * (slopes[0] * kept.t[r][c] + kept.slopes[0] * dt[r][c]) +
+        slopes[2] * cofactors[r][c] + kept.bend * ofCofactors[r][c];
+      if (this->Adjugate)
+      {
+        derivative[r][c] += slopes[1] * ofAdjugate[r][c] + kept.slopes[1] * second[r][c];
+      }
+    }
+    derivative[r][r] += slopes[3];
   }
 }
 
@@ -646,72 +730,9 @@ void CurvedEnergy<Dim>::apply(const std::vector<double>& d, std::vector<double>&
       sums.assign(static_cast<std::size_t>(item.table->nodes()) * Dim, Packet{});
       for (int p = 0; item.weight > 0 && p < item.table->packets(); ++p)
       {
-        const Kept& kept = this->State[this->FirstPacket[i] + p];
-        Packet dt[Dim][Dim], cofactors[Dim][Dim], ofCofactors[Dim][Dim];
+        Packet dt[Dim][Dim], derivative[Dim][Dim];
         this->load(item, p, d.data(), dt);
-        cofactorsOf<Dim>(kept.t, cofactors);
-        cofactorChange<Dim>(kept.t, dt, ofCofactors);
-        Packet change[NumberOfInvariants] = { 2.0 * inner<Dim>(kept.t, dt), Packet{},
-          inner<Dim>(cofactors, dt), Packet{} };
-        Packet ofAdjugate[Dim][Dim], second[Dim][Dim];
-        if (this->Adjugate)
-        {
-          // 2 (d|T|^2 T + |T|^2 dT - dT T^t T - T (dT^t T + T^t dT))
-          const Packet norm2 = inner<Dim>(kept.t, kept.t);
-          adjugateGradient<Dim>(kept.t, norm2, ofAdjugate);
-          change[1] = inner<Dim>(ofAdjugate, dt);
-          Packet gram[Dim][Dim], gramChange[Dim][Dim], first[Dim][Dim], last[Dim][Dim];
-          gramOf<Dim>(kept.t, gram);
-          for (int r = 0; r < Dim; ++r)
-          {
-            for (int c = 0; c < Dim; ++c)
-            {
-              gramChange[r][c] = Packet{};
-              for (int k = 0; k < Dim; ++k)
-              {
-                gramChange[r][c] += dt[k][r] * kept.t[k][c] + kept.t[k][r] * dt[k][c];
-              }
-            }
-          }
-          product<Dim>(dt, gram, first);
-          product<Dim>(kept.t, gramChange, last);
-          for (int r = 0; r < Dim; ++r)
-          {
-            for (int c = 0; c < Dim; ++c)
-            {
-              second[r][c] =
-                2.0 * (change[0] * kept.t[r][c] + norm2 * dt[r][c] - first[r][c] - last[r][c]);
-            }
-          }
-        }
-        for (int r = 0; this->Trace && r < Dim; ++r)
-        {
-          change[3] += dt[r][r];
-        }
-        Packet slopes[NumberOfInvariants];
-        for (int k = 0; k < NumberOfInvariants; ++k)
-        {
-          slopes[k] = Packet{};
-          for (int j = 0; j < NumberOfInvariants; ++j)
-          {
-            slopes[k] +=
-              kept.curvatures[secondDerivative(std::max(k, j), std::min(k, j))] * change[j];
-          }
-        }
-        Packet derivative[Dim][Dim];
-        for (int r = 0; r < Dim; ++r)
-        {
-          for (int c = 0; c < Dim; ++c)
-          {
-            derivative[r][c] = 2.0 * (slopes[0] * kept.t[r][c] + kept.slopes[0] * dt[r][c]) +
-              slopes[2] * cofactors[r][c] + kept.bend * ofCofactors[r][c];
-            if (this->Adjugate)
-            {
-              derivative[r][c] += slopes[1] * ofAdjugate[r][c] + kept.slopes[1] * second[r][c];
-            }
-          }
-          derivative[r][r] += slopes[3];
-        }
+        this->changeOf(this->State[this->FirstPacket[i] + p], dt, derivative);
         this->addRow(item, p, derivative, sums);
       }
       this->keep(sums, i);

@@ -113,6 +113,8 @@ private:
   void keep(const std::vector<Packet>& sums, std::size_t item);
   void addDiagonal(
     const SampleItem& item, int packet, const Kept& kept, std::vector<Packet>& sums) const;
+  void changeOf(
+    const Kept& kept, const Packet (&dt)[Dim][Dim], Packet (&derivative)[Dim][Dim]) const;
   double total(const std::vector<double>& values) const;
   void gather(std::vector<double>& to) const;
 

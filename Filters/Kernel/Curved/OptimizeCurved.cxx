@@ -9,8 +9,8 @@
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <limits>
 #include <map>
-#include <numeric>
 #include <set>
 
 namespace tautline
@@ -162,8 +162,18 @@ public:
   }
 
   CurvedOptimizeResult run();
+  CurvedObjectiveValue evaluate(const double* direction)
+  {
+    return this->Problem.dimension() == 2 ? this->evaluate<2>(direction)
+                                          : this->evaluate<3>(direction);
+  }
 
 private:
+  template <int Dim>
+  class Descent;
+  template <int Dim>
+  CurvedObjectiveValue evaluate(const double* direction);
+
   template <int Dim>
   void optimize();
   template <int Dim>
@@ -354,174 +364,310 @@ bool CurvedOptimization::proceed(CurvedSum<Dim>& sum, const CurvedRegion& region
 }
 
 //------------------------------------------------------------------------------
+/// The iterations on one region.
+template <int Dim>
+class CurvedOptimization::Descent
+{
+public:
+  Descent(CurvedOptimization& owner, CurvedRegion& region)
+    : Owner(owner)
+    , Region(region)
+    , Guard(region.elements, Dim, owner.Options.threads)
+    , LeftOut(invalidOf(this->Guard, region.x))
+    , Sum(owner.makeSum<Dim>(region, this->LeftOut))
+    , Newton(this->Sum, *region.slides, owner.Options.threads)
+    , X(region.x)
+    , Best(region.x)
+  {
+    this->Limits.iterations = MostInnerIterations;
+  }
+
+  void run();
+  const std::vector<double>& best() const { return this->Best; }
+
+private:
+  static constexpr int MostInnerIterations = 300, MostRefusals = 12;
+  static constexpr double LargestResidual = 0.3, ShortestStep = 1e-6;
+
+  enum class Outcome
+  {
+    Accepted,
+    Refused,
+    OtherDirection
+  };
+
+  static std::set<Index> invalidOf(const CurvedGuard& guard, const std::vector<double>& x)
+  {
+    std::set<Index> elements;
+    for (const WeakPlace& place : guard.invalid(x))
+    {
+      elements.insert(place.element);
+    }
+    return elements;
+  }
+
+  std::vector<WeakPlace> notRepresented(const std::vector<double>& x, std::vector<double>& lower);
+  void prepareScalarization();
+  bool record();
+  bool isConverged();
+  bool continuesAfter();
+  Outcome step();
+
+  CurvedOptimization& Owner;
+  CurvedRegion& Region;
+  CurvedGuard Guard;
+  std::set<Index> LeftOut;
+  CurvedSum<Dim> Sum;
+  CurvedNewton<Dim> Newton;
+  NewtonLimits Limits;
+  std::vector<double> X, Trial, Best;
+  std::vector<double> Least; ///< lower bounds of the determinants of the elements at X
+  double Objective = 0, FirstObjective = 0, BestObjective = HUGE_VAL, FirstNorm = -1;
+  int Refusals = 0, Reduced = 0;
+  bool ReleasedAtEnd = false;
+};
+
+//------------------------------------------------------------------------------
+/// Of elements that count.
+template <int Dim>
+std::vector<WeakPlace> CurvedOptimization::Descent<Dim>::notRepresented(
+  const std::vector<double>& x, std::vector<double>& lower)
+{
+  std::vector<WeakPlace> places =
+    this->Guard.notRepresented(x, this->Sum.terms()[0].energy->leastJacobians(x), &lower);
+  places.erase(std::remove_if(places.begin(), places.end(),
+                 [this](const WeakPlace& place) { return this->LeftOut.count(place.element) > 0; }),
+    places.end());
+  return places;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void CurvedOptimization::Descent<Dim>::prepareScalarization()
+{
+  if (this->Sum.terms().size() < 2)
+  {
+    return;
+  }
+  std::vector<double> weights, initial;
+  for (std::size_t k = 0; k < this->Sum.terms().size(); ++k)
+  {
+    CurvedTerm<Dim>& term = this->Sum.terms()[k];
+    weights.push_back(this->Owner.Options.objectives[k].objective.weight);
+    initial.push_back(term.outer(term.energy->value(*term.function, this->X)));
+  }
+  this->Owner.TheScalarizer.reset(
+    new Scalarizer(this->Owner.Options.scalarization, weights, initial));
+}
+
+//------------------------------------------------------------------------------
+/// After a step. @return false if the work is to end
+template <int Dim>
+bool CurvedOptimization::Descent<Dim>::record()
+{
+  if (this->FirstNorm < 0)
+  {
+    this->FirstNorm = this->Newton.gradientNorm();
+    this->FirstObjective = this->Objective;
+  }
+  // The places that are added are no part of the objective, which may rise for their sake.
+  if (this->Objective < this->BestObjective)
+  {
+    this->Best = this->X;
+    this->BestObjective = this->Objective;
+  }
+  const double reached =
+    this->Newton.gradientNorm() / std::max(this->FirstNorm, std::numeric_limits<double>::min());
+  this->Limits.relativeResidual = std::min(LargestResidual, std::sqrt(reached));
+  return this->Owner.proceed(this->Sum, this->Region, this->X, this->Newton.gradientNorm());
+}
+
+//------------------------------------------------------------------------------
+/// Whether a stopping criterion is met; sets the reason.
+template <int Dim>
+bool CurvedOptimization::Descent<Dim>::isConverged()
+{
+  const StoppingCriteria& stopping = this->Owner.Options.stopping;
+  CurvedOptimizeResult& result = this->Owner.Result;
+  if (result.iterations >= stopping.maximumIterations)
+  {
+    result.reason = StopReason::IterationLimit;
+    return true;
+  }
+  if (std::isfinite(stopping.bestKnown) && stopping.reduction < 1 &&
+    this->FirstObjective - this->Objective >=
+      stopping.reduction * (this->FirstObjective - stopping.bestKnown))
+  {
+    result.reason = StopReason::Reduction;
+    return true;
+  }
+  const bool small = this->Newton.gradientNorm() <= stopping.gradientNorm * this->FirstNorm;
+  const bool slow =
+    -0.5 * this->Newton.slope() <= stopping.relativeChange * std::abs(this->Objective);
+  if (!small && !slow && this->Newton.slope() < 0)
+  {
+    return false;
+  }
+  result.reason = small ? StopReason::GradientNorm : StopReason::RelativeChange;
+  return !this->continuesAfter();
+}
+
+//------------------------------------------------------------------------------
+/// Whether there is more to do where the function has a minimum: points that were held move again,
+/// and the places that were added lose their weights.
+template <int Dim>
+bool CurvedOptimization::Descent<Dim>::continuesAfter()
+{
+  if (this->Region.slides->held() > 0 && !this->ReleasedAtEnd)
+  {
+    this->Region.slides->release();
+    this->ReleasedAtEnd = true;
+    return true;
+  }
+  if (this->Owner.Result.addedSamples > 0 && this->Reduced < Reductions)
+  {
+    for (CurvedTerm<Dim>& term : this->Sum.terms())
+    {
+      term.energy->scaleWeights(this->Owner.Items, WeightReduction);
+    }
+    ++this->Reduced;
+    return true;
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+typename CurvedOptimization::template Descent<Dim>::Outcome CurvedOptimization::Descent<Dim>::step()
+{
+  double length = 1;
+  const Index held = this->Region.slides->held();
+  std::vector<double> lower;
+  for (; length >= ShortestStep; length *= 0.5)
+  {
+    const double value = this->Newton.search(this->X, length, this->Trial);
+    if (!(value < this->Newton.energy()))
+    {
+      break;
+    }
+    const std::vector<WeakPlace> places = this->notRepresented(this->Trial, lower);
+    // An element whose smallest determinant has not fallen may go on without representation.
+    const auto isWorse = [&](const WeakPlace& place)
+    {
+      const double now = lower[place.element];
+      return !(now > 0) || now < this->Least[place.element];
+    };
+    if (std::none_of(places.begin(), places.end(), isWorse))
+    {
+      this->X.swap(this->Trial);
+      this->Region.slides->accept();
+      this->Least = std::move(lower);
+      this->Owner.addPlaces(this->Sum, this->Region, places);
+      return Outcome::Accepted;
+    }
+    if (this->Refusals < MostRefusals)
+    {
+      this->Owner.addPlaces(this->Sum, this->Region, places);
+      break;
+    }
+  }
+  return this->Region.slides->held() > held ? Outcome::OtherDirection : Outcome::Refused;
+}
+
+//------------------------------------------------------------------------------
+template <int Dim>
+void CurvedOptimization::Descent<Dim>::run()
+{
+  CurvedOptimizeResult& result = this->Owner.Result;
+  this->prepareScalarization();
+  if (this->Region.free == 0)
+  {
+    result.reason = StopReason::NoFreeVertices;
+    return;
+  }
+  // Places where the mesh given has less than its samples show are samples from the start.
+  this->Owner.addPlaces(this->Sum, this->Region, this->notRepresented(this->X, this->Least));
+  bool moved = true;
+  for (;;)
+  {
+    this->Newton.linearize(this->X, this->Limits);
+    this->Objective = this->Sum.combined(this->Sum.values(this->Owner.Items));
+    if (moved && !this->record())
+    {
+      return;
+    }
+    moved = false;
+    const int reduced = this->Reduced;
+    const Index held = this->Region.slides->held();
+    if (this->isConverged())
+    {
+      return;
+    }
+    if (this->Reduced > reduced || this->Region.slides->held() < held)
+    {
+      continue; // another function
+    }
+    const Outcome outcome = this->step();
+    if (outcome == Outcome::Accepted)
+    {
+      moved = true;
+      this->Refusals = 0;
+      if (++result.iterations % IterationsOfHolding == 0)
+      {
+        this->Region.slides->release();
+      }
+    }
+    else if (outcome == Outcome::Refused && ++this->Refusals > MostRefusals)
+    {
+      result.reason = StopReason::NoProgress;
+      return;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 template <int Dim>
 void CurvedOptimization::optimize()
 {
   CurvedRegion region = this->Problem.region({}, -1);
   this->Result.freePoints = region.free;
-  std::vector<double> x = region.x, trial;
-  std::set<Index> leftOut;
-  const CurvedGuard guard(region.elements, Dim, this->Options.threads);
-  for (const WeakPlace& place : guard.invalid(x))
-  {
-    leftOut.insert(place.element);
-  }
-  CurvedSum<Dim> sum = this->makeSum<Dim>(region, leftOut);
-  if (sum.terms().size() > 1)
-  {
-    std::vector<double> weights, initial;
-    for (std::size_t k = 0; k < sum.terms().size(); ++k)
-    {
-      CurvedTerm<Dim>& term = sum.terms()[k];
-      weights.push_back(this->Options.objectives[k].objective.weight);
-      initial.push_back(term.outer(term.energy->value(*term.function, x)));
-    }
-    this->TheScalarizer.reset(new Scalarizer(this->Options.scalarization, weights, initial));
-  }
-  if (region.free == 0)
-  {
-    this->Result.reason = StopReason::NoFreeVertices;
-    this->Problem.take(region, x);
-    return;
-  }
+  Descent<Dim> descent(*this, region);
+  descent.run();
+  this->Problem.take(region, descent.best());
+}
 
-  CurvedNewton<Dim> newton(sum, *region.slides, this->Options.threads);
-  const StoppingCriteria& stopping = this->Options.stopping;
-  const auto sampled = [&](const std::vector<double>& at)
-  { return sum.terms()[0].energy->leastJacobians(at); };
-  // Places where the mesh given has less than its samples show are samples from the start.
-  const auto counted = [&](std::vector<WeakPlace> places)
+//------------------------------------------------------------------------------
+template <int Dim>
+CurvedObjectiveValue CurvedOptimization::evaluate(const double* direction)
+{
+  const CurvedRegion region = this->Problem.region({}, -1);
+  CurvedSum<Dim> sum = this->makeSum<Dim>(region, {});
+  const auto size = this->Problem.x().size();
+  std::vector<double> gradient, product;
+  std::vector<PointBlock> diagonal;
+  CurvedObjectiveValue result;
+  result.value = sum.linearize(region.x, gradient, diagonal);
+  result.gradient.assign(size, 0.0);
+  result.product.assign(size, 0.0);
+  if (direction)
   {
-    places.erase(std::remove_if(places.begin(), places.end(),
-                   [&](const WeakPlace& place) { return leftOut.count(place.element) > 0; }),
-      places.end());
-    return places;
-  };
-  std::vector<double> least;
-  this->addPlaces(sum, region, counted(guard.notRepresented(x, sampled(x), &least)));
-
-  NewtonLimits limits;
-  constexpr int mostInner = 300;
-  limits.iterations = mostInner;
-  double firstNorm = -1, first = 0;
-  int reductions = 0, refusals = 0;
-  bool releasedAtEnd = false;
-  bool fresh = true; // whether x was accepted since the last record
-  for (;;)
-  {
-    newton.linearize(x, limits);
-    const double objective = sum.combined(sum.values(this->Items));
-    if (fresh)
+    std::vector<double> own;
+    for (const Index p : region.points)
     {
-      if (firstNorm < 0)
-      {
-        firstNorm = newton.gradientNorm();
-        first = objective;
-      }
-      if (!this->proceed(sum, region, x, newton.gradientNorm()))
-      {
-        break;
-      }
-      fresh = false;
-      limits.relativeResidual =
-        std::min(0.3, std::sqrt(newton.gradientNorm() / std::max(firstNorm, 1e-300)));
+      own.insert(own.end(), direction + 3 * p, direction + 3 * p + 3);
     }
-    if (this->Result.iterations >= stopping.maximumIterations)
-    {
-      this->Result.reason = StopReason::IterationLimit;
-      break;
-    }
-    if (std::isfinite(stopping.bestKnown) && stopping.reduction < 1 &&
-      first - objective >= stopping.reduction * (first - stopping.bestKnown))
-    {
-      this->Result.reason = StopReason::Reduction;
-      break;
-    }
-    const bool small = newton.gradientNorm() <= stopping.gradientNorm * firstNorm;
-    const bool slow = -0.5 * newton.slope() <= stopping.relativeChange * std::abs(objective);
-    if (small || slow || !(newton.slope() < 0))
-    {
-      if (region.slides->held() > 0 && !releasedAtEnd)
-      {
-        region.slides->release();
-        releasedAtEnd = true;
-        continue;
-      }
-      if (this->Result.addedSamples > 0 && reductions < Reductions)
-      {
-        for (CurvedTerm<Dim>& term : sum.terms())
-        {
-          term.energy->scaleWeights(this->Items, WeightReduction);
-        }
-        ++reductions;
-        continue;
-      }
-      this->Result.reason = small ? StopReason::GradientNorm : StopReason::RelativeChange;
-      break;
-    }
-    double length = 1;
-    constexpr int mostRefusals = 12;
-    const Index held = region.slides->held();
-    bool accepted = false;
-    std::vector<WeakPlace> notYet; // represented, after a step that is taken
-    for (;;)
-    {
-      const double value = newton.search(x, length, trial);
-      if (!(value < newton.energy()))
-      {
-        break;
-      }
-      // An element whose smallest determinant has not fallen may go on without representation.
-      std::vector<double> lower;
-      const std::vector<WeakPlace> places =
-        counted(guard.notRepresented(trial, sampled(trial), &lower));
-      const auto worse = [&](const WeakPlace& place)
-      { return !(lower[place.element] > 0) || lower[place.element] < least[place.element]; };
-      if (std::none_of(places.begin(), places.end(), worse))
-      {
-        accepted = true;
-        least = std::move(lower);
-        notYet = places;
-        break;
-      }
-      if (refusals < mostRefusals)
-      {
-        this->addPlaces(sum, region, places);
-        break;
-      }
-      length *= 0.5; // new samples do not help: a shorter step
-      constexpr double shortest = 1e-6;
-      if (length < shortest)
-      {
-        break;
-      }
-    }
-    if (accepted)
-    {
-      x.swap(trial);
-      region.slides->accept();
-      this->addPlaces(sum, region, notYet);
-      ++this->Result.iterations;
-      if (this->Result.iterations % IterationsOfHolding == 0)
-      {
-        region.slides->release();
-      }
-      refusals = 0;
-      fresh = true;
-      continue;
-    }
-    if (region.slides->held() > held)
-    {
-      continue; // another direction
-    }
-    if (refusals >= mostRefusals)
-    {
-      this->Result.reason = StopReason::NoProgress;
-      break;
-    }
-    ++refusals;
+    sum.apply(own, product);
   }
-  this->Problem.take(region, x);
+  for (std::size_t p = 0; p < region.points.size(); ++p)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      const auto to = static_cast<std::size_t>(3 * region.points[p] + c);
+      result.gradient[to] = gradient[3 * p + c];
+      result.product[to] = direction ? product[3 * p + c] : 0;
+    }
+  }
+  return result;
 }
 
 //------------------------------------------------------------------------------
@@ -587,5 +733,16 @@ CurvedOptimizeResult CurvedOptimization::run()
 CurvedOptimizeResult optimizeCurved(const Mesh& mesh, const CurvedOptimizeOptions& options)
 {
   return CurvedOptimization(mesh, options).run();
+}
+
+//------------------------------------------------------------------------------
+CurvedObjectiveValue evaluateCurvedObjective(const Mesh& mesh, const CurvedCellFacts& facts,
+  const CurvedObjective& objective, const double* direction)
+{
+  CurvedOptimizeOptions options;
+  options.facts = facts;
+  options.objectives = { objective };
+  options.boundary = CurvedBoundaryMotion::Free;
+  return CurvedOptimization(mesh, options).evaluate(direction);
 }
 }

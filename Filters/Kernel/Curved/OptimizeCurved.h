@@ -67,5 +67,22 @@ struct CurvedOptimizeResult
  */
 TAUTLINE_KERNEL_EXPORT CurvedOptimizeResult optimizeCurved(
   const Mesh& mesh, const CurvedOptimizeOptions& options);
+
+/// The value of an objective of curved elements, and its derivatives.
+struct CurvedObjectiveValue
+{
+  double value = 0; ///< infinite where a sample has none
+  /// 3 per point; in a plane along the axes of Mesh::frame(), third 0.
+  std::vector<double> gradient;
+  std::vector<double> product; ///< of the Hessian with a vector, as the gradient
+};
+
+/**
+ * @brief Evaluates an objective on all elements.
+ * @param direction null, or the vector of the product, as the gradient
+ * @throws Error as optimizeCurved() does
+ */
+TAUTLINE_KERNEL_EXPORT CurvedObjectiveValue evaluateCurvedObjective(const Mesh& mesh,
+  const CurvedCellFacts& facts, const CurvedObjective& objective, const double* direction);
 }
 #endif

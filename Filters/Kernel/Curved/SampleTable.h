@@ -1,40 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file SampleTable.h
- * @brief Where the map of an element is sampled, and what its Jacobian is made of there.
+ * @brief What the Jacobian of an element is made of at places of it.
  * Internal: not installed.
- *
- * The standard places are those of a quadrature whose weights are positive: with a negative one a
- * sum of barriers has no minimum. Intervals have Gauss-Lobatto rules, whose places include the
- * corners; triangles and tetrahedra products of Gauss-Jacobi rules (A. H. Stroud, "Approximate
- * calculation of multiple integrals", 1971), tetrahedra up to order 2 quadratureOf().
  */
 #ifndef tautline_SampleTable_h
 #define tautline_SampleTable_h
 
+#include "SamplePlaces.h"
 #include "tautline/Core/Packet.h"
-#include "tautline/Elements/ElementType.h"
 
 #include <memory>
 
 namespace tautline
 {
-struct SamplePlace
-{
-  Vec3 at;       ///< reference coordinates
-  double weight; ///< share of the element
-};
-
-/// The places and weights of the quadrature over an element; the weights add up to 1.
-std::vector<SamplePlace> quadrature(const ElementType& type);
-
-/// A matrix of the dimension of the element in the leading rows and columns.
-using SmallMatrix = std::array<std::array<double, 3>, 3>;
-
-/// Places all over a shape, edges included, that tell apart polynomials of the degree of the
-/// determinant of an element; their weights are equal and add up to 1.
-std::vector<SamplePlace> lattice(ElementShape shape, const ElementOrders& orders);
-
 /// W^-1 of the ideal element with edges of length 1, with respect to the reference coordinates.
 SmallMatrix idealInverse(ElementShape shape);
 double determinantOf(const SmallMatrix& m, int dimension);

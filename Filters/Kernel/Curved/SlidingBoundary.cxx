@@ -166,6 +166,57 @@ bool isCorner(const Vec2& place)
   return whole(place[0]) && whole(place[1]);
 }
 
+/// The maps of the faces of each type.
+using FaceMaps = std::map<std::pair<const ElementType*, int>, FaceMap>;
+
+/// A face of an element, by its corners.
+struct FaceCandidate
+{
+  std::array<Index, MaxFaceNodes> corners;
+  Index element;
+  int face;
+  bool operator<(const FaceCandidate& other) const
+  {
+    return std::tie(this->corners, this->element, this->face) <
+      std::tie(other.corners, other.element, other.face);
+  }
+};
+
+/// The faces of all elements in the order of their corners: those that occur once are the boundary.
+std::vector<FaceCandidate> candidatesOf(const std::vector<CurvedElement>& elements, FaceMaps& maps)
+{
+  std::vector<FaceCandidate> candidates;
+  for (std::size_t e = 0; e < elements.size(); ++e)
+  {
+    const CurvedElement& element = elements[e];
+    const std::vector<ElementFace>& faces = facesOf(element.type->shape());
+    for (std::size_t f = 0; f < faces.size(); ++f)
+    {
+      const auto key = std::make_pair(element.type, static_cast<int>(f));
+      auto found = maps.find(key);
+      if (found == maps.end())
+      {
+        found = maps.emplace(key, faceMap(*element.type, faces[f])).first;
+      }
+      FaceCandidate candidate = { {}, static_cast<Index>(e), static_cast<int>(f) };
+      candidate.corners.fill(None);
+      std::size_t corners = 0;
+      const FaceMap& map = found->second;
+      for (std::size_t n = 0; n < map.nodes.size(); ++n)
+      {
+        if (isCorner(map.places[n]) && corners < candidate.corners.size())
+        {
+          candidate.corners[corners++] = element.nodes[map.nodes[n]];
+        }
+      }
+      std::sort(candidate.corners.begin(), candidate.corners.end());
+      candidates.push_back(candidate);
+    }
+  }
+  std::sort(candidates.begin(), candidates.end());
+  return candidates;
+}
+
 /// The edges of a facet: of a triangle t = 0, s = 0, s + t = 1; of a square t = 0, 1, s = 0, 1.
 struct FacetLine
 {
@@ -277,49 +328,8 @@ Index SlidingBoundary::addPiece(
 void SlidingBoundary::addFacets(
   const std::vector<CurvedElement>& elements, const std::vector<double>& points)
 {
-  // The faces of all elements by their corners; those that occur once are the boundary.
-  struct Candidate
-  {
-    std::array<Index, MaxFaceNodes> corners;
-    Index element;
-    int face;
-    bool operator<(const Candidate& other) const
-    {
-      return std::tie(this->corners, this->element, this->face) <
-        std::tie(other.corners, other.element, other.face);
-    }
-  };
-  std::map<std::pair<const ElementType*, int>, FaceMap> maps;
-  std::vector<Candidate> candidates;
-  for (std::size_t e = 0; e < elements.size(); ++e)
-  {
-    const CurvedElement& element = elements[e];
-    const std::vector<ElementFace>& faces = facesOf(element.type->shape());
-    for (std::size_t f = 0; f < faces.size(); ++f)
-    {
-      const auto key = std::make_pair(element.type, static_cast<int>(f));
-      auto found = maps.find(key);
-      if (found == maps.end())
-      {
-        found = maps.emplace(key, faceMap(*element.type, faces[f])).first;
-      }
-      Candidate candidate = { {}, static_cast<Index>(e), static_cast<int>(f) };
-      candidate.corners.fill(None);
-      std::size_t corners = 0;
-      const FaceMap& map = found->second;
-      for (std::size_t n = 0; n < map.nodes.size(); ++n)
-      {
-        if (isCorner(map.places[n]) && corners < candidate.corners.size())
-        {
-          candidate.corners[corners++] = element.nodes[map.nodes[n]];
-        }
-      }
-      std::sort(candidate.corners.begin(), candidate.corners.end());
-      candidates.push_back(candidate);
-    }
-  }
-  std::sort(candidates.begin(), candidates.end());
-  std::vector<std::vector<Index>> corners; // by facet, at the corners of linesOf()
+  FaceMaps maps;
+  const std::vector<FaceCandidate> candidates = candidatesOf(elements, maps);
   for (std::size_t i = 0, next = 0; i < candidates.size(); i = next)
   {
     for (next = i + 1;
@@ -359,43 +369,55 @@ void SlidingBoundary::addFacets(
         this->Pieces[facet].ends[map.places[n][0] > 0.5] = own[n];
       }
     }
-    for (std::size_t l = 0; this->Dimension == 3 && l < linesOf(form).size(); ++l)
+    if (this->Dimension == 3)
     {
-      const FacetLine& line = linesOf(form)[l];
-      FacetEdge edge = { { None, None }, facet, {}, {}, { 0, 0, 0 } };
-      for (std::size_t n = 0; n < map.nodes.size(); ++n)
-      {
-        if (line.distance(map.places[n]) < OnFaceTolerance)
-        {
-          edge.points.push_back(own[n]);
-          if (isCorner(map.places[n]))
-          {
-            edge.ends[line.along(map.places[n]) > 0.5] = own[n];
-          }
-        }
-      }
-      // The control points of the edge are those of the facet on it, in order.
-      const int degree = form.triangle || l < 2 ? form.degrees[0] : form.degrees[1];
-      edge.controls.resize(degree + 1);
-      for (std::size_t k = 0; k < form.exponents.size(); ++k)
-      {
-        const auto [a, b, c] = form.exponents[k];
-        const Vec2 place = { static_cast<double>(a) / form.degrees[0],
-          b == 0 ? 0.0 : static_cast<double>(b) / form.degrees[1] };
-        if (line.distance(place) < OnFaceTolerance)
-        {
-          edge.controls[std::lround(line.along(place) * degree)] = this->Pieces[facet].controls[k];
-        }
-      }
-      if (edge.ends[0] > edge.ends[1])
-      {
-        std::swap(edge.ends[0], edge.ends[1]);
-        std::reverse(edge.controls.begin(), edge.controls.end());
-      }
-      const PiecePoint middle = evaluate(this->Pieces[facet], line.middle[0], line.middle[1]);
-      edge.normal = directionAt(this->Pieces[facet], middle);
-      this->Edges.push_back(std::move(edge));
+      this->addEdges(facet, map.places);
     }
+  }
+}
+
+//------------------------------------------------------------------------------
+/// @param places of the nodes of the facet, s and t
+void SlidingBoundary::addEdges(Index facet, const std::vector<Vec2>& places)
+{
+  const FacetForm& form = *this->Pieces[facet].form;
+  const std::vector<Index>& own = this->Pieces[facet].points;
+  for (std::size_t l = 0; l < linesOf(form).size(); ++l)
+  {
+    const FacetLine& line = linesOf(form)[l];
+    FacetEdge edge = { { None, None }, facet, {}, {}, { 0, 0, 0 } };
+    for (std::size_t n = 0; n < places.size(); ++n)
+    {
+      if (line.distance(places[n]) < OnFaceTolerance)
+      {
+        edge.points.push_back(own[n]);
+        if (isCorner(places[n]))
+        {
+          edge.ends[line.along(places[n]) > 0.5] = own[n];
+        }
+      }
+    }
+    // The control points of the edge are those of the facet on it, in order.
+    const int degree = form.triangle || l < 2 ? form.degrees[0] : form.degrees[1];
+    edge.controls.resize(degree + 1);
+    for (std::size_t k = 0; k < form.exponents.size(); ++k)
+    {
+      const auto [a, b, c] = form.exponents[k];
+      const Vec2 place = { static_cast<double>(a) / form.degrees[0],
+        b == 0 ? 0.0 : static_cast<double>(b) / form.degrees[1] };
+      if (line.distance(place) < OnFaceTolerance)
+      {
+        edge.controls[std::lround(line.along(place) * degree)] = this->Pieces[facet].controls[k];
+      }
+    }
+    if (edge.ends[0] > edge.ends[1])
+    {
+      std::swap(edge.ends[0], edge.ends[1]);
+      std::reverse(edge.controls.begin(), edge.controls.end());
+    }
+    const PiecePoint middle = evaluate(this->Pieces[facet], line.middle[0], line.middle[1]);
+    edge.normal = directionAt(this->Pieces[facet], middle);
+    this->Edges.push_back(std::move(edge));
   }
 }
 

@@ -97,6 +97,7 @@ private:
 
   Index addPiece(const FacetForm& form, std::vector<Vec3> controls, std::vector<Index> points);
   void addFacets(const std::vector<CurvedElement>& elements, const std::vector<double>& points);
+  void addEdges(Index facet, const std::vector<Vec2>& places);
   void addCurves(double featureAngle);
   void classifyPoints(double featureAngle);
   void joinParts();

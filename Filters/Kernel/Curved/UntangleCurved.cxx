@@ -13,7 +13,7 @@ namespace tautline
 namespace
 {
 constexpr double RuleShare = 0.7, NodeShare = 0.3; ///< of the weight of an element
-constexpr int DenseAfter = 2;                      ///< steps for which an element is not valid
+constexpr int DenseAfter = 4;                      ///< steps for which an element is not valid
 
 /// The samples of the quadrature and the nodes.
 std::shared_ptr<const SampleTable> tableOf(const CurvedElement& element)
@@ -169,7 +169,7 @@ Attempt CurvedUntangling::untangle(CurvedRegion& region)
   double least = energy.leastDeterminant(x);
   constexpr double tiny = 1e-9, ofLeast = 0.2, slowest = 0.6;
   double epsilon = std::sqrt(1e-12 + 0.04 * std::min(least, 0.0) * least);
-  constexpr int most = 400, patience = 40, steps = 3;
+  constexpr int most = 400, patience = 30, steps = 3;
   int sinceBest = 0;
   for (int outer = 0; outer < most && !best.weak.empty() && sinceBest < patience; ++outer)
   {

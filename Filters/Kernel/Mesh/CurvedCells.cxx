@@ -112,8 +112,8 @@ CurvedBlock blockOf(const Mesh& mesh, int vtkType, const ElementType& type,
     ? orientationOf(type, view.points, block.nodes.data(), block.count()).mirrored()
     : mesh.mirrored();
   const bool byCoordinates = vtkType == lagrangeWedge || vtkType == bezierWedge;
-  block.turned = type.shape() == ElementShape::Wedge && isHigherOrder(vtkType) &&
-    mirrored == byCoordinates;
+  block.turned =
+    type.shape() == ElementShape::Wedge && isHigherOrder(vtkType) && mirrored == byCoordinates;
   for (Index c : cells)
   {
     block.mirrored.push_back(mirrored != reversed(c));

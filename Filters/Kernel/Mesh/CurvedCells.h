@@ -3,7 +3,6 @@
  * @file CurvedCells.h
  * @brief The validity and the smallest Jacobian determinant of cells of quadratic and higher order,
  * certified for the whole cell and not for its corners only.
- * Internal: not installed.
  */
 #ifndef tautline_CurvedCells_h
 #define tautline_CurvedCells_h
