@@ -24,7 +24,29 @@ CurvedMotion::CurvedMotion(const InputBlock& block, int threads, bool mergePoint
   }
   this->Corners.certifyBy(this->Cells);
   this->Full = std::make_unique<Mesh>(this->Cells.mesh().at(this->Corners.mesh().view().points));
-  this->Fixed.assign(this->Full->view().numberOfPoints, 0);
+  this->fixWhatStays();
+}
+
+//------------------------------------------------------------------------------
+/// The corners that always stay are known: with them stay all nodes of cells that have no others,
+/// as ghosts and facets inside a volume.
+void CurvedMotion::fixWhatStays()
+{
+  const MeshView& view = this->Full->view();
+  const std::vector<unsigned char>& corners = this->Corners.fixed();
+  this->Fixed = corners;
+  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  {
+    const CellType type = cornerType(view.cellTypes[cell]);
+    const Index* nodes = view.connectivity + view.offsets[cell];
+    const Index* end = view.connectivity + view.offsets[cell + 1];
+    if (type != CellType::Unsupported &&
+      std::all_of(nodes, nodes + topology(type).nodes, [&](Index p) { return corners[p] != 0; }))
+    {
+      std::for_each(nodes, end, [this](Index p) { this->Fixed[p] = 1; });
+    }
+  }
+  this->Stays = this->Fixed;
 }
 
 //------------------------------------------------------------------------------
@@ -49,10 +71,6 @@ void CurvedMotion::fixSelected(vtkDataSet* selected)
 {
   markPoints(this->Full->view(), selected, this->Fixed);
   this->Corners.fixSelected(selected);
-  // With what the corners always hold: points of ghosts, lines and other cells that are not moved.
-  std::transform(this->Fixed.begin(), this->Fixed.end(), this->Corners.fixed().begin(),
-    this->Fixed.begin(),
-    [](unsigned char own, unsigned char corner) -> unsigned char { return own || corner; });
 }
 
 //------------------------------------------------------------------------------
@@ -64,7 +82,7 @@ void CurvedMotion::freeInvalid()
     for (Index n = view.offsets[cell];
          isInvalid(this->Corners.validity()[cell]) && n < view.offsets[cell + 1]; ++n)
     {
-      this->Fixed[view.connectivity[n]] = 0;
+      this->Fixed[view.connectivity[n]] = this->Stays[view.connectivity[n]];
     }
   }
 }

@@ -35,10 +35,11 @@ public:
   /// The facts of the cells and the fixed points; the rest is the default.
   CurvedOptions options() const;
 
-  /// Marks points that stay: those with a value other than 0 (null: none), and those of a selection.
+  /// Marks points that stay: those with a value other than 0 in an array (null: none), and those of
+  /// a selection.
   void fix(vtkDataArray* array);
   void fixSelected(vtkDataSet* selected);
-  /// Frees the points of invalid elements, however they were fixed.
+  /// Frees the points of invalid elements, however they were fixed, except those that always stay.
   void freeInvalid();
 
   /**
@@ -49,11 +50,13 @@ public:
   SurfaceModel geometry(vtkDataObject* surface, double featureAngle, bool smooth) const;
 
 private:
+  void fixWhatStays();
+
   CurvedMesh Cells;
   MovableMesh Corners;
   int Threads;
   std::unique_ptr<Mesh> Full;
-  std::vector<unsigned char> Fixed;
+  std::vector<unsigned char> Fixed, Stays;
 };
 }
 #endif

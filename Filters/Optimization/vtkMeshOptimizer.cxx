@@ -495,6 +495,46 @@ int vtkMeshOptimizer::RequestData(
 }
 
 //------------------------------------------------------------------------------
+/// The mesh of a data set with curved cells; null for others.
+std::unique_ptr<tautline::CurvedMotion> vtkMeshOptimizer::MakeCurved(
+  const tautline::InputBlock& block)
+{
+  if (!tautline::hasCurvedCells(block.input))
+  {
+    return nullptr;
+  }
+  if (this->ReproducibleOrder)
+  {
+    throw tautline::Error("Curved cells have no reproducible order of several processes: switch "
+                          "Reproducible Order off.");
+  }
+  return std::make_unique<tautline::CurvedMotion>(
+    block, this->Threads, this->MergeCoincidentPoints);
+}
+
+//------------------------------------------------------------------------------
+/// Lets the options report the iterations of a run, which outlives them.
+void vtkMeshOptimizer::Observe(
+  tautline::OptimizerRun& run, int block, vtkIdType coordinates, tautline::OptimizeOptions& options)
+{
+  options.observer = [this, &run, block, coordinates](const tautline::IterationState& state)
+  {
+    ++run.iterations; // -1 at the start, 0 for the input
+    if (this->Animation)
+    {
+      run.keep(state, static_cast<std::size_t>(coordinates),
+        this->AnimationMemory / this->GetNumberOfBlocks());
+    }
+    const tautline::IterationRecord& record = state.record;
+    this->ShowIteration(tautline::OptimizerName, record.iteration,
+      { { "objective", record.objective },
+        { "worst", record.worst.empty() ? vtkMath::Nan() : record.worst.front() } });
+    return this->ProceedInBlock(
+      block, std::max(state.progress, tautline::openEnded(record.iteration)));
+  };
+}
+
+//------------------------------------------------------------------------------
 void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   const tautline::InputBlock& block, tautline::OptimizerRun& run, bool done, double time,
   tautline::TableRows& history, tautline::TableRows& statistics)
@@ -504,22 +544,9 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     tautline::requireLocalSettings(
       settings, tautline::choosesFeatures(settings, block.input), this->Animation);
   }
-  std::unique_ptr<tautline::CurvedMotion> curved;
-  std::unique_ptr<tautline::MovableMesh> linear;
-  if (tautline::hasCurvedCells(block.input))
-  {
-    if (this->ReproducibleOrder)
-    {
-      throw tautline::Error("Curved cells have no reproducible order of several processes: switch "
-                            "Reproducible Order off.");
-    }
-    curved =
-      std::make_unique<tautline::CurvedMotion>(block, this->Threads, this->MergeCoincidentPoints);
-  }
-  else
-  {
-    linear = this->MakeMesh(block, true);
-  }
+  const std::unique_ptr<tautline::CurvedMotion> curved = this->MakeCurved(block);
+  const std::unique_ptr<tautline::MovableMesh> linear =
+    curved ? nullptr : this->MakeMesh(block, true);
   tautline::MovableMesh& made = curved ? curved->corners() : *linear;
   const tautline::MovableMesh& mesh = made;
   tautline::OptimizerSetup setup(
@@ -528,21 +555,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   const tautline::MeshView& view = mesh.mesh().view();
   if (!done)
   {
-    const auto coordinates = static_cast<std::size_t>(3 * view.numberOfPoints);
-    options.observer = [&](const tautline::IterationState& state)
-    {
-      ++run.iterations; // -1 at the start, 0 for the input
-      if (this->Animation)
-      {
-        run.keep(state, coordinates, this->AnimationMemory / this->GetNumberOfBlocks());
-      }
-      const tautline::IterationRecord& record = state.record;
-      this->ShowIteration(tautline::OptimizerName, record.iteration,
-        { { "objective", record.objective },
-          { "worst", record.worst.empty() ? vtkMath::Nan() : record.worst.front() } });
-      return this->ProceedInBlock(
-        block.number, std::max(state.progress, tautline::openEnded(record.iteration)));
-    };
+    this->Observe(run, block.number, 3 * view.numberOfPoints, options);
     run.iterations = -1;
     options.stopping.maximumSeconds = this->GetRemainingSeconds();
     if (curved)

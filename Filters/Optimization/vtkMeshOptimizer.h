@@ -95,9 +95,11 @@
 
 namespace tautline
 {
+class CurvedMotion;
 class TableRows;
 struct InputBlock;
 struct ObjectiveRow;
+struct OptimizeOptions;
 struct OptimizerRun;
 struct OptimizerSettings;
 }
@@ -645,6 +647,9 @@ private:
   std::vector<double> TimeSteps();
   bool HasRun(); ///< whether Runs are those of the inputs and settings
   tautline::OptimizerSettings GetSettings();
+  std::unique_ptr<tautline::CurvedMotion> MakeCurved(const tautline::InputBlock& block);
+  void Observe(tautline::OptimizerRun& run, int block, vtkIdType coordinates,
+    tautline::OptimizeOptions& options);
   void Optimize(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
     tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
     tautline::TableRows& statistics);

@@ -487,8 +487,8 @@ std::unique_ptr<tautline::CurvedQuality> vtkElementQuality::CertifyCurved(
   if (curved->turnedWedges() > 0)
   {
     this->AddToNotice(std::to_string(curved->turnedWedges()) +
-      " curved wedges list their nodes in the opposite order, as files of other versions of VTK do, "
-      "and are taken for their mirror images.");
+      " curved wedges list their nodes in the opposite order, as files of other versions of VTK "
+      "do, and are taken for their mirror images.");
   }
   return curved;
 }

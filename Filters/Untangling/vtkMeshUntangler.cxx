@@ -148,7 +148,7 @@ std::string verdict(const tautline::UntangleResult& result, const std::vector<Re
 //------------------------------------------------------------------------------
 vtkMeshUntangler::vtkMeshUntangler()
 {
-  this->DeclarePorts(NumberOfInputPorts, NumberOfOutputPorts, { SelectionPort, GeometryPort });
+  this->DeclarePorts(NumberOfInputPorts, NumberOfOutputPorts, { SelectionPort });
 }
 
 //------------------------------------------------------------------------------

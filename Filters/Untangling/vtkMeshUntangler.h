@@ -18,8 +18,8 @@
  * and FixBoundary are not used then; see CurvedBoundary.
  *
  * @par Input ports:
- * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay; 2 (optional) the geometry: a
- * surface of triangles or quadrilaterals that the boundary of curved cells slides on (ON_SURFACE).
+ * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay; 2 (optional) the geometry:
+ * triangles or quadrilaterals that the boundary of curved cells slides on (ON_SURFACE).
  *
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (new minus old) and the cell arrays
