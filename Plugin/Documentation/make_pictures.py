@@ -203,7 +203,7 @@ def nonpositive_jacobian_2():
 
 def nonpositive_jacobian_3():
     tube = coarse_tube()
-    valid = simple.UntangleMesh(Input=tube, Boundary="Slide on smooth parts")
+    valid = simple.UntangleMesh(Input=tube)
     quality = simple.ElementQuality(Input=output(valid, 0))
     whole = new_view(OBLIQUE)
     draw_curved(output(quality, 0), whole, light=LIT)
