@@ -222,6 +222,8 @@ void vtkMeshCurving::RepairResult(
   options.featureAngle = this->FeatureAngle;
   options.threads = this->Threads;
   options.maximumSeconds = this->GetRemainingSeconds();
+  options.observer = [this](const tautline::IterationState& state)
+  { return this->Proceed(state.progress); };
   tautline::CurvedUntangleResult repaired = tautline::untangleCurved(mesh, options);
   for (tautline::Index p = 0; p < view.numberOfPoints; ++p)
   {

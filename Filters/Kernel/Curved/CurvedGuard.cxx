@@ -11,8 +11,9 @@ namespace
 {
 constexpr Index ElementsPerChunk = 256;
 
-/// How near the bounds of a minimum that fails are to each other.
-constexpr double Tolerance = 1e-6;
+/// How near the bounds of a minimum are to each other, relative to the largest coefficient: where
+/// only its place is wanted, and where it is compared with what samples have.
+constexpr double PlaceTolerance = 1e-2, LevelTolerance = 1e-6;
 }
 
 //------------------------------------------------------------------------------
@@ -81,7 +82,7 @@ std::vector<WeakPlace> CurvedGuard::invalid(const std::vector<double>& x) const
         if (validity[i] != ElementValidity::Valid)
         {
           MinimumTolerance tolerance;
-          tolerance.relative = Tolerance;
+          tolerance.relative = PlaceTolerance;
           found.push_back({ elements[i], certifier.minimum(points, nodes[i], tolerance).at });
         }
       }
@@ -103,7 +104,7 @@ std::vector<WeakPlace> CurvedGuard::notRepresented(const std::vector<double>& x,
       for (Index i = 0; i < count; ++i)
       {
         MinimumTolerance tolerance;
-        tolerance.relative = Tolerance;
+        tolerance.relative = LevelTolerance;
         tolerance.level = std::max(LeastShare * sampled[elements[i]], 0.0);
         const JacobianBound bound =
           certifier.minimum(points, this->Elements[elements[i]].nodes.data(), tolerance);

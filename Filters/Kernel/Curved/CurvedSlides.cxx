@@ -37,7 +37,7 @@ void CurvedSlides::place(std::vector<double>& x, int threads)
       const Vec3 at = { x[3 * p], x[3 * p + 1], x[3 * p + 2] };
       if (point.kind == Kind::OnPiece)
       {
-        point.tried = point.boundary->closest(point.place.piece, at);
+        point.tried = point.boundary->closest(point.place, at);
       }
       else
       {

@@ -275,6 +275,15 @@ private:
   std::vector<Index> Parents;
 };
 
+/// Whether a place is not at the border of its piece.
+bool isInside(const FacetForm& form, const Vec2& at)
+{
+  constexpr double border = 1e-9;
+  const auto between = [](double x) { return x > border && x < 1 - border; };
+  return between(at[0]) && (form.line || between(at[1])) &&
+    (!form.triangle || at[0] + at[1] < 1 - border);
+}
+
 /// Keeps s and t in the domain of a piece.
 void clamp(const FacetForm& form, double& s, double& t)
 {
@@ -548,28 +557,32 @@ void SlidingBoundary::joinParts()
 }
 
 //------------------------------------------------------------------------------
-CurvedPlace SlidingBoundary::closestOn(Index index, const Vec3& x) const
+CurvedPlace SlidingBoundary::closestOn(Index index, const Vec3& x, Vec2 from) const
 {
   const CurvedPiece& piece = this->Pieces[index];
   const FacetForm& form = *piece.form;
-  // The nearest place of a lattice is where Gauss and Newton's method begins.
-  const int cuts = std::max(form.degrees[0], form.degrees[1]) + 1;
-  double s = 0, t = 0, least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i <= cuts; ++i)
+  double s = from[0], t = from[1], least = std::numeric_limits<double>::infinity();
+  if (s < 0)
   {
-    for (int j = 0; j <= (form.line ? 0 : form.triangle ? cuts - i : cuts); ++j)
+    // Without a place, Gauss and Newton's method begins at the nearest one of a lattice.
+    const int cuts = std::max(form.degrees[0], form.degrees[1]) + 1;
+    for (int i = 0; i <= cuts; ++i)
     {
-      const double a = static_cast<double>(i) / cuts, b = static_cast<double>(j) / cuts;
-      const Vec3 away = evaluate(piece, a, b).x - x;
-      if (dot(away, away) < least)
+      for (int j = 0; j <= (form.line ? 0 : form.triangle ? cuts - i : cuts); ++j)
       {
-        least = dot(away, away);
-        s = a;
-        t = b;
+        const double a = static_cast<double>(i) / cuts, b = static_cast<double>(j) / cuts;
+        const Vec3 away = evaluate(piece, a, b).x - x;
+        if (dot(away, away) < least)
+        {
+          least = dot(away, away);
+          s = a;
+          t = b;
+        }
       }
     }
   }
   PiecePoint at = evaluate(piece, s, t);
+  least = dot(at.x - x, at.x - x);
   constexpr int iterations = 20;
   constexpr double converged = 1e-12;
   for (int i = 0; i < iterations; ++i)
@@ -626,14 +639,19 @@ CurvedPlace SlidingBoundary::closestOn(Index index, const Vec3& x) const
       break;
     }
   }
-  return { index, at.x, directionAt(piece, at) };
+  return { index, at.x, directionAt(piece, at), { s, t } };
 }
 
 //------------------------------------------------------------------------------
-CurvedPlace SlidingBoundary::closest(Index piece, const Vec3& x) const
+CurvedPlace SlidingBoundary::closest(const CurvedPlace& start, const Vec3& x) const
 {
-  CurvedPlace best = this->closestOn(piece, x);
+  const Index piece = start.piece;
+  CurvedPlace best = this->closestOn(piece, x, start.at);
   double least = norm(best.point - x);
+  if (isInside(*this->Pieces[piece].form, best.at))
+  {
+    return best; // a minimum on the piece, and no other one is nearer around
+  }
   constexpr int longestWalk = 16; // pieces
   std::vector<Index> seen = { piece };
   for (int step = 0; step < longestWalk; ++step)

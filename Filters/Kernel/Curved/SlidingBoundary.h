@@ -49,6 +49,7 @@ struct CurvedPlace
   Index piece = -1;
   Vec3 point = { 0, 0, 0 };
   Vec3 direction = { 0, 0, 0 }; ///< unit normal, of a curve the unit tangent; or zero
+  Vec2 at = { -1, -1 };         ///< s and t on the piece; negative: not known
 };
 
 class SlidingBoundary
@@ -71,8 +72,11 @@ public:
   int parts() const { return this->Parts; }
   bool isCurve(int part) const { return part >= this->Patches; }
 
-  /// The closest place to x on the part of a piece, by way of pieces that meet and are nearer.
-  CurvedPlace closest(Index piece, const Vec3& x) const;
+  /**
+   * @brief The closest place to x on the part of a piece, by way of nearer pieces that meet.
+   * @param from where the search begins: its piece, and the place on it if that is known
+   */
+  CurvedPlace closest(const CurvedPlace& from, const Vec3& x) const;
 
   /// The closest place of all pieces of a part.
   CurvedPlace closestOfPart(int part, const Vec3& x) const;
@@ -101,7 +105,7 @@ private:
   void addCurves(double featureAngle);
   void classifyPoints(double featureAngle);
   void joinParts();
-  CurvedPlace closestOn(Index piece, const Vec3& x) const;
+  CurvedPlace closestOn(Index piece, const Vec3& x, Vec2 at = { -1, -1 }) const;
 
   int Dimension;
   std::vector<CurvedPiece> Pieces; ///< facets, then feature edges

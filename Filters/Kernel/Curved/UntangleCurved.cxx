@@ -293,6 +293,7 @@ CurvedUntangleResult CurvedUntangling::run()
   this->Result.invalidBefore = static_cast<Index>(first.size());
   this->Result.reason = first.empty() ? StopReason::AllValid : StopReason::NoFreeVertices;
   constexpr std::array<int, 3> rings = { 2, 5, -1 };
+  std::size_t tried = 0; // elements of the last attempt
   for (std::size_t attempt = 0; attempt < rings.size() && !weak.empty(); ++attempt)
   {
     CurvedRegion region = this->Problem.region(weak, rings[attempt]);
@@ -303,7 +304,10 @@ CurvedUntangleResult CurvedUntangling::run()
       this->Result.reason = this->Stopped;
       break;
     }
-    if (region.free == 0)
+    // A wider region may be the same one, where nothing else is to be expected.
+    const bool same = region.elements.size() == tried;
+    tried = region.elements.size();
+    if (region.free == 0 || same)
     {
       continue;
     }
@@ -311,6 +315,7 @@ CurvedUntangleResult CurvedUntangling::run()
       this->Problem.dimension() == 2 ? this->untangle<2>(region) : this->untangle<3>(region);
     if (found.weak.size() < weak.size())
     {
+      tried = 0; // from other points
       this->Problem.take(region, found.x);
       weak = guard.invalid(this->Problem.x());
     }
