@@ -314,14 +314,15 @@ def counts(mesh: Any) -> str:
 def check_outputs(arguments: argparse.Namespace) -> None:
     """Raise Error if a file that the command is to write cannot be written, before it does anything else."""
     output = getattr(arguments, "output", None)
-    streams = [f"--{name} -" for name in ("output", "csv", "report") if getattr(arguments, name, None) == STREAM]
+    texts = ("csv", "report", "certificate")
+    streams = [f"--{name} -" for name in ("output", *texts) if getattr(arguments, name, None) == STREAM]
     streams += ["--json"] if arguments.json else []
     if len(streams) > 1:
         raise Error(f"{' and '.join(streams)} would all write to the standard output: choose one")
     if output and output != STREAM:
         source = getattr(arguments, "mesh", None)
         check_output(output, source if isinstance(source, str) and arguments.command in _MOVING else "")
-    for name in ("csv", "report"):
+    for name in texts:
         if getattr(arguments, name, None):
             check_stream_or_target(_stream(getattr(arguments, name)))
 

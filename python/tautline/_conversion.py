@@ -88,7 +88,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--lower-cells", action="store_true", help="keep boundary faces and edges")
     parser.add_argument("--time", type=float, help="the time step to read, the nearest to this number")
     parser.add_argument("--binary", action="store_true", help="write .msh as bytes")
-    parser.add_argument("--mfem", choices=("H1", "L2"), help="write .mesh for MFEM, with nodes of this space")
+    parser.add_argument("--mfem", choices=("H1", "L2"), help="space of the nodes in a .mesh of MFEM")
 
 
     parser = _commands.add_command(
