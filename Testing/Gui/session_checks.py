@@ -21,7 +21,7 @@ from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader, vtkXMLUnstructured
 PUSHED, BEYOND = 3, 0.3  # corners of the bracket, and how far behind the opposite face, of their height
 WORST_PORT, BAD_PORT = 4, 7  # of Element Quality
 SECTIONS_PORT = 2  # of Solve PDE
-QUADRATIC_TETRAHEDRON = 24  # of VTK
+QUADRILATERAL, QUADRATIC_TETRAHEDRON = 9, 24  # of VTK
 TURN = 20  # degrees
 QUERY, RIGHT, WRONG = (120, 120, 120), (0, 150, 60), (215, 25, 30)  # frames on the sheet of Shape Retrieval
 WORST = (99.9, 2.87)  # of the valid elements of the bracket, tangled and optimized: inverse mean ratio
@@ -640,6 +640,17 @@ def bad_inside():
     assert bad.GetDataInformation().GetNumberOfCells() == outside > 200, outside
 
 
+def open_grid(grid, name: str) -> None:
+    """Write a grid, read it in ParaView and show it."""
+    writer = vtkXMLUnstructuredGridWriter()
+    writer.SetFileName(os.path.join(os.environ["TAUTLINE_TEST_DIR"], name))
+    writer.SetInputData(grid)
+    assert writer.Write()
+    reader = simple.XMLUnstructuredGridReader(FileName=[writer.GetFileName()])
+    simple.Show(reader)
+    simple.SetActiveSource(reader)
+
+
 @check
 def open_curved():
     """A row of quadratic tetrahedra, one of them folded along an edge."""
@@ -653,13 +664,50 @@ def open_curved():
         ids = [points.InsertNextPoint(node + [2 * number, 0, 0]) for node in nodes]
         grid.InsertNextCell(QUADRATIC_TETRAHEDRON, len(ids), ids)
     grid.SetPoints(points)
-    writer = vtkXMLUnstructuredGridWriter()
-    writer.SetFileName(os.path.join(os.environ["TAUTLINE_TEST_DIR"], "curved.vtu"))
-    writer.SetInputData(grid)
-    assert writer.Write()
-    reader = simple.XMLUnstructuredGridReader(FileName=[writer.GetFileName()])
-    simple.Show(reader)
-    simple.SetActiveSource(reader)
+    open_grid(grid, "curved.vtu")
+
+
+@check
+def open_ring():
+    """A disk without its middle, of quadrilaterals."""
+    around = 12
+    points, grid = vtkPoints(), vtkUnstructuredGrid()
+    points.SetDataTypeToDouble()
+    for radius in (1, 2):
+        for angle in 2 * numpy.pi * numpy.arange(around) / around:
+            points.InsertNextPoint(radius * numpy.cos(angle), radius * numpy.sin(angle), 0)
+    for i in range(around):
+        j = (i + 1) % around
+        grid.InsertNextCell(QUADRILATERAL, 4, [i, i + around, j + around, j])
+    grid.SetPoints(points)
+    open_grid(grid, "ring.vtu")
+
+
+@check
+def ring_curved():
+    """The middle nodes are near the circles, and the cells are valid."""
+    curved = find("MeshCurving")
+    mesh = servermanager.Fetch(curved)
+    radii = numpy.linalg.norm(vtk_to_numpy(mesh.GetPoints().GetData()), axis=1)
+    middle = numpy.isclose(radii, 1.5, atol=0.01)
+    assert (numpy.isclose(radii, 1, atol=0.01) | numpy.isclose(radii, 2, atol=0.01) | middle).all(), radii
+    assert (vtk_to_numpy(mesh.GetCellData().GetArray("Validity")) == 1).all()
+    # For the next filter, nodes inside are taken across the cells.
+    calculator = simple.Calculator(Input=curved, CoordinateResults=1)
+    radius = "sqrt(coordsX^2 + coordsY^2)"
+    calculator.Function = f"(coordsX*iHat + coordsY*jHat) * if(abs({radius} - 1.5) < 0.01, if(coordsX > 0, 1.4, 1), 1)"
+    simple.Show(calculator)
+    simple.SetActiveSource(calculator)
+
+
+@check
+def ring_untangled():
+    """All nodes move, and each cell is valid everywhere in it."""
+    untangled = find("MeshUntangler")
+    untangled.UpdatePropertyInformation()
+    assert untangled.InvertedBefore > 0 and untangled.InvertedAfter == 0, untangled.Summary
+    mesh = servermanager.Fetch(untangled)
+    assert (vtk_to_numpy(mesh.GetCellData().GetArray("Validity")) == 1).all()
 
 
 @check

@@ -226,6 +226,25 @@ MeshData quadratic()
   return data;
 }
 
+/// Curved cells, which one process only has, are optimized on the first one.
+void testCurved(vtkMPIController* controller)
+{
+  const char* text = wording("curved-cells-need-the-whole-mesh");
+  const int rank = controller->GetLocalProcessId(), size = controller->GetNumberOfProcesses();
+  const bool last = rank == size - 1;
+  const MeshData whole = block();
+  const RankPart part = partOf(whole, rank, cutBy(whole, Cut::Slabs, size));
+  const Outcome outcome = outcomeOf(
+    text, part,
+    [=](const RankPart& own) -> vtkSmartPointer<vtkDataObject>
+    { return last ? toGrid(quadratic()) : numberedGridOf(own); },
+    true);
+  TAUTLINE_CHECK(!outcome.refused);
+  TAUTLINE_CHECK(contains(outcome.summary, text));
+  TAUTLINE_CHECK_EQUAL(outcome.cells, last ? 1 : static_cast<vtkIdType>(part.cellOf.size()));
+  TAUTLINE_CHECK(isShared(controller, outcome.summary));
+}
+
 /// What the last process only has wrong.
 void testErrors(vtkMPIController* controller)
 {
@@ -250,9 +269,6 @@ void testErrors(vtkMPIController* controller)
     },
     false);
   testRefused(
-    wording("cells-of-quadratic-or-higher-order"), controller,
-    [=](const RankPart& part) { return last ? toGrid(quadratic()) : numberedGridOf(part); }, true);
-  testRefused(
     wording("are-implicit-and-cannot-move"), controller,
     [=](const RankPart& part) -> vtkSmartPointer<vtkDataObject>
     {
@@ -275,6 +291,7 @@ TAUTLINE_TEST(TestGatheredMotion)
   TAUTLINE_RUN(testPieces(controller));
   TAUTLINE_RUN(testNotFinite(controller));
   TAUTLINE_RUN(testErrors(controller));
+  TAUTLINE_RUN(testCurved(controller));
   vtkMultiProcessController::SetGlobalController(nullptr);
   controller->Finalize();
 }
