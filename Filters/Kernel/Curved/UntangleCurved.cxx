@@ -170,8 +170,11 @@ Attempt CurvedUntangling::untangle(CurvedRegion& region)
   constexpr double tiny = 1e-9, ofLeast = 0.2, slowest = 0.6;
   double epsilon = std::sqrt(1e-12 + 0.04 * std::min(least, 0.0) * least);
   constexpr int most = 400, patience = 30, steps = 3;
-  int sinceBest = 0;
-  for (int outer = 0; outer < most && !best.weak.empty() && sinceBest < patience; ++outer)
+  constexpr int mostWithoutStep = 3;
+  int sinceBest = 0, sinceStep = 0;
+  for (int outer = 0;
+       outer < most && !best.weak.empty() && sinceBest < patience && sinceStep < mostWithoutStep;
+       ++outer)
   {
     // The place of the smallest determinant of an invalid element is a sample. An element that
     // remains invalid is sampled everywhere.
@@ -194,6 +197,7 @@ Attempt CurvedUntangling::untangle(CurvedRegion& region)
     function->setEpsilon(epsilon);
     const double before = sum.value(x);
     double after = before;
+    ++sinceStep;
     for (int step = 0; step < steps; ++step)
     {
       newton.linearize(x, NewtonLimits());
@@ -211,6 +215,7 @@ Attempt CurvedUntangling::untangle(CurvedRegion& region)
       x.swap(trial);
       region.slides->accept();
       after = value;
+      sinceStep = 0;
     }
     region.slides->release();
     weak = guard.invalid(x);
