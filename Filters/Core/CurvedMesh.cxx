@@ -42,18 +42,6 @@ Index cornersOf(int straight)
 {
   return straight == VTK_LINE ? 2 : topology(static_cast<CellType>(straight)).nodes;
 }
-
-vtkDataSet* requireSupported(vtkDataSet* input)
-{
-  vtkDataArray* degrees = input->GetCellData()->GetHigherOrderDegrees();
-  if (degrees && degrees->GetNumberOfComponents() != 3)
-  {
-    throw Error("The cell array HigherOrderDegrees has " +
-      std::to_string(degrees->GetNumberOfComponents()) +
-      " components; three are expected, the orders along the axes of a cell.");
-  }
-  return input;
-}
 }
 
 //------------------------------------------------------------------------------
@@ -83,7 +71,7 @@ bool hasCurvedCells(vtkDataObject* input)
 CurvedMesh::CurvedMesh(vtkDataSet* input, int threads)
   : Corners(vtkSmartPointer<vtkUnstructuredGrid>::New())
   , Threads(threads)
-  , Adapter(requireSupported(input), threads)
+  , Adapter(input, threads)
 {
   const vtkIdType cells = input->GetNumberOfCells();
   vtkNew<vtkIdList> ids;
@@ -118,19 +106,9 @@ CurvedMesh::CurvedMesh(vtkDataSet* input, int threads)
   this->Corners->GetPointData()->ShallowCopy(input->GetPointData());
   this->Corners->GetCellData()->ShallowCopy(input->GetCellData());
 
-  vtkDataArray* degrees = input->GetCellData()->GetHigherOrderDegrees();
-  this->Degrees.resize(degrees ? 3 * static_cast<std::size_t>(cells) : 0);
-  for (vtkIdType cell = 0; degrees && cell < cells; ++cell)
-  {
-    degrees->GetTuple(cell, &this->Degrees[3 * static_cast<std::size_t>(cell)]);
-  }
   std::vector<signed char> validity(static_cast<std::size_t>(cells));
   this->Adapter.orient(validity.data(), false);
-  this->Facts.degrees = degrees ? this->Degrees.data() : nullptr;
-  const std::vector<unsigned char>& reversed = this->Adapter.reversedCells();
-  this->Facts.reversed = reversed.empty() ? nullptr : reversed.data();
-  this->Facts.wedgesTurned = true; // by MeshAdapter
-  this->Facts.rational = input->GetPointData()->GetRationalWeights() != nullptr;
+  this->Facts = std::make_unique<CurvedFacts>(input, this->Adapter);
   this->join({});
 }
 
@@ -145,7 +123,7 @@ void CurvedMesh::join(const std::vector<Index>& representative)
   view.offsets = this->Offsets.data();
   view.connectivity = this->Connectivity.data();
   this->Nodes = std::make_unique<FollowingNodes>(
-    Mesh(view, this->Threads), this->Facts.degrees, representative);
+    Mesh(view, this->Threads), this->facts().degrees, representative);
 }
 
 //------------------------------------------------------------------------------
@@ -154,7 +132,7 @@ void CurvedMesh::certify(
 {
   const Mesh moved = this->Adapter.mesh().at(points.data());
   std::vector<signed char> certified(validity.size(), NotMeasured);
-  certifyCurvedCells(moved, this->Facts, certified.data(), nullptr, this->Threads);
+  certifyCurvedCells(moved, this->facts(), certified.data(), nullptr, this->Threads);
   for (std::size_t cell = 0; cell < validity.size(); ++cell)
   {
     const bool replaced = certified[cell] != NotMeasured && validity[cell] != NotMeasured;

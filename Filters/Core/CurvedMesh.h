@@ -9,8 +9,8 @@
 
 #include "TautlineCoreModule.h" // for export macro
 
+#include "CurvedFacts.h"
 #include "MeshAdapter.h"
-#include "tautline/Mesh/CurvedCells.h"
 #include "tautline/Mesh/FollowingNodes.h"
 
 #include "vtkSmartPointer.h"
@@ -55,7 +55,7 @@ public:
 
   /// The mesh with all nodes, oriented as MeshAdapter::orient() does, and what belongs to it.
   const Mesh& mesh() const { return this->Adapter.mesh(); }
-  const CurvedCellFacts& facts() const { return this->Facts; }
+  const CurvedCellFacts& facts() const { return *this->Facts; }
 
   /**
    * @brief Replaces the validity of curved cells by that in the whole cell, see
@@ -69,8 +69,7 @@ private:
   vtkSmartPointer<vtkUnstructuredGrid> Corners;
   int Threads;
   MeshAdapter Adapter; ///< of the input; its cells in the order of MeshAdapter::orient()
-  std::vector<double> Degrees;
-  CurvedCellFacts Facts;
+  std::unique_ptr<CurvedFacts> Facts;
   // The cells in VTK's order.
   std::vector<unsigned char> Types;
   std::vector<Index> Offsets, Connectivity;

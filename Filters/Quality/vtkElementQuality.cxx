@@ -4,6 +4,7 @@
 #include "BadElements.h"
 #include "GatheredExecution.h"
 #include "Blocks.h"
+#include "CurvedFacts.h"
 #include "ColorMaps.h"
 #include "CriteriaGrader.h"
 #include "MeshAdapter.h"
@@ -455,34 +456,11 @@ void vtkElementQuality::SettleOrientation(tautline::MeshAdapter& adapter,
 }
 
 //------------------------------------------------------------------------------
-tautline::CurvedCellFacts vtkElementQuality::CurvedFacts(
-  vtkDataSet* input, const tautline::MeshAdapter& adapter, std::vector<double>& degrees)
-{
-  tautline::CurvedCellFacts facts;
-  vtkDataArray* given = input->GetCellData()->GetHigherOrderDegrees();
-  if (given && given->GetNumberOfComponents() == 3 && adapter.mesh().higherOrderCells() > 0)
-  {
-    degrees.resize(3 * given->GetNumberOfTuples());
-    for (vtkIdType cell = 0; cell < given->GetNumberOfTuples(); ++cell)
-    {
-      given->GetTuple(cell, degrees.data() + 3 * cell);
-    }
-    facts.degrees = degrees.data();
-  }
-  const std::vector<unsigned char>& reversed = adapter.reversedCells();
-  facts.reversed = reversed.empty() ? nullptr : reversed.data();
-  facts.wedgesTurned = true; // by MeshAdapter
-  facts.rational = input->GetPointData()->GetRationalWeights() != nullptr;
-  return facts;
-}
-
-//------------------------------------------------------------------------------
 std::unique_ptr<tautline::CurvedQuality> vtkElementQuality::CertifyCurved(
   vtkDataSet* input, const tautline::MeshAdapter& adapter, signed char* validity)
 {
-  std::vector<double> degrees;
-  auto curved = std::make_unique<tautline::CurvedQuality>(
-    adapter.mesh(), CurvedFacts(input, adapter, degrees), this->Threads);
+  const tautline::CurvedFacts facts(input, adapter);
+  auto curved = std::make_unique<tautline::CurvedQuality>(adapter.mesh(), facts, this->Threads);
   curved->certify(validity);
   if (curved->turnedWedges() > 0)
   {
@@ -499,8 +477,7 @@ void vtkElementQuality::MeasureChecks(vtkDataSet* input, const tautline::MeshAda
   vtkDataSet* output)
 {
   using namespace tautline;
-  std::vector<double> degrees;
-  const CurvedCellFacts facts = CurvedFacts(input, adapter, degrees);
+  const tautline::CurvedFacts facts(input, adapter);
   const Index cells = adapter.mesh().view().numberOfCells;
   for (int check : totals.checks())
   {
@@ -540,8 +517,7 @@ void vtkElementQuality::AddBounds(
   vtkDataSet* input, const tautline::MeshAdapter& adapter, vtkDataSet* output)
 {
   const tautline::Mesh& mesh = adapter.mesh();
-  std::vector<double> degrees;
-  const tautline::CurvedCellFacts facts = CurvedFacts(input, adapter, degrees);
+  const tautline::CurvedFacts facts(input, adapter);
   vtkNew<vtkDoubleArray> bounds;
   bounds->SetName("JacobianBound");
   bounds->SetNumberOfValues(mesh.view().numberOfCells);

@@ -343,9 +343,6 @@ private:
   /// The curved cells of a block, certified; adds what is remarked and found to the output.
   std::unique_ptr<tautline::CurvedQuality> CertifyCurved(
     vtkDataSet* input, const tautline::MeshAdapter& adapter, signed char* validity);
-  /// The orders of cells and the like; `degrees` keeps what the result points to.
-  static tautline::CurvedCellFacts CurvedFacts(
-    vtkDataSet* input, const tautline::MeshAdapter& adapter, std::vector<double>& degrees);
   void MeasureChecks(vtkDataSet* input, const tautline::MeshAdapter& adapter,
     const signed char* validity, const unsigned char* skip, tautline::QualityTotals& totals,
     vtkDataSet* output);
