@@ -23,7 +23,7 @@
  * by the transform if all corners of their edge or face have it, by their values of the array, by
  * their places in the target or at the time step; without one they stay if these corners do. Where
  * the motion is not completed, they all follow. Validity is certified for the whole cell, before
- * and after; the other numbers are those of the corners. Cells that ElementType does not support
+ * and after; the other numbers refer to the corners. Cells that ElementType does not support
  * (orders above 6) are refused.
  *
  * @par Input ports:

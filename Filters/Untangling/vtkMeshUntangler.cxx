@@ -291,6 +291,12 @@ void vtkMeshUntangler::UntangleCurved(
     more += " " + std::to_string(found.straightened) +
       " cells were straightened and may be off the surface.";
   }
+  if (found.reason == tautline::StopReason::NoFreeVertices)
+  {
+    more +=
+      " No node of the invalid cells and around them is free: choose another Curved Boundary, "
+      "switch Mid Nodes Only off, or fix fewer points.";
+  }
   this->Show(block, motion.corners(), result, more, history);
 }
 

@@ -45,7 +45,7 @@ public:
 
   /**
    * @brief Goes along the direction until the energy has fallen as the slope promises (Armijo).
-   * @param step the first step length; that of the result
+   * @param step the first step length; gets the one of the result
    * @param x gets the new points
    * @return the energy there, or infinity if no step does; then, after some points were held (see
    * CurvedSlides::hold()), linearize() finds another direction

@@ -35,7 +35,7 @@ public:
 
   int dimension() const { return this->Dimension; }
   const std::vector<CurvedElement>& elements() const { return this->Elements; }
-  /// Coordinates in the frame of a plane, else those of the mesh.
+  /// Coordinates in the frame of a plane, else of the mesh.
   std::vector<double>& x() { return this->X; }
   /// Coordinates of the mesh, 3 per point, in that frame.
   std::vector<double> inFrame(const double* points) const;

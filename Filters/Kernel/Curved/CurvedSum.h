@@ -39,7 +39,8 @@ using CurvedScalarization =
 
 /**
  * @class CurvedSum
- * @brief F(E_1, E_2, ...). Its Hessian is taken for the sum of those of the terms times dF/dE.
+ * @brief F(E_1, E_2, ...). Its Hessian is taken for the sum of the Hessians of the terms, each
+ * times dF/dE.
  */
 template <int Dim>
 class CurvedSum

@@ -58,20 +58,6 @@ public:
     return this->checked(t, q, this->outer(q).value);
   }
 
-  void slopes(const TargetInvariants<Dim>& t, SampleTerm& term) const override
-  {
-    TargetInvariants<Dim> d = {};
-    const Packet q = Formula::template evaluate<Dim>(t, d, this->Arguments);
-    const Outer f = this->outer(q);
-    term.value = this->checked(t, q, f.value);
-    const auto own = asArray<Dim>(d);
-    for (int i = 0; i < NumberOfInvariants; ++i)
-    {
-      term.slopes[i] = this->used(i) ? f.first * own[i] : Packet{};
-    }
-    term.bend = term.slopes[ByDeterminant];
-  }
-
   void curvatures(const TargetInvariants<Dim>& t, SampleTerm& term) const override
   {
     TargetInvariants<Dim> d = {};
@@ -226,13 +212,6 @@ Packet UntanglingFunction<Dim>::value(const TargetInvariants<Dim>& t) const
   SampleTerm term;
   this->curvatures(t, term);
   return term.value;
-}
-
-//------------------------------------------------------------------------------
-template <int Dim>
-void UntanglingFunction<Dim>::slopes(const TargetInvariants<Dim>& t, SampleTerm& term) const
-{
-  this->curvatures(t, term);
 }
 
 //------------------------------------------------------------------------------

@@ -44,7 +44,7 @@ public:
 
   /// The value; infinite where there is none. Lanes without weight may have any invariants.
   virtual Packet value(const TargetInvariants<Dim>& t) const = 0;
-  virtual void slopes(const TargetInvariants<Dim>& t, SampleTerm& term) const = 0;
+  /// The value and all derivatives.
   virtual void curvatures(const TargetInvariants<Dim>& t, SampleTerm& term) const = 0;
   /// Whether it depends on |adj T|^2, and on tr T.
   virtual bool usesAdjugate() const { return false; }
@@ -78,7 +78,6 @@ public:
 
   void setEpsilon(double epsilon) { this->Epsilon2 = epsilon * epsilon; }
   Packet value(const TargetInvariants<Dim>& t) const override;
-  void slopes(const TargetInvariants<Dim>& t, SampleTerm& term) const override;
   void curvatures(const TargetInvariants<Dim>& t, SampleTerm& term) const override;
 
 private:

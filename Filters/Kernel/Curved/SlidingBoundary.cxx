@@ -2,6 +2,7 @@
 #include "SlidingBoundary.h"
 
 #include "ElementFaces.h"
+#include "tautline/Core/UnionFind.h"
 
 #include <Eigen/LU>
 
@@ -247,33 +248,6 @@ double angleOf(const Vec3& a, const Vec3& b)
 {
   return DegreesPerRadian * std::atan2(norm(cross(a, b)), dot(a, b));
 }
-
-class UnionFind
-{
-public:
-  explicit UnionFind(Index count)
-    : Parents(count)
-  {
-    std::iota(this->Parents.begin(), this->Parents.end(), Index(0));
-  }
-  Index find(Index i)
-  {
-    while (this->Parents[i] != i)
-    {
-      i = this->Parents[i] = this->Parents[this->Parents[i]];
-    }
-    return i;
-  }
-  void join(Index a, Index b)
-  {
-    a = this->find(a);
-    b = this->find(b);
-    this->Parents[std::max(a, b)] = std::min(a, b);
-  }
-
-private:
-  std::vector<Index> Parents;
-};
 
 /// Whether a place is not at the border of its piece.
 bool isInside(const FacetForm& form, const Vec2& at)

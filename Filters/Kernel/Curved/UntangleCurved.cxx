@@ -49,7 +49,6 @@ struct Attempt
   std::vector<double> x;
   std::vector<WeakPlace> weak; ///< in elements of the region
   bool stopped = false;
-  StopReason reason = StopReason::NoProgress;
 };
 
 class CurvedUntangling
@@ -363,7 +362,22 @@ CurvedUntangleResult CurvedUntangling::run()
 CurvedUntangleResult untangleCurved(const Mesh& mesh, const CurvedOptions& options)
 {
   CurvedProblem problem(mesh, options);
-  return untangleCurved(problem, options);
+  CurvedUntangleResult result = untangleCurved(problem, options);
+  const bool slides = options.boundary == CurvedBoundaryMotion::OnSurface ||
+    options.boundary == CurvedBoundaryMotion::FlatParts;
+  if (slides && result.invalidAfter > 0 && result.reason == StopReason::NoProgress)
+  {
+    // What the boundary may do is not always for the better: it is held, from the start.
+    CurvedOptions held = options;
+    held.boundary = CurvedBoundaryMotion::Fixed;
+    CurvedProblem again(mesh, held);
+    CurvedUntangleResult other = untangleCurved(again, held);
+    if (other.invalidAfter < result.invalidAfter)
+    {
+      return other;
+    }
+  }
+  return result;
 }
 
 //------------------------------------------------------------------------------
