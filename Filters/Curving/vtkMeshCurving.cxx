@@ -2,6 +2,7 @@
 #include "vtkMeshCurving.h"
 
 #include "Blocks.h"
+#include "CurvedFacts.h"
 #include "CurvedGrid.h"
 #include "GatheredExecution.h"
 #include "GeometrySurface.h"
@@ -44,22 +45,6 @@ std::vector<double> valuesOf(vtkDataArray* array)
     values.push_back(array->GetComponent(i, 0));
   }
   return values;
-}
-
-/// HigherOrderDegrees, three numbers per cell; empty without them.
-std::vector<double> degreesOf(vtkDataSet* input)
-{
-  std::vector<double> degrees;
-  vtkDataArray* array = input->GetCellData()->GetHigherOrderDegrees();
-  if (array && array->GetNumberOfComponents() == 3)
-  {
-    degrees.resize(3 * array->GetNumberOfTuples());
-    for (vtkIdType cell = 0; cell < array->GetNumberOfTuples(); ++cell)
-    {
-      array->GetTuple(cell, degrees.data() + 3 * cell);
-    }
-  }
-  return degrees;
 }
 
 vtkIdType countInvalid(const std::vector<signed char>& validity)
@@ -176,12 +161,7 @@ tautline::CurvingResult vtkMeshCurving::Run(const tautline::InputBlock& block,
   const tautline::MeshAdapter& adapter, tautline::CurvingOptions& options, vtkIdType& invalidBefore)
 {
   const tautline::Mesh& mesh = adapter.mesh();
-  tautline::CurvedCellFacts facts;
-  const std::vector<double> degrees = degreesOf(block.input);
-  facts.degrees = degrees.empty() ? nullptr : degrees.data();
-  facts.reversed = adapter.reversedCells().empty() ? nullptr : adapter.reversedCells().data();
-  facts.wedgesTurned = true; // by MeshAdapter
-  facts.rational = block.input->GetPointData()->GetRationalWeights() != nullptr;
+  const tautline::CurvedFacts facts(block.input, adapter);
   std::vector<signed char> validity(mesh.view().numberOfCells);
   mesh.classifyCells(validity.data(), this->Threads);
   tautline::certifyCurvedCells(mesh, facts, validity.data(), nullptr, this->Threads);
@@ -192,7 +172,7 @@ tautline::CurvingResult vtkMeshCurving::Run(const tautline::InputBlock& block,
   const std::vector<tautline::Index>& one = adapter.coincident().representative;
   options.representative = one.empty() ? nullptr : one.data();
   tautline::CurvingResult curved = tautline::curveMesh(mesh, cells, facts, options);
-  if (this->Repair)
+  if (this->Repair && countInvalid(curved.validity) > invalidBefore)
   {
     this->RepairResult(curved, adapter);
   }
@@ -205,7 +185,7 @@ void vtkMeshCurving::RepairResult(
   tautline::CurvingResult& curved, const tautline::MeshAdapter& adapter)
 {
   const bool surface = adapter.mesh().dimension() == tautline::Dimension::Surface;
-  if (surface || !adapter.reversedCells().empty() || countInvalid(curved.validity) == 0)
+  if (surface || !adapter.reversedCells().empty())
   {
     return; // reversed cells are listed as the input has them, and have no common orientation
   }
@@ -262,6 +242,10 @@ void vtkMeshCurving::Report(const tautline::InputBlock& block, const tautline::M
   }
   text << ".\nInvalid elements, certified: " << invalidBefore << " before, " << invalid
        << " after.";
+  if (invalid > 0)
+  {
+    text << " Untangle Mesh moves nodes to repair them.";
+  }
   if (this->RepairedNodes > 0)
   {
     text << "\n" << counted(this->RepairedNodes, "node", "nodes") << " moved to make cells valid.";

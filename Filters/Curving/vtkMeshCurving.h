@@ -30,8 +30,8 @@
  * @par Input ports:
  * 0 the mesh; 1 (optional) the geometry: a surface of triangles or quadrilaterals (STL, a finer
  * mesh); of a planar mesh the outline: lines, or cells in its plane. Its corners, curves and
- * patches are matched to those of the mesh, as in vtkMeshOptimizer. The corners of the boundary are
- * placed on it, too.
+ * patches are matched to the features of the mesh, as in vtkMeshOptimizer. The corners of the
+ * boundary are placed on it, too.
  *
  * @par Input array 0 (optional, SetInputArrayToProcess):
  * A cell array with regions, between which boundaries are curved, too.
@@ -124,8 +124,8 @@ public:
 
   ///@{
   /**
-   * Whether nodes around the cells that curving has made invalid move, corners too, until all cells
-   * are valid; those of the boundary slide on the curved boundary, see
+   * Whether, if more cells are invalid than in the input, nodes around these move, corners too,
+   * until all cells are valid; nodes of the boundary slide on the curved boundary, see
    * tautline/Curved/UntangleCurved.h. Not of surfaces in space. The default is on.
    */
   vtkSetMacro(Repair, bool);
