@@ -11,7 +11,7 @@
  *
  * - on a Geometry (port 1), if there is one;
  * - else on a smooth surface that is reconstructed from the facets, with cubic curves in place of
- *   edges (tautline/Optimization/SurfaceModel.h). Sharp edges (FeatureAngle) and borders become
+ *   edges (tautline/Boundary/SurfaceModel.h). Sharp edges (FeatureAngle) and borders become
  *   smooth curves of their own, corners stay;
  * - or in the middle of the straight edges, if Surface is STRAIGHT. This straightens curved cells,
  *   too.

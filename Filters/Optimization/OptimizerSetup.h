@@ -13,7 +13,7 @@
 #include "TargetChoice.h"
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Mesh/Features.h"
-#include "tautline/Optimization/GeometryMatch.h"
+#include "tautline/Boundary/GeometryMatch.h"
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Optimization/Optimize.h"
 

@@ -30,7 +30,8 @@ FLOORS = (
     ("Geometry", "Mesh"),
     ("Quality", "Shapes", "Domains", "Perturbation", "Ranks"),
     ("Objectives", "Patches", "Solvers"),
-    ("Untangling", "Elliptic", "Peridynamics"),
+    ("Boundary", "Elliptic", "Peridynamics"),
+    ("Untangling",),
     ("Optimization",),
     ("Curved", "Curving", "Deformation", "Reconnection"),
 )

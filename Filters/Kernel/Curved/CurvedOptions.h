@@ -8,7 +8,7 @@
 
 #include "tautline/Core/Iteration.h"
 #include "tautline/Mesh/CurvedCells.h"
-#include "tautline/Optimization/SurfaceModel.h"
+#include "tautline/Boundary/SurfaceModel.h"
 
 namespace tautline
 {

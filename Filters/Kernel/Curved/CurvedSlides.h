@@ -8,7 +8,7 @@
 #define tautline_CurvedSlides_h
 
 #include "SlidingBoundary.h"
-#include "tautline/Optimization/SurfaceProjection.h"
+#include "tautline/Boundary/SurfaceProjection.h"
 
 namespace tautline
 {

@@ -7,8 +7,8 @@
 #include "Outline.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Mesh/CellOrder.h"
-#include "tautline/Optimization/GeometryMatch.h"
-#include "tautline/Optimization/SurfaceProjection.h"
+#include "tautline/Boundary/GeometryMatch.h"
+#include "tautline/Boundary/SurfaceProjection.h"
 
 #include <algorithm>
 #include <limits>

@@ -8,7 +8,7 @@
 #define tautline_CurvedBoundary_h
 
 #include "tautline/Mesh/Features.h"
-#include "tautline/Optimization/SurfaceModel.h"
+#include "tautline/Boundary/SurfaceModel.h"
 
 #include <vector>
 

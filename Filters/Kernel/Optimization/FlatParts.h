@@ -8,7 +8,7 @@
 #define tautline_FlatParts_h
 
 #include "OptimizeOptions.h"
-#include "SurfaceModel.h"
+#include "tautline/Boundary/SurfaceModel.h"
 
 #include <vector>
 

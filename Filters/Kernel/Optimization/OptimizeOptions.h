@@ -6,7 +6,7 @@
 #ifndef tautline_OptimizeOptions_h
 #define tautline_OptimizeOptions_h
 
-#include "SurfaceModel.h"
+#include "tautline/Boundary/SurfaceModel.h"
 #include "tautline/Core/Iteration.h"
 #include "tautline/Objectives/Objective.h"
 #include "tautline/Objectives/Scalarization.h"

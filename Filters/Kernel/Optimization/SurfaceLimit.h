@@ -7,7 +7,7 @@
 #ifndef tautline_SurfaceLimit_h
 #define tautline_SurfaceLimit_h
 
-#include "SurfaceProjection.h"
+#include "tautline/Boundary/SurfaceProjection.h"
 #include "tautline/Geometry/PointTree.h"
 
 #include <memory>

@@ -10,7 +10,7 @@
 #include "ReconnectionInput.h"
 #include "ReconnectionResult.h"
 #include "StarSmoothing.h"
-#include "tautline/Optimization/SurfaceProjection.h"
+#include "tautline/Boundary/SurfaceProjection.h"
 #include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline

@@ -7,7 +7,7 @@
 #ifndef tautline_TriangleSurface_h
 #define tautline_TriangleSurface_h
 
-#include "tautline/Optimization/SurfaceProjection.h"
+#include "tautline/Boundary/SurfaceProjection.h"
 
 namespace tautline
 {

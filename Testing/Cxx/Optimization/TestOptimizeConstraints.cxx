@@ -3,7 +3,7 @@
 #include "Registry.h"
 #include "Optimizing.h"
 #include "tautline/Patches/SimplexMesh.h"
-#include "tautline/Optimization/SurfaceProjection.h"
+#include "tautline/Boundary/SurfaceProjection.h"
 
 #include <cstring>
 

@@ -4,7 +4,7 @@
 #include "Optimizing.h"
 #include "Surfaces.h"
 #include "tautline/Mesh/Features.h"
-#include "tautline/Optimization/GeometryMatch.h"
+#include "tautline/Boundary/GeometryMatch.h"
 
 #include <cstring>
 

@@ -5,7 +5,7 @@
 #include "tautline/Patches/Energies.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Patches/SimplexMesh.h"
-#include "tautline/Optimization/SurfaceProjection.h"
+#include "tautline/Boundary/SurfaceProjection.h"
 
 using namespace tautline;
 
