@@ -28,7 +28,7 @@ constexpr double firstDecrease = 0.1; // of the value, that the first step of al
 
 // Iterations in a row that change the value by rounding only, before there is no progress.
 constexpr int maxStalled = 3;
-constexpr double roundingOfSums = 1e-15;
+constexpr double roundingOfLineSearch = 1e-15;
 constexpr int gainWindow = 20; // iterations, see MinimizeOptions::leastGain
 
 // Directions.
@@ -530,8 +530,8 @@ bool Minimizer::iterate()
 /// MinimizeOptions::decrement. If not, directions begin anew.
 bool Minimizer::isNear()
 {
-  const double little =
-    std::max(this->Options.decrement * std::abs(this->F), roundingOfSums * std::abs(this->FirstF));
+  const double little = std::max(
+    this->Options.decrement * std::abs(this->F), roundingOfLineSearch * std::abs(this->FirstF));
   if (this->Options.decrement == 0 || this->Options.method == Optimizer::NewtonConjugateGradient)
   {
     return true;
@@ -612,7 +612,7 @@ MinimizeResult Minimizer::run()
       return this->Result;
     }
     ++this->Result.iterations;
-    stalled = before - this->F <= roundingOfSums * std::abs(this->F) ? stalled + 1 : 0;
+    stalled = before - this->F <= roundingOfLineSearch * std::abs(this->F) ? stalled + 1 : 0;
     if (this->Options.observer &&
       !this->Options.observer(this->Result.iterations, this->F, this->Norm, this->X))
     {
