@@ -54,7 +54,9 @@ std::vector<signed char> kindsOf(vtkDataArray* array, const std::vector<Index>& 
 }
 
 //------------------------------------------------------------------------------
-void OptimizerSetup::findFeaturesOf(const OptimizerSettings& settings, const InputBlock& block)
+/// @param onGeometry whether the mesh slides on the Geometry
+void OptimizerSetup::findFeaturesOf(
+  const OptimizerSettings& settings, const InputBlock& block, bool onGeometry)
 {
   const std::vector<signed char> kinds = kindsOf(
     chosenArray(settings.arrays, KindArray, block.input, "of feature kinds", ArrayOf::Points),
@@ -66,8 +68,19 @@ void OptimizerSetup::findFeaturesOf(const OptimizerSettings& settings, const Inp
   options.angle = settings.featureAngle;
   options.kinds = kinds.empty() ? nullptr : kinds.data();
   options.regions = regions.empty() ? nullptr : regions.data();
-  this->Found = findFeatures(this->TheMesh.mesh(), options);
   this->HasFeatures = true;
+  if (!onGeometry)
+  {
+    this->Found = findFeatures(this->TheMesh.mesh(), options);
+    return;
+  }
+  const bool planar = this->TheMesh.mesh().dimension() == Dimension::Planar;
+  const GeometrySurface surface(counterpartOf(block, settings.geometry), this->TheMesh.frame(),
+    planar, settings.options.threads);
+  this->Match =
+    matchGeometry(this->TheMesh.mesh(), options, this->TheMesh.fixed().data(), surface.mesh());
+  this->Found = this->Match.features;
+  this->HasGeometry = true;
 }
 
 //------------------------------------------------------------------------------
@@ -89,7 +102,6 @@ void OptimizerSetup::setFeatures(const OptimizerSettings& settings, const InputB
   const bool regions =
     chosenArray(settings.arrays, RegionArray, block.input, "of regions", ArrayOf::Cells) != nullptr;
   const bool keep = this->slidesOnModel(settings) || (settings.keepFeatures && regions);
-  vtkDataSet* geometry = settings.geometry ? counterpartOf(block, settings.geometry) : nullptr;
   if (settings.geometry && !this->slidesOnModel(settings))
   {
     throw Error("With a Geometry, points must be able to slide on it: switch Keep Features and "
@@ -98,7 +110,7 @@ void OptimizerSetup::setFeatures(const OptimizerSettings& settings, const InputB
   }
   if (keep || settings.showFeatures)
   {
-    this->findFeaturesOf(settings, block);
+    this->findFeaturesOf(settings, block, keep && settings.geometry);
   }
   if (!keep)
   {
@@ -107,43 +119,15 @@ void OptimizerSetup::setFeatures(const OptimizerSettings& settings, const InputB
   this->holdPoints(settings);
   this->Options.slideSurface = nullptr;
   this->Options.fixed = this->TheMesh.fixed().data();
+  this->Options.parts = this->Parts.data();
   if (settings.geometry)
   {
-    this->slideOnGeometry(settings, geometry);
+    this->Options.model = &this->Match.model;
+    this->placePoints();
     return;
   }
   this->Model = makeSurfaceModel(this->TheMesh.mesh(), this->Found, settings.smoothSurface);
   this->Options.model = &this->Model;
-  this->Options.parts = this->Parts.data();
-}
-
-//------------------------------------------------------------------------------
-void OptimizerSetup::slideOnGeometry(const OptimizerSettings& settings, vtkDataSet* geometry)
-{
-  if (this->TheMesh.mesh().dimension() == Dimension::Planar)
-  {
-    throw Error("A planar mesh cannot slide on a Geometry, which is a surface in space: remove "
-                "the Geometry.");
-  }
-  const GeometrySurface surface(geometry, this->TheMesh.frame(), false, settings.options.threads);
-  const Mesh& mesh = surface.mesh();
-  FeatureOptions options;
-  options.angle = settings.featureAngle;
-  options.asSurface = true;
-  const auto n = this->Parts.size();
-  std::vector<unsigned char> slides(n);
-  for (std::size_t p = 0; p < n; ++p)
-  {
-    // Points that are fixed for another reason stay where they are.
-    slides[p] = !this->Held[p] && (this->Parts[p] >= 0 || this->Found.kind[p] == CornerPoint);
-  }
-  this->Match =
-    matchGeometry(this->TheMesh.mesh(), this->Found, slides, mesh, findFeatures(mesh, options));
-  this->HasGeometry = true;
-  this->Parts = this->Match.parts;
-  this->Options.model = &this->Match.model;
-  this->Options.parts = this->Parts.data();
-  this->placePoints();
 }
 
 //------------------------------------------------------------------------------
@@ -262,7 +246,7 @@ void OptimizerSetup::holdPoints(const OptimizerSettings& settings)
   const Features& found = this->Found;
   const bool surface = mesh.dimension() == Dimension::Surface;
   const bool onBoundary = surface || settings.boundary == BoundaryMotion::OnSurface;
-  this->Parts = partsOfPoints(found);
+  this->Parts = this->HasGeometry ? this->Match.parts : partsOfPoints(found);
   this->Held = this->TheMesh.fixed();
   BoundaryShape held;
   held.fixed.assign(found.kind.size(), 0);
@@ -337,8 +321,10 @@ std::string OptimizerSetup::describeFeatures() const
   { return std::to_string(n) + " " + (n == 1 ? one : many); };
   const std::string geometry = !this->HasGeometry
     ? ""
-    : " Of these, " + std::to_string(this->Match.corners) + " corners and " +
-      std::to_string(this->Match.curves) + " curves have a counterpart in the Geometry.";
+    : " The mesh has " + std::to_string(this->Match.corners) + " of " +
+      count(this->Match.cornersOfGeometry, "corner", "corners") + " and " +
+      std::to_string(this->Match.curves) + " of " +
+      count(this->Match.curvesOfGeometry, "curve", "curves") + " of the Geometry.";
   return "Features: " + count(this->Found.corners, "corner", "corners") + ", " +
     count(this->Found.curves, "curve", "curves") + ", " +
     count(this->Found.patches, "patch", "patches") + "." + geometry;

@@ -132,8 +132,8 @@ private:
   void setFixed(const OptimizerSettings& settings, const InputBlock& block);
   void setFeatures(const OptimizerSettings& settings, const InputBlock& block);
   bool slidesOnModel(const OptimizerSettings& settings) const;
-  void findFeaturesOf(const OptimizerSettings& settings, const InputBlock& block);
-  void slideOnGeometry(const OptimizerSettings& settings, vtkDataSet* geometry);
+  void findFeaturesOf(
+    const OptimizerSettings& settings, const InputBlock& block, bool onGeometry);
   void placePoints();
   void holdPoints(const OptimizerSettings& settings);
   void setSurfaceTolerance(const OptimizerSettings& settings);

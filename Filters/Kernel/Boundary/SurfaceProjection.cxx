@@ -164,12 +164,18 @@ SurfaceProjection::SurfaceProjection(const SurfacePart& part, const SimplexMesh*
 SurfaceProjection SurfaceProjection::ofFacets(
   const SurfaceModel& model, const SimplexMesh* simplices)
 {
-  SurfaceProjection result;
   const int parts = static_cast<int>(model.parts.size());
-  result.Curve = model.patches == 0;
-  for (int i = 0; i < (model.patches > 0 ? model.patches : parts); ++i)
+  return ofParts(model, 0, model.patches > 0 ? model.patches : parts, simplices);
+}
+
+SurfaceProjection SurfaceProjection::ofParts(
+  const SurfaceModel& model, int begin, int end, const SimplexMesh* simplices)
+{
+  SurfaceProjection result;
+  result.Curve = begin < end && model.parts[begin].curve;
+  for (int i = begin; i < end; ++i)
   {
-    result.add(model.parts[i], simplices);
+    result.add(model.parts[i], simplices, i);
   }
   for (Piece& piece : result.Pieces)
   {
@@ -181,7 +187,8 @@ SurfaceProjection SurfaceProjection::ofFacets(
 }
 
 //------------------------------------------------------------------------------
-void SurfaceProjection::add(const SurfacePart& part, const SimplexMesh* simplices)
+void SurfaceProjection::add(
+  const SurfacePart& part, const SimplexMesh* simplices, std::int32_t number)
 {
   const auto placed = [simplices](const Vec3& x)
   { return simplices ? simplices->transform(x) : x; };
@@ -191,7 +198,7 @@ void SurfaceProjection::add(const SurfacePart& part, const SimplexMesh* simplice
     const auto& [a, b, c] = part.pieces[i];
     const std::int32_t controls = part.controlsOf.empty() ? -1 : part.controlsOf[i];
     this->Pieces.push_back(
-      { { placed(a), placed(b), placed(c) }, controls < 0 ? -1 : first + controls });
+      { { placed(a), placed(b), placed(c) }, controls < 0 ? -1 : first + controls, number });
   }
   for (CubicControls controls : part.controls)
   {
@@ -416,6 +423,14 @@ Vec3 SurfaceProjection::closest(const Vec3& x, Vec3& direction) const
   return place.point;
 }
 
+std::int32_t SurfaceProjection::nearestPart(const Vec3& x) const
+{
+  Vec3 point = x;
+  const std::int32_t piece = this->nearest(x, point);
+  return piece < 0 ? -1 : this->Pieces[piece].part;
+}
+
+//------------------------------------------------------------------------------
 Vec3 SurfaceProjection::direction(const Vec3& x) const
 {
   Vec3 direction;

@@ -36,6 +36,7 @@ void addSamples(const std::array<Vec3, 3>& corner, int divisions, std::vector<Ve
 class TAUTLINE_KERNEL_EXPORT SurfaceProjection
 {
 public:
+  SurfaceProjection() = default;
   /// The facets of a mesh, see surfaceFacets(), in the coordinates of `simplices` (see
   /// SimplexMesh::transform()).
   SurfaceProjection(const Mesh& mesh, const SimplexMesh& simplices);
@@ -50,6 +51,9 @@ public:
   /// All pieces of a model as facets, for distances: of its patches, or of its curves if it has no
   /// patch.
   static SurfaceProjection ofFacets(const SurfaceModel& model, const SimplexMesh* simplices);
+  /// The same of a range of its parts, which nearestPart() tells apart.
+  static SurfaceProjection ofParts(
+    const SurfaceModel& model, int begin, int end, const SimplexMesh* simplices);
 
   /// Whether it consists of edges.
   bool isCurve() const { return this->Curve; }
@@ -60,6 +64,8 @@ public:
   /// The same with the unit normal there, of a curve the unit tangent; zero if there is none.
   Vec3 closest(const Vec3& x, Vec3& direction) const;
   Vec3 direction(const Vec3& x) const;
+  /// The part of the model that the closest facet belongs to; -1 without facets.
+  std::int32_t nearestPart(const Vec3& x) const;
 
   /**
    * @brief The distance of x from the facets; anything up to `enough` if it is that, and anything
@@ -79,6 +85,7 @@ private:
   {
     std::array<Vec3, 3> corner;
     std::int32_t controls; ///< index in Controls; -1: flat
+    std::int32_t part = 0; ///< of the model, see ofParts()
   };
   struct Node
   {
@@ -96,8 +103,7 @@ private:
     Vec3 point, direction;
   };
 
-  SurfaceProjection() = default;
-  void add(const SurfacePart& part, const SimplexMesh* simplices);
+  void add(const SurfacePart& part, const SimplexMesh* simplices, std::int32_t number = 0);
   void build();
   void build(std::int32_t node, std::int32_t first, std::int32_t count);
   std::int32_t nearest(const Vec3& x, Vec3& point) const;

@@ -4,7 +4,6 @@
 #include "CellPlans.h"
 #include "CurvedBoundary.h"
 #include "NodeNames.h"
-#include "Outline.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Mesh/CellOrder.h"
 #include "tautline/Boundary/GeometryMatch.h"
@@ -32,19 +31,6 @@ void checkOptions(const CurvingOptions& options)
     throw Error("Straight cells cannot be placed on a Geometry: remove it, or choose the surface "
                 "Smooth.");
   }
-}
-
-/// The features of a geometry; of one for a planar mesh its outline.
-Features geometryFeatures(const Mesh& mesh, const Mesh& geometry, double angle)
-{
-  if (mesh.dimension() == Dimension::Planar && geometry.dimension() == Dimension::None)
-  {
-    return outlineFeatures(geometry.view(), angle);
-  }
-  FeatureOptions options;
-  options.angle = angle;
-  options.asSurface = mesh.dimension() != Dimension::Planar;
-  return findFeatures(geometry, options);
 }
 
 /// A place where nodes are; several nodes may be there where coincident points are not one.
@@ -197,7 +183,15 @@ void Curver::findFeaturesOf()
   options.angle = this->Options.featureAngle;
   options.regions = this->Options.regions;
   options.coarse = true;
-  this->Found = findFeatures(this->TheMesh, options);
+  if (this->Options.geometry)
+  {
+    this->Match = matchGeometry(this->TheMesh, options, nullptr, *this->Options.geometry);
+    this->Found = this->Match.features;
+  }
+  else
+  {
+    this->Found = findFeatures(this->TheMesh, options);
+  }
   this->Result.corners = this->Found.corners;
   this->Result.curves = this->Found.curves;
   this->Result.patches = this->Found.patches;
@@ -213,22 +207,14 @@ void Curver::placeCorners()
   {
     return;
   }
-  const std::vector<std::int32_t> parts = partsOfPoints(this->Found);
-  std::vector<unsigned char> slides(parts.size());
-  for (std::size_t p = 0; p < parts.size(); ++p)
-  {
-    slides[p] = parts[p] >= 0 || this->Found.kind[p] == CornerPoint;
-  }
-  this->Match = matchGeometry(this->TheMesh, this->Found, slides, *this->Options.geometry,
-    geometryFeatures(this->TheMesh, *this->Options.geometry, this->Options.featureAngle));
   for (const SurfacePart& part : this->Match.model.parts)
   {
     this->Parts.emplace_back(part, nullptr);
   }
   const MeshSpace space = this->TheMesh.space();
-  for (std::size_t p = 0; p < slides.size() && space.dimension == Dimension::Planar; ++p)
+  for (Index p = 0; p < this->View.numberOfPoints && space.dimension == Dimension::Planar; ++p)
   {
-    const Vec3 original = this->originalOf(static_cast<Index>(p));
+    const Vec3 original = this->originalOf(p);
     double* x = &this->Match.points[3 * p];
     const double off = dot(Vec3{ x[0], x[1], x[2] } - original, space.normal);
     for (int c = 0; c < 3; ++c)
@@ -403,10 +389,7 @@ void Curver::placeNode(const NodeName& name, const Vec3& target, int part)
   place.offset = to - place.base;
   if (this->Options.geometry)
   {
-    const int patches = this->Found.patches;
-    const int on =
-      part < patches ? this->Match.partOfPatch[part] : this->Match.partOfCurve[part - patches];
-    place.offset = this->Parts[on].closest(to) - place.base;
+    place.offset = this->Parts[part].closest(to) - place.base;
     if (this->TheMesh.dimension() == Dimension::Planar)
     {
       const Vec3& normal = this->TheMesh.normal();

@@ -91,7 +91,11 @@ public:
     {
       this->relaxEdges();
     }
-    this->obeyKinds();
+    if (!this->Options.edges)
+    {
+      this->obeyKinds();
+      this->dropNoise();
+    }
     this->classifyPoints();
     this->findCurves();
     this->findPatches();
@@ -117,6 +121,7 @@ private:
   bool bendsOn(const Candidate& edge, int side) const;
   void findFacetsOfPoints();
   void obeyKinds();
+  void dropNoise();
   void classifyPoints();
   void relaxPoints(const std::vector<std::array<Index, 2>>& edges, const std::vector<Index>& count);
   bool bends(Index point, const Candidate& e, const Candidate& f) const;
@@ -362,7 +367,10 @@ void FeatureFinder::judge(const Side* sides, Index count)
     const bool known = dot(m, m) > 0 && dot(n, n) > 0;
     candidate.cosine = known ? sign * dot(m, n) : 1.0;
     candidate.facets = { sides[0].facet, other };
-    candidate.sharp = candidate.cosine < this->Limit;
+    candidate.sharp = this->Options.edges
+      ? std::binary_search(this->Options.edges->begin(), this->Options.edges->end(),
+          std::array<Index, 2>{ candidate.a, candidate.b })
+      : candidate.cosine < this->Limit;
   }
   if (candidate.sharp || this->Options.kinds)
   {
@@ -482,9 +490,55 @@ void FeatureFinder::obeyKinds()
 }
 
 //------------------------------------------------------------------------------
+/// Makes short curves with a free end smooth, see FeatureOptions::shortestCurve.
+void FeatureFinder::dropNoise()
+{
+  const auto isGiven = [this](Index p)
+  { return this->Options.kinds && this->Options.kinds[p] > PatchPoint; };
+  std::vector<std::vector<Candidate*>> at(this->View.numberOfPoints);
+  for (Candidate& edge : this->Candidates)
+  {
+    if (edge.sharp)
+    {
+      at[edge.a].push_back(&edge);
+      at[edge.b].push_back(&edge);
+    }
+  }
+  const auto countAt = [&at](Index p) {
+    return std::count_if(at[p].begin(), at[p].end(), [](const Candidate* e) { return e->sharp; });
+  };
+  for (Index p = 0; p < this->View.numberOfPoints; ++p)
+  {
+    // From a free end to where the curve ends, too, or meets others.
+    std::vector<Candidate*> curve;
+    bool given = isGiven(p);
+    Index end = p;
+    while (static_cast<int>(curve.size()) < this->Options.shortestCurve && !given &&
+      countAt(end) == (curve.empty() ? 1 : 2))
+    {
+      const auto next = std::find_if(at[end].begin(), at[end].end(),
+        [&curve](const Candidate* e) { return e->sharp && (curve.empty() || e != curve.back()); });
+      curve.push_back(*next);
+      end = (*next)->a == end ? (*next)->b : (*next)->a;
+      given = isGiven(end) || (*next)->cosine == borderCosine;
+    }
+    const bool isShort =
+      static_cast<int>(curve.size()) < this->Options.shortestCurve && !curve.empty() && !given;
+    for (Candidate* edge : curve)
+    {
+      edge->sharp = edge->sharp && !isShort;
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 /// Whether two edges at a point differ by more than the angle, or belong to different curves.
 bool FeatureFinder::bends(Index point, const Candidate& e, const Candidate& f) const
 {
+  if (this->Options.edges)
+  {
+    return e.of != f.of;
+  }
   const Vec3 center = pointOf(this->View, point);
   const Vec3 in = center - pointOf(this->View, e.a == point ? e.b : e.a);
   const Vec3 out = pointOf(this->View, f.a == point ? f.b : f.a) - center;

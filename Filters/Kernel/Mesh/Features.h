@@ -46,6 +46,15 @@ struct FeatureOptions
    * third as much: on a cylinder with 6 to 8 facets around, but not at a chamfer.
    */
   bool coarse = false;
+  /**
+   * @brief The edges inside surfaces that are features, each with the smaller point first, sorted;
+   * or null: those that are sharp. If given, points where two edges of one curve meet are corners
+   * only by their kind, and the kinds make no edge sharp or smooth.
+   */
+  const std::vector<std::array<Index, 2>>* edges = nullptr;
+  /// Sharp edges that form a curve of fewer than this with a free end are noise, and smooth; 0:
+  /// none. Not edges at points that are given as CurvePoint or CornerPoint.
+  int shortestCurve = 4;
 };
 
 struct Features
