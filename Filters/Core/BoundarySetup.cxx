@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The features of a mesh and how points slide on them.
-#include "OptimizerSetup.h"
+#include "BoundarySetup.h"
 
 #include "GeometrySurface.h"
 #include "tautline/Core/Interruption.h"
@@ -54,18 +53,100 @@ std::vector<signed char> kindsOf(vtkDataArray* array, const std::vector<Index>& 
 }
 
 //------------------------------------------------------------------------------
-/// @param onGeometry whether the mesh slides on the Geometry
-void OptimizerSetup::findFeaturesOf(
-  const OptimizerSettings& settings, const InputBlock& block, bool onGeometry)
+std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose)
 {
-  const std::vector<signed char> kinds = kindsOf(
-    chosenArray(settings.arrays, KindArray, block.input, "of feature kinds", ArrayOf::Points),
+  std::vector<double> values;
+  if (array && array->GetNumberOfComponents() != 1)
+  {
+    throw Error(std::string("The array of ") + purpose + " has " +
+      std::to_string(array->GetNumberOfComponents()) + " components; one is expected.");
+  }
+  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
+  {
+    values.push_back(array->GetComponent(i, 0));
+  }
+  return values;
+}
+
+//------------------------------------------------------------------------------
+BoundarySetup::BoundarySetup(
+  const BoundaryProperties& properties, const InputBlock& block, MovableMesh& mesh)
+  : Properties(properties)
+  , Block(block)
+  , TheMesh(mesh)
+{
+  this->setFixed();
+  this->setFeatures();
+  this->setSurfaceTolerance();
+  this->findLeaving();
+}
+
+//------------------------------------------------------------------------------
+vtkDataArray* BoundarySetup::regionArray() const
+{
+  return chosenArray(this->Properties.arrays, this->Properties.regionArray, this->Block.input,
+    "of regions", ArrayOf::Cells);
+}
+
+//------------------------------------------------------------------------------
+/// The kinds of points that are given, or none.
+std::vector<signed char> BoundarySetup::kinds() const
+{
+  return kindsOf(chosenArray(this->Properties.arrays, this->Properties.kindArray, this->Block.input,
+                   "of feature kinds", ArrayOf::Points),
     this->TheMesh.representative());
-  const std::vector<double> regions =
-    scalarsOf(chosenArray(settings.arrays, RegionArray, block.input, "of regions", ArrayOf::Cells),
-      "regions");
+}
+
+//------------------------------------------------------------------------------
+void BoundarySetup::setFixed()
+{
+  MovableMesh& mesh = this->TheMesh;
+  mesh.fix(chosenArray(this->Properties.arrays, this->Properties.fixedArray, this->Block.input,
+             "of fixed points", ArrayOf::Points),
+    false);
+  mesh.fixSelected(this->Block.selected);
+  const bool onSurface =
+    this->Properties.motion == BoundaryMotion::OnSurface && !this->slidesOnModel();
+  if (this->Properties.motion == BoundaryMotion::Fixed)
+  {
+    mesh.fixBoundary();
+  }
+  else if (this->Properties.motion == BoundaryMotion::FlatParts || onSurface)
+  {
+    this->Shape = boundaryShape(mesh.inPieces() ? mesh.local() : mesh.mesh(),
+      this->Properties.flatAngle, onSurface ? this->Properties.featureAngle : 0.0, mesh.division());
+    mesh.fixCorners(this->Shape);
+    for (std::size_t i = 0; i < 3 * mesh.fixed().size(); ++i)
+    {
+      if (mesh.fixed()[i / 3])
+      {
+        this->Shape.planes[i] = this->Shape.lines[i] = 0;
+      }
+    }
+    for (std::size_t i = 0; i < this->Shape.surface.size(); ++i)
+    {
+      this->Shape.surface[i] &= !mesh.fixed()[i];
+    }
+    this->Constraints.slideSurface =
+      this->Shape.onSurface > 0 ? this->Shape.surface.data() : nullptr;
+    this->Constraints.slidePlanes = this->Shape.planes.data();
+    this->Constraints.slideLines = this->Shape.lines.data();
+  }
+  if (this->Properties.freeInvalid)
+  {
+    mesh.freeInvalid();
+  }
+  this->Constraints.fixed = mesh.fixed().data();
+}
+
+//------------------------------------------------------------------------------
+/// @param onGeometry whether the mesh slides on the Geometry
+void BoundarySetup::findFeaturesOf(bool onGeometry)
+{
+  const std::vector<signed char> kinds = this->kinds();
+  const std::vector<double> regions = scalarsOf(this->regionArray(), "regions");
   FeatureOptions options;
-  options.angle = settings.featureAngle;
+  options.angle = this->Properties.featureAngle;
   options.kinds = kinds.empty() ? nullptr : kinds.data();
   options.regions = regions.empty() ? nullptr : regions.data();
   this->HasFeatures = true;
@@ -75,8 +156,8 @@ void OptimizerSetup::findFeaturesOf(
     return;
   }
   const bool planar = this->TheMesh.mesh().dimension() == Dimension::Planar;
-  const GeometrySurface surface(counterpartOf(block, settings.geometry), this->TheMesh.frame(),
-    planar, settings.options.threads);
+  const GeometrySurface surface(counterpartOf(this->Block, this->Properties.geometry),
+    this->TheMesh.frame(), planar, this->Properties.threads);
   this->Match =
     matchGeometry(this->TheMesh.mesh(), options, this->TheMesh.fixed().data(), surface.mesh());
   this->Found = this->Match.features;
@@ -85,55 +166,54 @@ void OptimizerSetup::findFeaturesOf(
 
 //------------------------------------------------------------------------------
 /// Whether all points of the surface or the boundary are kept on its features.
-bool OptimizerSetup::slidesOnModel(const OptimizerSettings& settings) const
+bool BoundarySetup::slidesOnModel() const
 {
   const bool surface = this->TheMesh.mesh().dimension() == Dimension::Surface;
-  return settings.keepFeatures &&
-    (surface ? settings.options.surface.project : settings.boundary == BoundaryMotion::OnSurface);
+  return this->Properties.keepFeatures &&
+    (surface ? this->Properties.projectToSurface
+             : this->Properties.motion == BoundaryMotion::OnSurface);
 }
 
 //------------------------------------------------------------------------------
-void OptimizerSetup::setFeatures(const OptimizerSettings& settings, const InputBlock& block)
+void BoundarySetup::setFeatures()
 {
   if (this->TheMesh.inPieces())
   {
     return; // see requireLocalSettings()
   }
-  const bool regions =
-    chosenArray(settings.arrays, RegionArray, block.input, "of regions", ArrayOf::Cells) != nullptr;
-  const bool keep = this->slidesOnModel(settings) || (settings.keepFeatures && regions);
-  if (settings.geometry && !this->slidesOnModel(settings))
+  const bool keep = this->slidesOnModel() || (this->Properties.keepFeatures && this->regionArray());
+  if (this->Properties.geometry && !this->slidesOnModel())
   {
     throw Error("With a Geometry, points must be able to slide on it: switch Keep Features and "
                 "Project To Surface on and, for volume meshes, let the boundary slide on smooth "
                 "parts.");
   }
-  if (keep || settings.showFeatures)
+  if (keep || this->Properties.showFeatures)
   {
-    this->findFeaturesOf(settings, block, keep && settings.geometry);
+    this->findFeaturesOf(keep && this->Properties.geometry);
   }
   if (!keep)
   {
     return;
   }
-  this->holdPoints(settings);
-  this->Options.slideSurface = nullptr;
-  this->Options.fixed = this->TheMesh.fixed().data();
-  this->Options.parts = this->Parts.data();
-  if (settings.geometry)
+  this->holdPoints();
+  this->Constraints.slideSurface = nullptr;
+  this->Constraints.fixed = this->TheMesh.fixed().data();
+  this->Constraints.parts = this->Parts.data();
+  if (this->Properties.geometry)
   {
-    this->Options.model = &this->Match.model;
+    this->Constraints.model = &this->Match.model;
     this->placePoints();
     return;
   }
-  this->Model = makeSurfaceModel(this->TheMesh.mesh(), this->Found, settings.smoothSurface);
-  this->Options.model = &this->Model;
+  this->Model = makeSurfaceModel(this->TheMesh.mesh(), this->Found, this->Properties.smoothSurface);
+  this->Constraints.model = &this->Model;
 }
 
 //------------------------------------------------------------------------------
 /// Starts from the points on the geometry; those of elements that would become invalid stay, and
 /// slide as soon as a step takes them there.
-void OptimizerSetup::placePoints()
+void BoundarySetup::placePoints()
 {
   const Mesh& mesh = this->TheMesh.mesh();
   const MeshView& view = mesh.view();
@@ -159,21 +239,21 @@ void OptimizerSetup::placePoints()
   }
   MeshView placed = view;
   placed.points = points.data();
-  this->Placed = std::make_unique<Mesh>(placed, this->Options.threads);
+  this->Placed = std::make_unique<Mesh>(placed, this->Properties.threads);
   this->Placed->setMirrored(mesh.mirrored());
 }
 
 //------------------------------------------------------------------------------
-void OptimizerSetup::setSurfaceTolerance(const OptimizerSettings& settings)
+void BoundarySetup::setSurfaceTolerance()
 {
-  this->Options.onGeometry = this->HasGeometry;
+  this->Constraints.onGeometry = this->HasGeometry;
   if (this->TheMesh.inPieces())
   {
     return;
   }
   const bool slides =
-    settings.boundary == BoundaryMotion::OnSurface || !this->Model.interfaces.empty();
-  if (!slides || !(settings.surfaceTolerance > 0) ||
+    this->Properties.motion == BoundaryMotion::OnSurface || !this->Model.interfaces.empty();
+  if (!slides || !(this->Properties.surfaceTolerance > 0) ||
     this->TheMesh.mesh().dimension() == Dimension::Surface)
   {
     return;
@@ -192,24 +272,21 @@ void OptimizerSetup::setSurfaceTolerance(const OptimizerSettings& settings)
     }
   }
   const double diagonal = norm(high - low);
-  this->Options.surfaceTolerance =
-    std::isfinite(diagonal) ? settings.surfaceTolerance * diagonal : 0.0;
+  this->Constraints.surfaceTolerance =
+    std::isfinite(diagonal) ? this->Properties.surfaceTolerance * diagonal : 0.0;
 }
 
 //------------------------------------------------------------------------------
 /// The points of the outer surface that are not fixed for other reasons than features, nor features
 /// by the user's choice.
-void OptimizerSetup::findLeaving(const OptimizerSettings& settings, const InputBlock& block)
+void BoundarySetup::findLeaving()
 {
-  if (!settings.leaveSurface || !(this->Options.surfaceTolerance > 0) ||
-    !(this->Options.improveWorst > 0) || !this->slidesOnModel(settings) || this->HasGeometry ||
-    this->Options.limits)
+  if (!this->Properties.leaving || !(this->Constraints.surfaceTolerance > 0) ||
+    !this->slidesOnModel() || this->HasGeometry)
   {
     return;
   }
-  const std::vector<signed char> kinds = kindsOf(
-    chosenArray(settings.arrays, KindArray, block.input, "of feature kinds", ArrayOf::Points),
-    this->TheMesh.representative());
+  const std::vector<signed char> kinds = this->kinds();
   const bool planar = this->TheMesh.mesh().dimension() == Dimension::Planar;
   this->Leaving.assign(this->Found.kind.size(), 0);
   std::vector<unsigned char> onInterface = this->Leaving;
@@ -235,17 +312,17 @@ void OptimizerSetup::findLeaving(const OptimizerSettings& settings, const InputB
     const bool chosen = !kinds.empty() && kinds[p] > PatchPoint;
     this->Leaving[p] = this->Leaving[p] && !onInterface[p] && !this->Held[p] && !chosen;
   }
-  this->Options.leaving = this->Leaving.data();
+  this->Constraints.leaving = this->Leaving.data();
 }
 
 //------------------------------------------------------------------------------
 /// Which points slide on which part of the model, and which stay.
-void OptimizerSetup::holdPoints(const OptimizerSettings& settings)
+void BoundarySetup::holdPoints()
 {
   const Mesh& mesh = this->TheMesh.mesh();
   const Features& found = this->Found;
   const bool surface = mesh.dimension() == Dimension::Surface;
-  const bool onBoundary = surface || settings.boundary == BoundaryMotion::OnSurface;
+  const bool onBoundary = surface || this->Properties.motion == BoundaryMotion::OnSurface;
   this->Parts = this->HasGeometry ? this->Match.parts : partsOfPoints(found);
   this->Held = this->TheMesh.fixed();
   BoundaryShape held;
@@ -288,7 +365,7 @@ void OptimizerSetup::holdPoints(const OptimizerSettings& settings)
 }
 
 //------------------------------------------------------------------------------
-void OptimizerSetup::addFeatures(vtkDataSet* output) const
+void BoundarySetup::addFeatures(vtkDataSet* output) const
 {
   if (!this->HasFeatures)
   {
@@ -311,7 +388,7 @@ void OptimizerSetup::addFeatures(vtkDataSet* output) const
 }
 
 //------------------------------------------------------------------------------
-std::string OptimizerSetup::describeFeatures() const
+std::string BoundarySetup::describeFeatures() const
 {
   if (!this->HasFeatures)
   {

@@ -153,10 +153,11 @@ OptimizeResult resultOf(CurvedOptimizeResult&& found)
 OptimizerSettings settingsOfCorners(const OptimizerSettings& settings)
 {
   OptimizerSettings corners = settings;
-  corners.boundary = BoundaryMotion::Free;
-  corners.keepFeatures = corners.showFeatures = corners.leaveSurface = false;
-  corners.surfaceTolerance = 0;
-  corners.geometry = nullptr;
+  BoundaryProperties& boundary = corners.boundary;
+  boundary.motion = BoundaryMotion::Free;
+  boundary.keepFeatures = boundary.showFeatures = boundary.leaving = false;
+  boundary.surfaceTolerance = 0;
+  boundary.geometry = nullptr;
   return corners;
 }
 
@@ -166,26 +167,27 @@ OptimizeResult runCurved(const OptimizerSettings& settings, OptimizerSetup& setu
 {
   const OptimizeOptions& given = setup.options();
   requireSettings(settings, given, block);
-  motion.fix(
-    chosenArray(settings.arrays, FixedArray, block.input, "of fixed points", ArrayOf::Points));
+  motion.fix(chosenArray(
+    settings.boundary.arrays, FixedArray, block.input, "of fixed points", ArrayOf::Points));
   motion.fixSelected(block.selected);
-  if (settings.freeInvalid)
+  if (settings.boundary.freeInvalid)
   {
     motion.freeInvalid();
   }
   CurvedOptimizeOptions options;
   static_cast<CurvedOptions&>(options) = motion.options();
-  options.boundary = static_cast<CurvedBoundaryMotion>(settings.boundary);
-  options.featureAngle = settings.featureAngle;
-  options.flatAngle = settings.flatAngle;
+  options.boundary = settings.boundary.motion;
+  options.featureAngle = settings.boundary.featureAngle;
+  options.flatAngle = settings.boundary.flatAngle;
   options.scalarization = given.scalarization;
   options.stopping = given.stopping;
   options.untangleFirst = given.untangleFirst;
   options.observer = given.observer;
   SurfaceModel model;
-  if (settings.geometry && settings.boundary == BoundaryMotion::OnSurface)
+  if (settings.boundary.geometry && settings.boundary.motion == BoundaryMotion::OnSurface)
   {
-    model = motion.geometry(settings.geometry, settings.featureAngle, settings.smoothSurface);
+    model = motion.geometry(
+      settings.boundary.geometry, settings.boundary.featureAngle, settings.boundary.smoothSurface);
     options.geometry = &model;
   }
   std::vector<CurvedTargetData> data(given.objectives.size());

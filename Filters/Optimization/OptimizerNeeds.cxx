@@ -17,7 +17,7 @@ bool isChosen(const OptimizerSettings& settings, int index, vtkDataSet* input)
   try
   {
     return input && input->GetNumberOfPoints() > 0 &&
-      chosenArray(settings.arrays, index, input, "");
+      chosenArray(settings.boundary.arrays, index, input, "");
   }
   catch (const Error&)
   {
@@ -50,7 +50,7 @@ NeedOfWholeMesh needOfWholeMesh(const OptimizerSettings& settings, bool features
   {
     return { "iterations that are kept as time steps", "switch Animation off" };
   }
-  if (settings.boundary == BoundaryMotion::OnSurface || settings.geometry)
+  if (settings.boundary.motion == BoundaryMotion::OnSurface || settings.boundary.geometry)
   {
     return { "points that slide on curved surfaces and geometries",
       "choose the Boundary Fixed, Slide on flat parts (sliding) or Free, without a Geometry" };
@@ -63,11 +63,11 @@ NeedOfWholeMesh needOfWholeMesh(const OptimizerSettings& settings, bool features
   {
     return { "targets of a reference mesh", "choose another preset or target" };
   }
-  if (settings.freeInvalid)
+  if (settings.boundary.freeInvalid)
   {
     return { "points of invalid elements that are freed", "switch Free Invalid Elements off" };
   }
-  if (settings.showFeatures)
+  if (settings.boundary.showFeatures)
   {
     return { "features that are shown", "switch Show Features off" };
   }

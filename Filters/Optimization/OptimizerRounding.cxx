@@ -62,9 +62,9 @@ RoundedResult OptimizerSetup::measureAt(const std::vector<double>& points,
     rounded.elements = {}; // not of the cells of the input
     return rounded;
   }
-  Mesh there = this->start().at(points.data());
-  there.setSpace(this->start().space());
-  return measureRounded(this->start(), validity, this->Options, result, there);
+  Mesh there = this->Boundary.start().at(points.data());
+  there.setSpace(this->Boundary.start().space());
+  return measureRounded(this->Boundary.start(), validity, this->Options, result, there);
 }
 
 //------------------------------------------------------------------------------
@@ -72,7 +72,7 @@ void OptimizerSetup::round(OptimizerRun& run) const
 {
   OptimizeResult& result = run.result;
   const MovableMesh& mesh = this->TheMesh;
-  const Mesh& start = this->start();
+  const Mesh& start = this->Boundary.start();
   const MeshView& view = start.view();
   std::vector<signed char> validity;
   if (!mesh.inPieces())

@@ -17,81 +17,26 @@
 namespace tautline
 {
 //------------------------------------------------------------------------------
-std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose)
-{
-  std::vector<double> values;
-  if (array && array->GetNumberOfComponents() != 1)
-  {
-    throw Error(std::string("The array of ") + purpose + " has " +
-      std::to_string(array->GetNumberOfComponents()) + " components; one is expected.");
-  }
-  for (vtkIdType i = 0; array && i < array->GetNumberOfTuples(); ++i)
-  {
-    values.push_back(array->GetComponent(i, 0));
-  }
-  return values;
-}
-
-//------------------------------------------------------------------------------
 OptimizerSetup::OptimizerSetup(
   const OptimizerSettings& settings, const InputBlock& block, MovableMesh& mesh)
   : TheMesh(mesh)
+  , Boundary(settings.boundary, block, mesh)
   , Options(settings.options)
 {
-  this->setFixed(settings, block);
-  this->setFeatures(settings, block);
-  this->setSurfaceTolerance(settings);
+  static_cast<BoundaryConstraints&>(this->Options) = this->Boundary.constraints();
   this->setLimits(settings, block);
-  this->findLeaving(settings, block);
+  if (this->Options.limits)
+  {
+    this->Options.leaving = nullptr;
+  }
   this->setObjectives(settings, block);
-}
-
-//------------------------------------------------------------------------------
-void OptimizerSetup::setFixed(const OptimizerSettings& settings, const InputBlock& block)
-{
-  MovableMesh& mesh = this->TheMesh;
-  mesh.fix(
-    chosenArray(settings.arrays, FixedArray, block.input, "of fixed points", ArrayOf::Points),
-    false);
-  mesh.fixSelected(block.selected);
-  const bool onSurface =
-    settings.boundary == BoundaryMotion::OnSurface && !this->slidesOnModel(settings);
-  if (settings.boundary == BoundaryMotion::Fixed)
-  {
-    mesh.fixBoundary();
-  }
-  else if (settings.boundary == BoundaryMotion::Sliding || onSurface)
-  {
-    this->Shape = boundaryShape(mesh.inPieces() ? mesh.local() : mesh.mesh(), settings.flatAngle,
-      onSurface ? settings.featureAngle : 0.0, mesh.division());
-    mesh.fixCorners(this->Shape);
-    for (std::size_t i = 0; i < 3 * mesh.fixed().size(); ++i)
-    {
-      if (mesh.fixed()[i / 3])
-      {
-        this->Shape.planes[i] = this->Shape.lines[i] = 0;
-      }
-    }
-    for (std::size_t i = 0; i < this->Shape.surface.size(); ++i)
-    {
-      this->Shape.surface[i] &= !mesh.fixed()[i];
-    }
-    this->Options.slideSurface = this->Shape.onSurface > 0 ? this->Shape.surface.data() : nullptr;
-    this->Options.slidePlanes = this->Shape.planes.data();
-    this->Options.slideLines = this->Shape.lines.data();
-  }
-  if (settings.freeInvalid)
-  {
-    mesh.freeInvalid();
-  }
-  this->Options.fixed = mesh.fixed().data();
 }
 
 //------------------------------------------------------------------------------
 void OptimizerSetup::setLimits(const OptimizerSettings& settings, const InputBlock& block)
 {
   vtkDataArray* array =
-    chosenArray(settings.arrays, LimitArray, block.input, "of limits", ArrayOf::Points);
+    chosenArray(settings.boundary.arrays, LimitArray, block.input, "of limits", ArrayOf::Points);
   this->Limits = scalarsOf(array, "limits");
   for (double& limit : this->Limits)
   {
@@ -156,7 +101,7 @@ const Targets* OptimizerSetup::target(
 void OptimizerSetup::setObjectives(const OptimizerSettings& settings, const InputBlock& block)
 {
   std::vector<Objective>& objectives = this->Options.objectives;
-  if (settings.preset == Preset::UniformSize && settings.boundary == BoundaryMotion::Free)
+  if (settings.preset == Preset::UniformSize && settings.boundary.motion == BoundaryMotion::Free)
   {
     this->keepTotalSize();
   }
@@ -194,8 +139,8 @@ void OptimizerSetup::setWeights(const OptimizerSettings& settings, const InputBl
 {
   if (block.input->GetNumberOfCells() > 0)
   {
-    this->Weights = scalarsOf(
-      chosenArray(settings.arrays, WeightArray, block.input, "of element weights", ArrayOf::Cells),
+    this->Weights = scalarsOf(chosenArray(settings.boundary.arrays, WeightArray, block.input,
+                                "of element weights", ArrayOf::Cells),
       "weights");
   }
   if (!this->TheMesh.inPieces())
@@ -269,9 +214,9 @@ OptimizeResult OptimizerSetup::run()
     return result;
   }
   // With a geometry, the start is another mesh than the input.
-  const bool asGiven = &this->start() == &this->TheMesh.mesh();
-  OptimizeResult result = optimize(
-    this->start(), this->Options, asGiven ? this->TheMesh.validity() : std::vector<signed char>());
+  const bool asGiven = &this->Boundary.start() == &this->TheMesh.mesh();
+  OptimizeResult result = optimize(this->Boundary.start(), this->Options,
+    asGiven ? this->TheMesh.validity() : std::vector<signed char>());
   result.surfaceError *= this->TheMesh.frame().unit();
   return result;
 }

@@ -9,12 +9,9 @@
 
 #include "BeforeAfter.h"
 #include "Blocks.h"
+#include "BoundarySetup.h"
 #include "MovableMesh.h"
 #include "TargetChoice.h"
-#include "tautline/Mesh/BoundaryShape.h"
-#include "tautline/Mesh/Features.h"
-#include "tautline/Boundary/GeometryMatch.h"
-#include "tautline/Optimization/Optimize.h"
 #include "tautline/Optimization/Optimize.h"
 
 #include <array>
@@ -45,15 +42,6 @@ struct ObjectiveRow
   TargetType target = TargetType::Ideal;
 };
 
-/// What the points of the boundary do; the numbers of vtkMeshOptimizer::Boundaries.
-enum class BoundaryMotion : int
-{
-  Fixed = 0,
-  Sliding = 1,
-  Free = 2,
-  OnSurface = 3
-};
-
 /// The properties of the filter that depend on no data set.
 struct OptimizerSettings
 {
@@ -62,21 +50,11 @@ struct OptimizerSettings
   double power = 8.0;                   ///< of the templates p-mean and maximum
   double beta = 0.0;                    ///< of the untangling metric
   Combination combination = Combination::Mean;
-  BoundaryMotion boundary = BoundaryMotion::Fixed;
-  double flatAngle = 1.0;        ///< degrees
-  double featureAngle = 40.0;    ///< degrees
-  bool keepFeatures = true;      ///< of surfaces, and where points slide on the boundary
-  bool smoothSurface = true;     ///< slide on a smooth surface through the points, not on facets
-  double surfaceTolerance = 0.0; ///< of OnSurface, a fraction of the diagonal; 0: any distance
-  bool leaveSurface = true;      ///< see OptimizeOptions::leaving
-  vtkDataObject* geometry = nullptr; ///< what points slide on instead of the input, or null
-  bool showFeatures = false;         ///< add the arrays of the features to the output
-  double maximumDisplacement = 0.0;  ///< 0: any distance
-  bool freeInvalid = false;          ///< see MovableMesh::freeInvalid()
-  bool mergePoints = true;           ///< whether coincident points on seams are one
+  BoundaryProperties boundary;      ///< and the filter whose input arrays are chosen
+  double maximumDisplacement = 0.0; ///< 0: any distance
+  bool mergePoints = true;          ///< whether coincident points on seams are one
   /// All that needs no data set. Of CUSTOM, too, what a preset replaces.
   OptimizeOptions options;
-  vtkAlgorithm* arrays = nullptr; ///< whose input arrays are chosen, see OptimizerArrays
   /// The array for a target, by index; of points or cells, by default the active scalars.
   std::function<ChosenArray(int, vtkDataSet*)> targetArray;
 };
@@ -109,15 +87,13 @@ public:
   OptimizerSetup(const OptimizerSetup&) = delete;
   OptimizerSetup& operator=(const OptimizerSetup&) = delete;
 
-  /// The mesh where the optimization starts: with a geometry, its points are placed on that.
-  const Mesh& start() const { return this->Placed ? *this->Placed : this->TheMesh.mesh(); }
+  /// The features, and the mesh where the optimization starts.
+  const BoundarySetup& boundary() const { return this->Boundary; }
   OptimizeOptions& options() { return this->Options; }
   /// Optimizes from start().
   OptimizeResult run();
   /// What is measured on the cells of the input.
   std::vector<MeasuredMetric> metrics() const;
-  /// Adds the arrays `FeatureKind` and `PatchId` of points, of surfaces also `PatchId` of cells.
-  void addFeatures(vtkDataSet* output) const;
   /**
    * @brief Rounds the points of a result from start() on to those that are written, in single
    * precision if the input has that, and measures the result there. Where this would break what
@@ -125,19 +101,8 @@ public:
    * enough so far from the origin, those of the input.
    */
   void round(OptimizerRun& run) const;
-  /// The features found, as a sentence; "" if they were not looked for.
-  std::string describeFeatures() const;
 
 private:
-  void setFixed(const OptimizerSettings& settings, const InputBlock& block);
-  void setFeatures(const OptimizerSettings& settings, const InputBlock& block);
-  bool slidesOnModel(const OptimizerSettings& settings) const;
-  void findFeaturesOf(
-    const OptimizerSettings& settings, const InputBlock& block, bool onGeometry);
-  void placePoints();
-  void holdPoints(const OptimizerSettings& settings);
-  void setSurfaceTolerance(const OptimizerSettings& settings);
-  void findLeaving(const OptimizerSettings& settings, const InputBlock& block);
   void setLimits(const OptimizerSettings& settings, const InputBlock& block);
   void setObjectives(const OptimizerSettings& settings, const InputBlock& block);
   void setUnit(Objective& objective) const;
@@ -149,20 +114,11 @@ private:
     const OptimizerSettings& settings, const InputBlock& block, TargetType type);
 
   MovableMesh& TheMesh;
+  BoundarySetup Boundary;
   std::array<Targets, 4> MadeTargets;    ///< by type, of the cells that are optimized
   std::array<Targets, 4> TargetsOfPiece; ///< the same of the cells of the input, if in pieces
   std::array<bool, 4> HasTargets = {};
   std::vector<double> Weights, Limits;
-  BoundaryShape Shape;
-  Features Found;
-  bool HasFeatures = false; ///< Found is set
-  SurfaceModel Model;
-  GeometryMatch Match;
-  std::unique_ptr<Mesh> Placed;
-  bool HasGeometry = false;
-  std::vector<std::int32_t> Parts;
-  std::vector<unsigned char> Held; ///< points that are fixed for other reasons than features
-  std::vector<unsigned char> Leaving;
   OptimizeOptions Options;
 };
 
@@ -184,9 +140,6 @@ std::vector<Objective> customObjectives(const OptimizerSettings& settings);
 /// without a valid one.
 void compareSizesWith(
   const Mesh& mesh, double total, Index valid, Targets& mean, OptimizeOptions& options);
-
-/// The values of an array of one component, or none without one; throws Error if it has more.
-std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose);
 
 /// The result for one data set.
 struct OptimizerRun

@@ -46,6 +46,7 @@ constexpr int MaximumTimeSteps = 1000;
 
 //------------------------------------------------------------------------------
 vtkMeshOptimizer::vtkMeshOptimizer()
+  : vtkMeshBoundaryAlgorithm(tautline::FixedArray, tautline::KindArray, tautline::RegionArray)
 {
   this->DeclarePorts(NumberOfInputPorts, NumberOfPorts, { tautline::OptimizerPorts::Selection });
 }
@@ -361,18 +362,10 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
   settings.power = this->Power;
   settings.beta = this->Beta;
   settings.combination = static_cast<tautline::Combination>(this->Combination);
-  settings.boundary = static_cast<tautline::BoundaryMotion>(this->Boundary);
-  settings.flatAngle = this->FlatAngle;
-  settings.featureAngle = this->FeatureAngle;
-  settings.keepFeatures = this->KeepFeatures;
-  settings.smoothSurface = this->SmoothSurface;
-  settings.surfaceTolerance = this->SurfaceTolerance;
-  settings.leaveSurface = this->LeaveSurface;
-  settings.showFeatures = this->ShowFeatures;
-  settings.freeInvalid = this->FreeInvalid;
+  settings.boundary = this->GetBoundaryProperties(nullptr);
+  settings.boundary.projectToSurface = this->ProjectToSurface;
   settings.maximumDisplacement = this->MaximumDisplacement;
   settings.mergePoints = this->MergeCoincidentPoints;
-  settings.arrays = this;
   settings.targetArray = [this](int index, vtkDataSet* input)
   {
     tautline::ChosenArray chosen;
@@ -402,6 +395,7 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
     options.improveWorst = this->ImproveWorst;
   }
   tautline::applyPreset(settings.preset, options);
+  settings.boundary.leaving = this->LeaveSurface && options.improveWorst > 0;
   options.holdWorst = this->HoldWorst;
   if (this->WorstMetric >= 0)
   {
@@ -439,7 +433,7 @@ int vtkMeshOptimizer::RequestData(
       [&]
       {
         tautline::OptimizerSettings settings = this->GetSettings();
-        settings.geometry = geometry;
+        settings.boundary.geometry = geometry;
         this->ForEachBlock(inputVector, outputVector, reference,
           tautline::OptimizerPorts::Selection, this->Boundary != FIXED,
           [&](const tautline::InputBlock& block)
@@ -568,7 +562,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
       setup.round(run);
     }
     this->Warn(run.warning);
-    if (curved || &setup.start() != &mesh.mesh() || !mesh.frame().isIdentity())
+    if (curved || &setup.boundary().start() != &mesh.mesh() || !mesh.frame().isIdentity())
     {
       run.result.elements = {};
     }
@@ -588,7 +582,7 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   const auto metrics = setup.metrics();
   if (this->ShowFeatures)
   {
-    setup.addFeatures(block.output);
+    setup.boundary().addFeatures(block.output);
   }
   std::string qualities;
   if (!done && !ofResult)
@@ -614,9 +608,10 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
   {
     const double diagonal = block.input->GetLength();
     // Without a tolerance any distance is allowed.
-    const bool stays = settings.boundary != tautline::BoundaryMotion::Free && !settings.geometry &&
-      settings.surfaceTolerance > 0;
-    const double allowed = std::max(LeastSurfaceMotion, settings.surfaceTolerance) * diagonal;
+    const bool stays = settings.boundary.motion != tautline::BoundaryMotion::Free &&
+      !settings.boundary.geometry && settings.boundary.surfaceTolerance > 0;
+    const double allowed =
+      std::max(LeastSurfaceMotion, settings.boundary.surfaceTolerance) * diagonal;
     const bool moved = stays && run.result.surfaceError > allowed;
     run.moved = moved ? "The surface has moved by up to " +
         tautline::distanceText(run.result.surfaceError, diagonal) + "."
@@ -625,7 +620,8 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
     const std::string why = run.result.reason == tautline::StopReason::NoFreeVertices
       ? mesh.whyNoneIsFree(tautline::BoundaryRemedy)
       : std::string();
-    for (const std::string& sentence : { why, setup.describeFeatures(), note, mesh.notice() })
+    for (const std::string& sentence :
+      { why, setup.boundary().describeFeatures(), note, mesh.notice() })
     {
       run.summary += (sentence.empty() ? "" : "\n") + sentence;
     }
@@ -648,7 +644,7 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
   this->InputsChanged = onAny(this->InputsChanged);
   // What needs the whole mesh is not divided first.
   tautline::OptimizerSettings settings = this->GetSettings();
-  settings.geometry = vtkDataObject::GetData(inputs[tautline::OptimizerPorts::Geometry]);
+  settings.boundary.geometry = vtkDataObject::GetData(inputs[tautline::OptimizerPorts::Geometry]);
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
   const bool features = onAny(tautline::choosesFeatures(settings, vtkDataSet::SafeDownCast(input)));
   const std::string what = onAny(tautline::hasCurvedCells(input))
@@ -763,14 +759,7 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "UseBestKnown: " << this->UseBestKnown << "\n";
   os << indent << "BestKnown: " << this->BestKnown << "\n";
   os << indent << "StopWhenValid: " << this->StopWhenValid << "\n";
-  os << indent << "Boundary: " << this->Boundary << "\n";
-  os << indent << "FlatAngle: " << this->FlatAngle << "\n";
-  os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
-  os << indent << "KeepFeatures: " << this->KeepFeatures << "\n";
-  os << indent << "SmoothSurface: " << this->SmoothSurface << "\n";
-  os << indent << "SurfaceTolerance: " << this->SurfaceTolerance << "\n";
   os << indent << "LeaveSurface: " << this->LeaveSurface << "\n";
-  os << indent << "ShowFeatures: " << this->ShowFeatures << "\n";
   os << indent << "MaximumDisplacement: " << this->MaximumDisplacement << "\n";
   os << indent << "ProjectToSurface: " << this->ProjectToSurface << "\n";
   os << indent << "AllowInversion: " << this->AllowInversion << "\n";
@@ -784,6 +773,5 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "HoldWorst: " << this->HoldWorst << "\n";
   os << indent << "ReproducibleOrder: " << this->ReproducibleOrder << "\n";
   os << indent << "Animation: " << this->Animation << "\n";
-  os << indent << "FreeInvalid: " << this->FreeInvalid << "\n";
   os << indent << "AnimationMemory: " << this->AnimationMemory << "\n";
 }

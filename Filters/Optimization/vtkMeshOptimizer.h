@@ -85,7 +85,7 @@
 #define vtkMeshOptimizer_h
 
 #include "TautlineOptimizationModule.h" // for export macro
-#include "vtkMeshMotionAlgorithm.h"
+#include "vtkMeshBoundaryAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 #include "vtkTimeStamp.h"        // for RunTime
 
@@ -104,11 +104,11 @@ struct OptimizerRun;
 struct OptimizerSettings;
 }
 
-class TAUTLINEOPTIMIZATION_EXPORT vtkMeshOptimizer : public vtkMeshMotionAlgorithm
+class TAUTLINEOPTIMIZATION_EXPORT vtkMeshOptimizer : public vtkMeshBoundaryAlgorithm
 {
 public:
   static vtkMeshOptimizer* New();
-  vtkTypeMacro(vtkMeshOptimizer, vtkMeshMotionAlgorithm);
+  vtkTypeMacro(vtkMeshOptimizer, vtkMeshBoundaryAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Presets
@@ -349,88 +349,6 @@ public:
   vtkBooleanMacro(StopWhenValid, bool);
   ///@}
 
-  enum Boundaries
-  {
-    FIXED = 0,
-    SLIDING = 1,
-    FREE = 2,
-    ON_SURFACE = 3
-  };
-  ///@{
-  /**
-   * What the points of the boundary do. FIXED: they stay. SLIDING: of a volume mesh those within a
-   * flat part of the surface move in it, those on a straight edge along it, corners and curved
-   * parts stay; of a mesh of 2D cells those on straight parts move along them (see FlatAngle).
-   * ON_SURFACE: besides, those where the boundary of a volume or planar mesh is curved but smooth
-   * (see FeatureAngle) slide on it as it was; this needs a local optimizer, and GetSurfaceError()
-   * is the distance of the new boundary from the old. FREE: they move as all others. Points also
-   * stay where the point array at index 2 (SetInputArrayToProcess) is not 0, and where the
-   * selection at port 2 holds them or a cell of theirs. The default is FIXED.
-   */
-  vtkTautlineSetRangeMacro(Boundary, int, FIXED, ON_SURFACE);
-  vtkGetMacro(Boundary, int);
-  ///@}
-
-  ///@{
-  /**
-   * Boundary facets whose normals differ by at most so many degrees are one plane (edges: one line)
-   * to slide in. A part that bends by more in all, as a fine circle, is curved: where it bends,
-   * its points stay. The default is 1.
-   */
-  vtkTautlineSetRangeMacro(FlatAngle, double, 0.0, 90.0);
-  vtkGetMacro(FlatAngle, double);
-  ///@}
-
-  ///@{
-  /**
-   * Edges at which a surface, or the boundary, bends by more than so many degrees are sharp. The
-   * default is 40.
-   */
-  vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
-  vtkGetMacro(FeatureAngle, double);
-  ///@}
-
-  ///@{
-  /**
-   * Keep the features of a surface in space (with ProjectToSurface), of the boundary (ON_SURFACE)
-   * and of interfaces (cell array at index 6): corners stay, points on curves (sharp edges,
-   * borders, junctions) slide along these and other points within their patches. On a surface,
-   * points of the border then slide along it unless FIXED. Point array at index 5: kinds of points
-   * instead of those found, see tautline/Mesh/Features.h. Off: points of a surface may go anywhere
-   * on it, and those on sharp edges of the boundary stay unless these are straight. The default is
-   * on.
-   */
-  vtkSetMacro(KeepFeatures, bool);
-  vtkGetMacro(KeepFeatures, bool);
-  vtkBooleanMacro(KeepFeatures, bool);
-  ///@}
-
-  ///@{
-  /**
-   * With KeepFeatures, points slide on smooth patches and curves through the points of the input,
-   * made of cubic triangles and arcs; off: on its facets and edges. The default is on.
-   */
-  vtkSetMacro(SmoothSurface, bool);
-  vtkGetMacro(SmoothSurface, bool);
-  vtkBooleanMacro(SmoothSurface, bool);
-  ///@}
-
-  ///@{
-  /**
-   * With the boundary ON_SURFACE: how far the new boundary may be from the old one, and the old one
-   * from the new one, as a fraction of the diagonal of the bounding box, 0 to 1; 0: any distance.
-   * The same of interfaces (cell array at index 6, with KeepFeatures), whatever the boundary does.
-   * Steps that would take it farther are shortened or left out; the summary says how many points
-   * are held by that. The distance is measured at the quarters of the edges of the boundary's
-   * triangles (quadrilaterals are two), at the crossings of the lines between these, and at the
-   * centres.
-   * With a Geometry it is that of the boundary from the geometry; what is farther at the start may
-   * stay so. The default is 0.001.
-   */
-  vtkTautlineSetRangeMacro(SurfaceTolerance, double, 0.0, 1.0);
-  vtkGetMacro(SurfaceTolerance, double);
-  ///@}
-
   ///@{
   /**
    * With the preset WORST_ELEMENT (or ImproveWorst), the boundary ON_SURFACE, KeepFeatures and a
@@ -443,17 +361,6 @@ public:
   vtkSetMacro(LeaveSurface, bool);
   vtkGetMacro(LeaveSurface, bool);
   vtkBooleanMacro(LeaveSurface, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Add the features to the output: the point array `FeatureKind` (0 within a patch or the mesh, 1
-   * on a curve, 2 corner) and `PatchId`, of the points within a patch and of the cells of a
-   * surface (-1: none). The default is off.
-   */
-  vtkSetMacro(ShowFeatures, bool);
-  vtkGetMacro(ShowFeatures, bool);
-  vtkBooleanMacro(ShowFeatures, bool);
   ///@}
 
   ///@{
@@ -567,17 +474,6 @@ public:
 
   ///@{
   /**
-   * Free the points of the elements that are inverted or degenerate in the input, however they are
-   * fixed, also on the boundary, which may change its shape there. A mesh on several processes is
-   * gathered on the first one. Off.
-   */
-  vtkSetMacro(FreeInvalid, bool);
-  vtkGetMacro(FreeInvalid, bool);
-  vtkBooleanMacro(FreeInvalid, bool);
-  ///@}
-
-  ///@{
-  /**
    * Give the iterations as time steps: time t is the mesh after iteration t (those of untangling
    * come first), so that ParaView's animation plays the optimization. Without a request for a time,
    * the output is the result. The time of the input is then its default one. Off.
@@ -661,7 +557,6 @@ private:
   int Objectives = 0;
   std::vector<double> Utopia;
   int Preset = BEST_SHAPE;
-  bool FreeInvalid = false;
   double Power = 8.0;
   int Combination = MEAN;
   double Beta = 0.0;
@@ -678,14 +573,7 @@ private:
   bool UseBestKnown = false;
   double BestKnown = 0.0;
   bool StopWhenValid = false;
-  int Boundary = FIXED;
-  double FlatAngle = 1.0;
-  double FeatureAngle = 40.0;
-  bool KeepFeatures = true;
-  bool SmoothSurface = true;
-  double SurfaceTolerance = 0.001;
   bool LeaveSurface = true;
-  bool ShowFeatures = false;
   double MaximumDisplacement = 0.0;
   bool ProjectToSurface = true;
   bool AllowInversion = false;

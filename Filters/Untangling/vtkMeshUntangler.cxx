@@ -2,6 +2,7 @@
 #include "vtkMeshUntangler.h"
 
 #include "Blocks.h"
+#include "BoundarySetup.h"
 #include "CurvedMotion.h"
 #include "GatheredExecution.h"
 #include "IterationHistory.h"
@@ -32,11 +33,11 @@ namespace
 {
 constexpr int SelectionPort = 1, GeometryPort = 2; // input
 constexpr int NumberOfInputPorts = 3, NumberOfOutputPorts = 2;
-constexpr int FixedArray = 0;
+constexpr int FixedArray = 0, KindArray = 1, RegionArray = 2;
 
 constexpr int ListedElements = 10;
 constexpr const char* FilterName = "Untangle Mesh"; // in the menu
-constexpr const char* BoundaryRemedy = "switch Fix Boundary off";
+constexpr const char* BoundaryRemedy = "choose another Boundary";
 
 /// In the order of tautline::Obstacle.
 constexpr std::array<const char*, 5> reasons = { "valid",
@@ -147,7 +148,9 @@ std::string verdict(const tautline::UntangleResult& result, const std::vector<Re
 
 //------------------------------------------------------------------------------
 vtkMeshUntangler::vtkMeshUntangler()
+  : vtkMeshBoundaryAlgorithm(FixedArray, KindArray, RegionArray)
 {
+  this->Boundary = ON_SURFACE;
   this->DeclarePorts(NumberOfInputPorts, NumberOfOutputPorts, { SelectionPort });
 }
 
@@ -164,13 +167,14 @@ int vtkMeshUntangler::RequestData(
     [&]
     {
       tautline::TableRows history;
-      this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, !this->FixBoundary,
+      vtkDataObject* geometry = vtkDataObject::GetData(inputVector[GeometryPort]);
+      // Blocks that touch would come apart; a boundary that slides only where it has to stays then.
+      const bool moves = this->Boundary == SLIDING || this->Boundary == FREE || geometry;
+      this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, moves,
         [&](const tautline::InputBlock& block)
         {
-          tautline::hasCurvedCells(block.input)
-            ? this->UntangleCurved(
-                block, vtkDataObject::GetData(inputVector[GeometryPort]), history)
-            : this->Untangle(block, history);
+          tautline::hasCurvedCells(block.input) ? this->UntangleCurved(block, geometry, history)
+                                                : this->Untangle(block, geometry, history);
         });
       if (this->NotValid > 0)
       {
@@ -198,31 +202,26 @@ void vtkMeshUntangler::ClearResult()
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshUntangler::Untangle(const tautline::InputBlock& block, tautline::TableRows& history)
+void vtkMeshUntangler::Untangle(
+  const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history)
 {
   const std::unique_ptr<tautline::MovableMesh> made = this->MakeMesh(block, true);
   tautline::MovableMesh& mesh = *made;
-  mesh.fix(tautline::chosenArray(
-             this, FixedArray, block.input, "of fixed points", tautline::ArrayOf::Points),
-    false);
-  mesh.fixSelected(block.selected);
-  if (this->FixBoundary)
+  if (this->FreeInvalid && mesh.inPieces())
   {
-    mesh.fixBoundary();
+    throw tautline::Error("Points of invalid elements that are freed need one process and its own "
+                          "order: switch Reproducible Order or Free Invalid Elements off.");
   }
-  if (this->FreeInvalid)
+  tautline::BoundaryProperties properties = this->GetBoundaryProperties(geometry);
+  if (this->Boundary == ON_SURFACE && (mesh.inPieces() || !this->GetBlockNotice().empty()))
   {
-    if (mesh.inPieces())
-    {
-      throw tautline::Error(
-        "Points of invalid elements that are freed need one process and its own "
-        "order: switch Reproducible Order or Free Invalid Elements off.");
-    }
-    mesh.freeInvalid();
+    properties.motion = tautline::BoundaryMotion::Fixed;
   }
-
-  tautline::UntangleResult result = tautline::untangle(mesh.inPieces() ? mesh.local() : mesh.mesh(),
-    this->GetOptions(mesh.fixed().data(), block.number), mesh.division());
+  const tautline::BoundarySetup boundary(properties, block, mesh);
+  tautline::UntangleOptions options = this->GetOptions(block.number);
+  static_cast<tautline::BoundaryConstraints&>(options) = boundary.constraints();
+  tautline::UntangleResult result =
+    tautline::untangle(mesh.inPieces() ? mesh.local() : boundary.start(), options, mesh.division());
   this->HaveBest();
   std::string unsettled;
   result.points = mesh.settle(result.points, unsettled);
@@ -258,17 +257,18 @@ void vtkMeshUntangler::UntangleCurved(
     motion.freeInvalid();
   }
   tautline::CurvedOptions options = motion.options();
-  options.boundary = static_cast<tautline::CurvedBoundaryMotion>(this->CurvedBoundary);
+  options.boundary = static_cast<tautline::BoundaryMotion>(this->Boundary);
   options.featureAngle = this->FeatureAngle;
+  options.flatAngle = this->FlatAngle;
   options.midNodesOnly = this->MidNodesOnly;
   options.straighten = this->Straighten;
   options.maximumSeconds = this->GetRemainingSeconds();
   options.observer = [&](const tautline::IterationState& state)
   { return this->ShowState(state, block.number); };
   tautline::SurfaceModel model;
-  if (geometry && this->CurvedBoundary == ON_SURFACE)
+  if (geometry && this->Boundary == ON_SURFACE)
   {
-    model = motion.geometry(geometry, this->FeatureAngle, true);
+    model = motion.geometry(geometry, this->FeatureAngle, this->SmoothSurface);
     options.geometry = &model;
   }
   const tautline::CurvedUntangleResult found = tautline::untangleCurved(motion.mesh(), options);
@@ -293,9 +293,8 @@ void vtkMeshUntangler::UntangleCurved(
   }
   if (found.reason == tautline::StopReason::NoFreeVertices)
   {
-    more +=
-      " No node of the invalid cells and around them is free: choose another Curved Boundary, "
-      "switch Mid Nodes Only off, or fix fewer points.";
+    more += " No node of the invalid cells and around them is free: choose another Boundary, "
+            "switch Mid Nodes Only off, or fix fewer points.";
   }
   this->Show(block, motion.corners(), result, more, history);
 }
@@ -340,13 +339,12 @@ void vtkMeshUntangler::Show(const tautline::InputBlock& block, const tautline::M
 }
 
 //------------------------------------------------------------------------------
-tautline::UntangleOptions vtkMeshUntangler::GetOptions(const unsigned char* fixed, int block)
+tautline::UntangleOptions vtkMeshUntangler::GetOptions(int block)
 {
   tautline::UntangleOptions options;
   options.method = static_cast<tautline::UntangleMethod>(this->Method);
   options.effort = static_cast<tautline::Effort>(this->Effort);
   options.maximumSeconds = this->GetRemainingSeconds();
-  options.fixed = fixed;
   options.threads = this->Threads;
   options.observer = [this, block](const tautline::IterationState& state)
   { return this->ShowState(state, block); };
@@ -397,10 +395,6 @@ void vtkMeshUntangler::PrintSelf(ostream& os, vtkIndent indent)
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Method: " << this->Method << "\n";
   os << indent << "Effort: " << this->Effort << "\n";
-  os << indent << "FixBoundary: " << this->FixBoundary << "\n";
-  os << indent << "FreeInvalid: " << this->FreeInvalid << "\n";
-  os << indent << "CurvedBoundary: " << this->CurvedBoundary << "\n";
-  os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "MidNodesOnly: " << this->MidNodesOnly << "\n";
   os << indent << "Straighten: " << this->Straighten << "\n";
   os << indent << "ReproducibleOrder: " << this->ReproducibleOrder << "\n";

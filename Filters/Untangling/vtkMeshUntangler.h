@@ -4,8 +4,9 @@
  * @brief Makes the elements of a mesh valid by moving its points.
  *
  * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from
- * data sets with explicit points, or blocks of these. The connectivity stays, and so do the points
- * of the boundary unless FixBoundary is off. The output never has more inverted elements than the
+ * data sets with explicit points, or blocks of these. The connectivity stays. Points of the
+ * boundary slide where elements are not valid without that (ON_SURFACE, the default of Boundary).
+ * The output never has more inverted elements than the
  * input. Its report is a guarantee: that every element is valid, or which are not, where they are,
  * and why.
  *
@@ -14,12 +15,16 @@
  * (implicit points) are refused. For better elements run vtkMeshOptimizer afterwards.
  *
  * Of cells of quadratic and higher order, all nodes move, and the whole cell is certified to be
- * valid, see tautline/Curved/UntangleCurved.h. They are of volumes, or in a plane. Method, Effort
- * and FixBoundary are not used then; see CurvedBoundary.
+ * valid, see tautline/Curved/UntangleCurved.h. They are of volumes, or in a plane. Method and
+ * Effort are not used then.
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay; 2 (optional) the geometry:
- * triangles or quadrilaterals that the boundary of curved cells slides on (ON_SURFACE).
+ * triangles or quadrilaterals, for planar meshes lines or cells in the plane, that the boundary
+ * slides on (ON_SURFACE).
+ *
+ * Arrays of the mesh (SetInputArrayToProcess), by index: 0 fixed points (not 0), 1 kinds of the
+ * points (0 patch, 1 curve, 2 corner, -1 as found), 2 regions (cells).
  *
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (new minus old) and the cell arrays
@@ -35,7 +40,7 @@
  *
  * @par Several processes:
  * Each may have pieces of the mesh. Volume meshes and planar ones are worked on where they are, in
- * the reproducible order. Surfaces in space, inclined planes, blocks and what is left inverted are
+ * the reproducible order, with a boundary that stays instead of sliding ON_SURFACE. Surfaces in space, inclined planes, blocks and what is left inverted are
  * gathered on the first process; the summary names what was gathered and why.
  *
  * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see
@@ -48,7 +53,7 @@
 #define vtkMeshUntangler_h
 
 #include "TautlineUntanglingModule.h" // for export macro
-#include "vtkMeshMotionAlgorithm.h"
+#include "vtkMeshBoundaryAlgorithm.h"
 #include "vtkTautlineSetRange.h" // for the setters
 
 #include <string> // for Reason
@@ -63,11 +68,11 @@ struct UntangleOptions;
 struct UntangleResult;
 }
 
-class TAUTLINEUNTANGLING_EXPORT vtkMeshUntangler : public vtkMeshMotionAlgorithm
+class TAUTLINEUNTANGLING_EXPORT vtkMeshUntangler : public vtkMeshBoundaryAlgorithm
 {
 public:
   static vtkMeshUntangler* New();
-  vtkTypeMacro(vtkMeshUntangler, vtkMeshMotionAlgorithm);
+  vtkTypeMacro(vtkMeshUntangler, vtkMeshBoundaryAlgorithm);
   void PrintSelf(ostream& os, vtkIndent indent) override;
 
   enum Methods
@@ -99,57 +104,6 @@ public:
    */
   vtkTautlineSetRangeMacro(Effort, int, LOCAL, THOROUGH);
   vtkGetMacro(Effort, int);
-  ///@}
-
-  ///@{
-  /**
-   * Whether the points of the boundary stay. Points also stay where the point array at index 0
-   * (SetInputArrayToProcess) is not 0, and where the selection at port 1 holds them or a cell of
-   * theirs. On.
-   */
-  vtkSetMacro(FixBoundary, bool);
-  vtkGetMacro(FixBoundary, bool);
-  vtkBooleanMacro(FixBoundary, bool);
-  ///@}
-
-  ///@{
-  /**
-   * Free the points of the elements that are inverted or degenerate in the input, however they are
-   * fixed, also on the boundary, which may change its shape there. A mesh on several processes is
-   * gathered on the first one. Off.
-   */
-  vtkSetMacro(FreeInvalid, bool);
-  vtkGetMacro(FreeInvalid, bool);
-  vtkBooleanMacro(FreeInvalid, bool);
-  ///@}
-
-  enum CurvedBoundaries
-  {
-    FIXED = 0,
-    SLIDING = 1,
-    FREE = 2,
-    ON_SURFACE = 3
-  };
-  ///@{
-  /**
-   * What the points of the boundary of a mesh with curved cells do, instead of FixBoundary. FIXED:
-   * they stay. SLIDING: those within flat parts move in these, and along straight edges.
-   * ON_SURFACE: they slide on the curved boundary as it was, or on the geometry at port 2, those on
-   * feature edges along these; corners stay. FREE: they move as all others. The default is
-   * ON_SURFACE: where two faces of an element are on the boundary, the determinant at their common
-   * edge depends on points of the boundary alone.
-   */
-  vtkTautlineSetRangeMacro(CurvedBoundary, int, FIXED, ON_SURFACE);
-  vtkGetMacro(CurvedBoundary, int);
-  ///@}
-
-  ///@{
-  /**
-   * The curved boundary has a feature edge where the normals of its facets differ by more than so
-   * many degrees in the middle of the edge. The default is 40.
-   */
-  vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
-  vtkGetMacro(FeatureAngle, double);
   ///@}
 
   ///@{
@@ -206,21 +160,18 @@ private:
   vtkMeshUntangler(const vtkMeshUntangler&) = delete;
   void operator=(const vtkMeshUntangler&) = delete;
 
-  void Untangle(const tautline::InputBlock& block, tautline::TableRows& history);
+  void Untangle(
+    const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history);
   void UntangleCurved(
     const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history);
   void Show(const tautline::InputBlock& block, const tautline::MovableMesh& mesh,
     tautline::UntangleResult& result, const std::string& more, tautline::TableRows& history);
   bool ShowState(const tautline::IterationState& state, int block);
 
-  tautline::UntangleOptions GetOptions(const unsigned char* fixed, int block);
+  tautline::UntangleOptions GetOptions(int block);
 
   int Method = AUTOMATIC;
   int Effort = NORMAL;
-  bool FixBoundary = true;
-  bool FreeInvalid = false;
-  int CurvedBoundary = ON_SURFACE;
-  double FeatureAngle = 40.0;
   bool MidNodesOnly = false;
   bool Straighten = false;
   std::string Reason;

@@ -6,29 +6,18 @@
 #ifndef tautline_CurvedOptions_h
 #define tautline_CurvedOptions_h
 
+#include "tautline/Boundary/BoundaryConstraints.h"
 #include "tautline/Core/Iteration.h"
 #include "tautline/Mesh/CurvedCells.h"
-#include "tautline/Boundary/SurfaceModel.h"
 
 namespace tautline
 {
-/// What the points of the boundary do.
-enum class CurvedBoundaryMotion : int
-{
-  Fixed = 0,     ///< they stay
-  FlatParts = 1, ///< those within flat parts move in these, and along straight edges
-  Free = 2,      ///< they move as all others
-  /// They slide on the curved boundary as it was, or on a geometry: within their patch, those on
-  /// feature edges along these; corners stay.
-  OnSurface = 3
-};
-
 struct CurvedOptions
 {
   CurvedCellFacts facts;
   /// One flag per point, nonzero = fixed, or null. The boundary need not be marked.
   const unsigned char* fixed = nullptr;
-  CurvedBoundaryMotion boundary = CurvedBoundaryMotion::OnSurface;
+  BoundaryMotion boundary = BoundaryMotion::OnSurface;
   /// Degrees: facets of the boundary whose normals differ by more in the middle of their edge meet
   /// at a feature.
   double featureAngle = 40.0;

@@ -241,7 +241,7 @@ void CurvedProblem::makeSlides(CurvedRegion& region, const std::vector<char>& he
 {
   const auto count = static_cast<Index>(region.points.size());
   region.slides.reset(new CurvedSlides(count));
-  const CurvedBoundaryMotion motion = this->Options.boundary;
+  const BoundaryMotion motion = this->Options.boundary;
   std::vector<char> corner(count, 0);
   for (const CurvedElement& element : region.elements)
   {
@@ -252,8 +252,8 @@ void CurvedProblem::makeSlides(CurvedRegion& region, const std::vector<char>& he
     }
   }
   const SlidingBoundary* boundary =
-    motion == CurvedBoundaryMotion::Free ? nullptr : &this->boundary();
-  if (motion == CurvedBoundaryMotion::OnSurface)
+    motion == BoundaryMotion::Free ? nullptr : &this->boundary();
+  if (motion == BoundaryMotion::OnSurface)
   {
     this->matchGeometry();
   }
@@ -269,8 +269,8 @@ void CurvedProblem::makeSlides(CurvedRegion& region, const std::vector<char>& he
     if (boundary && boundary->contains(global))
     {
       Index piece = boundary->pieceOf(global);
-      const bool stays = motion == CurvedBoundaryMotion::Fixed || piece < 0 ||
-        (motion == CurvedBoundaryMotion::FlatParts &&
+      const bool stays = motion == BoundaryMotion::Fixed || piece < 0 ||
+        (motion == BoundaryMotion::FlatParts &&
           !boundary->isFlat(global, this->Options.flatAngle));
       if (stays)
       {

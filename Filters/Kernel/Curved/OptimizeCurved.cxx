@@ -742,7 +742,7 @@ CurvedObjectiveValue evaluateCurvedObjective(const Mesh& mesh, const CurvedCellF
   CurvedOptimizeOptions options;
   options.facts = facts;
   options.objectives = { objective };
-  options.boundary = CurvedBoundaryMotion::Free;
+  options.boundary = BoundaryMotion::Free;
   return CurvedOptimization(mesh, options).evaluate(direction);
 }
 }

@@ -363,13 +363,13 @@ CurvedUntangleResult untangleCurved(const Mesh& mesh, const CurvedOptions& optio
 {
   CurvedProblem problem(mesh, options);
   CurvedUntangleResult result = untangleCurved(problem, options);
-  const bool slides = options.boundary == CurvedBoundaryMotion::OnSurface ||
-    options.boundary == CurvedBoundaryMotion::FlatParts;
+  const bool slides = options.boundary == BoundaryMotion::OnSurface ||
+    options.boundary == BoundaryMotion::FlatParts;
   if (slides && result.invalidAfter > 0 && result.reason == StopReason::NoProgress)
   {
     // What the boundary may do is not always for the better: it is held, from the start.
     CurvedOptions held = options;
-    held.boundary = CurvedBoundaryMotion::Fixed;
+    held.boundary = BoundaryMotion::Fixed;
     CurvedProblem again(mesh, held);
     CurvedUntangleResult other = untangleCurved(again, held);
     if (other.invalidAfter < result.invalidAfter)

@@ -6,7 +6,7 @@
 #ifndef tautline_OptimizeOptions_h
 #define tautline_OptimizeOptions_h
 
-#include "tautline/Boundary/SurfaceModel.h"
+#include "tautline/Boundary/BoundaryConstraints.h"
 #include "tautline/Core/Iteration.h"
 #include "tautline/Objectives/Objective.h"
 #include "tautline/Objectives/Scalarization.h"
@@ -96,56 +96,18 @@ enum class Preset : int
     7 ///< BestShape, then the worst element; the mean hardly worsens (improveWorst 0.01)
 };
 
-struct OptimizeOptions
+/// Points that slide on the surface, or on a model, need a local optimizer.
+struct OptimizeOptions : BoundaryConstraints
 {
   /// At least one.
   std::vector<Objective> objectives = std::vector<Objective>(1);
   ScalarizationOptions scalarization;
   Optimizer optimizer = Optimizer::Automatic;
   StoppingCriteria stopping;
-  /// One flag per point, nonzero = fixed; null: the points of the boundary.
-  const unsigned char* fixed = nullptr;
-  /**
-   * @brief Unit normals n of planes that points may slide in: 3 per point; zero for a point that is
-   * free or fixed. Null: none. Only for points that are not fixed.
-   */
-  const double* slidePlanes = nullptr;
-  /// Unit directions of lines that points may slide along; 3 per point, zero elsewhere; or null.
-  const double* slideLines = nullptr;
   /// How far each point may go from where it is in the input, 3D distance; one per point (infinity
   /// = any), or null. An Error where untangling, which comes first, needs more.
   const double* limits = nullptr;
-  /**
-   * @brief One flag per point: nonzero for boundary points of a volume or planar mesh that slide on
-   * the boundary as it was (only those that are not fixed); or null. Points on sharp edges are the
-   * caller's to fix. Needs a local optimizer.
-   */
-  const unsigned char* slideSurface = nullptr;
-  /**
-   * @brief Patches and curves that points slide on, in the coordinates of the mesh, which replace
-   * the surface of the input; or null. See makeSurfaceModel(). Needs a local optimizer.
-   */
-  const SurfaceModel* model = nullptr;
-  /// With a model, per point: the part it slides on, or -1; see partsOfPoints(). Corners are the
-  /// caller's to fix, and all points to be on their parts at the start.
-  const std::int32_t* parts = nullptr;
   SurfaceConstraint surface;
-  /**
-   * @brief The largest distance that steps may leave between a surface whose points slide (of a
-   * volume or planar mesh, the boundary) and the surface as it was, at points of either; 0: any.
-   * With onGeometry, from the surface to the model. What is farther at the start does not go
-   * farther. The same between the interfaces of the model and where they were, not with onGeometry.
-   */
-  double surfaceTolerance = 0.0;
-  /**
-   * @brief One flag per point, or null. With improveWorst and surfaceTolerance: nonzero for points
-   * of the boundary of a volume or planar mesh, fixed ones too, that may leave what they slide on,
-   * within that tolerance, near the worst elements, where these do not improve otherwise. Not with
-   * limits or onGeometry.
-   */
-  const unsigned char* leaving = nullptr;
-  /// Whether the model was made of another surface than that of the mesh.
-  bool onGeometry = false;
   /// Lets steps invert elements that are valid. Off: they are shortened.
   bool allowInversion = false;
   /**

@@ -6,6 +6,7 @@
 #ifndef tautline_UntangleOptions_h
 #define tautline_UntangleOptions_h
 
+#include "tautline/Boundary/BoundaryConstraints.h"
 #include "tautline/Core/Iteration.h"
 
 #include <map>
@@ -29,14 +30,13 @@ enum class UntangleMethod : int
   Simultaneous = 1
 };
 
-struct UntangleOptions
+/// On several ranks `fixed` is not null, and the owner's flag counts.
+struct UntangleOptions : BoundaryConstraints
 {
   UntangleMethod method = UntangleMethod::Automatic;
   Effort effort = Effort::Normal; ///< of the automatic method
   /// Seconds of wall time; 0: no limit. Honoured within one iteration.
   double maximumSeconds = 0.0;
-  /// As in OptimizeOptions; on several ranks not null, the owner's flag counts.
-  const unsigned char* fixed = nullptr;
   SurfaceConstraint surface;
   int threads = 0; ///< 0: all cores. The result does not depend on it.
   /// Called after each iteration, on several ranks after each width of the rings on all of them;

@@ -14,7 +14,7 @@ CurvedOptimizeResult optimize(
   const MeshData& data, const std::function<void(CurvedOptimizeOptions&)>& set = {})
 {
   CurvedOptimizeOptions options;
-  options.boundary = CurvedBoundaryMotion::Fixed;
+  options.boundary = BoundaryMotion::Fixed;
   if (set)
   {
     set(options);
@@ -155,7 +155,7 @@ TAUTLINE_PART(testCubeHoles)
     [](CurvedOptimizeOptions& options)
     {
       minimize(options, "mu_303");
-      options.boundary = CurvedBoundaryMotion::FlatParts;
+      options.boundary = BoundaryMotion::FlatParts;
     });
   TAUTLINE_CHECK_EQUAL(result.invalidAfter, 0);
   TAUTLINE_CHECK(objectiveOf(data, result, "mu_303", std::sqrt(0.5) / 6) <= 92.43);
@@ -168,7 +168,7 @@ TAUTLINE_PART(testBlade)
     [](CurvedOptimizeOptions& options)
     {
       minimize(options, "mu_2");
-      options.boundary = CurvedBoundaryMotion::FlatParts;
+      options.boundary = BoundaryMotion::FlatParts;
     });
   TAUTLINE_CHECK_EQUAL(result.invalidAfter, 0);
   TAUTLINE_CHECK_EQUAL(invalidCells(data, result.points), 0);

@@ -22,7 +22,7 @@ struct Case
 CurvedUntangleResult untangle(
   const MeshData& data, const std::function<void(CurvedOptions&)>& set = {})
 {
-  TAUTLINE_LET(CurvedOptions, options, boundary = CurvedBoundaryMotion::Fixed);
+  TAUTLINE_LET(CurvedOptions, options, boundary = BoundaryMotion::Fixed);
   if (set)
   {
     set(options);
@@ -139,7 +139,7 @@ TAUTLINE_PART(testOnSurface)
   TAUTLINE_CHECK(invalidCells(data, data.points) > 0);
   TAUTLINE_CHECK(untangle(data).invalidAfter > 0);
   const CurvedUntangleResult result = untangle(
-    data, [](CurvedOptions& options) { options.boundary = CurvedBoundaryMotion::OnSurface; });
+    data, [](CurvedOptions& options) { options.boundary = BoundaryMotion::OnSurface; });
   TAUTLINE_CHECK_EQUAL(result.invalidAfter, 0);
   TAUTLINE_CHECK_EQUAL(invalidCells(data, result.points), 0);
   // The quadratic edges are near the circles.
