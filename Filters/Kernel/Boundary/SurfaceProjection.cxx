@@ -69,6 +69,9 @@ std::vector<SurfaceFacet> boundaryFacets(const Mesh& mesh)
         }
         if (all)
         {
+          // As in Features: quadrilaterals are divided at the same diagonal.
+          const auto begin = facet.nodes.begin(), end = begin + facet.size;
+          std::rotate(begin, std::min_element(begin, end), end);
           found.push_back({ facet.nodes, facet });
           std::sort(found.back().sorted.begin(), found.back().sorted.end());
         }
@@ -210,6 +213,10 @@ void SurfaceProjection::add(
 //------------------------------------------------------------------------------
 void SurfaceProjection::build()
 {
+  for (std::size_t i = 0; i < this->Pieces.size(); ++i)
+  {
+    this->Pieces[i].source = static_cast<std::int32_t>(i);
+  }
   if (!this->Pieces.empty())
   {
     this->Nodes.reserve(this->Pieces.size());

@@ -74,6 +74,9 @@ public:
    */
   double distanceOf(const Vec3& x, double enough, double most, std::int32_t& piece) const;
 
+  /// The number of a piece, as distanceOf() gives it, in the order of the part or the facets.
+  std::int32_t source(std::int32_t piece) const { return this->Pieces[piece].source; }
+
   /// The samples of the facets, see addSamples(), each once.
   std::vector<Vec3> samples(int divisions) const;
   /// The largest distance of the samples from another surface.
@@ -84,8 +87,9 @@ private:
   struct Piece
   {
     std::array<Vec3, 3> corner;
-    std::int32_t controls; ///< index in Controls; -1: flat
-    std::int32_t part = 0; ///< of the model, see ofParts()
+    std::int32_t controls;   ///< index in Controls; -1: flat
+    std::int32_t part = 0;   ///< of the model, see ofParts()
+    std::int32_t source = 0; ///< its number as given
   };
   struct Node
   {
