@@ -31,6 +31,7 @@ FLOORS = (
     ("Quality", "Shapes", "Domains", "Perturbation", "Ranks"),
     ("Objectives", "Patches", "Solvers"),
     ("Boundary", "Elliptic", "Peridynamics"),
+    ("Sliding",),
     ("Untangling",),
     ("Optimization",),
     ("Curved", "Curving", "Deformation", "Reconnection"),

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file PointConstraints.h
+ * @brief What the points of a mesh can do: stay, slide, leave a surface by a distance, or move
+ * freely.
+ * Internal: not installed.
+ */
+#ifndef tautline_PointConstraints_h
+#define tautline_PointConstraints_h
+
+#include "QuadraticModel.h"
+#include "tautline/Boundary/SurfaceProjection.h"
+
+namespace tautline
+{
+/// Constraints as OptimizeOptions has them.
+struct PointConstraints
+{
+  const unsigned char* fixed = nullptr; ///< one flag per point; null: none is
+  /// Unit normals and unit directions, 3 per point, zero for none; or null.
+  const double *slidePlanes = nullptr, *slideLines = nullptr;
+  const SurfaceModel* model = nullptr;
+  const std::int32_t* parts = nullptr; ///< with a model, per point: its part, or -1
+  /// How far points, and the facets between them, may be from the surface; 0: a thousandth of the
+  /// diagonal of the points.
+  double tolerance = 0;
+};
+
+/**
+ * @class tautline::ConstrainedPoints
+ * @brief The freedom of each point of a planar or volume mesh.
+ *
+ * Points on a flat patch or a straight curve slide in its plane or on its line. Points on other
+ * parts are free within a band about the facets of the part: half of the tolerance costs nothing,
+ * what is beyond costs the square of it. Points that slide on facets would stop at the ridges
+ * between them.
+ */
+class TAUTLINE_KERNEL_EXPORT ConstrainedPoints
+{
+public:
+  /// The mesh and what the constraints point to must outlive this.
+  ConstrainedPoints(const Mesh& mesh, const PointConstraints& constraints);
+
+  const PointConstraints& constraints() const { return this->Given; }
+  double tolerance() const { return this->Tolerance; }
+  bool planar() const { return this->Planar; }
+  Freedom freedom(Index p) const { return this->Freedoms[p]; }
+  /// The unit direction of a line, or normal of a plane.
+  const Vec3& direction(Index p) const { return this->Directions[p]; }
+  /// The part whose band a point is in, or -1.
+  std::int32_t band(Index p) const { return this->Bands[p]; }
+  /// The place nearest to x of the facets, or edges, of a part.
+  Vec3 nearest(std::int32_t part, const Vec3& x) const { return this->Facets[part].closest(x); }
+  /// The facets of a part.
+  const SurfaceProjection& facets(std::int32_t part) const { return this->Facets[part]; }
+  /// The place nearest to x on the part of a point, as smooth as the model is.
+  Vec3 onPart(Index p, const Vec3& x) const;
+
+private:
+  void slideOnPart(Index p, std::int32_t part, const Vec3& x);
+
+  PointConstraints Given;
+  double Tolerance;
+  bool Planar;
+  Vec3 Normal; ///< of a planar mesh
+  std::vector<Freedom> Freedoms;
+  std::vector<Vec3> Directions;
+  std::vector<std::int32_t> Bands;
+  std::vector<SurfaceProjection> Facets, Smooth;
+  std::vector<char> Flat; ///< per part
+  std::vector<Vec3> DirectionsOfParts;
+};
+}
+#endif
