@@ -8,6 +8,7 @@
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/FoldedCells.h"
 #include "tautline/Mesh/JacobianBounds.h"
+#include "tautline/Sliding/UntangleSliding.h"
 
 namespace tautline
 {
@@ -186,6 +187,80 @@ void untangleSimplices(const Mesh& mesh, SimplexMesh& simplices, const UntangleO
   findObstacles(mesh, simplices, validity, untangler.infeasible(), result);
 }
 
+//------------------------------------------------------------------------------
+/// Whether points slide.
+bool slides(const UntangleOptions& options)
+{
+  return options.slidePlanes || options.slideLines || options.model;
+}
+
+PointConstraints constraintsOf(const UntangleOptions& options, const unsigned char* fixed)
+{
+  PointConstraints constraints;
+  constraints.fixed = fixed;
+  constraints.slidePlanes = options.slidePlanes;
+  constraints.slideLines = options.slideLines;
+  constraints.model = options.model;
+  constraints.parts = options.parts;
+  constraints.tolerance = options.surfaceTolerance;
+  return constraints;
+}
+
+/// Flags the points that do not slide and are not free: the given ones, or those of the boundary.
+std::vector<unsigned char> fixedPoints(const Mesh& mesh, const UntangleOptions& options)
+{
+  const Index points = mesh.view().numberOfPoints;
+  if (options.fixed)
+  {
+    return { options.fixed, options.fixed + points };
+  }
+  const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
+  std::vector<unsigned char> fixed(boundary.begin(), boundary.end());
+  const auto isSet = [](const double* vectors, Index p) {
+    return vectors && (vectors[3 * p] != 0 || vectors[3 * p + 1] != 0 || vectors[3 * p + 2] != 0);
+  };
+  for (Index p = 0; p < points; ++p)
+  {
+    fixed[p] = fixed[p] && !(options.model && options.parts[p] >= 0) &&
+      !isSet(options.slidePlanes, p) && !isSet(options.slideLines, p);
+  }
+  return fixed;
+}
+
+/// Moves the points with those of the boundary, if that leaves fewer invalid cells.
+void slideHere(const Mesh& mesh, const UntangleOptions& options,
+  const std::vector<unsigned char>& fixed, UntangleProgress& progress,
+  std::vector<signed char>& validity, UntangleResult& result)
+{
+  const MeshView& view = mesh.view();
+  progress.record(result.invertedBefore, 0.0, 0.0,
+    [&](double* to) { std::copy_n(view.points, 3 * view.numberOfPoints, to); });
+  const std::vector<Vec3> start = pointsOf(view.points, view.numberOfPoints);
+  const std::vector<double> moved =
+    untangleSliding(mesh, constraintsOf(options, fixed.data()), options.threads,
+      [&](const SlidingState& state)
+      {
+        return progress.record(state.invalid, state.invertedVolume, state.progress,
+          [&](double* to)
+          {
+            std::copy_n(view.points, 3 * view.numberOfPoints, to);
+            storeMovedPoints(start, state.points, to);
+          });
+      });
+  std::vector<signed char> after = validity;
+  mesh.classifyMovedCells(moved.data(), after.data(), options.threads);
+  const Index invalid = countInvalid(mesh, after);
+  if (invalid < result.invertedBefore)
+  {
+    result.points = moved;
+    validity = after;
+    result.invertedAfter = invalid;
+  }
+  progress.record(result.invertedAfter, 0.0, 1.0,
+    [&](double* to) { std::copy(result.points.begin(), result.points.end(), to); });
+}
+
+//------------------------------------------------------------------------------
 /// Untangles a mesh of one process.
 void untangleHere(const Mesh& mesh, const UntangleOptions& options, UntangleProgress& progress,
   std::vector<signed char>& validity, UntangleResult& result)
@@ -205,6 +280,41 @@ void untangleHere(const Mesh& mesh, const UntangleOptions& options, UntangleProg
   {
     untangleSimplices<2>(mesh, simplices, options, progress, validity, result);
   }
+}
+
+/// The same where points slide: all together, then, for what is left, the free ones alone.
+void untangleWithBoundary(const Mesh& mesh, const UntangleOptions& options,
+  UntangleProgress& progress, std::vector<signed char>& validity, UntangleResult& result)
+{
+  requireOrdinaryScale(mesh.view(), "Untangling");
+  const std::vector<unsigned char> fixed = fixedPoints(mesh, options);
+  if (result.invertedBefore > 0)
+  {
+    slideHere(mesh, options, fixed, progress, validity, result);
+  }
+  const ConstrainedPoints constrained(mesh, constraintsOf(options, fixed.data()));
+  const Index points = mesh.view().numberOfPoints;
+  if (result.invertedAfter > 0 && !progress.stopped())
+  {
+    std::vector<unsigned char> held(points);
+    const Freedom free = mesh.dimension() == Dimension::Planar ? Freedom::Plane : Freedom::Space;
+    for (Index p = 0; p < points; ++p)
+    {
+      held[p] = constrained.freedom(p) != free || constrained.band(p) >= 0;
+    }
+    UntangleOptions inner = options;
+    inner.fixed = held.data();
+    const std::vector<double> from = result.points;
+    Mesh moved = mesh.at(from.data());
+    moved.setSpace(mesh.space());
+    const Index before = result.invertedBefore;
+    result.invertedBefore = result.invertedAfter;
+    untangleHere(moved, inner, progress, validity, result);
+    result.invertedBefore = before;
+  }
+  const OffSurface off = offSurface(constrained, pointsOf(result.points.data(), points));
+  result.offSurface = off.points;
+  result.offSurfaceDistance = off.distance;
 }
 }
 
@@ -240,6 +350,11 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options, const 
           "Untangling on several processes, or in the reproducible order, works on planar "
           "and volume meshes: this is a surface in space. Gather it on one process.");
       }
+      if (slides(options) && (onSurface || ranks.several()))
+      {
+        throw Error("Untangling with a boundary that slides works on planar and volume meshes of "
+                    "one process: let the boundary be fixed, or gather the mesh.");
+      }
       if (dimension == Dimension::None || (onSurface && result.invertedBefore == 0))
       {
         return;
@@ -255,6 +370,10 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options, const 
       else if (ranks.several())
       {
         untangleRegions(mesh, options, ranks, progress, validity, result);
+      }
+      else if (slides(options) && options.method == UntangleMethod::Automatic)
+      {
+        untangleWithBoundary(mesh, options, progress, validity, result);
       }
       else
       {

@@ -14,6 +14,11 @@
  * (Mesh::classifyCells()). The connectivity never changes. Surfaces in
  * space are untangled in the tangent planes of their elements, see invertedBefore.
  *
+ * Where points slide (UntangleOptions::model, slidePlanes and slideLines), all points about the
+ * inverted elements move together by the foldover-free map energy, those of the boundary within a
+ * band about what they slide on, which they are put back on at the end. What stays invalid is left
+ * to the phases above, with the boundary held.
+ *
  * UntangleMethod::Simultaneous is the method of Escobar et al. as published, for comparison: each
  * free vertex of the mesh, one after the other, minimizes the regularized energy of its elements,
  * whether they are inverted or not, and a step may invert others.

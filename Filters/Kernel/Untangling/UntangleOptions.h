@@ -30,7 +30,12 @@ enum class UntangleMethod : int
   Simultaneous = 1
 };
 
-/// On several ranks `fixed` is not null, and the owner's flag counts.
+/**
+ * @brief Points of planar and volume meshes slide with the automatic method, not on several ranks,
+ * where `fixed` is not null, and the owner's flag counts. Points of a part of the model may be
+ * beside it; the result has them on it, as far as that leaves elements valid. A surfaceTolerance of
+ * 0 is a thousandth of the diagonal of the mesh. slideSurface and leaving are not used.
+ */
 struct UntangleOptions : BoundaryConstraints
 {
   UntangleMethod method = UntangleMethod::Automatic;
@@ -83,6 +88,8 @@ struct UntangleResult
   Index impossible = 0;   ///< elements with FixedElement or FixedNeighbours
   StopReason reason = StopReason::AllValid;
   double surfaceError = 0;
+  Index offSurface = 0;          ///< points that are not on the part of the model they slide on
+  double offSurfaceDistance = 0; ///< of the farthest of them
 };
 }
 #endif
