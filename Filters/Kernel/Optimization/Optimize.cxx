@@ -8,6 +8,7 @@
 #include "LeaveSurface.h"
 #include "OptionChecks.h"
 #include "QualityGuard.h"
+#include "SlideWorst.h"
 #include "tautline/Quality/JudgedValues.h"
 #include "SurfaceSlides.h"
 #include "tautline/Untangling/Untangle.h"
@@ -76,23 +77,30 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
     problem.store();
     const bool leaves = wanted && options.leaving && options.surfaceTolerance > 0;
     WorstLimits limits{ allowance, !wanted };
-    if (leaves)
+    if (wanted)
     {
-      limits.mean = problem.record(0).mean[0];
+      limits.mean = problem.record(0).mean[0]; // of several methods one after the other
     }
     bool stopped = false;
-    bool outOfTime = improveWorst(problem, guard, limits,
-      [&](IterationRecord record)
-      {
-        record.iteration = steps.next();
-        stopped = !steps.report(record);
-        return !stopped;
-      });
-    if (leaves && !stopped && !outOfTime)
+    const auto report = [&](IterationRecord record)
+    {
+      record.iteration = steps.next();
+      stopped = !steps.report(record);
+      return !stopped;
+    };
+    // Sweeps are for simplices, where they have a closed form: others take long, and stall.
+    const bool slides = wanted && canSlideWorst(problem, guard.judged());
+    const bool sweeps = !slides || !steps.hasManyCorners();
+    bool outOfTime = sweeps && improveWorst(problem, guard, limits, report);
+    if (sweeps && leaves && !stopped && !outOfTime)
     {
       leaveNearWorst(mesh, steps, first, guard, limits, clock, left);
       stopped = left.stopped;
       outOfTime = left.outOfTime;
+    }
+    if (slides && !stopped && !outOfTime)
+    {
+      outOfTime = slideWorst(mesh, problem, guard, limits, report);
     }
     result.reason = stopped ? StopReason::Aborted
       : outOfTime           ? StopReason::TimeLimit
@@ -259,14 +267,19 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
 bool untangleFirst(const Mesh& mesh, const OptimizeOptions& options, const Stopwatch& clock,
   const Ranks& ranks, OptimizeResult& result)
 {
-  std::vector<unsigned char> held = heldInUntangling(options, mesh.view().numberOfPoints);
-  if (!options.fixed && !held.empty())
+  const bool slides = slidesInUntangling(mesh, options, ranks);
+  std::vector<unsigned char> held = heldInUntangling(options, mesh.view().numberOfPoints, slides);
+  if (!options.fixed && slides)
+  {
+    held.clear(); // the boundary, without what slides
+  }
+  else if (!options.fixed && !held.empty())
   {
     const std::vector<unsigned char> boundary = ranks.boundary(mesh);
     std::transform(held.begin(), held.end(), boundary.begin(), held.begin(), std::bit_or<>());
   }
   bool proceed = true;
-  const UntangleOptions untangling = untanglingFirst(options, held, clock, proceed);
+  const UntangleOptions untangling = untanglingFirst(options, held, slides, clock, proceed);
   UntangleResult untangled = untangle(mesh, untangling, ranks);
   result.points = std::move(untangled.points);
   result.invertedAfter = untangled.invertedAfter;

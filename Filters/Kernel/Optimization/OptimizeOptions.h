@@ -134,7 +134,11 @@ struct OptimizeOptions : BoundaryConstraints
    * @brief WorstElement: after the objective has converged, improves the worst element as long as
    * the mean of the first objective's metric does not get worse by more than this fraction of it,
    * or by five times as much where another metric judges the worst element (the two disagree on
-   * stretched hexahedra); 0: off.
+   * stretched hexahedra); 0: off. In planar and volume meshes of one process, by the scaled
+   * Jacobian of corners or the inverse mean ratio, all points move together, those of the boundary
+   * within half of surfaceTolerance of what they slide on; at places on facets and surface the
+   * distances are at most what they were about there, and surfaceTolerance (0: a thousandth of the
+   * diagonal).
    */
   double improveWorst = 0.0;
   /**

@@ -146,7 +146,16 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks&
 }
 
 //------------------------------------------------------------------------------
-std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Index points)
+bool slidesInUntangling(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks)
+{
+  const Dimension dimension = mesh.dimension();
+  return (options.model || options.slidePlanes || options.slideLines) && !options.limits &&
+    !ranks.several() && (dimension == Dimension::Planar || dimension == Dimension::Volume);
+}
+
+//------------------------------------------------------------------------------
+std::vector<unsigned char> heldInUntangling(
+  const OptimizeOptions& options, Index points, bool slidesThen)
 {
   std::vector<unsigned char> held;
   if (!options.fixed && !options.model && !options.limits)
@@ -156,19 +165,29 @@ std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Inde
   for (Index p = 0; p < points; ++p)
   {
     held.push_back((options.fixed && options.fixed[p]) ||
-      (options.limits && !(options.limits[p] > 0)) || (options.model && options.parts[p] >= 0) ||
-      slides(options.slidePlanes, p) || slides(options.slideLines, p) ||
-      (options.slideSurface && options.slideSurface[p]));
+      (options.limits && !(options.limits[p] > 0)) ||
+      (options.slideSurface && options.slideSurface[p]) ||
+      (!slidesThen &&
+        ((options.model && options.parts[p] >= 0) || slides(options.slidePlanes, p) ||
+          slides(options.slideLines, p))));
   }
   return held;
 }
 
 //------------------------------------------------------------------------------
 UntangleOptions untanglingFirst(const OptimizeOptions& options,
-  const std::vector<unsigned char>& held, const Stopwatch& clock, bool& proceed)
+  const std::vector<unsigned char>& held, bool slidesThen, const Stopwatch& clock, bool& proceed)
 {
   UntangleOptions untangling;
   untangling.fixed = held.empty() ? nullptr : held.data();
+  if (slidesThen)
+  {
+    untangling.slidePlanes = options.slidePlanes;
+    untangling.slideLines = options.slideLines;
+    untangling.model = options.model;
+    untangling.parts = options.parts;
+    untangling.surfaceTolerance = options.surfaceTolerance;
+  }
   untangling.threads = options.threads;
   if (options.stopping.maximumSeconds > 0)
   {

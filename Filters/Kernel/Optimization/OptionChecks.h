@@ -20,16 +20,21 @@ namespace tautline
 /// ranks may have parts of.
 void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks);
 
+/// Whether points that slide on planes, lines and a model do so while a mesh is untangled before it
+/// is optimized: in planar and volume meshes of one process, without limits.
+bool slidesInUntangling(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks);
 /**
  * The points that stay while a mesh is untangled before it is optimized, one flag each: those that
- * are fixed, and those that slide, as untangling has no planes, lines and surfaces. Empty: those of
- * the boundary.
+ * are fixed, and those that slide on what untangling does not have. Empty: those of the boundary.
+ * @param slides see slidesInUntangling()
  */
-std::vector<unsigned char> heldInUntangling(const OptimizeOptions& options, Index points);
+std::vector<unsigned char> heldInUntangling(
+  const OptimizeOptions& options, Index points, bool slides);
 /// The options of untangling before an optimization, in the time that is left, with its observer.
-/// @param held see heldInUntangling() @param proceed set to false if the observer stops it
+/// @param held see heldInUntangling() @param slides see slidesInUntangling()
+/// @param proceed set to false if the observer stops it
 UntangleOptions untanglingFirst(const OptimizeOptions& options,
-  const std::vector<unsigned char>& held, const Stopwatch& clock, bool& proceed);
+  const std::vector<unsigned char>& held, bool slides, const Stopwatch& clock, bool& proceed);
 /**
  * @brief Throws Error if untangling has moved points, 3 coordinates each, farther from their start
  * than their limits.
