@@ -7,7 +7,8 @@ nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) 
 elements, optimization.json and .csv of the optimizer (see optimization.py), deformation.json and .csv of warping
 (see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py), stiff.json
 and .csv of stretched meshes (see stiff.py), peers.json and .csv of meshes that other programs were run on (see
-peers.py), user-metric.json and .csv of metrics of one's own, and curved.json and .csv of curved elements (see
+peers.py), hexes.json and .csv of meshes of hexahedra with a boundary that slides (see hexes.py), user-metric.json
+and .csv of metrics of one's own, and curved.json and .csv of curved elements (see
 curved.py) to the output directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh
 compares with the program gmsh, where that is installed (see gmsh_comparison.py). With --only calculix, repairs decks
 that CalculiX refuses, and gives them to CalculiX again (see calculix_decks.py).
@@ -22,6 +23,7 @@ from pathlib import Path
 
 import curved
 import deformation
+import hexes
 import optimization
 import peers
 import reconnection
@@ -243,6 +245,10 @@ def run_peers(build: Path, output: Path, repeats: int, quick: bool) -> None:
     run_table(output, "peers", *peers.run(build / "bin" / "BenchmarkPeers", repeats, quick))
 
 
+def run_hexes(build: Path, output: Path, quick: bool) -> None:
+    run_table(output, "hexes", *hexes.run(build / "bin" / "BenchmarkHexes", quick))
+
+
 def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> None:
     unit = yardstick(build, repeats)["yardstick"]
     run_table(output, "reconnection", *reconnection.run(build / "bin" / "BenchmarkReconnection", unit, quick))
@@ -252,7 +258,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
     parts = ("quality", "optimization", "deformation", "reconnection", "reconnection-aims", "stiff", "peers",
-             "user-metric", "curved", "gmsh", "calculix")
+             "hexes", "user-metric", "curved", "gmsh", "calculix")
     parser.add_argument("--only", choices=parts, help="one part; all but reconnection-aims and calculix otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
@@ -284,6 +290,8 @@ def main() -> int:
         run_stiff(options.build, output, options.repeats or 3, options.quick, options.huge and not options.quick)
     if options.only in (None, "peers"):
         run_peers(options.build, output, options.repeats or 3, options.quick)
+    if options.only in (None, "hexes"):
+        run_hexes(options.build, output, options.quick)
     if options.only in (None, "user-metric"):
         run_user_metric(options.build, output, 4 if options.quick else 30, options.repeats or 9)
     if options.only in (None, "curved"):
