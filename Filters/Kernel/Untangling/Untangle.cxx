@@ -282,35 +282,61 @@ void untangleHere(const Mesh& mesh, const UntangleOptions& options, UntangleProg
   }
 }
 
-/// The same where points slide: all together, then, for what is left, the free ones alone.
+/// The same, from the points of the result on and with others held, if that leaves fewer invalid.
+void untangleHolding(const Mesh& mesh, const UntangleOptions& options,
+  const ConstrainedPoints& constrained, UntangleProgress& progress,
+  std::vector<signed char>& validity, UntangleResult& result)
+{
+  const Index points = mesh.view().numberOfPoints;
+  std::vector<unsigned char> held(points);
+  const Freedom free = mesh.dimension() == Dimension::Planar ? Freedom::Plane : Freedom::Space;
+  for (Index p = 0; p < points; ++p)
+  {
+    held[p] = constrained.freedom(p) != free || constrained.band(p) >= 0;
+  }
+  UntangleOptions inner = options;
+  inner.fixed = held.data();
+  const std::vector<double> from = result.points;
+  Mesh moved = mesh.at(from.data());
+  moved.setSpace(mesh.space());
+  moved.setMirrored(mesh.mirrored());
+  const Index before = result.invertedBefore;
+  result.invertedBefore = result.invertedAfter;
+  untangleHere(moved, inner, progress, validity, result);
+  result.invertedBefore = before;
+}
+
+/// The same where points slide. These stay if that is enough; otherwise all move together, and, for
+/// what is left, the free ones alone.
 void untangleWithBoundary(const Mesh& mesh, const UntangleOptions& options,
   UntangleProgress& progress, std::vector<signed char>& validity, UntangleResult& result)
 {
   requireOrdinaryScale(mesh.view(), "Untangling");
   const std::vector<unsigned char> fixed = fixedPoints(mesh, options);
-  if (result.invertedBefore > 0)
+  const ConstrainedPoints constrained(mesh, constraintsOf(options, fixed.data()));
+  const Index points = mesh.view().numberOfPoints;
+  if (result.invertedBefore > 0 && !options.onGeometry)
+  {
+    const std::vector<double> start = result.points;
+    const std::vector<signed char> before = validity;
+    untangleHolding(mesh, options, constrained, progress, validity, result);
+    if (result.invertedAfter > 0 && !progress.stopped())
+    {
+      // Points that were moved in vain would be where the others do not need them.
+      result.points = start;
+      validity = before;
+      result.invertedAfter = result.invertedBefore;
+      result.impossible = 0;
+      result.obstacles.assign(mesh.view().numberOfCells, static_cast<signed char>(Obstacle::None));
+    }
+  }
+  if (result.invertedAfter > 0 && !progress.stopped())
   {
     slideHere(mesh, options, fixed, progress, validity, result);
   }
-  const ConstrainedPoints constrained(mesh, constraintsOf(options, fixed.data()));
-  const Index points = mesh.view().numberOfPoints;
   if (result.invertedAfter > 0 && !progress.stopped())
   {
-    std::vector<unsigned char> held(points);
-    const Freedom free = mesh.dimension() == Dimension::Planar ? Freedom::Plane : Freedom::Space;
-    for (Index p = 0; p < points; ++p)
-    {
-      held[p] = constrained.freedom(p) != free || constrained.band(p) >= 0;
-    }
-    UntangleOptions inner = options;
-    inner.fixed = held.data();
-    const std::vector<double> from = result.points;
-    Mesh moved = mesh.at(from.data());
-    moved.setSpace(mesh.space());
-    const Index before = result.invertedBefore;
-    result.invertedBefore = result.invertedAfter;
-    untangleHere(moved, inner, progress, validity, result);
-    result.invertedBefore = before;
+    untangleHolding(mesh, options, constrained, progress, validity, result);
   }
   const OffSurface off = offSurface(constrained, pointsOf(result.points.data(), points));
   result.offSurface = off.points;
