@@ -45,10 +45,10 @@ def test_untangle():
 
 def test_boundary():
     mesh = tangled()
-    stays = tl.untangle(mesh, curved_boundary="fixed")
+    stays = tl.untangle(mesh, boundary="fixed")
     assert stays.inverted == 0
     assert not stays.displacement[boundary(mesh)].any()
-    corners = tl.untangle(mesh, mid_nodes_only=True, curved_boundary="free")
+    corners = tl.untangle(mesh, mid_nodes_only=True, boundary="free")
     linear = tl.curve(mesh, 1).mesh.GetNumberOfPoints()
     assert not corners.displacement[:linear].any()
 

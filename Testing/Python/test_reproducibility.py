@@ -380,7 +380,7 @@ OPERATIONS = {
     **each("untangle, {}", ("local", "normal", "thorough"), lambda effort, t: tl.untangle(TANGLED, effort, threads=t)),
     "untangle, 50,000 tetrahedra": lambda t: tl.untangle(tangled_barrier(), threads=t),
     "untangle, held points": lambda t: tl.untangle(
-        TANGLED, "local", fixed=half(tl.read(TANGLED)), fix_boundary=False, threads=t),
+        TANGLED, "local", fixed=half(tl.read(TANGLED)), boundary="free", threads=t),
     **each("improve mesh, {}", ("remove slivers", "swap only", "swap and smooth", "aggressive"),
            lambda preset, t: tl.improve(BRACKET, preset, threads=t)),
     "improve mesh, sliding": lambda t: tl.improve(BRACKET, boundary="sliding", threads=t),

@@ -82,7 +82,7 @@ def test_checks():
     wrong("step 3: there is no key 'maximum_iteration'; did you mean 'maximum_iterations'?",
           'do = "optimize"\nmaximum_iteration = 3')  # fmt: skip
     wrong("step 3: time_limit is 'long'; a number is expected", 'do = "untangle"\ntime_limit = "long"')
-    wrong("step 3: fix_boundary is 1; true or false", 'do = "untangle"\nfix_boundary = 1')
+    wrong("step 3: straighten is 1; true or false", 'do = "untangle"\nstraighten = 1')
     wrong("stop is 3; true or false", 'do = "criteria"\ncriteria = "fem"\nstop = 3')
     wrong("step 3: the key criteria is missing", 'do = "criteria"')
     wrong("step 3: there is no preset of quality criteria 'femm'; did you mean 'fem'?",

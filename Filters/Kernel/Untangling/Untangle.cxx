@@ -299,7 +299,6 @@ void untangleHolding(const Mesh& mesh, const UntangleOptions& options,
   const std::vector<double> from = result.points;
   Mesh moved = mesh.at(from.data());
   moved.setSpace(mesh.space());
-  moved.setMirrored(mesh.mirrored());
   const Index before = result.invertedBefore;
   result.invertedBefore = result.invertedAfter;
   untangleHere(moved, inner, progress, validity, result);

@@ -3,8 +3,8 @@
 #include "Registry.h"
 #include "Optimizing.h"
 #include "Surfaces.h"
-#include "tautline/Mesh/Features.h"
 #include "tautline/Boundary/GeometryMatch.h"
+#include "tautline/Mesh/Features.h"
 
 #include <cstring>
 
@@ -312,8 +312,7 @@ TAUTLINE_PART(testGeometry)
   const auto match = [](const MeshData& data, const MeshData& geometry)
   {
     const Mesh mesh(data.view()), target(geometry.view());
-    const std::vector<unsigned char> all(data.numberOfPoints(), 1);
-    return matchGeometry(mesh, findFeatures(mesh, {}), all, target, findFeatures(target, {}));
+    return matchGeometry(mesh, {}, nullptr, target);
   };
   // A cube that is 3 % too small and not quite at the place.
   MeshData cube = cubeSurface(CellType::Triangle, 6);
