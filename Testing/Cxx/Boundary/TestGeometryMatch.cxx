@@ -175,10 +175,7 @@ TAUTLINE_PART(testOutline)
     const bool border = square.point(p)[0] == 4;
     TAUTLINE_CHECK(!border || away.points[3 * p] == 4);
   }
-  MeshData empty = square;
-  empty.cellTypes.clear();
-  empty.offsets = { 0 };
-  empty.connectivity.clear();
+  TAUTLINE_LET(MeshData, empty, addPoint({ 0, 0, 0 }));
   TAUTLINE_CHECK_THROWS(match(square, empty), wording("no-lines-and-no-border"));
 }
 }
