@@ -19,6 +19,25 @@ std::string counted(Index count, const char* what)
   return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
+/// What Automatic chose, and why: what each method that was tried left.
+std::string explainChoice(const WarpResult& result)
+{
+  std::ostringstream chosen, others;
+  for (const WarpAttempt& attempt : result.attempts)
+  {
+    std::ostringstream& text = attempt.method == result.chosen ? chosen : others;
+    text << (attempt.method == WarpMethod::RadialBasis ? "radial basis functions"
+                                                       : "inverse distances with rotations")
+         << " (" << counted(attempt.inverted, "inverted element")
+         << ", worst inverse mean ratio against the mesh at rest " << attempt.worstRatio << ")";
+  }
+  const bool repaired = std::any_of(result.history.begin(), result.history.end(),
+    [](const WarpRecord& record)
+    { return record.stage == "untangle" || record.stage == "optimize"; });
+  return "Automatic chose " + chosen.str() + (others.str().empty() ? "" : " over " + others.str()) +
+    (repaired ? ". Untangling and optimization followed." : ".");
+}
+
 void checkOptions(const Mesh& mesh, const WarpOptions& options, const Ranks& ranks)
 {
   const auto refuse = [](bool wrong, const char* text)
@@ -79,10 +98,6 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
     throw Error("The mesh has no cells that can be warped: triangles, quadrilaterals, tetrahedra, "
                 "hexahedra, wedges or pyramids.");
   }
-  if (parts.dimension() == Dimension::Surface)
-  {
-    throw Error("Only planar and volume meshes can be deformed: this is a surface in space.");
-  }
   ranks.together([&] { requireOrdinaryScale(mesh.view(), "Warping"); });
   const Index curved = ranks.sum(mesh.higherOrderCells());
   if (curved > 0)
@@ -91,25 +106,6 @@ void checkMesh(const Mesh& mesh, const WarpParts& parts, const WarpOptions& opti
       " of quadratic or higher order: warp the linear cells of the corners, and let the other "
       "nodes "
       "follow, as Warp Mesh does (vtkMeshWarp).");
-  }
-  for (const CellType type : { CellType::Wedge, CellType::Pyramid })
-  {
-    Index count = 0;
-    for (const CellBlock& block : mesh.blocks())
-    {
-      for (Index i = 0; block.type == type && i < block.count; ++i)
-      {
-        count += ranks.ownsCell(block.cell(i));
-      }
-    }
-    count = ranks.sum(count);
-    if (count > 0 && usesFiniteElements(options.method))
-    {
-      throw Error("There are " + std::to_string(count) + " " + topology(type).plural +
-        ". This method takes triangles, quadrilaterals, tetrahedra and hexahedra: triangulate "
-        "the mesh, or use inverse distance weighting, radial basis functions or weighted Laplacian "
-        "smoothing.");
-    }
   }
   std::vector<signed char> validity(mesh.view().numberOfCells);
   mesh.classifyCells(validity.data(), options.threads);
@@ -158,7 +154,8 @@ struct Warper::Implementation
     checkMesh(mesh, this->Parts, options);
   }
 
-  void checkDisplacement(const double* displacement) const;
+  double checkDisplacement(const double* displacement) const;
+  bool endsWhereItBegins(const WarpMotion& path, std::vector<double>& displacement) const;
   WarpResult run(const WarpMotion& motion, const WarpMotion& path);
   void followMotion(const WarpMotion& path, const double* displacement, WarpControl& control);
   BoundaryState examineBoundary(const double* points) const;
@@ -173,8 +170,8 @@ struct Warper::Implementation
   WarpBoundary MovedBoundary;
 };
 
-/// Finite, and in the plane of a planar mesh.
-void Warper::Implementation::checkDisplacement(const double* displacement) const
+/// Finite, and in the plane of a planar mesh. The length of the largest.
+double Warper::Implementation::checkDisplacement(const double* displacement) const
 {
   const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
   Index wrong = 0, first = 0;
@@ -211,6 +208,26 @@ void Warper::Implementation::checkDisplacement(const double* displacement) const
   {
     throw Error("The mesh is planar, but the displacements lead out of its plane.");
   }
+  return largest;
+}
+
+//------------------------------------------------------------------------------
+/// Whether the displacements at the end are nothing but the rounding of a way that comes back, such
+/// as a full turn, or 0 throughout.
+bool Warper::Implementation::endsWhereItBegins(
+  const WarpMotion& path, std::vector<double>& displacement) const
+{
+  // Full turns come back at their end alone, unless they are several: at no common fraction.
+  constexpr double rounding = 1e-9, somewhere = 0.3819660112501051;
+  path(1.0, displacement.data());
+  const double end = this->checkDisplacement(displacement.data());
+  if (end == 0)
+  {
+    return true;
+  }
+  std::vector<double> between(displacement.size(), 0.0);
+  path(somewhere, between.data());
+  return end <= rounding * this->checkDisplacement(between.data());
 }
 
 //------------------------------------------------------------------------------
@@ -224,6 +241,8 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
     this->checkDisplacement(displacement);
   };
   const WarpMethod method = this->Options.method;
+  std::vector<double> displacement(3 * this->Input.view().numberOfPoints, 0.0);
+  result.still = this->endsWhereItBegins(motion, displacement);
   const bool small = method == WarpMethod::SmallStepFemwarp && this->Options.steps == 1;
   if (this->Options.steps > 1 || small || (this->Options.steps == 0 && !untangles(method)))
   {
@@ -232,12 +251,10 @@ WarpResult Warper::Implementation::run(const WarpMotion& motion, const WarpMotio
   else
   {
     // Methods that untangle try a single step first.
-    std::vector<double> displacement(3 * this->Input.view().numberOfPoints, 0.0);
-    motion(1.0, displacement.data());
-    this->checkDisplacement(displacement.data());
     control.proceed(0.0);
     this->First.run(displacement.data(), 1.0, control, result.points);
-    if (untangles(method) && result.invertedAfter > 0 && !control.stopped())
+    const bool follows = result.invertedAfter > 0 || (result.still && this->Options.steps == 0);
+    if (untangles(method) && follows && !control.stopped())
     {
       this->followMotion(checked, displacement.data(), control);
     }
@@ -312,7 +329,10 @@ BoundaryState Warper::Implementation::examineBoundary(const double* points) cons
     }
   }
   state.inverted = this->ranks().sum(state.inverted);
-  state.crossing = this->MovedBoundary.crossings(points);
+  if (this->Parts.dimension() != Dimension::Surface) // whose boundary is curves in space
+  {
+    state.crossing = this->MovedBoundary.crossings(points);
+  }
   if (state.crossing.pairs > 0)
   {
     // Boundaries that touch from the start, such as cracks, may go on to.
@@ -330,6 +350,18 @@ void Warper::Implementation::explain(WarpControl& control)
   if (this->Parts.freePoints() == 0)
   {
     control.addMessage("There are no points between the prescribed ones: nothing had to be found.");
+  }
+  if (!result.attempts.empty() && !result.still)
+  {
+    control.addMessage(explainChoice(result));
+  }
+  if (result.still)
+  {
+    control.addMessage(
+      this->Options.steps == 1 && this->Options.method != WarpMethod::SmallStepFemwarp
+        ? "The prescribed points end where they began, so that nothing moves. Where they turn full "
+          "circle, take several steps."
+        : "The prescribed points end where they began.");
   }
   if (this->Parts.loose() > 0)
   {

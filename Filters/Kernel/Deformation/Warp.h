@@ -31,10 +31,10 @@ class TAUTLINE_SOLVERS_EXPORT Warper
 {
 public:
   /**
-   * @brief The mesh and the arrays of the options stay alive. Throws Error for surfaces in space,
-   * elements that are not valid (how many, the first), curved cells (which vtkMeshWarp takes),
-   * cells that the method does not support (wedges and pyramids, except for the last three
-   * methods), no prescribed point, and options out of range.
+   * @brief The mesh and the arrays of the options stay alive. Of a surface in space, an element
+   * counts as inverted where it is folded over its neighbours; untangling takes one rank, and no
+   * optimization follows it. Throws Error for elements that are not valid (how many, the first),
+   * curved cells (which vtkMeshWarp takes), no prescribed point, and options out of range.
    */
   Warper(const Mesh& mesh, const WarpOptions& options);
 

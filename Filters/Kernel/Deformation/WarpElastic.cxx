@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WarpElastic.h"
 
+#include "WarpSheet.h"
 #include "tautline/Quality/Metrics.h"
 
 #include <limits>
@@ -10,7 +11,7 @@ namespace tautline
 ElasticWarp::ElasticWarp(const Mesh& mesh, const WarpParts& parts, WarpControl& control)
   : Input(mesh)
   , Parts(parts)
-  , Components(parts.dimension() == Dimension::Volume ? 3 : 2)
+  , Components(parts.dimension() == Dimension::Planar ? 2 : 3)
 {
   const Index cells = mesh.view().numberOfCells;
   this->Stiffening.assign(cells, 1.0);
@@ -58,7 +59,9 @@ void ElasticWarp::assemble(WarpControl& control)
     {
       if (this->Input.view().numberOfCells > 0)
       {
-        matrix = stiffnessMatrix(this->Input, pde, options);
+        matrix = this->Parts.dimension() == Dimension::Surface
+          ? sheetMatrix(this->Input, pde, options)
+          : stiffnessMatrix(this->Input, pde, options);
         return;
       }
       matrix.size = this->Components * this->Input.view().numberOfPoints;
@@ -164,6 +167,7 @@ std::vector<double> ElasticWarp::warp(const double* displacement, WarpControl& c
     now.points = points.data();
     Mesh mesh(now, options.threads);
     mesh.setMirrored(this->Input.mirrored());
+    mesh.setSpace(this->Input.space());
     mesh.classifyCells(validity.data(), options.threads);
     Index inverted = 0;
     for (Index i = 0; i < view.numberOfCells; ++i)

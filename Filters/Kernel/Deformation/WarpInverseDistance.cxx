@@ -4,6 +4,8 @@
 #include "WarpBatches.h"
 #include "tautline/Geometry/PointTree.h"
 
+#include <type_traits>
+
 namespace tautline
 {
 namespace
@@ -17,88 +19,193 @@ constexpr std::size_t InverseDistanceLeafSize = 16;
 /// for points all in one direction, is this part of the first. (The groups lie around their
 /// centres: what is left of it is far less.)
 constexpr double ThirdTerm = 0.05;
+/// The same of points that turn: close to a wall, where cells are small, groups that are far have
+/// no weight.
+constexpr double TurningThirdTerm = 0.5;
 constexpr double LargestOpening = 0.5; ///< radius of a group over its distance, whatever the power
 
-/// Sums over the points of a node about its centre, of weights 1 and of displacements.
-struct Moments
+/// The squared radius of a group over its squared distance up to which it counts as a whole.
+double squaredOpening(double power, double thirdTerm)
 {
-  double count = 0;
-  Vec3 sum = { 0, 0, 0 };
-  std::array<Vec3, 3> first = {};      ///< [k]: of offset k times displacement
-  std::array<double, 6> weights2 = {}; ///< of products of offsets: xx yy zz xy yz xz
-  std::array<Vec3, 6> second = {};     ///< of the same times displacement
-};
+  const double opening =
+    std::min(LargestOpening, std::cbrt(thirdTerm * 6 / (power * (power + 2) * (power + 4))));
+  return opening * opening;
+}
 
 std::array<double, 6> products(const Vec3& u)
 {
   return { u[0] * u[0], u[1] * u[1], u[2] * u[2], u[0] * u[1], u[1] * u[2], u[0] * u[2] };
 }
 
-/// 1 / distance^power from the squared distance; Power 0 stands for any other number.
-template <int Power>
-double weight(double square, [[maybe_unused]] double power)
+/// A weight w(r) as a function of r^2 = u.u: w(|u - o|) = value + one u.o + (two (u.o)^2 - one o.o
+/// / 2), to second order in o.
+struct Expansion
 {
-  if constexpr (Power == 1)
+  double value, one, two;
+};
+
+Expansion expansionOf(double value, double power, double square)
+{
+  const double one = value * power / square;
+  return { value, one, 0.5 * one * (power + 2) / square };
+}
+
+/// 1 / distance^power; Whole 0 stands for any other number.
+template <int Whole>
+class PowerLaw
+{
+public:
+  explicit PowerLaw(double power)
+    : Power(power)
+    , Opening(squaredOpening(power, ThirdTerm))
   {
-    return 1 / std::sqrt(square);
   }
-  else if constexpr (Power == 2)
+
+  double at(double square) const
   {
-    return 1 / square;
+    if constexpr (Whole == 1)
+    {
+      return 1 / std::sqrt(square);
+    }
+    else if constexpr (Whole == 2)
+    {
+      return 1 / square;
+    }
+    else if constexpr (Whole == 3)
+    {
+      return 1 / (square * std::sqrt(square));
+    }
+    else if constexpr (Whole == 4)
+    {
+      return 1 / (square * square);
+    }
+    else
+    {
+      return std::pow(square, -0.5 * this->Power);
+    }
   }
-  else if constexpr (Power == 3)
+  Expansion expand(double square) const
   {
-    return 1 / (square * std::sqrt(square));
+    return expansionOf(this->at(square), this->Power, square);
   }
-  else if constexpr (Power == 4)
+  double opening(double) const { return this->Opening; }
+
+private:
+  double Power, Opening;
+};
+
+/// (1 / distance)^3 + (stiff / distance)^5, distances relative to the size of the whole: the second
+/// term makes what is closer than `stiff` follow the closest points alone.
+class TwoPowers
+{
+public:
+  TwoPowers(double size, double stiff)
+    : Far(size * size * size)
+    , Near(std::pow(stiff, NearPower))
+    , Change(this->Near / (NearShare * this->Far))
   {
-    return 1 / (square * square);
   }
-  else
+
+  double at(double square) const
   {
-    return std::pow(square, -0.5 * power);
+    const double cubed = 1 / (square * std::sqrt(square));
+    return this->Far * cubed + this->Near * cubed / square;
+  }
+  Expansion expand(double square) const
+  {
+    const double cubed = 1 / (square * std::sqrt(square));
+    const Expansion far = expansionOf(this->Far * cubed, FarPower, square);
+    const Expansion near = expansionOf(this->Near * cubed / square, NearPower, square);
+    return { far.value + near.value, far.one + near.one, far.two + near.two };
+  }
+  double opening(double square) const
+  {
+    return square > this->Change ? this->FarOpening : this->NearOpening;
+  }
+
+private:
+  static constexpr double FarPower = 3, NearPower = 5;
+  /// The second term below which its expansion does not matter, relative to the first.
+  static constexpr double NearShare = 0.05;
+  double Far, Near, Change;
+  double FarOpening = squaredOpening(FarPower, TurningThirdTerm);
+  double NearOpening = squaredOpening(NearPower, TurningThirdTerm);
+};
+
+/// A displacement at a place, and where points turn its derivatives along x, y and z.
+template <bool Turns>
+using Jet = std::array<double, Turns ? 12 : 3>;
+
+/// Adds factor times one array to another.
+template <std::size_t Size>
+void addTo(std::array<double, Size>& sum, double factor, const std::array<double, Size>& value)
+{
+  for (std::size_t k = 0; k < Size; ++k)
+  {
+    sum[k] += factor * value[k];
   }
 }
 
+/// What a jet at the origin gives at u.
+template <bool Turns>
+Vec3 valueAt(const Jet<Turns>& jet, const Vec3& u)
+{
+  Vec3 value = { jet[0], jet[1], jet[2] };
+  for (std::size_t k = 0; Turns && k < 3; ++k)
+  {
+    for (std::size_t c = 0; c < 3; ++c)
+    {
+      value[c] += u[k] * jet[3 + 3 * k + c];
+    }
+  }
+  return value;
+}
+
+/// A prescribed point with its share of the weights.
+template <bool Turns>
+struct Source
+{
+  Vec3 place;
+  double share;
+  Jet<Turns> jet;
+};
+
+/// Sums over the sources of a node about its centre, of shares and of jets there.
+template <bool Turns>
+struct Moments
+{
+  double share = 0;
+  std::array<double, 3> shares1 = {}; ///< of offsets
+  std::array<double, 6> shares2 = {}; ///< of products of offsets: xx yy zz xy yz xz
+  Jet<Turns> sum = {};
+  std::array<Jet<Turns>, 3> first = {};  ///< [k]: of offset k times jet
+  std::array<Jet<Turns>, 6> second = {}; ///< of products of offsets times jet
+};
+
 /// The sources of the weighted means, in groups.
+template <class Law, bool Turns>
 class Sources
 {
 public:
-  Sources(const PrescribedMotion& motion, double power)
-    : Power(power)
-    , Opening(
-        std::min(LargestOpening, std::cbrt(ThirdTerm * 6 / (power * (power + 2) * (power + 4)))))
-    , Tree(locals(motion), InverseDistanceLeafSize)
+  Sources(std::vector<Source<Turns>> all, const Law& law)
+    : Weights(law)
+    , Tree(placesOf(all), InverseDistanceLeafSize)
   {
     for (const std::size_t i : this->Tree.order())
     {
-      this->Points.push_back(motion.local(motion.prescribed()[i]));
-      this->Values.push_back(motion.rest(i));
+      this->Points.push_back(all[i]);
     }
     for (const PointTree::Node& node : this->Tree.nodes())
     {
-      Moments m;
-      m.count = static_cast<double>(node.end - node.begin);
+      Moments<Turns> m;
       for (std::size_t i = node.begin; i < node.end && !node.leaf; ++i)
       {
-        const Vec3 offset = this->Points[i] - node.center;
-        const std::array<double, 6> two = products(offset);
-        m.sum += this->Values[i];
-        for (std::size_t k = 0; k < 3; ++k)
-        {
-          m.first[k] += offset[k] * this->Values[i];
-        }
-        for (std::size_t k = 0; k < 6; ++k)
-        {
-          m.weights2[k] += two[k];
-          m.second[k] += two[k] * this->Values[i];
-        }
+        this->include(this->Points[i], node.center, m);
       }
       this->Groups.push_back(m);
     }
   }
 
-  template <int Whole>
   Vec3 mean(const Vec3& y) const
   {
     const std::vector<PointTree::Node>& nodes = this->Tree.nodes();
@@ -109,23 +216,24 @@ public:
       const PointTree::Node& node = nodes[n];
       const Vec3 u = y - node.center;
       const double square = dot(u, u);
-      if (!node.leaf && node.radius * node.radius < this->Opening * this->Opening * square)
+      if (!node.leaf && node.radius * node.radius < this->Weights.opening(square) * square)
       {
-        this->add(this->Groups[n], u, square, weight<Whole>(square, this->Power), weights, values);
+        this->add(this->Groups[n], u, this->Weights.expand(square), weights, values);
         n = node.next;
         continue;
       }
       for (std::size_t i = node.begin; i < node.end && node.leaf; ++i)
       {
-        const Vec3 d = y - this->Points[i];
+        const Source<Turns>& source = this->Points[i];
+        const Vec3 d = y - source.place;
         const double apart = dot(d, d);
         if (apart < Coincident)
         {
-          return this->Values[i]; // the mean has a limit here
+          return { source.jet[0], source.jet[1], source.jet[2] }; // the mean has a limit here
         }
-        const double w = weight<Whole>(apart, this->Power);
+        const double w = source.share * this->Weights.at(apart);
         weights += w;
-        values += w * this->Values[i];
+        values += w * valueAt<Turns>(source.jet, d);
       }
       ++n;
     }
@@ -133,64 +241,102 @@ public:
   }
 
 private:
-  static std::vector<Vec3> locals(const PrescribedMotion& motion)
+  static std::vector<Vec3> placesOf(const std::vector<Source<Turns>>& all)
   {
-    std::vector<Vec3> points;
-    points.reserve(motion.prescribed().size());
-    for (const Index id : motion.prescribed())
+    std::vector<Vec3> places;
+    places.reserve(all.size());
+    for (const Source<Turns>& source : all)
     {
-      points.push_back(motion.local(id));
+      places.push_back(source.place);
     }
-    return points;
+    return places;
   }
 
-  /// The terms of |u - offset|^-p: f (1 + p a + p ((p + 2) a^2 - b) / 2), a = u.offset / u.u, b =
-  /// offset^2 / u.u.
-  void add(
-    const Moments& m, const Vec3& u, double square, double f, double& weights, Vec3& values) const
+  void include(const Source<Turns>& source, const Vec3& center, Moments<Turns>& m) const
   {
-    const double p = this->Power, one = p / square, two = 0.5 * p * (p + 2) / (square * square);
+    const Vec3 offset = source.place - center;
+    const std::array<double, 6> two = products(offset);
+    Jet<Turns> jet = source.jet;
+    const Vec3 there = valueAt<Turns>(jet, center - source.place);
+    std::copy(there.begin(), there.end(), jet.begin());
+    m.share += source.share;
+    addTo(m.shares1, source.share, offset);
+    addTo(m.shares2, source.share, two);
+    addTo(m.sum, source.share, jet);
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      addTo(m.first[k], source.share * offset[k], jet);
+    }
+    for (std::size_t k = 0; k < 6; ++k)
+    {
+      addTo(m.second[k], source.share * two[k], jet);
+    }
+  }
+
+  void add(
+    const Moments<Turns>& m, const Vec3& u, const Expansion& f, double& weights, Vec3& values) const
+  {
     std::array<double, 6> t = products(u);
     for (std::size_t k = 0; k < 6; ++k)
     {
-      t[k] = k < 3 ? two * t[k] - 0.5 * one : 2 * two * t[k];
+      t[k] = k < 3 ? f.two * t[k] - 0.5 * f.one : 2 * f.two * t[k];
     }
-    double w = m.count;
-    Vec3 v = m.sum;
+    weights += f.value * m.share;
+    Jet<Turns> jet = {};
+    addTo(jet, f.value, m.sum);
     for (std::size_t k = 0; k < 3; ++k)
     {
-      v += (one * u[k]) * m.first[k];
+      weights += f.one * u[k] * m.shares1[k];
+      addTo(jet, f.one * u[k], m.first[k]);
     }
     for (std::size_t k = 0; k < 6; ++k)
     {
-      w += t[k] * m.weights2[k];
-      v += t[k] * m.second[k];
+      weights += t[k] * m.shares2[k];
+      addTo(jet, t[k], m.second[k]);
     }
-    weights += f * w;
-    values += f * v;
+    values += valueAt<Turns>(jet, u);
   }
 
-  double Power, Opening;
+  Law Weights;
   PointTree Tree;
-  std::vector<Vec3> Points, Values; ///< in the order of the tree
-  std::vector<Moments> Groups;      ///< of its nodes; of a leaf only the count
+  std::vector<Source<Turns>> Points;  ///< in the order of the tree
+  std::vector<Moments<Turns>> Groups; ///< of its nodes; of a leaf empty
 };
 
-using Mean = Vec3 (Sources::*)(const Vec3&) const;
-
-Mean meanFor(double power)
+/// The motion of the free points by weighted means.
+template <class Law, bool Turns>
+std::vector<double> warpByMeans(const PrescribedMotion& motion, std::vector<Source<Turns>> all,
+  const Law& law, WarpControl& control)
 {
-  return power == 1 ? &Sources::mean<1>
-    : power == 2    ? &Sources::mean<2>
-    : power == 3    ? &Sources::mean<3>
-    : power == 4    ? &Sources::mean<4>
-                    : &Sources::mean<0>;
+  const Sources<Law, Turns> sources(std::move(all), law);
+  std::vector<Vec3> rest(motion.free().size(), Vec3{ 0, 0, 0 });
+  const bool complete = forEachBatch(motion.free().size(), 0.0, control,
+    [&](std::size_t i) { rest[i] = sources.mean(motion.local(motion.free()[i])); });
+  return complete ? motion.displacements(rest) : std::vector<double>();
+}
+
+/// The mean of the displacements, weighted by the shares of the wall, and the largest distance of
+/// one from it: how far points move against each other.
+double spreadOf(const PrescribedMotion& motion)
+{
+  double area = 0, largest = 0;
+  Vec3 mean = { 0, 0, 0 };
+  for (std::size_t i = 0; i < motion.prescribed().size(); ++i)
+  {
+    area += motion.wall(i).area;
+    mean += motion.wall(i).area * motion.given(i);
+  }
+  mean = (area > 0 ? 1 / area : 0.0) * mean;
+  for (std::size_t i = 0; i < motion.prescribed().size(); ++i)
+  {
+    largest = std::max(largest, norm(motion.given(i) - mean));
+  }
+  return largest;
 }
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> warpByInverseDistance(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control)
+std::vector<double> warpByInverseDistance(const PrescribedMotion& motion, WarpControl& control)
 {
   const WarpOptions& options = control.options();
   if (!(options.distancePower > 0 && options.distancePower <= LargestPower))
@@ -198,16 +344,54 @@ std::vector<double> warpByInverseDistance(const Mesh& mesh,
     throw Error("the power of the distance is " + std::to_string(options.distancePower) +
       "; it must be above 0 and at most 20");
   }
-  const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);
   if (motion.affine())
   {
     return motion.displacements({});
   }
-  const Sources sources(motion, options.distancePower);
-  const Mean mean = meanFor(options.distancePower);
-  std::vector<Vec3> rest(motion.free().size(), Vec3{ 0, 0, 0 });
-  const bool complete = forEachBatch(motion.free().size(), 0.0, control,
-    [&](std::size_t i) { rest[i] = (sources.*mean)(motion.local(motion.free()[i])); });
-  return complete ? motion.displacements(rest) : std::vector<double>();
+  std::vector<Source<false>> sources;
+  for (std::size_t i = 0; i < motion.prescribed().size(); ++i)
+  {
+    const Vec3 place = motion.local(motion.prescribed()[i]);
+    sources.push_back({ place, 1.0, motion.rest(i) });
+  }
+  const auto by = [&](const auto& law)
+  { return warpByMeans<std::decay_t<decltype(law)>, false>(motion, sources, law, control); };
+  const double power = options.distancePower;
+  return power == 1 ? by(PowerLaw<1>(power))
+    : power == 2    ? by(PowerLaw<2>(power))
+    : power == 3    ? by(PowerLaw<3>(power))
+    : power == 4    ? by(PowerLaw<4>(power))
+                    : by(PowerLaw<0>(power));
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> warpByRigidMeans(const PrescribedMotion& motion, WarpControl& control)
+{
+  // Constants of the source.
+  constexpr double spreads = 5.0, least = 0.1;
+  double size = 0;
+  std::vector<Source<true>> sources;
+  for (std::size_t i = 0; i < motion.prescribed().size(); ++i)
+  {
+    const WallPoint& wall = motion.wall(i);
+    const Vec3 place = motion.local(motion.prescribed()[i]), rest = motion.rest(i);
+    Source<true> source = { place, wall.area, {} };
+    std::copy(rest.begin(), rest.end(), source.jet.begin());
+    for (std::size_t k = 0; k < 3; ++k)
+    {
+      Vec3 column = wall.turn[k];
+      column[k] -= 1;
+      column = motion.scale() * column - motion.derivative(k);
+      std::copy(column.begin(), column.end(), &source.jet[3 + 3 * k]);
+    }
+    size = std::max(size, norm(place));
+    sources.push_back(source);
+  }
+  if (sources.empty() || !(size > 0))
+  {
+    return motion.displacements({});
+  }
+  const double stiff = std::max(least * size, spreads * spreadOf(motion) / motion.scale());
+  return warpByMeans<TwoPowers, true>(motion, std::move(sources), TwoPowers(size, stiff), control);
 }
 }

@@ -11,7 +11,7 @@ namespace
 /// The classes of methods that the code distinguishes.
 struct MethodTraits
 {
-  bool known = false, finiteElements = false, anisotropic = false, untangles = false;
+  bool known = false, anisotropic = false, untangles = false;
 };
 
 /// A switch without a default: the compiler reports a method that is missing here.
@@ -22,26 +22,26 @@ MethodTraits traitsOf(WarpMethod method)
   {
     case WarpMethod::Hybrid:
       traits.anisotropic = traits.untangles = true;
-      traits.known = traits.finiteElements = true;
+      traits.known = true;
       break;
     case WarpMethod::AnisotropicFemwarp:
       traits.anisotropic = true;
-      traits.known = traits.finiteElements = true;
-      break;
-    case WarpMethod::FemwarpUntangling:
-      traits.untangles = true;
-      traits.known = traits.finiteElements = true;
+      traits.known = true;
       break;
     case WarpMethod::Femwarp:
     case WarpMethod::SmallStepFemwarp:
     case WarpMethod::IterativeStiffening:
     case WarpMethod::JacobianStiffening:
     case WarpMethod::Biharmonic:
-      traits.known = traits.finiteElements = true;
-      break;
     case WarpMethod::InverseDistance:
     case WarpMethod::RadialBasis:
     case WarpMethod::WeightedLaplacian:
+    case WarpMethod::InverseDistanceRotations:
+      traits.known = true;
+      break;
+    case WarpMethod::FemwarpUntangling:
+    case WarpMethod::Automatic:
+      traits.untangles = true;
       traits.known = true;
       break;
   }
@@ -53,11 +53,6 @@ MethodTraits traitsOf(WarpMethod method)
 bool isKnown(WarpMethod method)
 {
   return traitsOf(method).known;
-}
-
-bool usesFiniteElements(WarpMethod method)
-{
-  return traitsOf(method).finiteElements;
 }
 
 bool isAnisotropic(WarpMethod method)

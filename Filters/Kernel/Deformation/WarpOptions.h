@@ -21,7 +21,7 @@ enum class WarpMethod : int
   Femwarp = 1,             ///< one harmonic solve (4.10)
   AnisotropicFemwarp = 2,  ///< with coefficients (4.11), (4.20)
   SmallStepFemwarp = 3,    ///< FEMWARP in steps, the matrix of each from the mesh before it
-  FemwarpUntangling = 4,   ///< FEMWARP, then untangling
+  FemwarpUntangling = 4,   ///< FEMWARP, then untangling; what it moves gets the initial shapes back
   IterativeStiffening = 5, ///< linear elasticity, inverted elements stiffened until there are none
   JacobianStiffening =
     6, ///< linear elasticity, small elements stiff (Stein, Tezduyar and Benson 2003)
@@ -29,13 +29,19 @@ enum class WarpMethod : int
   InverseDistance = 8,
   RadialBasis = 9, ///< compactly supported, points chosen greedily
   WeightedLaplacian =
-    10 ///< weighted Laplacian smoothing: each vertex an affine combination of its neighbours
+    10, ///< weighted Laplacian smoothing: each vertex an affine combination of its neighbours
+  InverseDistanceRotations =
+    11, ///< means of the rigid motions of the wall (Luke, Collins and Blades 2012)
+  /**
+   * @brief RadialBasis if all elements stay valid with an inverse mean ratio up to 2 against the
+   * initial mesh, else the better of RadialBasis and InverseDistanceRotations; Hybrid's second step
+   * from there if an element is inverted or has an inverse mean ratio above 10
+   */
+  Automatic = 12
 };
 
 /// Whether a number names a method; numbers come from state files and from Python.
 TAUTLINE_SOLVERS_EXPORT bool isKnown(WarpMethod method);
-/// Whether a method assembles finite elements, which wedges and pyramids have none of here.
-TAUTLINE_SOLVERS_EXPORT bool usesFiniteElements(WarpMethod method);
 /// Whether a method takes the coefficients of WarpOptions::coefficients.
 TAUTLINE_SOLVERS_EXPORT bool isAnisotropic(WarpMethod method);
 /// Whether a method untangles what its motion inverts.
@@ -74,14 +80,16 @@ struct WarpOptions
   const unsigned char* prescribed = nullptr;
   /**
    * @brief Number of steps of the motion, each from the mesh of the one before; at least 0, 0 means
-   * automatic: steps that invert an element are halved, others doubled, so that none inverts. The
-   * result is then valid and may reach only a fraction of the motion, see WarpResult::amount.
+   * automatic: steps that invert an element, or flatten one to an inverse mean ratio above 1000
+   * against the initial mesh, are halved, others doubled. The result is then valid and may reach
+   * only a fraction of the motion, see WarpResult::amount.
    * SmallStepFemwarp takes 1 as 0. Between the steps each connected component of prescribed points
    * rotates and stretches by the affine map of its displacements, if they come close to one; else
    * it moves along straight lines.
    *
-   * Hybrid and FemwarpUntangling try one step first, with 0 and with 1; if untangling fails there,
-   * though the moved boundary does not cross itself, they follow the motion in short steps.
+   * Hybrid, FemwarpUntangling and Automatic try one step first, with 0 and with 1; if untangling
+   * fails there, though the moved boundary does not cross itself, they follow the motion in short
+   * steps.
    */
   int steps = 1;
   int maximumSteps = 100; ///< the limit where their number is automatic; at least 1
@@ -98,13 +106,18 @@ struct WarpOptions
     2.0; ///< IterativeStiffening: factor on the stiffness of inverted elements, above 1
   double distancePower = 3.0; ///< InverseDistance: above 0, at most 20
   double supportRadius = 0.0; ///< RadialBasis; 0: twice the extent of the prescribed points
-  /// RadialBasis: of the greedy choice, relative to the largest displacement; 0 to 1 (exclusive).
-  double fitTolerance = 1e-3;
   /**
-   * @brief Hybrid's second step. On: untangle() the inverted elements and, if there were any,
-   * reduce the squared inverse mean ratios of T in up to 20 sweeps; then minimize the exponential
-   * sum of F_1, the shape (4.22), and of these squared ratios. They are a barrier that keeps every
-   * element valid, and replace the untangling metric of (4.24), which is 0 there. Off: (4.24)
+   * @brief RadialBasis: how far the functions may miss the given place of a prescribed point,
+   * relative to the smallest height of the cells there; 0 to 1 (exclusive). Layers of any height
+   * thus follow their wall.
+   */
+  double fitTolerance = 1e-2;
+  /**
+   * @brief Hybrid's second step. On: untangle() the inverted elements and, if there were any or one
+   * has an inverse mean ratio of T above 10, reduce the squared ratios, then the worst of them
+   * while the mean grows by at most a tenth; then minimize the exponential sum of F_1, the shape
+   * (4.22), and of these squared ratios, the worst of which is held. They are a barrier that keeps
+   * every element valid, and replace the untangling metric of (4.24), which is 0 there. Off: (4.24)
    * itself; elements it leaves inverted are untangled afterwards.
    */
   bool untangleFirst = true;
@@ -127,9 +140,19 @@ struct WarpRecord
   Index inverted = 0;      ///< inverted or degenerate elements
   double worstShape = 0.0; ///< largest TMP shape (4.22) over the elements that are valid
   double meanShape = 0.0;
+  double worstRatio = 0.0; ///< largest inverse mean ratio against the initial mesh, of these
   double seconds = 0.0;
   int iterations = 0; ///< of linear solvers and optimizers
-  std::string stage;  ///< "warp", "untangle", "optimize"
+  /// "warp", "untangle", "optimize"; of Automatic also "radial basis", "inverse distance"
+  std::string stage;
+};
+
+/// What a method that Automatic tried left.
+struct WarpAttempt
+{
+  WarpMethod method = WarpMethod::RadialBasis;
+  Index inverted = 0;
+  double worstRatio = 0; ///< as in WarpRecord
 };
 
 /// The deformed mesh, and a report.
@@ -137,7 +160,12 @@ struct WarpResult
 {
   std::vector<double> points; ///< 3 x numberOfPoints
   std::vector<WarpRecord> history;
-  double amount = 1.0;                     ///< of the motion that was reached
+  double amount = 1.0; ///< of the motion that was reached
+  /// Of Automatic, in the last step: the methods tried, and the one among them that was taken.
+  std::vector<WarpAttempt> attempts;
+  WarpMethod chosen = WarpMethod::Hybrid; ///< the method itself where it is not Automatic
+  /// Whether the prescribed points end where they begin, so that one step moves nothing.
+  bool still = false;
   SymmetricTensor tensor = IdentityTensor; ///< the coefficients used, unless they vary
   Index invertedWarp = 0;                  ///< after the warp itself
   Index invertedAfter = 0;                 ///< at the end

@@ -211,14 +211,15 @@ std::vector<AffineMotion> WarpParts::affine(const double* points, const double* 
 
 //------------------------------------------------------------------------------
 std::vector<PrescribedPoint> WarpParts::prescribedOfAll(
-  const MeshView& local, const double* displacement) const
+  const MeshView& local, const double* displacement, const std::vector<WallPoint>& walls) const
 {
   std::vector<PrescribedPoint> own, all;
   for (Index i = 0; i < local.numberOfPoints; ++i)
   {
     if (this->Prescribed[i] && this->TheRanks.owns(i))
     {
-      own.push_back({ this->TheRanks.id(i), pointOf(local, i), {} });
+      own.push_back(
+        { this->TheRanks.id(i), pointOf(local, i), {}, walls.empty() ? WallPoint() : walls[i] });
       std::copy_n(displacement + 3 * i, 3, own.back().displacement.begin());
     }
   }

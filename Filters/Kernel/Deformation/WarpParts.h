@@ -7,6 +7,7 @@
 #ifndef tautline_WarpParts_h
 #define tautline_WarpParts_h
 
+#include "WarpWalls.h"
 #include "tautline/Mesh/Ranks.h"
 
 #include <array>
@@ -32,6 +33,7 @@ struct PrescribedPoint
 {
   Index id;
   std::array<double, 3> place, displacement;
+  WallPoint wall;
 };
 
 /**
@@ -65,8 +67,9 @@ public:
   const std::vector<unsigned char>& held() const { return this->Held; }
 
   /// The prescribed points of several ranks, in the order of their ids. Collective.
-  std::vector<PrescribedPoint> prescribedOfAll(
-    const MeshView& local, const double* displacement) const;
+  /// @param walls one per local point, see wallPoints(); or none
+  std::vector<PrescribedPoint> prescribedOfAll(const MeshView& local, const double* displacement,
+    const std::vector<WallPoint>& walls = {}) const;
 
   /// Whether each part has a prescribed point that moves at all.
   std::vector<char> moving(const double* displacement) const;

@@ -20,10 +20,11 @@ constexpr double AffineTolerance = 1e-14;
 
 //------------------------------------------------------------------------------
 PrescribedMotion::PrescribedMotion(const Mesh& mesh, const std::vector<unsigned char>& prescribed,
-  const double* displacement, int threads)
+  const double* displacement, int threads, std::vector<WallPoint> walls)
   : Input(mesh)
   , Displacement(displacement)
   , Threads(threads)
+  , Walls(std::move(walls))
 {
   const MeshView& view = mesh.view();
   for (Index id = 0; id < view.numberOfPoints; ++id)
@@ -34,7 +35,7 @@ PrescribedMotion::PrescribedMotion(const Mesh& mesh, const std::vector<unsigned 
     [this](Index a, Index b)
     {
       const Vec3 p = pointOf(this->Input.view(), a), q = pointOf(this->Input.view(), b);
-      return p != q ? p < q : this->given(a) < this->given(b);
+      return p != q ? p < q : this->displacementOf(a) < this->displacementOf(b);
     });
   const std::size_t n = this->Prescribed.size();
   if (n == 0)
@@ -49,7 +50,7 @@ PrescribedMotion::PrescribedMotion(const Mesh& mesh, const std::vector<unsigned 
   for (std::size_t i = 0; i < n; ++i)
   {
     const Index id = this->Prescribed[i];
-    this->Rest[i] = this->given(id) - this->affineAt(this->local(id));
+    this->Rest[i] = this->displacementOf(id) - this->affineAt(this->local(id));
     largestRest = std::max(largestRest, norm(this->Rest[i]));
   }
   this->Affine = largestRest <= AffineTolerance * this->Largest;
@@ -71,7 +72,7 @@ void PrescribedMotion::measure()
       low[k] = std::min(low[k], p[k]);
       high[k] = std::max(high[k], p[k]);
     }
-    this->Largest = std::max(this->Largest, norm(this->given(id)));
+    this->Largest = std::max(this->Largest, norm(this->displacementOf(id)));
   }
   this->Center = first + (1.0 / static_cast<double>(this->Prescribed.size())) * sum;
   const double extent = norm(high - low);
@@ -115,7 +116,7 @@ void PrescribedMotion::fitAffine()
     std::array<Vec3, 4> sums = {};
     for (const Index id : this->Prescribed)
     {
-      const Vec3 x = this->local(id), r = this->given(id) - this->affineAt(x);
+      const Vec3 x = this->local(id), r = this->displacementOf(id) - this->affineAt(x);
       sums[0] += r;
       for (std::size_t k = 0; k < 3; ++k)
       {
@@ -140,7 +141,7 @@ Vec3 PrescribedMotion::local(Index id) const
 }
 
 //------------------------------------------------------------------------------
-Vec3 PrescribedMotion::given(Index id) const
+Vec3 PrescribedMotion::displacementOf(Index id) const
 {
   const double* d = this->Displacement + 3 * id;
   return { d[0], d[1], d[2] };

@@ -14,45 +14,23 @@
 #define tautline_WarpPointwise_h
 
 #include "WarpControl.h"
+#include "WarpWalls.h"
 #include "tautline/SolversExport.h"
 
 namespace tautline
 {
 /**
- * @brief Displacements of all points, 3 each, by one of the methods; bitwise the same for any
- * number of threads, those by inverse distances and radial basis functions for any order of the
- * points as well.
- *
- * `prescribed` has a flag per point; `displacement` has 3 numbers per point of the mesh and is
- * read, and returned as it is, where the flag is set. Without any prescribed point nothing moves.
- * The result is empty when the control stopped the work. `options` below are those of the control.
- * Throws Error for options out of range.
- *
- * Inverse distance weighting (Shepard): the mean of the prescribed displacements, weighted by the
- * distance to the power -options.distancePower (above 0, at most 20). Far groups of points count by
- * their expansion to second order, which differs from the sum over all points by less than 1e-4 of
- * the largest displacement.
- */
-TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByInverseDistance(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
-
-/**
- * @brief As above by radial basis functions: Wendland's C2 function with the radius
- * options.supportRadius (0: twice the extent of the prescribed points) around as many prescribed
- * points, at most 3000, as it takes to meet the others within options.fitTolerance times the
- * largest displacement; the point with the largest residual comes next, together with up to 48
- * whose residuals are equal to rounding; of more the first by its place.
- */
-TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
-
-/**
- * @brief As above by the method of Shontz and Vavasis (2003): each point that is not prescribed is
+ * @brief Displacements of all points, 3 each, by the method of Shontz and Vavasis (2003); bitwise
+ * the same for any number of threads. Each point that is not prescribed is
  * a convex combination of its neighbours in the initial mesh, of all such combinations the one with
  * the largest product of weights; it stays that. Neighbours are the other points of the cells
  * around; where the point is not within their hull (surfaces: in the tangent plane), all count the
  * same. Points of parts without a prescribed point stay. The linear system is solved to
  * options.tolerance.
+ *
+ * `prescribed` has a flag per point; `displacement` has 3 numbers per point of the mesh and is
+ * read, and returned as it is, where the flag is set. Without any prescribed point nothing moves.
+ * The result is empty when the control stopped the work. `options` are those of the control.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
@@ -73,8 +51,9 @@ std::vector<double> warpByWeightedLaplacian(
 class TAUTLINE_SOLVERS_EXPORT PrescribedMotion
 {
 public:
+  /// @param walls one per point of the mesh, see wallPoints(); none: for methods without them
   PrescribedMotion(const Mesh& mesh, const std::vector<unsigned char>& prescribed,
-    const double* displacement, int threads);
+    const double* displacement, int threads, std::vector<WallPoint> walls = {});
 
   /// Ids in the order of the places (x before y before z), then of the displacements: sums and
   /// choices do not depend on the order of the mesh.
@@ -83,10 +62,16 @@ public:
   /// A point in units of scale(), from the middle of the prescribed ones.
   Vec3 local(Index id) const;
   double scale() const { return this->Scale; }
+  /// The wall at prescribed()[i]; lengths are those of the mesh.
+  const WallPoint& wall(std::size_t i) const { return this->Walls[this->Prescribed[i]]; }
   /// Largest norm of a prescribed displacement.
   double largest() const { return this->Largest; }
   /// What the affine motion leaves of the displacement of prescribed()[i].
   const Vec3& rest(std::size_t i) const { return this->Rest[i]; }
+  /// The displacement of prescribed()[i].
+  Vec3 given(std::size_t i) const { return this->displacementOf(this->Prescribed[i]); }
+  /// The derivative of the affine motion along a coordinate of local().
+  const Vec3& derivative(std::size_t k) const { return this->Map[k + 1]; }
   /// Whether the affine motion is all there is, to rounding.
   bool affine() const { return this->Affine; }
 
@@ -96,12 +81,13 @@ public:
 private:
   void measure();
   void fitAffine();
-  Vec3 given(Index id) const;
+  Vec3 displacementOf(Index id) const;
   Vec3 affineAt(const Vec3& local) const;
 
   const Mesh& Input;
   const double* Displacement;
   int Threads;
+  std::vector<WallPoint> Walls;
   std::vector<Index> Prescribed, Free;
   Vec3 Center = { 0, 0, 0 };
   double Scale = 1;
@@ -110,5 +96,40 @@ private:
   std::array<Vec3, 4> Map = {}; ///< displacement at the centre, and its derivatives
   std::vector<Vec3> Rest;
 };
+
+/**
+ * @brief Displacements of all points, 3 each: the prescribed ones as they are, the others by
+ * inverse distance weighting (Shepard), the mean of the prescribed displacements, weighted by the
+ * distance to the power -options.distancePower (above 0, at most 20). Bitwise the same for any
+ * number of threads and any order of the points. Far groups of points count by their expansion to
+ * second order, which differs from the sum over all points by less than 1e-4 of the largest
+ * displacement. Empty when the control stopped the work; throws Error for options out of range.
+ */
+TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByInverseDistance(
+  const PrescribedMotion& motion, WarpControl& control);
+
+/**
+ * @brief The same by inverse distances with rotations (E. Luke, E. Collins, E. Blades, "A fast mesh
+ * deformation method using explicit interpolation", JCP 231, 2012): each prescribed point carries
+ * the rigid motion of the wall there, and a free point takes the mean of these motions, weighted by
+ * the share of the wall times (L / d)^3 + (a L / d)^5, d the distance, L the largest distance of a
+ * prescribed point from their mean, a L five times the largest difference of a displacement from
+ * the mean one, at least L / 10. Layers turn with their wall. Rigid motions of all are exact, other
+ * affine motions are not. Far groups of points count by their expansion, which differs from the sum
+ * over all points by less than 1e-3 of the largest displacement. Bitwise the same for any number of
+ * threads.
+ */
+TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRigidMeans(
+  const PrescribedMotion& motion, WarpControl& control);
+
+/**
+ * @brief The same by radial basis functions: Wendland's C2 function with the radius
+ * options.supportRadius (0: twice the extent of the prescribed points) around as many prescribed
+ * points, at most 3000, as it takes to meet each of the others within options.fitTolerance times
+ * the smallest height of the cells there. The point with the largest residual over its tolerance
+ * comes next, together with up to 48 that are equal to rounding; of more the first by its place.
+ */
+TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByRadialBasis(
+  const PrescribedMotion& motion, WarpControl& control);
 }
 #endif

@@ -14,7 +14,9 @@ namespace tautline
 /**
  * @brief The TMP shape metric (4.22) of each element at new points against the mesh, the mean over
  * its corners; NaN where it is inverted or degenerate, or of a type that is not measured.
- * @param mesh valid; its dimension is Planar or Volume
+ * Of a surface in space T is measured in the planes of the cell before and after, and a cell that
+ * is folded over those around counts as inverted.
+ * @param mesh valid
  * @param points 3 per point of the mesh
  * @param threads 0: all cores. The result does not depend on it.
  * @return one value per cell, at least 0
@@ -28,6 +30,9 @@ struct WarpQuality
   Index inverted = 0; ///< elements without a value: inverted, degenerate or not measured
   double worst = 0;   ///< largest value, 0 without any
   double mean = 0;    ///< over the elements that have one
+  /// Largest inverse mean ratio of T against the mesh, the mean over the corners of an element; at
+  /// least 1 where an element is valid, 0 without any.
+  double worstRatio = 0;
 };
 
 /**

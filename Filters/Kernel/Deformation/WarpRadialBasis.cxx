@@ -33,6 +33,12 @@ constexpr Index ProductsPerChunk = 30000; ///< of such a choice
 /// Chosen points between two checks of the limits.
 constexpr std::size_t ClockInterval = 16;
 
+/// A residual over its tolerance, which may be 0; above 1 where it is too large.
+double relativeTo(double tolerance, double residual)
+{
+  return residual / std::max(tolerance, std::numeric_limits<double>::min());
+}
+
 /// Wendland's C2 function of the distance over the radius.
 double wendland(double ratio)
 {
@@ -55,9 +61,11 @@ public:
   {
   }
 
-  void add(const Vec3& point, const Vec3& value)
+  /// @param tolerance of the residual at this point
+  void add(const Vec3& point, const Vec3& value, double tolerance)
   {
     this->Points.push_back(point);
+    this->Tolerances.push_back(tolerance);
     this->Residuals.push_back(value);
     this->Powers.push_back(1.0);
     this->Rows.emplace_back();
@@ -78,11 +86,11 @@ public:
       });
   }
 
-  /// Chooses until all residuals are at most `enough`; false when the control stopped it.
-  bool choose(double enough, WarpControl& control)
+  /// Chooses until all residuals are within their tolerances; false when the control stopped it.
+  bool choose(WarpControl& control)
   {
-    for (std::vector<std::size_t> next = this->worst(enough);
-         !next.empty() && this->Chosen.size() < MaxCenters; next = this->worst(enough))
+    for (std::vector<std::size_t> next = this->worst();
+         !next.empty() && this->Chosen.size() < MaxCenters; next = this->worst())
     {
       for (const std::size_t i : next)
       {
@@ -121,16 +129,16 @@ public:
   }
 
 private:
-  /// The candidates with the largest residual above `enough`: those that are equal to rounding,
-  /// as the images of a symmetry are, or the first of many; none if there is none.
-  std::vector<std::size_t> worst(double enough) const
+  /// The candidates with the largest residual over its tolerance: those that are equal to rounding,
+  /// as the images of a symmetry are, or the first of many; none if all are within it.
+  std::vector<std::size_t> worst() const
   {
     std::vector<double> sizes(this->Points.size(), 0.0);
     double most = 0;
     for (std::size_t i = 0; i < sizes.size(); ++i)
     {
-      const double size = norm(this->Residuals[i]);
-      if (size > enough && this->Powers[i] > Independence)
+      const double size = relativeTo(this->Tolerances[i], norm(this->Residuals[i]));
+      if (size > 1 && this->Powers[i] > Independence)
       {
         sizes[i] = size;
         most = std::max(most, size);
@@ -205,6 +213,7 @@ private:
   double Radius;
   int Threads;
   std::vector<Vec3> Points, Residuals;
+  std::vector<double> Tolerances;
   std::vector<double> Powers; ///< squared distance of a candidate's function from the span
   std::vector<std::vector<double>> Rows;
   std::vector<std::size_t> Chosen; ///< candidates
@@ -309,21 +318,28 @@ void keepWorst(const std::vector<double>& errors, std::vector<std::size_t>& miss
 /**
  * @brief Chooses centres until every prescribed point is met. Candidates are first some points
  * spread evenly; then, in each round, those of the others that are met worst, in the order of
- * prescribed().
- * @param enough largest residual
+ * prescribed(). A residual is enough where the options' share of the height of the cells there
+ * exceeds it.
  * @return false when the control stopped it
  */
-bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, WarpControl& control,
-  GreedyFit& fit)
+bool fitGreedily(
+  const PrescribedMotion& motion, double radius, WarpControl& control, GreedyFit& fit)
 {
   const std::vector<Index>& all = motion.prescribed();
   const std::size_t stride = (all.size() + FirstCandidates - 1) / FirstCandidates;
+  std::vector<double> tolerances(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+  {
+    // Points outside all cells, which have no height, are met as the largest displacement is.
+    tolerances[i] =
+      control.options().fitTolerance * std::min(motion.wall(i).height, motion.largest());
+  }
   std::vector<char> isCandidate(all.size(), 0);
   std::size_t candidates = 0;
   const auto add = [&](std::size_t i)
   {
     isCandidate[i] = 1;
-    fit.add(motion.local(all[i]), motion.rest(i));
+    fit.add(motion.local(all[i]), motion.rest(i), tolerances[i]);
     ++candidates;
   };
   for (std::size_t i = 0; i < all.size(); i += stride)
@@ -338,7 +354,7 @@ bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, W
   };
   require(candidates);
   std::vector<double> errors(all.size());
-  while (fit.choose(enough, control))
+  while (fit.choose(control))
   {
     if (candidates == all.size() || fit.chosen() >= MaxCenters)
     {
@@ -350,14 +366,16 @@ bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, W
       {
         for (Index i = begin; i < end; ++i)
         {
-          errors[i] =
-            isCandidate[i] ? 0 : norm(motion.rest(i) - interpolant.at(motion.local(all[i])));
+          errors[i] = isCandidate[i]
+            ? 0
+            : relativeTo(
+                tolerances[i], norm(motion.rest(i) - interpolant.at(motion.local(all[i]))));
         }
       });
     std::vector<std::size_t> missed;
     for (std::size_t i = 0; i < all.size(); ++i)
     {
-      if (errors[i] > enough)
+      if (errors[i] > 1)
       {
         missed.push_back(i);
       }
@@ -383,8 +401,7 @@ bool fitGreedily(const PrescribedMotion& motion, double radius, double enough, W
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> warpByRadialBasis(const Mesh& mesh,
-  const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control)
+std::vector<double> warpByRadialBasis(const PrescribedMotion& motion, WarpControl& control)
 {
   const WarpOptions& options = control.options();
   if (!(options.supportRadius >= 0 && std::isfinite(options.supportRadius)))
@@ -397,16 +414,14 @@ std::vector<double> warpByRadialBasis(const Mesh& mesh,
     throw Error("the tolerance of the fit is " + std::to_string(options.fitTolerance) +
       "; it must be at least 0 and below 1");
   }
-  const PrescribedMotion motion(mesh, prescribed, displacement, options.threads);
   if (motion.affine())
   {
     return motion.displacements({});
   }
   const double radius =
     options.supportRadius > 0 ? options.supportRadius / motion.scale() : DefaultRadius;
-  const double enough = options.fitTolerance * motion.largest();
   GreedyFit fit(radius, options.threads);
-  if (!fitGreedily(motion, radius, enough, control, fit))
+  if (!fitGreedily(motion, radius, control, fit))
   {
     return {};
   }

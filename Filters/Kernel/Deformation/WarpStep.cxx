@@ -12,6 +12,10 @@ namespace tautline
 {
 namespace
 {
+/// Inverse mean ratios against the initial mesh. A triangle stretched to 3.7 times its length at
+/// the same area has the first, to 20 times the second.
+constexpr double GoodRatio = 2, PoorRatio = 10;
+
 /// A mesh on several ranks with other points, until the end of its life.
 class PlacedMesh
 {
@@ -104,14 +108,17 @@ void WarpStep::updateFemwarp(const double* displacement, WarpControl& control)
 
 //------------------------------------------------------------------------------
 /// The displacements of all points by the method's own equations.
-void WarpStep::warp(const double* displacement, WarpControl& control, std::vector<double>& moved)
+void WarpStep::warp(
+  WarpMethod method, const double* displacement, WarpControl& control, std::vector<double>& moved)
 {
-  const WarpOptions& options = control.options();
   const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
-  switch (options.method)
+  switch (method)
   {
     case WarpMethod::InverseDistance:
       moved = this->warpPointwise(warpByInverseDistance, displacement, control);
+      break;
+    case WarpMethod::InverseDistanceRotations:
+      moved = this->warpPointwise(warpByRigidMeans, displacement, control);
       break;
     case WarpMethod::RadialBasis:
       moved = this->warpPointwise(warpByRadialBasis, displacement, control);
@@ -163,21 +170,28 @@ std::vector<double> WarpStep::warpPointwise(
 {
   const std::vector<unsigned char>& prescribed = this->Parts.prescribed();
   const Ranks& ranks = this->Parts.ranks();
+  const int threads = control.options().threads;
+  std::vector<WallPoint> walls;
+  ranks.together([&] { walls = wallPoints(this->From, prescribed, displacement); });
   if (!ranks.several())
   {
-    return method(this->From, prescribed, displacement, control);
+    return method(
+      PrescribedMotion(this->From, prescribed, displacement, threads, std::move(walls)), control);
   }
   const MeshView& local = this->From.view();
-  const std::vector<PrescribedPoint> given = this->Parts.prescribedOfAll(local, displacement);
+  const std::vector<PrescribedPoint> given =
+    this->Parts.prescribedOfAll(local, displacement, walls);
   std::vector<double> moved;
   ranks.together(
     [&]
     {
       std::vector<double> points, displacements;
+      std::vector<WallPoint> known;
       for (const PrescribedPoint& one : given)
       {
         points.insert(points.end(), one.place.begin(), one.place.end());
         displacements.insert(displacements.end(), one.displacement.begin(), one.displacement.end());
+        known.push_back(one.wall);
       }
       std::vector<Index> free;
       for (Index i = 0; i < local.numberOfPoints; ++i)
@@ -189,6 +203,7 @@ std::vector<double> WarpStep::warpPointwise(
         }
       }
       displacements.resize(points.size(), 0.0);
+      known.resize(points.size() / 3);
       std::vector<unsigned char> flags(points.size() / 3, 0);
       std::fill_n(flags.begin(), given.size(), 1);
       const Index start = 0;
@@ -196,7 +211,9 @@ std::vector<double> WarpStep::warpPointwise(
       cloud.numberOfPoints = static_cast<Index>(flags.size());
       cloud.points = points.data();
       cloud.offsets = &start;
-      const std::vector<double> result = method(Mesh(cloud), flags, displacements.data(), control);
+      const Mesh mesh(cloud);
+      const std::vector<double> result = method(
+        PrescribedMotion(mesh, flags, displacements.data(), threads, std::move(known)), control);
       if (result.empty())
       {
         return;
@@ -226,6 +243,7 @@ WarpQuality WarpStep::record(const char* stage, double amount, int iterations, c
   record.inverted = quality.inverted;
   record.worstShape = quality.worst;
   record.meanShape = quality.mean;
+  record.worstRatio = quality.worstRatio;
   record.seconds = control.elapsed();
   record.iterations = iterations;
   record.stage = stage;
@@ -233,21 +251,73 @@ WarpQuality WarpStep::record(const char* stage, double amount, int iterations, c
   return quality;
 }
 
-Index WarpStep::run(
-  const double* displacement, double amount, WarpControl& control, std::vector<double>& points)
+//------------------------------------------------------------------------------
+/// The points by a method's own equations, and a record of them.
+WarpQuality WarpStep::warpBy(WarpMethod method, const char* stage, const double* displacement,
+  double amount, WarpControl& control, std::vector<double>& points)
 {
   const int before = control.iterations();
-  this->warp(displacement, control, points);
+  this->warp(method, displacement, control, points);
   const double* from = this->From.view().points;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     points[i] += from[i];
   }
+  return this->record(stage, amount, control.iterations() - before, points.data(), control);
+}
+
+//------------------------------------------------------------------------------
+/// Automatic: the explicit methods in turn until one leaves good elements, or the better one.
+WarpQuality WarpStep::warpByBest(
+  const double* displacement, double amount, WarpControl& control, std::vector<double>& points)
+{
+  const struct
+  {
+    WarpMethod method;
+    const char* stage;
+  } methods[] = { { WarpMethod::RadialBasis, "radial basis" },
+    { WarpMethod::InverseDistanceRotations, "inverse distance" } };
   WarpResult& result = control.result();
-  result.invertedWarp =
-    this->record("warp", amount, control.iterations() - before, points.data(), control).inverted;
-  result.invertedAfter = result.invertedWarp;
-  if (untangles(control.options().method) && !control.stopped())
+  result.attempts.clear();
+  WarpQuality best;
+  for (const auto& [method, stage] : methods)
+  {
+    std::vector<double> moved;
+    const WarpQuality quality = this->warpBy(method, stage, displacement, amount, control, moved);
+    result.attempts.push_back({ method, quality.inverted, quality.worstRatio });
+    const bool better = result.attempts.size() == 1 || quality.inverted < best.inverted ||
+      (quality.inverted == best.inverted && quality.worstRatio < best.worstRatio);
+    if (better)
+    {
+      points = std::move(moved);
+      best = quality;
+      result.chosen = method;
+    }
+    if (control.stopped() || (quality.inverted == 0 && quality.worstRatio <= GoodRatio))
+    {
+      break;
+    }
+  }
+  return best;
+}
+
+//------------------------------------------------------------------------------
+Index WarpStep::run(
+  const double* displacement, double amount, WarpControl& control, std::vector<double>& points)
+{
+  const WarpMethod method = control.options().method;
+  const bool chooses = method == WarpMethod::Automatic && !this->Following;
+  WarpResult& result = control.result();
+  if (!this->Following)
+  {
+    result.chosen = method;
+  }
+  const WarpQuality quality = chooses
+    ? this->warpByBest(displacement, amount, control, points)
+    : this->warpBy(method, "warp", displacement, amount, control, points);
+  result.invertedAfter = result.invertedWarp = quality.inverted;
+  const bool enough = chooses && quality.inverted == 0 && quality.worstRatio <= PoorRatio;
+  if (untangles(method) && !enough && !control.stopped())
   {
     this->improve(displacement, amount, control, points);
   }
@@ -278,34 +348,45 @@ void WarpStep::improve(
   const auto stage = [&](const char* name, int iterations) {
     result.invertedAfter = this->record(name, amount, iterations, points.data(), control).inverted;
   };
-  const bool literal = options.method == WarpMethod::Hybrid && !options.untangleFirst;
+  // A surface has no model here that its points could slide on.
+  const bool surface = this->Parts.dimension() == Dimension::Surface;
+  const bool literal = options.method == WarpMethod::Hybrid && !options.untangleFirst && !surface;
   if (literal && !this->Following)
   {
     stage("optimize", this->optimize(Aim::Shape, fixed, control, points));
   }
   const bool tangled = result.invertedAfter > 0;
+  const bool poor = tangled || result.history.back().worstRatio > PoorRatio;
   const Index cells =
     ranks.several() ? ranks.mesh().globalCells() : this->Initial.view().numberOfCells;
+  const bool restoresAll =
+    options.method == WarpMethod::Hybrid || options.method == WarpMethod::Automatic;
   if (tangled && !control.stopped())
   {
+    const std::vector<double> before = points;
     stage("untangle", this->untangle(fixed, control, points));
+    for (std::size_t i = 0; i < fixed.size() && !restoresAll && !this->Following; ++i)
+    {
+      const std::ptrdiff_t at = 3 * static_cast<std::ptrdiff_t>(i);
+      fixed[i] = fixed[i] || std::equal(&points[at], &points[at] + 3, &before[at]); // not untangled
+    }
   }
   // In a step of many the next step needs a good mesh; else the target is the shape of the initial
-  // mesh.
-  const bool optimizes = this->Following
-    ? result.invertedAfter == 0
-    : options.method == WarpMethod::Hybrid && !literal && result.invertedAfter < cells;
-  if (optimizes && !control.stopped())
+  // mesh. Untangling knows ideal elements alone, which thin layers have none of.
+  const bool optimizes = this->Following || !restoresAll
+    ? result.invertedAfter == 0 && (this->Following || tangled)
+    : !literal && result.invertedAfter < cells;
+  if (optimizes && !surface && !control.stopped())
   {
     // The shape (4.22) grows with the fourth power of T. From elements that are barely valid its
     // descent ends early: for a box that rotates by 120 degrees in a box with a worst value of 870
     // instead of 41. The barrier improves these elements first.
     int iterations = 0;
-    if (result.invertedAfter == 0 && (this->Following || tangled))
+    if (result.invertedAfter == 0 && (this->Following || poor))
     {
       iterations = this->optimize(Aim::Barrier, fixed, control, points);
     }
-    if (!this->Following && !control.stopped())
+    if (restoresAll && !this->Following && !control.stopped())
     {
       iterations += this->optimize(Aim::Shape, fixed, control, points);
     }
@@ -322,6 +403,7 @@ Mesh WarpStep::moved(const std::vector<double>& points, int threads) const
   view.points = points.data();
   Mesh mesh(view, threads);
   mesh.setMirrored(this->Initial.mirrored());
+  mesh.setSpace(this->Initial.space()); // a surface may pass through a plane
   return mesh;
 }
 
@@ -414,19 +496,31 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   optimization.threads = options.threads;
   optimization.scalarization.method = Scalarization::ExponentialSum;
   optimization.objectives.assign(2, Objective());
-  // (4.24): the exponential sum of the shape and of a second metric.
-  Objective &shape = optimization.objectives[0], &other = optimization.objectives[1];
+  // (4.24): the exponential sum of the shape and of a second metric, which comes first where it is
+  // the one that no element may get worse by.
+  const bool holds = aim == Aim::Shape && options.untangleFirst;
+  Objective &shape = optimization.objectives[holds ? 1 : 0],
+            &other = optimization.objectives[holds ? 0 : 1];
   shape.metric = Metric::ShapeSimilarity;
   shape.objectiveTemplate = ObjectiveTemplate::SumOfSquares;
   shape.evaluation.targets = &targets;
   other.objectiveTemplate = ObjectiveTemplate::SumOfSquares;
   if (aim == Aim::Barrier)
   {
-    constexpr int few = 10, enough = 20;
+    constexpr int few = 10;             // sweeps between two steps
+    constexpr double costOfWorst = 0.1; // of the mean
     shape.metric = Metric::InverseMeanRatio;
     optimization.objectives.resize(1);
     optimization.stopping = StoppingCriteria();
-    optimization.stopping.maximumIterations = this->Following ? few : enough;
+    if (this->Following)
+    {
+      optimization.stopping.maximumIterations = few;
+    }
+    else
+    {
+      optimization.improveWorst = costOfWorst;
+      optimization.worstMetric = Metric::InverseMeanRatio;
+    }
     optimization.optimizer = Optimizer::Automatic;
   }
   else if (options.untangleFirst)

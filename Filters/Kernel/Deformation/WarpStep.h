@@ -14,6 +14,7 @@
 namespace tautline
 {
 class ElasticWarp;
+class PrescribedMotion;
 
 /**
  * @class tautline::WarpStep
@@ -52,9 +53,13 @@ public:
 
 private:
   void updateFemwarp(const double* displacement, WarpControl& control);
-  void warp(const double* displacement, WarpControl& control, std::vector<double>& moved);
-  using PointwiseMethod = std::vector<double> (*)(
-    const Mesh&, const std::vector<unsigned char>&, const double*, WarpControl&);
+  void warp(WarpMethod method, const double* displacement, WarpControl& control,
+    std::vector<double>& moved);
+  WarpQuality warpBy(WarpMethod method, const char* stage, const double* displacement,
+    double amount, WarpControl& control, std::vector<double>& points);
+  WarpQuality warpByBest(
+    const double* displacement, double amount, WarpControl& control, std::vector<double>& points);
+  using PointwiseMethod = std::vector<double> (*)(const PrescribedMotion&, WarpControl&);
   std::vector<double> warpPointwise(
     PointwiseMethod method, const double* displacement, WarpControl& control) const;
   Mesh moved(const std::vector<double>& points, int threads) const;
@@ -62,7 +67,7 @@ private:
     std::vector<double>& points) const;
   enum class Aim
   {
-    Barrier, ///< the squared inverse mean ratios of T alone
+    Barrier, ///< the squared inverse mean ratios of T alone, then the worst of them
     Shape    ///< the exponential sum, see WarpOptions::untangleFirst
   };
   int optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,

@@ -7,6 +7,10 @@ namespace tautline
 {
 namespace
 {
+/// Elements with a larger inverse mean ratio against the mesh at rest have collapsed: the next step
+/// would start from a mesh that is valid in name only.
+constexpr double Collapsed = 1e3;
+
 /// A mesh whose points are those of a step's beginning.
 class MovedMesh
 {
@@ -18,6 +22,7 @@ public:
     this->View.points = this->Points.data();
     this->Moved = std::make_unique<Mesh>(this->View, threads);
     this->Moved->setMirrored(initial.mirrored());
+    this->Moved->setSpace(initial.space()); // a surface may pass through a plane
   }
   const Mesh& mesh() const { return *this->Moved; }
 
@@ -36,13 +41,14 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
   WarpResult& result = control.result();
   const std::size_t size = 3 * static_cast<std::size_t>(mesh.view().numberOfPoints);
   const bool automatic = steps == 0;
-  constexpr double growth = 2.0, shortest = 1e-4, firstFollowing = 0.125; // of the motion
+  constexpr double growth = 2.0, shortest = 1e-4, firstShort = 0.125; // of the motion
+  const bool shortFirst = following || result.still;
 
   std::vector<double> points(mesh.view().points, mesh.view().points + size);
   result.points = points;
   result.amount = 0;
   auto from = std::make_unique<MovedMesh>(mesh, points, options.threads);
-  double amount = 0, step = !automatic ? 1.0 / steps : following ? firstFollowing : 1.0;
+  double amount = 0, step = !automatic ? 1.0 / steps : shortFirst ? firstShort : 1.0;
   int done = 0;
   while (amount < 1.0)
   {
@@ -68,7 +74,8 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
     one.setFollowing(following);
     const Index inverted = one.run(displacement.data(), next, control, to);
     control.setRange(0.0, 1.0);
-    const bool good = inverted == 0 || !automatic;
+    const bool good =
+      !automatic || (inverted == 0 && (following || result.history.back().worstRatio <= Collapsed));
     if (good && !control.stopped())
     {
       // The prescribed points get their exact positions.
@@ -102,7 +109,7 @@ void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& mot
     result.invertedWarp = result.invertedAfter =
       qualityOf(mesh, result.points.data(), options.threads, parts.ranks()).inverted;
     control.addMessage("The mesh could follow only a part of the motion, " +
-      std::to_string(result.amount) + " of it, without inverted elements.");
+      std::to_string(result.amount) + " of it, without inverted or collapsed elements.");
   }
 }
 }

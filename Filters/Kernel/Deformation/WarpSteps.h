@@ -21,9 +21,10 @@ using WarpMotion = std::function<void(double, double*)>;
 /**
  * @brief The motion in steps, each from the mesh the one before came to.
  * @param steps number of steps of equal length; 0: as few as no element needs to invert. Then a
- * step that inverts elements is halved, and the next one is doubled; if steps become too small or
- * too many, the result is the mesh of the last valid one.
- * @param following see WarpStep::setFollowing(); the first of such steps is short
+ * step that inverts or collapses elements is halved, and the next one is doubled; if steps become
+ * too small or too many, the result is the mesh of the last good one.
+ * @param following see WarpStep::setFollowing(); the first of such steps is short, and so it is
+ * where the motion ends where it begins
  */
 void warpInSteps(const Mesh& mesh, const WarpParts& parts, const WarpMotion& motion, int steps,
   bool following, WarpControl& control);

@@ -14,7 +14,8 @@ namespace
 constexpr WarpMethod allMethods[] = { WarpMethod::Hybrid, WarpMethod::Femwarp,
   WarpMethod::AnisotropicFemwarp, WarpMethod::SmallStepFemwarp, WarpMethod::FemwarpUntangling,
   WarpMethod::IterativeStiffening, WarpMethod::JacobianStiffening, WarpMethod::Biharmonic,
-  WarpMethod::InverseDistance, WarpMethod::RadialBasis, WarpMethod::WeightedLaplacian };
+  WarpMethod::InverseDistance, WarpMethod::RadialBasis, WarpMethod::WeightedLaplacian,
+  WarpMethod::InverseDistanceRotations, WarpMethod::Automatic };
 
 constexpr CellType elementTypes[] = { CellType::Triangle, CellType::Quadrilateral,
   CellType::Tetrahedron, CellType::Hexahedron };
@@ -142,7 +143,7 @@ TAUTLINE_PART(testAffine)
         d[2] = flat ? 0.0 : d[2];
         return d;
       };
-      const auto check = [&](const WarpOptions& options)
+      const auto check = [&](const WarpOptions& options, bool silent = true)
       {
         const WarpResult result = warped(data, motion, options);
         double worst = 0;
@@ -156,7 +157,7 @@ TAUTLINE_PART(testAffine)
         }
         TAUTLINE_CHECK(worst <= 1e-12 * scale);
         TAUTLINE_CHECK_EQUAL(result.amount, 1.0);
-        TAUTLINE_CHECK(result.message.empty());
+        TAUTLINE_CHECK_EQUAL(result.message.empty(), silent);
       };
       std::vector<double> tensors;
       Random random(5);
@@ -178,12 +179,14 @@ TAUTLINE_PART(testAffine)
       }
       for (const WarpMethod method : allMethods)
       {
-        // Stiffening makes a body of many materials, which do not follow affine motions exactly.
-        if (method != WarpMethod::JacobianStiffening && method != WarpMethod::Hybrid)
+        // Stiffening makes a body of many materials, which do not follow affine motions exactly;
+        // walls that turn carry no stretch.
+        if (method != WarpMethod::JacobianStiffening && method != WarpMethod::Hybrid &&
+          method != WarpMethod::InverseDistanceRotations)
         {
           const Context context(
             std::string(topology(type).name) + " method " + std::to_string(int(method)));
-          check(withMethod(method));
+          check(withMethod(method), method != WarpMethod::Automatic);
         }
       }
     }

@@ -119,7 +119,7 @@ TAUTLINE_PART(testSecondStep)
   const MeshData data = boxInBox(CellType::Triangle, 20, 8);
   const Field motion = turnedBox(60, true);
   const double untangled =
-    warped(data, motion, withMethod(WarpMethod::FemwarpUntangling)).history.back().worstShape;
+    warped(data, motion, withMethod(WarpMethod::FemwarpUntangling)).history[1].worstShape;
   std::vector<double> smallest;
   for (const double beta : { -1.0, 0.0, 0.1, 0.6 })
   {
@@ -347,7 +347,7 @@ TAUTLINE_PART(testSteps)
   }
   // A motion that is given as a function of the amount is taken as it is, be it the turn or its
   // chord. (A turn that is followed to its end: where steps fail, rounding decides about the last.)
-  constexpr double followed = 50;
+  constexpr double followed = 35;
   const WarpResult turn = warped(data, turnedBox(followed, true), few);
   const WarpResult given = Warper(mesh, few).warp(
     [&](double amount, double* to)
@@ -388,7 +388,7 @@ TAUTLINE_PART(testSteps)
 TAUTLINE_PART(testThreads)
 {
   const MeshData data = boxInBox(CellType::Tetrahedron, 10, 3);
-  for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
+  for (int method = 0; method <= int(WarpMethod::Automatic); ++method)
   {
     const Context context("method " + std::to_string(method));
     WarpOptions options = withMethod(WarpMethod(method));
@@ -425,7 +425,7 @@ TAUTLINE_PART(testMirrored)
     const Mesh mesh(data.view());
     Mesh imageMesh(image.view());
     imageMesh.setMirrored(true);
-    for (int method = 0; method <= int(WarpMethod::WeightedLaplacian); ++method)
+    for (int method = 0; method <= int(WarpMethod::Automatic); ++method)
     {
       const Context context("method " + std::to_string(method));
       const WarpResult straight = Warper(mesh, withMethod(WarpMethod(method))).warp(d.data());
@@ -436,10 +436,9 @@ TAUTLINE_PART(testMirrored)
       double worst = largestOf<double>(0, d.size(),
         [&](std::size_t i)
         { return std::abs(result.points[i] - (i % 3 == 0 ? -1.0 : 1.0) * straight.points[i]); });
-      // Untangling takes vertices in an order of its own.
-      const bool untangles =
-        method == int(WarpMethod::Hybrid) || method == int(WarpMethod::FemwarpUntangling);
-      TAUTLINE_CHECK(untangles || worst < 1e-9);
+      // Untangling takes vertices in an order of its own, and mirrored points have other groups.
+      const bool groups = method == int(WarpMethod::InverseDistanceRotations);
+      TAUTLINE_CHECK(untangles(WarpMethod(method)) || worst < (groups ? 1e-3 : 1e-9));
     }
   }
 }

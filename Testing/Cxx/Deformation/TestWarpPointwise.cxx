@@ -9,13 +9,28 @@ using namespace tautline;
 
 namespace
 {
-using Method = decltype(&warpByInverseDistance);
+using Method = std::vector<double> (*)(
+  const Mesh&, const std::vector<unsigned char>&, const double*, WarpControl&);
+
+/// A method that takes each point by itself, with the walls of the mesh.
+template <std::vector<double> (*Warp)(const PrescribedMotion&, WarpControl&)>
+std::vector<double> pointwise(const Mesh& mesh, const std::vector<unsigned char>& prescribed,
+  const double* displacement, WarpControl& control)
+{
+  return Warp(PrescribedMotion(mesh, prescribed, displacement, control.options().threads,
+                wallPoints(mesh, prescribed, displacement)),
+    control);
+}
+
+constexpr Method byInverseDistance = pointwise<warpByInverseDistance>;
+constexpr Method byRadialBasis = pointwise<warpByRadialBasis>;
+
 const struct
 {
   const char* name;
   Method warp;
-} methods[] = { { "inverse distance", warpByInverseDistance },
-  { "radial basis", warpByRadialBasis }, { "weighted Laplacian", warpByWeightedLaplacian } };
+} methods[] = { { "inverse distance", byInverseDistance }, { "radial basis", byRadialBasis },
+  { "weighted Laplacian", warpByWeightedLaplacian } };
 
 /// A mesh, its prescribed points and what is prescribed; other displacements are NaN.
 struct Problem
@@ -213,13 +228,13 @@ TAUTLINE_PART(testTies)
     return d;
   };
   problem.prescribe(symmetric);
-  const std::vector<double> moves = problem.run(warpByRadialBasis);
+  const std::vector<double> moves = problem.run(byRadialBasis);
   Random random(21);
   for (double& d : problem.displacement)
   {
     d *= 1 + random.uniform(-1e-15, 1e-15);
   }
-  const std::vector<double> rounded = problem.run(warpByRadialBasis);
+  const std::vector<double> rounded = problem.run(byRadialBasis);
   double difference = largestOf<double>(
     0, moves.size(), [&](std::size_t i) { return std::abs(rounded[i] - moves[i]); });
   TAUTLINE_CHECK(difference < 1e-9 * n);
@@ -251,7 +266,7 @@ TAUTLINE_PART(testInverseDistance)
     }
     TAUTLINE_LET(WarpOptions, options, distancePower = power);
     const std::vector<double> exact = motion.displacements(rest),
-                              moves = problem.run(warpByInverseDistance, options);
+                              moves = problem.run(byInverseDistance, options);
     double worst = largestOf<double>(
       0, moves.size(), [&](std::size_t i) { return std::abs(moves[i] - exact[i]); });
     TAUTLINE_CHECK(worst < 1e-4 * motion.largest());
@@ -309,18 +324,20 @@ TAUTLINE_PART(testRadialBasis)
   const auto difference = [&](double tolerance)
   {
     options.fitTolerance = tolerance;
-    const std::vector<double> moves = problem.run(warpByRadialBasis, options);
+    const std::vector<double> moves = problem.run(byRadialBasis, options);
     double worst = largestOf<double>(
       0, moves.size(), [&](std::size_t i) { return std::abs(moves[i] - exact[i]); });
-    return worst / motion.largest();
+    return worst;
   };
-  TAUTLINE_CHECK(difference(0) < 1e-11);
+  TAUTLINE_CHECK(difference(0) < 1e-11 * motion.largest());
   for (const double tolerance : { 1e-1, 1e-2, 1e-3 })
   {
     std::cout << "tolerance " << tolerance << ": " << difference(tolerance) << " away\n";
   }
-  TAUTLINE_CHECK(difference(1e-3) < 2e-3 && difference(1e-3) > 1e-7);
+  // Relative to the height of right triangles of side 1, above their longest edges in the plane:
+  // over their longest side at a corner.
   TAUTLINE_CHECK(difference(1e-2) < 2e-2 && difference(1e-2) > 1e-4);
+  TAUTLINE_CHECK(difference(1e-1) < 2e-1 && difference(1e-1) > 1e-2);
 }
 
 /// More prescribed points than the first candidates: the others are met as well.
@@ -346,7 +363,7 @@ TAUTLINE_PART(testManyCenters)
     some.prescribed[i] = 0;
   }
   TAUTLINE_CHECK(dropped > 500);
-  const std::vector<double> moves = some.run(warpByRadialBasis, options);
+  const std::vector<double> moves = some.run(byRadialBasis, options);
   double worst = 0;
   for (Index i = 0; i < problem.data.numberOfPoints(); i += 7)
   {
@@ -430,7 +447,7 @@ TAUTLINE_PART(testTurning)
   }
   const Problem far = holeProblem(CellType::Triangle, 24, 8, 1.2);
   TAUTLINE_CHECK(
-    far.inverted(far.run(warpByRadialBasis)) < far.inverted(far.run(warpByWeightedLaplacian)));
+    far.inverted(far.run(byRadialBasis)) < far.inverted(far.run(warpByWeightedLaplacian)));
 }
 
 /// No prescribed points, only such, a part without any, points at one place, a surface in space.
@@ -503,16 +520,15 @@ TAUTLINE_PART(testControl)
   for (const double power : { 0.0, -1.0, 20.5, std::nan("") })
   {
     wrong.distancePower = power;
-    TAUTLINE_CHECK_THROWS(
-      problem.run(warpByInverseDistance, wrong), wording("above-0-and-at-most-20"));
+    TAUTLINE_CHECK_THROWS(problem.run(byInverseDistance, wrong), wording("above-0-and-at-most-20"));
   }
   for (const double radius : { -1.0, std::nan(""), HUGE_VAL })
   {
     wrong.supportRadius = radius;
-    TAUTLINE_CHECK_THROWS(problem.run(warpByRadialBasis, wrong), wording("support-radius"));
+    TAUTLINE_CHECK_THROWS(problem.run(byRadialBasis, wrong), wording("support-radius"));
   }
   TAUTLINE_SET(wrong, supportRadius = 0, fitTolerance = 1);
-  TAUTLINE_CHECK_THROWS(problem.run(warpByRadialBasis, wrong), "below 1");
+  TAUTLINE_CHECK_THROWS(problem.run(byRadialBasis, wrong), "below 1");
   for (const auto& method : methods)
   {
     const Context context(method.name);

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file WarpSheet.h
+ * @brief The elastic sheet: linear elasticity of a surface in space.
+ * Internal: not installed.
+ */
+#ifndef tautline_WarpSheet_h
+#define tautline_WarpSheet_h
+
+#include "tautline/Elliptic/FiniteElements.h"
+
+namespace tautline
+{
+/**
+ * @brief The stiffness matrix of a surface in space with three displacements per point: in the
+ * plane of each cell as plane strain, across it by the shear modulus times the Laplacian, which is
+ * elasticity of displacements that do not change along the normal. Unknown 3 p + k is component k
+ * of point p. Quadrilaterals count as their projections onto their mean planes.
+ */
+TAUTLINE_SOLVERS_EXPORT SparseMatrix sheetMatrix(
+  const Mesh& surface, const ElasticOperator& pde, const AssemblyOptions& options);
+}
+#endif
