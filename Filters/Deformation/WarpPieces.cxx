@@ -389,8 +389,9 @@ WarpResult PieceWarp::warpFromPrevious(const WarpResult& previous)
 //------------------------------------------------------------------------------
 WarpResult PieceWarp::warp()
 {
-  return this->Group.any(!staysAtRest(this->Task)) ? this->run(this->Task)
-                                                   : resultAtRest(this->local().points());
+  return this->Group.any(!staysAtRest(this->Task))
+    ? this->run(this->Task)
+    : resultAtRest(this->Settings, this->local().points());
 }
 
 //------------------------------------------------------------------------------

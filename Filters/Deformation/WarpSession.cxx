@@ -23,11 +23,11 @@ namespace
 // Coordinates of the time steps that are kept: 2^27 numbers, 1 GiB, of a data set.
 constexpr std::size_t MaximumNumbersKept = std::size_t(1) << 27;
 
-constexpr std::array<const char*, 11> MethodNames = { "Hybrid", "FEMWARP", "Anisotropic FEMWARP",
+constexpr std::array<const char*, 13> MethodNames = { "Hybrid", "FEMWARP", "Anisotropic FEMWARP",
   "Small-step FEMWARP", "FEMWARP and untangling", "Elasticity, iterative stiffening",
   "Elasticity, Jacobian-based stiffening", "Biharmonic", "Inverse distance weighting",
-  "Radial basis functions", "Weighted Laplacian" };
-static_assert(MethodNames.size() == static_cast<std::size_t>(WarpMethod::WeightedLaplacian) + 1,
+  "Radial basis functions", "Weighted Laplacian", "Inverse distance with rotations", "Automatic" };
+static_assert(MethodNames.size() == static_cast<std::size_t>(WarpMethod::Automatic) + 1,
   "a name for each method");
 
 double norm3(const double* d)
@@ -162,12 +162,15 @@ bool staysAtRest(const WarpTask& task)
 }
 
 //------------------------------------------------------------------------------
-WarpResult resultAtRest(std::vector<double> points)
+WarpResult resultAtRest(const WarpSettings& settings, std::vector<double> points)
 {
   WarpResult result;
   result.points = std::move(points); // bitwise
   result.history.resize(1);
   result.history[0].stage = "rest";
+  // Over time, the first step is at rest.
+  const bool still = settings.amount > 0 && settings.motion != MotionSource::TimeSteps;
+  result.message = still ? NothingMoves : "";
   return result;
 }
 
@@ -619,7 +622,7 @@ WarpResult WarpSession::warp(WarpBlock& kept, WarpTask& task, int blockNumber, b
   const auto before = stepwise ? kept.frames.find(this->current - 1) : kept.frames.end();
   if (staysAtRest(task) && before == kept.frames.end())
   {
-    result = resultAtRest(atRest);
+    result = resultAtRest(this->settings, atRest);
   }
   else if (before == kept.frames.end())
   {

@@ -69,7 +69,8 @@ struct WarpSettings
 // Errors.
 constexpr const char* NoTimeSteps =
   "The input has no time steps its boundary could move over: choose another Motion.";
-/// A message of a result.
+// Messages of a result.
+constexpr const char* NothingMoves = "No point of the boundary moves: set the motion.";
 constexpr const char* PreviousInvalid =
   "The time step before was not valid, so this one started from the first.";
 constexpr const char* PreviousLimited =
@@ -118,7 +119,7 @@ void holdStaying(WarpTask& task);
 /// Whether nothing moves, not even on the way: full turns end where they began.
 bool staysAtRest(const WarpTask& task);
 /// The result of that. @param points as they are
-WarpResult resultAtRest(std::vector<double> points);
+WarpResult resultAtRest(const WarpSettings& settings, std::vector<double> points);
 WarpResult runWarp(Warper& warper, const WarpTask& task);
 /**
  * @brief Places the nodes between the corners of curved cells, which follow; on the boundary where

@@ -7,15 +7,17 @@
  * or as it does over the time steps of the input. The interior follows by anisotropic FEMWARP and
  * the optimization of shape and validity (HYBRID, dissertation section 4.9) or by one of the
  * methods this is compared with. The connectivity stays. An affine motion of the whole boundary
- * comes out exactly, except by JACOBIAN_STIFFENING, whose material is not uniform, and by HYBRID,
- * which then restores the shapes of the elements.
+ * comes out exactly, except by JACOBIAN_STIFFENING, whose material is not uniform,
+ * INVERSE_DISTANCE_ROTATIONS, which is exact for rigid motions, and HYBRID, which then restores the
+ * shapes of the elements.
  *
  * Takes data sets with explicit points, or blocks of these (one after the other, each with its own
- * boundary): triangles, quadrilaterals, tetrahedra and hexahedra (pointwise methods: wedges and
- * pyramids, too). The elements must be valid to begin with. A mesh reversed throughout is treated
- * as its mirror image, and so is a cell that lists its points in the opposite order of the
- * others. Surfaces in space, parts without a consistent orientation, image data (implicit points),
- * polygons and polyhedra are refused.
+ * boundary): triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids. The elements
+ * must be valid to begin with. A mesh reversed throughout is treated as its mirror image, and so is
+ * a cell that lists its points in the opposite order of the others. Of a surface in space, a cell
+ * that is folded over those around counts as inverted; it is untangled, but its shapes are not
+ * optimized. Parts without a consistent orientation, image data (implicit points), polygons and
+ * polyhedra are refused.
  *
  * @par Curved cells:
  * Corners move as those of linear cells by all methods. The nodes between them follow, see
@@ -308,11 +310,13 @@ public:
     BIHARMONIC = 7,
     INVERSE_DISTANCE = 8,
     RADIAL_BASIS = 9,
-    WEIGHTED_LAPLACIAN = 10
+    WEIGHTED_LAPLACIAN = 10,
+    INVERSE_DISTANCE_ROTATIONS = 11,
+    AUTOMATIC = 12 ///< chooses by the motion; the summary states what and why
   };
   ///@{
   /// How the interior follows, see tautline::WarpMethod. The default is HYBRID.
-  vtkTautlineSetRangeMacro(Method, int, HYBRID, WEIGHTED_LAPLACIAN);
+  vtkTautlineSetRangeMacro(Method, int, HYBRID, AUTOMATIC);
   vtkGetMacro(Method, int);
   ///@}
 
@@ -406,7 +410,7 @@ public:
   ///@{
   /**
    * RADIAL_BASIS: the radius of the functions (0, the default: chosen) and how well the boundary is
-   * met, relative to the largest displacement (default 1e-3).
+   * met, relative to the smallest height of the cells at each of its points (default 1e-2).
    */
   vtkTautlineSetRangeMacro(SupportRadius, double, 0.0, VTK_DOUBLE_MAX);
   vtkGetMacro(SupportRadius, double);
@@ -516,7 +520,7 @@ private:
   int MaximumStiffenings = 50;
   double DistancePower = 3.0;
   double SupportRadius = 0.0;
-  double FitTolerance = 1e-3;
+  double FitTolerance = 1e-2;
   bool UntangleFirst = true;
   double UntanglingBeta = 0.0;
   int MaximumIterations = 50;
