@@ -8,11 +8,15 @@
 //                          positions after the first
 //   groups CUBES           inverse distance weighting of CUBES^3 hexahedra: with groups of
 //                          prescribed points, and the plain sums over all of them
+//   layers POINTS          methods side by side on boundary layers and boxes that turn, with POINTS
+//                          on the wall of an airfoil, and as anchors interpolations of all
+//                          prescribed points by plain formulas, see Anchors.h
 
 #include "../../Filters/Core/MeshAdapter.h"
 #include "../Cxx/VtkMeshes.h"
 #include "../Cxx/Blocks.h"
-#include "../Cxx/Deformation/Warping.h"
+#include "../Cxx/Deformation/LayeredMeshes.h"
+#include "Anchors.h"
 #include "Clocks.h"
 
 #include "tautline/Domains/Domains.h"
@@ -251,6 +255,84 @@ void groupsPart(Index cubes)
 }
 
 //------------------------------------------------------------------------------
+struct Case
+{
+  std::string name;
+  MeshData data;
+  std::vector<double> motion;
+};
+
+std::vector<Case> layerCases(Index points)
+{
+  std::vector<Case> cases;
+  const auto add = [&](const std::string& name, const LayeredMesh& mesh, const Field& field) {
+    cases.push_back({ name, mesh.data, mesh.motion(field) });
+  };
+  constexpr double far = 15, growth = 1.18, shellGrowth = 1.3, shellFar = 6;
+  constexpr Index layers = 60, shellLayers = 16;
+  const Vec3 axes = { 1, 0.5, 0.3 }, diagonal = { 1, 1, 1 };
+  const LayeredMesh airfoil =
+    layeredRing(CellType::Quadrilateral, points, layers, growth, airfoilShape(far));
+  for (const int degrees : { 30, 60 })
+  {
+    add("airfoil turned by " + std::to_string(degrees), airfoil, turnedWall(degrees));
+  }
+  add("airfoil shifted", airfoil, [](const Vec3&) { return Vec3{ 2, 3, 0 }; });
+  for (const CellType type : { CellType::Tetrahedron, CellType::Wedge })
+  {
+    add(std::string("ellipsoid turned by 60, ") + topology(type).plural,
+      layeredShell(type, std::max<Index>(2, points / 20), shellLayers, shellGrowth, axes, shellFar),
+      turnedWall(60, diagonal));
+  }
+  for (const int degrees : { 60, 180 })
+  {
+    const MeshData flat = boxInBox(CellType::Triangle, points / 4, 2 * (points / 20));
+    cases.push_back({ "square turned by " + std::to_string(degrees), flat,
+      displacements(flat, turnedBox(degrees, true)) });
+    const MeshData solid = boxInBox(CellType::Tetrahedron, 2 * (points / 23), 2 * (points / 80));
+    cases.push_back({ "box turned by " + std::to_string(degrees), solid,
+      displacements(solid, turnedBox(degrees, false)) });
+  }
+  return cases;
+}
+
+void layersPart(Index points)
+{
+  const std::pair<const char*, WarpMethod> methods[] = { { "Automatic", WarpMethod::Automatic },
+    { "Hybrid", WarpMethod::Hybrid }, { "FEMWARP", WarpMethod::Femwarp },
+    { "FEMWARP and untangling", WarpMethod::FemwarpUntangling },
+    { "biharmonic", WarpMethod::Biharmonic }, { "inverse distance", WarpMethod::InverseDistance },
+    { "inverse distance with rotations", WarpMethod::InverseDistanceRotations },
+    { "radial basis", WarpMethod::RadialBasis },
+    { "weighted Laplacian", WarpMethod::WeightedLaplacian } };
+  const std::pair<const char*, Anchor> anchors[] = { { "anchor thin plate", thinPlateSplines },
+    { "anchor Wendland C2", wendlandFunctions }, { "anchor IDWarp", idwarpFormula } };
+  for (const Case& one : layerCases(points))
+  {
+    const Mesh mesh(one.data.view(), 1);
+    const auto report = [&](const char* name, const std::vector<double>& moved, double seconds)
+    {
+      const WarpQuality quality = qualityOf(mesh, moved.data(), 1);
+      print(one.name + ", " + name + " inverted", static_cast<double>(quality.inverted));
+      print(one.name + ", " + name + " worst ratio", quality.worstRatio);
+      print(one.name + ", " + name + " seconds", seconds);
+    };
+    for (const auto& [name, method] : methods)
+    {
+      const double start = processTime();
+      const WarpResult result = Warper(mesh, withMethod(method)).warp(one.motion.data());
+      report(name, result.points, processTime() - start);
+    }
+    for (const auto& [name, anchor] : anchors)
+    {
+      const double start = processTime();
+      const std::vector<double> moved = anchor(mesh, one.motion);
+      report(name, moved, processTime() - start);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
 using Arguments = std::vector<std::string>;
 
 struct Part
@@ -268,6 +350,7 @@ const std::map<std::string, Part> parts = {
   { "box", { 2, [](const Arguments& a) { boxPart(number(a[0]), number(a[1])); } } },
   { "domains", { 1, [](const Arguments& a) { domainsPart(std::stod(a[0])); } } },
   { "groups", { 1, [](const Arguments& a) { groupsPart(number(a[0])); } } },
+  { "layers", { 1, [](const Arguments& a) { layersPart(number(a[0])); } } },
   { "stages", { 2, [](const Arguments& a) { stagesPart(number(a[0]), number(a[1])); } } },
 };
 }

@@ -13,6 +13,7 @@ CUBES = (60, 10)  # 1,071,360 tetrahedra
 DOMAINS = (1.0, 0.3)
 HEXAHEDRA = (40, 8)  # along each edge of a cube
 DEGREES = (30, 60, 90, 120, 180)
+WALL_POINTS = (160, 60)  # of an airfoil
 
 
 def run(program: Path, repeats: int, quick: bool) -> tuple[dict[str, float], list[Row]]:
@@ -28,7 +29,7 @@ def run(program: Path, repeats: int, quick: bool) -> tuple[dict[str, float], lis
         return result
 
     return measured, (_box(part, repeats, quick) + _domains(part, quick) + _stages(part, repeats, quick)
-                      + _groups(part, quick))
+                      + _groups(part, quick) + _layers(part, quick))
 
 
 def _box(part, repeats: int, quick: bool) -> list[Row]:
@@ -77,3 +78,13 @@ def _groups(part, quick: bool) -> list[Row]:
     m = part("groups", HEXAHEDRA[quick])
     return [(f"inverse distance, {m['points']:.0f} points: groups / plain sums",
              m["seconds by groups"] / m["seconds by plain sums"], "" if quick else "<= 0.7")]
+
+
+def _layers(part, quick: bool) -> list[Row]:
+    m = part("layers", WALL_POINTS[quick])
+    rows: list[Row] = []
+    for key in (key.removesuffix(" inverted") for key in m if key.endswith(" inverted")):
+        rows += [(f"{key}: inverted", m[f"{key} inverted"], "<= 0" if key.endswith(", Automatic") else ""),
+                 ("  worst inverse mean ratio against the mesh at rest", m[f"{key} worst ratio"], ""),
+                 ("  seconds", m[f"{key} seconds"], "")]
+    return rows
