@@ -156,6 +156,8 @@ def methods(name, source):
         "laplacian": {**pushed, "Method": "Weighted Laplacian"},
         "distances": {**pushed, "Method": "Inverse distance weighting"},
         "radial": {**turned, "Method": "Radial basis functions"},
+        "rotations": {**pushed, "Method": "Inverse distance with rotations"},
+        "automatic": {**turned, "Method": "Automatic"},
         "part": {**turned, "Method": "FEMWARP", "MovedPart": "Boundary parts by number", "Parts": [1]},
         "values": {**turned, "Method": "FEMWARP", "MovedPart": "Values of an array",
                    "MovedArray": ["POINTS", "place"]},

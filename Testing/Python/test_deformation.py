@@ -125,9 +125,13 @@ def test_arrays_and_targets():
 
 def test_methods():
     mesh = box_in_box()
-    for method in ("hybrid", "femwarp and untangling"):
+    for method in ("hybrid", "femwarp and untangling", "automatic"):
         result = tl.warp(mesh, transform={"rotate": 90, "axis": (1, 1, 0)}, method=method)
         assert result.inverted == 0, (method, result.summary)
+    turned = tl.warp(mesh, transform={"rotate": 15}, method="inverse distance with rotations")
+    assert turned.inverted == 0 and turned.history["stage"] == ["warp"], turned.summary
+    chosen = tl.warp(mesh, transform={"rotate": 15}, method="automatic")
+    assert chosen.inverted == 0 and chosen.history["stage"][0] == "radial basis", chosen.summary
     plain = tl.warp(mesh, transform={"rotate": 90, "axis": (1, 1, 0)}, method="femwarp")
     assert plain.inverted == plain.inverted_after_warp > 0 and plain.history["inverted"][-1] == plain.inverted
     assert (plain.validity != 1).sum() == plain.inverted
@@ -170,7 +174,7 @@ def test_curved():
     mesh = quadratic_square(6, 0.08)
     x = points(mesh)
     d = np.column_stack([0.3 * x[:, 0] + 0.2 * x[:, 1], -0.5 * x[:, 0], 0 * x[:, 0]])
-    for method in ("femwarp", "inverse distance", "radial basis", "weighted laplacian"):
+    for method in ("femwarp", "inverse distance", "radial basis", "weighted laplacian", "automatic"):
         moved = tl.warp(mesh, displacement=d, method=method)
         assert moved.inverted == 0 and np.abs(moved.displacement - d).max() < 1e-10, method
     # A node in the middle of an edge of the boundary goes beyond a quarter of it.

@@ -62,7 +62,8 @@ for case in CASES:
     # Something has happened: points move, elements become inverted, cells change.
     assert np.abs(np.asarray(one[f"warp {case}"])[:, 3:]).max() > 0.1 and len(one[f"warp {case}"]) == 64
     for way in ("anisotropic", "principal", "small steps", "stiffening", "jacobian", "cells", "regions", "gradients",
-                "biharmonic", "laplacian", "distances", "radial", "part", "values"):  # fmt: skip
+                "biharmonic", "laplacian", "distances", "radial", "rotations", "automatic", "part",
+                "values"):  # fmt: skip
         if case == "tree":
             continue
         points, shapes, _, statistics = one[f"{way} {case}"]

@@ -388,6 +388,7 @@ OPERATIONS = {
     **each("warp by {}, 50,000 triangles", (
         "hybrid", "femwarp", "anisotropic femwarp", "small-step femwarp", "femwarp and untangling",
         "jacobian stiffening", "biharmonic", "inverse distance", "radial basis", "weighted laplacian",
+        "inverse distance with rotations", "automatic",
     ), lambda method, t: tl.warp(moving("cylinder"), "Displacement", method, 0.6, threads=t)),
     "warp, iterative stiffening": lambda t: tl.warp(
         PLATE, transform={"rotate": 70}, method="iterative stiffening", maximum_stiffenings=5, threads=t),

@@ -114,9 +114,10 @@ struct WarpOptions
   double fitTolerance = 1e-2;
   /**
    * @brief Hybrid's second step. On: untangle() the inverted elements and, if there were any or one
-   * has an inverse mean ratio of T above 10, reduce the squared ratios, then the worst of them
-   * while the mean grows by at most a tenth; then minimize the exponential sum of F_1, the shape
-   * (4.22), and of these squared ratios, the worst of which is held. They are a barrier that keeps
+   * has an inverse mean ratio of T above 10, reduce the squared ratios; on one rank, where one
+   * is still above 10, the worst of them while the mean grows by at most a tenth; then minimize the
+   * exponential sum of F_1, the shape (4.22), and of these squared ratios, the worst of which is
+   * held. They are a barrier that keeps
    * every element valid, and replace the untangling metric of (4.24), which is 0 there. Off: (4.24)
    * itself; elements it leaves inverted are untangled afterwards.
    */

@@ -384,7 +384,17 @@ void WarpStep::improve(
     int iterations = 0;
     if (result.invertedAfter == 0 && (this->Following || poor))
     {
+      const std::vector<double> before = points;
       iterations = this->optimize(Aim::Barrier, fixed, control, points);
+      // The mean may grow relative to where the optimization starts, so that it starts again.
+      // Several ranks improve no single elements.
+      const bool worst = !this->Following && !ranks.several() && !control.stopped() &&
+        qualityOf(this->Initial, points.data(), options.threads).worstRatio > PoorRatio;
+      if (worst)
+      {
+        points = before;
+        iterations += this->optimize(Aim::Worst, fixed, control, points);
+      }
     }
     if (restoresAll && !this->Following && !control.stopped())
     {
@@ -505,7 +515,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   shape.objectiveTemplate = ObjectiveTemplate::SumOfSquares;
   shape.evaluation.targets = &targets;
   other.objectiveTemplate = ObjectiveTemplate::SumOfSquares;
-  if (aim == Aim::Barrier)
+  if (aim != Aim::Shape)
   {
     constexpr int few = 10;             // sweeps between two steps
     constexpr double costOfWorst = 0.1; // of the mean
@@ -516,7 +526,7 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
     {
       optimization.stopping.maximumIterations = few;
     }
-    else
+    else if (aim == Aim::Worst)
     {
       optimization.improveWorst = costOfWorst;
       optimization.worstMetric = Metric::InverseMeanRatio;

@@ -67,7 +67,8 @@ private:
     std::vector<double>& points) const;
   enum class Aim
   {
-    Barrier, ///< the squared inverse mean ratios of T alone, then the worst of them
+    Barrier, ///< the squared inverse mean ratios of T alone
+    Worst,   ///< then the worst of them, while the mean hardly grows
     Shape    ///< the exponential sum, see WarpOptions::untangleFirst
   };
   int optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,

@@ -366,6 +366,10 @@ void testPieces(vtkMPIController* controller)
         turn(filter, 20);
         TAUTLINE_SET(filter, SetMethod(vtkMeshWarp::BIHARMONIC), SetSteps(2));
       });
+    // Walls are those of all cells around a point, whichever process has them.
+    testSame("radial basis", controller, *mesh, same, method(vtkMeshWarp::RADIAL_BASIS));
+    testSame("rotations", controller, *mesh, same, method(vtkMeshWarp::INVERSE_DISTANCE_ROTATIONS));
+    testSame("automatic", controller, *mesh, same, method(vtkMeshWarp::AUTOMATIC));
     // One process solves by BiCGSTAB and ends at the tolerance, processes by a factorization.
     testSame(
       "weighted Laplacian", controller, *mesh, 1e-9, method(vtkMeshWarp::WEIGHTED_LAPLACIAN));
