@@ -42,30 +42,23 @@ public:
 
   std::vector<double> run()
   {
-    this->Boundary.setWeight(weakBoundary);
-    bool valid = this->untangle();
-    if (!valid && !this->Stopped)
+    this->attempt();
+    if (!this->Stopped && !this->isDone())
     {
       const std::vector<Vec3> kept = this->X;
-      const Index invalid = this->Untangler.invalid();
+      const Index invalid = this->countInvalid();
+      const double off = offSurface(this->Constrained, kept).distance;
       this->X = this->Start;
       this->Untangler.relax(sweepsOfRelaxation);
-      valid = this->untangle();
-      if (!valid && this->Untangler.invalid() >= invalid)
+      this->attempt();
+      const Index now = this->countInvalid();
+      if (now > invalid ||
+        (now == invalid && offSurface(this->Constrained, this->X).distance >= off))
       {
         this->X = kept;
       }
     }
-    if (!this->Stopped)
-    {
-      this->returnToSurface();
-      this->unfold();
-    }
-    this->place();
-    std::vector<double> points(
-      this->TheMesh.view().points, this->TheMesh.view().points + 3 * this->X.size());
-    storeMovedPoints(this->Start, this->X, points.data());
-    return points;
+    return this->stored();
   }
 
 private:
@@ -77,7 +70,44 @@ private:
     return !this->Stopped;
   }
 
-  bool untangle()
+  std::vector<double> stored() const
+  {
+    const double* from = this->TheMesh.view().points;
+    std::vector<double> points(from, from + 3 * this->X.size());
+    storeMovedPoints(this->Start, this->X, points.data());
+    return points;
+  }
+
+  /// Cells that are not valid everywhere.
+  Index countInvalid() const
+  {
+    std::vector<signed char> validity(this->TheMesh.view().numberOfCells);
+    const std::vector<double> points = this->stored();
+    this->TheMesh.at(points.data()).classifyCells(validity.data(), this->Threads);
+    return std::count_if(this->Cells.cells().begin(), this->Cells.cells().end(),
+      [&](const SlidingCells::Cell& cell) { return validity[cell.cell] != Valid; });
+  }
+
+  bool isDone() const
+  {
+    return this->countInvalid() == 0 &&
+      offSurface(this->Constrained, this->X).distance <= this->Constrained.tolerance();
+  }
+
+  /// From where the points are.
+  void attempt()
+  {
+    this->Boundary.setWeight(weakBoundary);
+    this->untangle();
+    if (!this->Stopped)
+    {
+      this->returnToSurface();
+      this->unfold();
+    }
+    this->place();
+  }
+
+  void untangle()
   {
     constexpr double done = 0.5;
     bool valid = this->Untangler.invalid() == 0;
@@ -87,7 +117,6 @@ private:
       valid =
         this->Untangler.run(rings[i], stepsOfRings, [&](Index) { return this->report(progress); });
     }
-    return valid;
   }
 
   /// Raises the weight of the boundary as long as the corners stay valid.
@@ -112,17 +141,6 @@ private:
     }
   }
 
-  bool isValid()
-  {
-    std::vector<signed char> validity(this->TheMesh.view().numberOfCells);
-    std::vector<double> points(
-      this->TheMesh.view().points, this->TheMesh.view().points + 3 * this->X.size());
-    storeMovedPoints(this->Start, this->X, points.data());
-    this->TheMesh.at(points.data()).classifyCells(validity.data(), this->Threads);
-    return std::all_of(this->Cells.cells().begin(), this->Cells.cells().end(),
-      [&](const SlidingCells::Cell& cell) { return validity[cell.cell] == Valid; });
-  }
-
   /// Raises the worst corners, and the determinants between corners, until all cells are valid.
   void unfold()
   {
@@ -130,7 +148,7 @@ private:
     this->Boundary.setWeight(1.0);
     for (const double enough : clearlyValid)
     {
-      if (this->Stopped || (this->isValid() && this->Boundary.isWithin()))
+      if (this->Stopped || (this->countInvalid() == 0 && this->Boundary.isWithin()))
       {
         break;
       }
