@@ -217,9 +217,11 @@ public:
    * points slide within flat parts of the boundary and along straight edges, and are contracted
    * there; edges between coplanar facets are swapped. The shape and the volumes stay. ON_SURFACE
    * (tetrahedra only): the same on curved parts; facets stay within SurfaceDistance and
-   * SurfaceAngle of the input's, corners, sharp edges (FeatureAngle) and facets between regions
-   * stay. The shape and the volume change within these bounds; the summary has both. Parts of the
-   * boundary that are closer to each other than the distance may come to overlap.
+   * SurfaceAngle of the input's, which stays within 1.25 times the distance of them; corners, sharp
+   * edges (FeatureAngle) and facets between regions stay, but for sharp edges of noise and corners
+   * nearer to each other than the distance. The shape and the volume change within these bounds;
+   * the summary has both. Parts of the boundary that are closer to each other than the distance may
+   * come to overlap.
    */
   vtkTautlineSetRangeMacro(Boundary, int, FIXED, ON_SURFACE);
   vtkGetMacro(Boundary, int);

@@ -16,7 +16,7 @@ namespace tautline
 TAUTLINE_KERNEL_EXPORT std::vector<SurfaceFacet> surfaceFacets(const Mesh& mesh);
 
 /// The point closest to x of a triangle, or of an edge, which has the last corner twice.
-Vec3 closestOnTriangle(const std::array<Vec3, 3>& corner, const Vec3& x);
+TAUTLINE_KERNEL_EXPORT Vec3 closestOnTriangle(const std::array<Vec3, 3>& corner, const Vec3& x);
 
 /**
  * @brief Adds the places at which distances of a triangle, or of an edge, are measured: the corners

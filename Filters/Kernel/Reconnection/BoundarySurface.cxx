@@ -4,9 +4,12 @@
 #include "Constants.h"
 
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/UnionFind.h"
 #include "tautline/Mesh/Features.h"
 
 #include <map>
+#include <numeric>
+#include <tuple>
 
 namespace tautline
 {
@@ -96,6 +99,287 @@ double senseOf(const TetrahedronMesh& mesh, const Features& features)
   }
   return 1.0;
 }
+
+/// How far the samples of the input may be from the boundary, as a multiple of the distance: where
+/// a curved part is cut off, they are somewhat farther from the chord than its middle from them.
+constexpr double BackFactor = 1.25;
+/// Of each edge, for the samples of facets.
+constexpr int SampleDivisions = 2;
+/// Cells of the grid of points along the longest side of its box, at most.
+constexpr double MostCells = 100.0;
+/// A chain of at most so many sharp edges that ends within a patch is noise.
+constexpr Index NoiseEdges = 3;
+
+/// The features without noise: chains of few sharp edges with an end where no other one begins,
+/// which divide nothing.
+Features featuresOf(const Mesh& mesh, FeatureOptions options)
+{
+  Features features = findFeatures(mesh, options);
+  std::vector<Index> degree(features.kind.size(), 0);
+  std::vector<std::vector<std::size_t>> chains(features.curves);
+  for (std::size_t e = 0; e < features.edges.size(); ++e)
+  {
+    const Features::Edge& edge = features.edges[e];
+    chains[edge.curve].push_back(e);
+    ++degree[edge.first];
+    ++degree[edge.second];
+  }
+  bool found = true, any = false;
+  while (found)
+  {
+    found = false;
+    for (std::vector<std::size_t>& chain : chains)
+    {
+      const bool dangles = std::any_of(chain.begin(), chain.end(),
+        [&](std::size_t e)
+        { return degree[features.edges[e].first] == 1 || degree[features.edges[e].second] == 1; });
+      if (!dangles || static_cast<Index>(chain.size()) > NoiseEdges)
+      {
+        continue;
+      }
+      for (std::size_t e : chain)
+      {
+        --degree[features.edges[e].first];
+        --degree[features.edges[e].second];
+      }
+      chain.clear();
+      found = any = true;
+    }
+  }
+  if (!any)
+  {
+    return features;
+  }
+  std::vector<signed char> kinds(features.kind.size(), DetectKind);
+  for (const Features::Edge& edge : features.edges)
+  {
+    for (Index v : { edge.first, edge.second })
+    {
+      kinds[v] = degree[v] == 0 ? static_cast<signed char>(PatchPoint) : kinds[v];
+    }
+  }
+  options.kinds = kinds.data();
+  return findFeatures(mesh, options);
+}
+
+/// A box around points.
+struct Box
+{
+  Vec3 low, high;
+  void add(const Vec3& x) { this->join({ x, x }); }
+  double joinedDiagonal(const Box& other) const
+  {
+    Vec3 d;
+    for (int k = 0; k < 3; ++k)
+    {
+      d[k] = std::max(this->high[k], other.high[k]) - std::min(this->low[k], other.low[k]);
+    }
+    return norm(d);
+  }
+  void join(const Box& other)
+  {
+    for (int k = 0; k < 3; ++k)
+    {
+      this->low[k] = std::min(this->low[k], other.low[k]);
+      this->high[k] = std::max(this->high[k], other.high[k]);
+    }
+  }
+};
+}
+
+//------------------------------------------------------------------------------
+void BoundarySurface::PointGrid::build(std::vector<Vec3> points)
+{
+  if (points.empty())
+  {
+    return;
+  }
+  Box box = { points.front(), points.front() };
+  std::for_each(points.begin(), points.end(), [&](const Vec3& x) { box.add(x); });
+  this->Low = box.low;
+  // On a surface about as many cells as points are met.
+  const Vec3 d = box.high - box.low;
+  const double longest = std::max({ d[0], d[1], d[2] });
+  const double cells = std::ceil(std::sqrt(static_cast<double>(points.size())));
+  this->Size = longest > 0.0 ? longest / std::min(cells, MostCells) : 1.0;
+  for (int k = 0; k < 3; ++k)
+  {
+    this->Counts[k] = static_cast<Index>(d[k] / this->Size) + 1;
+  }
+  const auto number = [&](const Vec3& x)
+  {
+    const std::array<Index, 3> c = this->cellOf(x);
+    return (c[2] * this->Counts[1] + c[1]) * this->Counts[0] + c[0];
+  };
+  this->Starts.assign(this->Counts[0] * this->Counts[1] * this->Counts[2] + 1, 0);
+  for (const Vec3& x : points)
+  {
+    ++this->Starts[number(x) + 1];
+  }
+  std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
+  std::vector<Index> next(this->Starts.begin(), this->Starts.end() - 1);
+  this->Points.resize(points.size());
+  for (const Vec3& x : points)
+  {
+    this->Points[next[number(x)]++] = x;
+  }
+}
+
+std::array<Index, 3> BoundarySurface::PointGrid::cellOf(const Vec3& x) const
+{
+  std::array<Index, 3> cell;
+  for (int k = 0; k < 3; ++k)
+  {
+    const double at = (x[k] - this->Low[k]) / this->Size;
+    cell[k] = static_cast<Index>(
+      std::clamp(at, 0.0, static_cast<double>(std::max<Index>(this->Counts[k] - 1, 0))));
+  }
+  return cell;
+}
+
+template <class Visit>
+bool BoundarySurface::PointGrid::all(const Vec3& low, const Vec3& high, const Visit& visit) const
+{
+  if (this->Points.empty())
+  {
+    return true;
+  }
+  const std::array<Index, 3> a = this->cellOf(low), b = this->cellOf(high);
+  for (Index k = a[2]; k <= b[2]; ++k)
+  {
+    for (Index j = a[1]; j <= b[1]; ++j)
+    {
+      const Index row = (k * this->Counts[1] + j) * this->Counts[0];
+      for (Index n = this->Starts[row + a[0]]; n < this->Starts[row + b[0] + 1]; ++n)
+      {
+        const Vec3& x = this->Points[n];
+        bool inside = true;
+        for (int c = 0; c < 3; ++c)
+        {
+          inside = inside && x[c] >= low[c] && x[c] <= high[c];
+        }
+        if (inside && !visit(x))
+        {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
+}
+
+bool BoundarySurface::keepsPoints(
+  const std::vector<Facet>& former, const std::vector<Facet>& facets) const
+{
+  const double reach = BackFactor * this->Distance;
+  const auto isNear = [reach](const std::vector<Facet>& some, const Vec3& x)
+  {
+    return std::any_of(some.begin(), some.end(),
+      [&](const Facet& f) { return norm(closestOnTriangle(f, x) - x) <= reach; });
+  };
+  if (former.empty())
+  {
+    return true;
+  }
+  Box box = { former[0][0], former[0][0] };
+  for (const Facet& f : former)
+  {
+    std::for_each(f.begin(), f.end(), [&](const Vec3& x) { box.add(x); });
+  }
+  const Vec3 margin = { reach, reach, reach };
+  return this->Kept.all(box.low - margin, box.high + margin,
+    [&](const Vec3& x) { return isNear(facets, x) || !isNear(former, x); });
+}
+
+//------------------------------------------------------------------------------
+/// Joins corners at the ends of short edges to groups that are smaller than the distance; all
+/// corners of a group touch all its patches.
+void BoundarySurface::groupCorners(const Features& features, const TetrahedronMesh& changing,
+  std::vector<std::vector<std::int32_t>>& touched)
+{
+  struct Edge
+  {
+    double length;
+    PointId a, b;
+    bool operator<(const Edge& other) const
+    {
+      return std::tie(this->length, this->a, this->b) < std::tie(other.length, other.a, other.b);
+    }
+  };
+  const auto isCorner = [&](Index v)
+  { return features.kind[v] == CornerPoint && this->Freedoms[v].kind == PointFreedom::Fixed; };
+  std::vector<Edge> edges;
+  for (const Features::Facet& facet : features.facets)
+  {
+    for (int k = 0; k < facet.size; ++k)
+    {
+      const Index a = facet.nodes[k], b = facet.nodes[(k + 1) % facet.size];
+      const Vec3 d =
+        changing.point(static_cast<PointId>(a)) - changing.point(static_cast<PointId>(b));
+      if (a < b && isCorner(a) && isCorner(b) && norm(d) <= this->Distance)
+      {
+        edges.push_back({ norm(d), static_cast<PointId>(a), static_cast<PointId>(b) });
+      }
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  UnionFind groups(changing.pointSlots());
+  std::map<Index, Box> boxes;
+  const auto boxOf = [&](Index root) -> Box&
+  {
+    const Vec3& x = changing.point(static_cast<PointId>(root));
+    return boxes.insert({ root, Box{ x, x } }).first->second;
+  };
+  for (const Edge& edge : edges)
+  {
+    const Index a = groups.find(edge.a), b = groups.find(edge.b);
+    if (a == b || boxOf(a).joinedDiagonal(boxOf(b)) > this->Distance)
+    {
+      continue;
+    }
+    Box box = boxOf(a);
+    box.join(boxOf(b));
+    groups.join(a, b);
+    boxes[groups.find(a)] = box;
+  }
+  std::map<Index, std::vector<Index>> members;
+  for (const Edge& edge : edges)
+  {
+    for (PointId v : { edge.a, edge.b })
+    {
+      members[groups.find(v)].push_back(v);
+    }
+  }
+  for (auto& [root, points] : members)
+  {
+    std::vector<std::int32_t> all;
+    for (Index v : points)
+    {
+      all.insert(all.end(), touched[v].begin(), touched[v].end());
+    }
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    for (Index v : points)
+    {
+      touched[v] = all;
+      this->Freedoms[v].group = static_cast<std::int32_t>(root);
+    }
+  }
+}
+
+bool BoundarySurface::joins(
+  const Vec3& x, const PointFreedom& from, const Vec3& y, const PointFreedom& to) const
+{
+  if (to.kind != PointFreedom::Fixed || to.patches == NoId || norm(y - x) > this->Distance)
+  {
+    return false;
+  }
+  if (from.kind == PointFreedom::Fixed)
+  {
+    return from.group != NoId && from.group == to.group;
+  }
+  const std::vector<std::int32_t>&own = this->Sets[from.patches], &all = this->Sets[to.patches];
+  return std::includes(all.begin(), all.end(), own.begin(), own.end());
 }
 
 BoundarySurface::BoundarySurface(
@@ -104,7 +388,7 @@ BoundarySurface::BoundarySurface(
 {
   FeatureOptions wanted;
   wanted.angle = options.featureAngle;
-  const Features features = findFeatures(mesh, wanted);
+  const Features features = featuresOf(mesh, wanted);
   const SurfaceModel model = makeSurfaceModel(mesh, features, false);
   for (const SurfacePart& part : model.parts)
   {
@@ -152,7 +436,6 @@ BoundarySurface::BoundarySurface(
     PointFreedom& freedom = this->Freedoms[v];
     if (!touched[v].empty())
     {
-      freedom.patches = numberOf(touched[v]);
       freedom.part = interface[v] ? NoId : parts[v];
       freedom.kind = freedom.part == NoId ? PointFreedom::Fixed
         : freedom.part < this->Patches    ? PointFreedom::InPlane
@@ -162,6 +445,12 @@ BoundarySurface::BoundarySurface(
     {
       freedom.kind = PointFreedom::Fixed;
     }
+  }
+  this->Kept.build(this->Whole.front().samples(SampleDivisions));
+  this->groupCorners(features, changing, touched);
+  for (PointId v = 0; v < changing.pointSlots(); ++v)
+  {
+    this->Freedoms[v].patches = touched[v].empty() ? NoId : numberOf(touched[v]);
   }
 }
 
@@ -220,11 +509,12 @@ bool BoundarySurface::accepts(const std::array<Vec3, 3>& x, int patch) const
   Vec3 below = { 0, 0, 0 };
   for (const Vec3& p : { (1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a) })
   {
-    if (!(norm(surface.closest(p) - p) <= this->Distance))
+    Vec3 direction;
+    if (!(norm(surface.closest(p, direction) - p) <= this->Distance))
     {
       return false;
     }
-    below += surface.direction(p);
+    below += direction;
   }
   return dot(normal, below) >= this->Cosine * norm(normal) * norm(below);
 }
@@ -232,6 +522,7 @@ bool BoundarySurface::accepts(const std::array<Vec3, 3>& x, int patch) const
 double BoundarySurface::distance(const TetrahedronMesh& changed) const
 {
   const SurfaceProjection now(boundaryOf(changed), nullptr);
-  return std::max(now.distanceTo(this->Whole.front()), this->Whole.front().distanceTo(now));
+  return std::max(now.distanceTo(this->Whole.front(), 1, SampleDivisions),
+    this->Whole.front().distanceTo(now, 1, SampleDivisions));
 }
 }

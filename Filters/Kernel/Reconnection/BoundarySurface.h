@@ -19,7 +19,10 @@ namespace tautline
  * @brief Patches and curves (Features) of the outer boundary of the input, made of its facets.
  *
  * Points keep to their patch or curve; a facet has the patch that all its points touch, and stays
- * within a distance and an angle of it. Not changed after construction: threads share it.
+ * within a distance and an angle of it; what the input has stays within 1.25 times the distance of
+ * the facets. Chains of at most three sharp edges with an end within a patch are noise, and not
+ * curves; corners nearer to each other than the distance may become one. Not changed after
+ * construction: threads share it.
  */
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT BoundarySurface
 {
@@ -41,6 +44,9 @@ public:
   PointFreedom inPatch(int patch) const;
   /// Whether the two touch a common patch.
   bool touches(const PointFreedom& freedom, int patch) const;
+  /// Whether a point at x, of a corner or curve, may be moved into a corner at y: both are corners
+  /// of a group, or the point of a curve is near and the corner touches all its patches.
+  bool joins(const Vec3& x, const PointFreedom& from, const Vec3& y, const PointFreedom& to) const;
   /// The patch of a facet on the boundary: at its place, of those that all three points touch; -1
   /// if there is none.
   int patchOf(const std::array<Vec3, 3>& x, const std::array<PointFreedom, 3>& freedoms) const;
@@ -50,13 +56,44 @@ public:
    */
   bool accepts(const std::array<Vec3, 3>& x, int patch) const;
 
+  using Facet = std::array<Vec3, 3>;
+  /**
+   * @brief Whether facets may be replaced by others with the same border: samples of the input's
+   * boundary (corners, middles of edges, centres) that are within a bound of the former ones are
+   * within it of the new ones. So all of them stay within it: 1.25 times the distance.
+   */
+  bool keepsPoints(const std::vector<Facet>& former, const std::vector<Facet>& facets) const;
+
   /// The largest distance of the outer boundary of the mesh from that of the input, and back, at
   /// corners, middles of edges and centres of facets.
   double distance(const TetrahedronMesh& changed) const;
 
 private:
+  /// Points in the cells of a grid.
+  class PointGrid
+  {
+  public:
+    void build(std::vector<Vec3> points);
+    /// Calls visit(x) for the points in a box until it returns false. @return whether none did
+    template <class Visit>
+    bool all(const Vec3& low, const Vec3& high, const Visit& visit) const;
+
+  private:
+    std::array<Index, 3> cellOf(const Vec3& x) const;
+
+    Vec3 Low = { 0, 0, 0 };
+    double Size = 1; ///< of a cell
+    std::array<Index, 3> Counts = { 0, 0, 0 };
+    std::vector<Index> Starts; ///< per cell, of its points
+    std::vector<Vec3> Points;
+  };
+
+  void groupCorners(const Features& features, const TetrahedronMesh& changing,
+    std::vector<std::vector<std::int32_t>>& touched);
+
   std::vector<SurfaceProjection> Parts; ///< first the patches, then the curves
   std::vector<SurfaceProjection> Whole; ///< one: the boundary
+  PointGrid Kept;                       ///< what has to stay near
   int Patches = 0;
   std::vector<PointFreedom> Freedoms;
   std::vector<std::vector<std::int32_t>> Sets; ///< of patches; the first ones have one patch each

@@ -5,6 +5,12 @@
 
 namespace tautline
 {
+namespace
+{
+/// Halvings of a step that leaves the boundary.
+constexpr int SurfaceHalvings = 2;
+}
+
 void CavityOperations::addCounts(const OperationCounts& counts)
 {
   this->Counts.edgeRemovals += counts.edgeRemovals;
@@ -61,6 +67,7 @@ bool CavityOperations::isValidChange()
   const bool grows = size > this->Mesh.size(), shrinks = size < this->Mesh.size();
   if ((grows && size > this->largestSize) || (shrinks && size < this->smallestSize))
   {
+    this->countLimited = true;
     return false;
   }
   for (std::size_t i = 0; i < this->Change.after.size(); ++i)
@@ -105,7 +112,7 @@ bool CavityOperations::applyChange()
 /// Carries out the replacement if it is an improvement, within the bounds and valid.
 bool CavityOperations::commit()
 {
-  if (!this->Tentative && !this->improves())
+  if (!this->Tentative && !this->OfFacets && !this->improves())
   {
     return false;
   }
@@ -175,7 +182,16 @@ bool CavityOperations::smooth(PointId v, int steps)
   }
   Vec3 p = this->Mesh.point(v);
   const PointFreedom freedom = this->freedomAt(v);
-  const double after = this->Smoothing.maximize(p, steps, freedom, this->projectionOf(freedom));
+  const auto project = this->projectionOf(freedom);
+  double after = this->Smoothing.maximize(p, steps, freedom, project);
+  // A shorter step may keep to the boundary.
+  for (int k = 0;
+       freedom.isCurved() && k < SurfaceHalvings && after > before && !this->keepsSurface(v, p);
+       ++k)
+  {
+    p = project(0.5 * (p + this->Mesh.point(v)));
+    after = this->Smoothing.evaluate(p);
+  }
   if (!(after > before * (1.0 + SameQuality)) || p == this->Mesh.point(v) ||
     (freedom.isCurved() && !this->keepsSurface(v, p)))
   {
@@ -259,11 +275,12 @@ bool CavityOperations::canContract(PointId v, PointId w, const EdgeRing& ring)
   {
     return true;
   }
-  if (freedom.kind == PointFreedom::Fixed || ring.closed || !ring.whole)
+  const bool fixed = freedom.kind == PointFreedom::Fixed;
+  if ((fixed && freedom.group == NoId) || ring.closed || !ring.whole)
   {
     return false;
   }
-  if (freedom.isCurved())
+  if (fixed || freedom.isCurved())
   {
     return this->canContractCurved(v, w, ring);
   }

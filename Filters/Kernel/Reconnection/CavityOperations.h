@@ -48,8 +48,9 @@ struct OperationRules
   std::vector<EdgeMetric> metrics;
   /// How much longer or shorter new edges may be.
   double edgeFactor = 2.0;
-  bool inserts = true; ///< whether repairs may insert points
-  bool sums = false;   ///< ReconnectionObjective::Sum decides, not the worst qualities
+  bool inserts = true;                 ///< whether repairs may insert points
+  bool contracts = true, moves = true; ///< whether facets may be improved by these
+  bool sums = false; ///< ReconnectionObjective::Sum decides, not the worst qualities
   QualityFloor floor;
   Index smallestSize = 0, largestSize = 0; ///< bounds of the number of tetrahedra
   /// Edges between coplanar facets may be removed, facets and edges of the boundary divided.
@@ -91,6 +92,14 @@ public:
   /// of a cavity; point and cavity are the best found before the mesh is changed.
   bool insert(TetId t);
 
+  /**
+   * @brief Improves a facet of the outer boundary: swaps or contracts one of its edges, or moves
+   * one of its points. The smallest mean ratio of the facets that change becomes larger. The
+   * tetrahedra at them may become worse, to a part of the smallest quality around (Tolerated) and
+   * not below the floor.
+   */
+  bool improveFacet(TetId t, int i);
+
   /// A change that may make qualities worse at first, and becomes an improvement by moving the
   /// vertices around. Where it does not, everything is as before.
   enum class Compound
@@ -102,6 +111,8 @@ public:
   bool tryCompound(TetId t, Compound kind);
   /// The largest number of swaps and insertions that follow a tentative change.
   int repairs = 0;
+  /// Set where the bounds of the number of tetrahedra did not allow an operation.
+  bool countLimited = false;
 
   const std::vector<TetId>& changed() const { return this->Created; }
   const OperationCounts& counts() const { return this->Counts; }
@@ -180,6 +191,13 @@ private:
   double excess(const TetVertices& v) const;
   /// What tetrahedra have to be better than, where one of this quality is replaced.
   double leastOf(TetId t) const { return this->sums ? 0.0 : this->Mesh.quality(t); }
+  // For facets.
+  bool swapFacet(TetId t, int i, int j);
+  bool contractFacet(TetId t, int i, int j, double ratio);
+  bool moveFacet(PointId v, double ratio);
+  double tolerated(const std::vector<TetId>& tets) const;
+  double facetRatio(const TriangleVertices& f) const;
+  double smallestFacetRatio(PointId v, const Vec3& p) const;
   void addTriangles(const EdgeRing& ring, int i, int j);
   double extendFaces(PointId a, PointId b, TetId above, PointId u, PointId w, int depth);
   void grow(Insertion& insertion);
@@ -194,6 +212,7 @@ private:
   // On a curved boundary.
   PointFreedom freedomAt(PointId v) const;
   std::function<Vec3(const Vec3&)> projectionOf(const PointFreedom& freedom) const;
+  std::array<Vec3, 3> facetOf(const TriangleVertices& facet) const;
   int patchOf(const TriangleVertices& facet) const;
   bool keepsSurface(const TriangleVertices& facet) const;
   bool keepsSurface(PointId v, const Vec3& p) const;
@@ -219,6 +238,7 @@ private:
   std::vector<TetId> Cavity;
   // Of a compound operation.
   bool Tentative = false;
+  bool OfFacets = false; ///< the facets of a change decide, not its tetrahedra
   std::vector<Step> Steps;
   std::vector<TetId> Affected;
 };

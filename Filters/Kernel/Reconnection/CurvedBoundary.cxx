@@ -86,21 +86,24 @@ std::function<Vec3(const Vec3&)> CavityOperations::projectionOf(const PointFreed
 int CavityOperations::patchOf(const TriangleVertices& f) const
 {
   return this->surface->patchOf(
-    { this->Mesh.point(f[0]), this->Mesh.point(f[1]), this->Mesh.point(f[2]) },
-    { this->freedoms[f[0]], this->freedoms[f[1]], this->freedoms[f[2]] });
+    this->facetOf(f), { this->freedoms[f[0]], this->freedoms[f[1]], this->freedoms[f[2]] });
+}
+
+std::array<Vec3, 3> CavityOperations::facetOf(const TriangleVertices& f) const
+{
+  return { this->Mesh.point(f[0]), this->Mesh.point(f[1]), this->Mesh.point(f[2]) };
 }
 
 bool CavityOperations::keepsSurface(const TriangleVertices& f) const
 {
   const int patch = this->patchOf(f);
-  return patch != NoId &&
-    this->surface->accepts(
-      { this->Mesh.point(f[0]), this->Mesh.point(f[1]), this->Mesh.point(f[2]) }, patch);
+  return patch != NoId && this->surface->accepts(this->facetOf(f), patch);
 }
 
 /// Whether the facets of a point, whose star is `Star`, keep to the boundary with it at p.
 bool CavityOperations::keepsSurface(PointId v, const Vec3& p) const
 {
+  std::vector<BoundarySurface::Facet> former, facets;
   for (TetId t : this->Star)
   {
     for (int i = 0; i < 4; ++i)
@@ -121,23 +124,31 @@ bool CavityOperations::keepsSurface(PointId v, const Vec3& p) const
       {
         return false;
       }
+      facets.push_back(x);
+      former.push_back(this->facetOf(f));
     }
   }
-  return true;
+  return this->surface->keepsPoints(former, facets);
 }
 
 /// Whether the facets that the replacement adds to the boundary keep to it.
 bool CavityOperations::keepsSurface()
 {
-  std::vector<TriangleVertices> former;
+  std::vector<TriangleVertices> before;
+  std::vector<BoundarySurface::Facet> former, facets;
   for (TetId t : this->Change.before)
   {
     for (int i = 0; i < 4; ++i)
     {
-      former.push_back(sorted(this->Mesh.face(t, i)));
+      const TriangleVertices f = this->Mesh.face(t, i);
+      before.push_back(sorted(f));
+      if (this->Mesh.tet(t).neighbors[i] == NoId)
+      {
+        former.push_back(this->facetOf(f));
+      }
     }
   }
-  makeSet(former);
+  makeSet(before);
   std::vector<std::pair<TriangleVertices, TriangleVertices>> faces;
   for (const TetVertices& v : this->Change.after)
   {
@@ -152,13 +163,22 @@ bool CavityOperations::keepsSurface()
   {
     const bool shared = (i > 0 && faces[i - 1].first == faces[i].first) ||
       (i + 1 < faces.size() && faces[i + 1].first == faces[i].first);
-    if (!shared && !std::binary_search(former.begin(), former.end(), faces[i].first) &&
-      !this->keepsSurface(faces[i].second))
+    if (shared)
+    {
+      continue;
+    }
+    const bool isNew = !std::binary_search(before.begin(), before.end(), faces[i].first);
+    if (isNew && !this->keepsSurface(faces[i].second))
     {
       return false;
     }
+    // (Faces towards the rest of the mesh count, too: they are at most nearer.)
+    if (isNew)
+    {
+      facets.push_back(this->facetOf(faces[i].second));
+    }
   }
-  return true;
+  return this->surface->keepsPoints(former, facets);
 }
 
 //------------------------------------------------------------------------------
@@ -191,9 +211,13 @@ bool CavityOperations::canContractCurved(PointId v, PointId w, const EdgeRing& r
   }
   const PointFreedom& freedom = this->freedoms[v];
   const PointId first = ring.ring[0], last = ring.ring[ring.vertices - 1];
-  if (freedom.kind == PointFreedom::InPlane
-      ? !this->surface->touches(this->freedoms[w], freedom.part)
-      : this->patchOf({ v, w, first }) == this->patchOf({ v, w, last }))
+  const bool joins = freedom.kind != PointFreedom::InPlane &&
+    this->surface->joins(this->Mesh.point(v), freedom, this->Mesh.point(w), this->freedoms[w]);
+  if (!joins &&
+    (freedom.kind == PointFreedom::Fixed ||
+      (freedom.kind == PointFreedom::InPlane
+          ? !this->surface->touches(this->freedoms[w], freedom.part)
+          : this->patchOf({ v, w, first }) == this->patchOf({ v, w, last }))))
   {
     return false;
   }

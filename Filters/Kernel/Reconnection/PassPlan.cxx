@@ -25,21 +25,25 @@ constexpr int Repairs = 4;
 /// some milliseconds each.
 constexpr Index MaxFailures = 100, TetrahedraPerFailure = 10000;
 
-}
+/// Target angles of the stages. Every stage tries everything on the tetrahedra below its angle, so
+/// that what the count allows is spent on the worst first. First slivers, then steps that a user
+/// can tell apart; the default target is one of them.
+constexpr double StageAngles[] = { SliverAngle, 25.0, 33.4, 40.0, 45.0, 50.0, 55.0, 60.0 };
 
-//------------------------------------------------------------------------------
-std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index size)
+/// The passes of a stage. @param target quality; @param former of the stage before, 0: none
+std::vector<PassOptions> planStage(
+  const ReconnectionOptions& options, Index size, double target, double former)
 {
   const bool sums = options.objective == ReconnectionObjective::Sum;
-  const double target = sums ? 1.0 : std::sin(radians(options.targetAngle));
   PassOptions pass;
   pass.swap = options.swap;
   pass.smooth = options.smooth;
   pass.skipsBound = options.boundary == ReconnectionBoundary::Fixed && !sums;
+  pass.facets = options.boundary != ReconnectionBoundary::Fixed && !sums;
   std::vector<PassOptions> passes;
   for (double first : FirstTargets)
   {
-    if (first < target && !sums)
+    if (first > former && first < target && !sums)
     {
       pass.target = first;
       passes.push_back(pass);
@@ -73,6 +77,29 @@ std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index si
     passes.push_back(pass);
   }
   return passes;
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::vector<PassOptions>> planStages(const ReconnectionOptions& options, Index size)
+{
+  if (options.objective == ReconnectionObjective::Sum)
+  {
+    return { planStage(options, size, 1.0, 0.0) };
+  }
+  std::vector<std::vector<PassOptions>> stages;
+  double former = 0.0;
+  for (double angle : StageAngles)
+  {
+    const double target = std::sin(radians(angle));
+    stages.push_back(planStage(options, size, target, former));
+    former = target;
+    if (angle >= options.targetAngle)
+    {
+      break;
+    }
+  }
+  return stages;
 }
 
 PassOptions withoutCompound(PassOptions pass)

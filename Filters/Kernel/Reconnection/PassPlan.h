@@ -14,8 +14,11 @@
 
 namespace tautline
 {
-/// First swaps and smoothing, for ever better tetrahedra; then insertion, then what is costly.
-std::vector<PassOptions> planPasses(const ReconnectionOptions& options, Index size);
+/**
+ * @brief The passes of each stage, of one angle after the other up to the target. Stages of the
+ * same number are the same for all targets.
+ */
+std::vector<std::vector<PassOptions>> planStages(const ReconnectionOptions& options, Index size);
 
 /// For what repairs that were ended early left below the target.
 PassOptions withoutCompound(PassOptions pass);

@@ -172,6 +172,7 @@ bool CavityOperations::findInsertion(TetId t, Insertion& best, std::vector<Inser
 {
   if (this->Mesh.size() + 1 > this->largestSize)
   {
+    this->countLimited = true;
     return false;
   }
   const double least = best.quality;

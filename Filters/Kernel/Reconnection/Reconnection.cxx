@@ -221,10 +221,13 @@ private:
   void setFloor(const ReconnectionRecord& record);
   bool improveMean();
   void setBounds();
-  bool runPasses(std::vector<PassOptions> passes);
-  bool runInBlocks(const std::vector<PassOptions>& passes, int levels, std::vector<char> starts);
+  bool runStages();
+  bool runStage(const std::vector<PassOptions>& stage, double end);
+  bool runPasses(std::vector<PassOptions> passes, double end);
+  bool runInBlocks(
+    const std::vector<PassOptions>& passes, int levels, std::vector<char> starts, double end);
   std::vector<char> flagsOf(const unsigned char* flags) const;
-  bool paysInBlocks(const std::vector<char>& starts) const;
+  bool paysInBlocks(const std::vector<char>& starts, double target) const;
   bool runBlocks(
     MeshBlockList& blocks, const std::vector<PassOptions>& passes, const std::vector<char>& starts);
   std::vector<char> addRings(std::vector<char> flags) const;
@@ -264,6 +267,8 @@ void Run::setBounds()
   const double size = static_cast<double>(this->Mesh.size());
   const bool keepsCount = this->Options.smallestCount == 1.0 && this->Options.largestCount == 1.0;
   this->Operations.inserts = this->Options.insert && !keepsCount;
+  this->Operations.contracts = this->Options.contract && !keepsCount;
+  this->Operations.moves = this->Options.smooth;
   this->Operations.smallestSize =
     keepsCount ? 0 : static_cast<Index>(std::ceil(this->Options.smallestCount * size));
   this->Operations.largestSize = keepsCount
@@ -289,22 +294,45 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   const bool started = this->record(0, 0.0);
   this->setFloor(this->Result.history.front());
   this->Passes.proceed = [this]() { return this->Progress.proceed(); };
-  std::vector<PassOptions> passes = planPasses(this->Options, this->Mesh.size());
-  const std::vector<char> starts = this->flagsOf(this->Options.starts);
   this->Passes.postponed = this->flagsOf(this->Options.postponed);
-  this->Passes.starts = starts;
-  const int levels = levelsOf(this->Mesh.size(), this->Options.blockSize);
-  const bool goesOn = started && (levels == 0 || this->runInBlocks(passes, levels, starts));
-  if (!this->Passes.starts.empty())
-  {
-    passes = lastPasses(passes);
-  }
   const bool stopped =
-    !goesOn || !this->runPasses(passes) || (this->Options.improveMean && !this->improveMean());
+    !started || !this->runStages() || (this->Options.improveMean && !this->improveMean());
   if (!stopped && this->Result.history.back().belowTarget == 0)
   {
     this->Result.reason = StopReason::Reduction;
   }
+}
+
+/// Runs the stages until the target is reached; false if stopped. They do not depend on it but for
+/// their number: what a higher target does begins with what a lower one does.
+bool Run::runStages()
+{
+  const std::vector<std::vector<PassOptions>> stages = planStages(this->Options, this->Mesh.size());
+  for (std::size_t i = 0; i < stages.size(); ++i)
+  {
+    const ReconnectionRecord& last = this->Result.history.back();
+    const bool sums = this->Operations.sums;
+    if (last.belowTarget == 0 && !sums)
+    {
+      break;
+    }
+    const double end = static_cast<double>(i + 1) / static_cast<double>(stages.size());
+    if ((sums || last.worstQuality < stages[i].back().target) && !this->runStage(stages[i], end))
+    {
+      return false;
+    }
+  }
+  return true;
+}
+
+/// Runs the passes of a stage, in blocks first; false if stopped.
+bool Run::runStage(const std::vector<PassOptions>& stage, double end)
+{
+  const std::vector<char> starts = this->flagsOf(this->Options.starts);
+  this->Passes.starts = starts;
+  const int levels = levelsOf(this->Mesh.size(), this->Options.blockSize);
+  return (levels == 0 || this->runInBlocks(stage, levels, starts, end)) &&
+    this->runPasses(this->Passes.starts.empty() ? stage : lastPasses(stage), end);
 }
 
 /// One flag per point of the input, or empty.
@@ -313,8 +341,8 @@ std::vector<char> Run::flagsOf(const unsigned char* flags) const
   return flags ? std::vector<char>(flags, flags + this->Mesh.inputPoints()) : std::vector<char>();
 }
 
-/// Runs the passes, the last one repeatedly; false if stopped.
-bool Run::runPasses(std::vector<PassOptions> passes)
+/// Runs the passes, the last one repeatedly; false if stopped. @param end progress when done
+bool Run::runPasses(std::vector<PassOptions> passes, double end)
 {
   const std::size_t planned = passes.size();
   const double start = this->Progress.fraction();
@@ -326,6 +354,11 @@ bool Run::runPasses(std::vector<PassOptions> passes)
     {
       break;
     }
+    if (!this->Operations.sums)
+    {
+      // What the mesh has reached is kept: a run that ends later is not worse in any of the worst.
+      this->setFloor(before);
+    }
     if (passes[i].repairs > 0 && !this->Passes.starts.empty())
     {
       // Again the worst of the whole mesh, after the blocks had their share of failures.
@@ -334,7 +367,7 @@ bool Run::runPasses(std::vector<PassOptions> passes)
     }
     const bool complete = this->Passes.run(passes[i]) >= 0;
     const double done = static_cast<double>(i + 1) / static_cast<double>(planned + Repetitions);
-    stopped = !this->record(before.pass + 1, start + (1.0 - start) * done) || !complete;
+    stopped = !this->record(before.pass + 1, start + (end - start) * done) || !complete;
     const double gain = this->Result.history.back().worstQuality - before.worstQuality;
     if (this->Passes.exhausted() && !stopped)
     {
@@ -445,13 +478,12 @@ bool Run::runBlocks(
 }
 
 /// Whether enough tetrahedra are below the target, of those that passes start with.
-bool Run::paysInBlocks(const std::vector<char>& starts) const
+bool Run::paysInBlocks(const std::vector<char>& starts, double target) const
 {
   if (this->Operations.sums)
   {
     return true;
   }
-  const double target = std::sin(radians(this->Options.targetAngle));
   Index count = 0;
   for (TetId t = 0; t < this->Mesh.slots(); ++t)
   {
@@ -466,9 +498,11 @@ bool Run::paysInBlocks(const std::vector<char>& starts) const
 /// Runs the passes in blocks of several partitions; false if stopped. Where a partition has its
 /// faces between blocks, the next one goes on; what then is left, the passes of the whole have.
 /// @param starts one flag per point, or empty: all
-bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels, std::vector<char> starts)
+bool Run::runInBlocks(
+  const std::vector<PassOptions>& passes, int levels, std::vector<char> starts, double end)
 {
-  for (int k = 0; k < Partitions && this->paysInBlocks(starts); ++k)
+  const double begin = this->Progress.fraction();
+  for (int k = 0; k < Partitions && this->paysInBlocks(starts, passes.back().target); ++k)
   {
     MeshBlockList blocks =
       cutIntoBlocks(this->Mesh, this->Operations, k, levels, this->Options.threads);
@@ -484,7 +518,9 @@ bool Run::runInBlocks(const std::vector<PassOptions>& passes, int levels, std::v
     }
     joinBlocks(this->Mesh, this->Operations, blocks, this->Options.threads);
     starts = goesOn ? this->addRings(std::move(next)) : std::vector<char>();
-    if (!this->record(k + 1, BlockProgress * (k + 1) / Partitions) || !goesOn)
+    const double done = BlockProgress * (k + 1) / Partitions;
+    const int pass = this->Result.history.back().pass + 1;
+    if (!this->record(pass, begin + (end - begin) * done) || !goesOn)
     {
       return false;
     }

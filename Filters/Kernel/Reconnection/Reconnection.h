@@ -3,8 +3,10 @@
  * @file Reconnection.h
  * @brief Improves the worst tetrahedra of a mesh by changing its connectivity and moving points.
  *
- * Operations on the worst tetrahedra first: removal of edges (dynamic programming over the
- * triangulations of a ring of at most 12 points; G. T. Klincsek, "Minimal triangulations of
+ * First facets of the boundary, where it may change: edges are swapped or contracted and points
+ * moved so that the mean ratios of facets become larger, which bound those of the tetrahedra at
+ * them. Then operations on the worst tetrahedra first: removal of edges (dynamic programming over
+ * the triangulations of a ring of at most 12 points; G. T. Klincsek, "Minimal triangulations of
  * polygonal domains", 1980), removal of several faces at once (J. R. Shewchuk, "Two discrete
  * optimization algorithms for the topological improvement of tetrahedral meshes", 2002),
  * contraction of edges, insertion of points into optimized cavities (B. M. Klingner and J. R.

@@ -115,8 +115,11 @@ struct ReconnectionOptions
   /**
    * @brief Degrees, above 0 and at most 60. Tetrahedra are worked on while their quality is below
    * the sine of this angle; when none is, all dihedral angles are between it and 180 degrees minus
-   * it, and the run ends. The default is about what fixed boundaries of good facets allow; with
-   * Sliding, 38 to 39 is in reach, at some ten times the cost.
+   * it, and the run ends. The run goes through stages of 15, 25, 33.4, 40, 45, 50, 55 and 60
+   * degrees, up to the first that is not below this angle, each with every operation: so a higher
+   * target is never worse in any of the worst values, on one rank and without a time limit. The
+   * default is about what fixed boundaries of good facets allow; with Sliding, 38 to 39 is in
+   * reach, at some ten times the cost.
    */
   double targetAngle = 33.4;
   ReconnectionObjective objective = ReconnectionObjective::AnglesAndShape;

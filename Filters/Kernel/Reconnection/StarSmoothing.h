@@ -29,11 +29,14 @@ struct PointFreedom
   /// Of BoundarySurface: the patch (InPlane) or curve (OnLine) of a point whose direction varies,
   /// and the set of patches that the point touches; -1: none.
   std::int32_t part = -1, patches = -1;
+  /// Corners with the same number are nearer to each other than the distance of the boundary, and
+  /// may become one; -1: kept.
+  std::int32_t group = -1;
   void fix()
   {
     this->kind = Fixed;
     this->direction = { 0, 0, 0 };
-    this->part = -1;
+    this->part = this->group = -1;
   }
   bool isCurved() const { return this->part >= 0; }
   Vec3 project(const Vec3& d) const

@@ -159,29 +159,54 @@ bool TetrahedronPasses::improve(TetId t, const PassOptions& options)
   return false;
 }
 
-Index TetrahedronPasses::run(const PassOptions& options)
+/// Improves the facets of the boundary whose mean ratio bounds qualities below a target, the worst
+/// first.
+Index TetrahedronPasses::runFacets(double target)
 {
-  this->Tried.assign(this->Mesh.slots(), 0);
-  this->Operations.prepareStamps();
-  this->Operations.setLeastGain(options.leastGain);
-  this->Operations.repairs = options.repairs;
-  this->Waiting.fill(this->Mesh,
-    [&](TetId t) { return this->startsWith(t) && this->Mesh.quality(t) < options.target; });
-  Index accepted = 0, tries = 0, failures = 0;
-  while (!this->Waiting.empty() && (options.maxFailures == 0 || failures < options.maxFailures))
+  const double weight = this->Mesh.weights().meanRatio;
+  const auto ratioOf = [&](TetId t, int i)
   {
-    const auto [quality, t] = this->Waiting.pop();
-    if (!this->Mesh.alive(t) || this->Mesh.quality(t) != quality)
+    const TriangleVertices f = this->Mesh.face(t, i);
+    return weight *
+      facetMeanRatio(this->Mesh.point(f[0]), this->Mesh.point(f[1]), this->Mesh.point(f[2]));
+  };
+  QualityQueue<std::int32_t> waiting; // 4 x tetrahedron + face
+  const auto push = [&](TetId t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      if (this->Mesh.tet(t).neighbors[i] == NoId && ratioOf(t, i) < target)
+      {
+        waiting.push({ ratioOf(t, i), 4 * t + i });
+      }
+    }
+  };
+  this->Operations.prepareStamps();
+  std::vector<std::uint32_t> tried;
+  for (TetId t = 0; t < this->Mesh.slots(); ++t)
+  {
+    if (this->startsWith(t))
+    {
+      push(t);
+    }
+  }
+  Index accepted = 0, tries = 0;
+  while (!waiting.empty())
+  {
+    const auto [ratio, code] = waiting.pop();
+    const TetId t = code >> 2;
+    if (!this->Mesh.alive(t) || this->Mesh.tet(t).neighbors[code & 3] != NoId ||
+      ratioOf(t, code & 3) != ratio || this->isFlagged(t, this->postponed))
     {
       continue; // changed since
     }
-    this->Tried.resize(this->Mesh.slots(), 0);
+    tried.resize(4 * this->Mesh.slots(), 0);
     std::uint32_t newest = 0;
-    for (PointId v : this->Mesh.tet(t).vertices)
+    for (PointId v : this->Mesh.face(t, code & 3))
     {
       newest = std::max(newest, this->Operations.stamp(v));
     }
-    if (this->Tried[t] > newest || (options.skipsBound && this->isAtBound(t)))
+    if (tried[code] > newest)
     {
       continue;
     }
@@ -189,6 +214,67 @@ Index TetrahedronPasses::run(const PassOptions& options)
     {
       return -1;
     }
+    if (this->Operations.improveFacet(t, code & 3))
+    {
+      ++accepted;
+      for (TetId s : this->Operations.changed())
+      {
+        push(s);
+      }
+    }
+    else
+    {
+      tried[code] = this->Operations.clock() + 1;
+    }
+  }
+  return accepted;
+}
+
+Index TetrahedronPasses::run(const PassOptions& options)
+{
+  Index accepted = 0;
+  if (options.facets)
+  {
+    accepted = this->runFacets(options.target);
+    if (accepted < 0)
+    {
+      return -1;
+    }
+  }
+  ++this->PassNumber;
+  // What the most thorough passes tried in vain is left out until something changes around.
+  const std::int16_t effort = !options.compound ? 0 : options.repairs > 0 ? 2 : 1;
+  this->Operations.prepareStamps();
+  this->Operations.setLeastGain(options.leastGain);
+  this->Operations.repairs = options.repairs;
+  this->Waiting.fill(this->Mesh,
+    [&](TetId t) { return this->startsWith(t) && this->Mesh.quality(t) < options.target; });
+  Index tries = 0, failures = 0;
+  while (!this->Waiting.empty() && (options.maxFailures == 0 || failures < options.maxFailures))
+  {
+    const auto [quality, t] = this->Waiting.pop();
+    if (!this->Mesh.alive(t) || this->Mesh.quality(t) != quality)
+    {
+      continue; // changed since
+    }
+    this->Tried.resize(this->Mesh.slots());
+    std::uint32_t newest = 0;
+    for (PointId v : this->Mesh.tet(t).vertices)
+    {
+      newest = std::max(newest, this->Operations.stamp(v));
+    }
+    const Attempt& last = this->Tried[t];
+    const bool repeats = last.clock > newest &&
+      (last.pass == this->PassNumber || (last.effort > 0 && last.effort >= effort));
+    if (repeats || (options.skipsBound && this->isAtBound(t)))
+    {
+      continue;
+    }
+    if (++tries % ProceedInterval == 0 && this->proceed && !this->proceed())
+    {
+      return -1;
+    }
+    this->Operations.countLimited = false;
     if (this->improve(t, options))
     {
       ++accepted;
@@ -196,7 +282,9 @@ Index TetrahedronPasses::run(const PassOptions& options)
     else
     {
       ++failures;
-      this->Tried[t] = this->Operations.clock() + 1;
+      // With another number of tetrahedra what was not allowed may be.
+      this->Tried[t] = { this->Operations.clock() + 1, this->PassNumber,
+        this->Operations.countLimited ? std::int16_t(0) : effort };
     }
   }
   this->Exhausted = options.maxFailures > 0 && failures >= options.maxFailures;

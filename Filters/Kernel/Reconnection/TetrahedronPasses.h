@@ -23,6 +23,7 @@ struct PassOptions
   bool skipsBound = true; ///< tetrahedra that their walls allow no better are left out
   bool contract = false;
   bool insert = false;
+  bool facets = false;     ///< facets of the boundary are improved first
   bool compound = false;   ///< also insertions (and contractions) that pay only after smoothing
   Index maxFailures = 0;   ///< ends after so many tetrahedra tried in vain; 0: no limit
   int repairs = 0;         ///< see CavityOperations::repairs
@@ -66,6 +67,7 @@ private:
   bool startsWith(TetId t) const;
   bool isFlagged(TetId t, const std::vector<char>& flags) const;
   bool improve(TetId t, const PassOptions& options);
+  Index runFacets(double target);
   bool swap(TetId t);
   bool contract(TetId t);
 
@@ -73,7 +75,15 @@ private:
   CavityOperations& Operations;
   QualityQueue<TetId> Waiting;
   bool Exhausted = false;
-  std::vector<std::uint32_t> Tried; ///< clock at the last attempt in vain, per slot
+  /// The last attempt in vain.
+  struct Attempt
+  {
+    std::uint32_t clock = 0; ///< after it
+    std::int16_t pass = 0;   ///< the number of the pass
+    std::int16_t effort = 0; ///< which later passes need not repeat it
+  };
+  std::int16_t PassNumber = 0;
+  std::vector<Attempt> Tried; ///< per slot
 };
 }
 #endif
