@@ -44,12 +44,26 @@ constexpr double flatAngle = 0.1 / DegreesPerRadian;
 constexpr Index leastFlatFacets = 6;
 constexpr double largerArea = 2;
 
+/// Facets up to this times the radius of curvature are short: the surface is smooth there. Longer
+/// ones, as CAD programs make along cylinders and fillets, do not tell how it bends between them.
+constexpr double longestFacet = 1.0;
+/// Radians: edges that bend by less are smooth whatever their facets. A cubic leaves these by about
+/// an eighth of this times their length.
+constexpr double leastBend = 0.1;
+
 /// An edge of a curve with the directions, from the first to the second point, at its ends.
 struct CurveEdge
 {
   Index a, b; ///< the smaller and the larger point
   int curve;
   Vec3 atA = { 0, 0, 0 }, atB = { 0, 0, 0 };
+};
+
+/// Two facets of a patch, and the points of their common edge.
+struct Neighbors
+{
+  Index first, second;
+  std::array<Index, 2> edge;
 };
 
 /// Facets that are flat together.
@@ -62,11 +76,12 @@ struct FlatPart
 class ModelMaker
 {
 public:
-  ModelMaker(const Mesh& mesh, const Features& features, bool smooth, bool coarse)
+  ModelMaker(const Mesh& mesh, const Features& features, bool smooth, bool coarse, double farthest)
     : View(mesh.view())
     , TheFeatures(features)
     , Smooth(smooth)
     , Coarse(coarse)
+    , Farthest(farthest)
   {
   }
 
@@ -78,9 +93,14 @@ public:
     {
       this->findDirections();
       this->findFacetsOfPoints();
+      this->findNeighbors();
       if (this->Coarse)
       {
         this->findFlatFaces();
+      }
+      else
+      {
+        this->findStraightEdges();
       }
       this->Normal.assign(this->View.numberOfPoints, Vec3{ 0, 0, 0 });
     }
@@ -95,6 +115,9 @@ private:
   void findDirections();
   void findFacetsOfPoints();
   Vec3 areaOf(const Features::Facet& facet) const;
+  double sizeOf(const Features::Facet& facet) const;
+  void findNeighbors();
+  void findStraightEdges();
   void findFlatFaces();
   Vec3 flatNormal(Index point, int patch) const;
   void findNormals(const std::vector<Index>& facets);
@@ -112,12 +135,15 @@ private:
   const MeshView& View;
   const Features& TheFeatures;
   bool Smooth, Coarse;
+  double Farthest; ///< of control points from the straight edges
   SurfaceModel Model;
   std::vector<CurveEdge> Edges;        ///< sorted by points
   std::vector<Index> Starts, FacetsAt; ///< facets of each point
-  std::vector<Index> FlatFace;         ///< per facet: the first facet that is flat with it
-  std::vector<FlatPart> FlatFaces;     ///< by such first facets
-  std::vector<Vec3> Normal;            ///< of the points of the patch that is being made
+  std::vector<Neighbors> Beside;       ///< pairs of facets of one patch with a common edge
+  std::vector<std::array<Index, 2>> StraightEdges; ///< of long facets, sorted, as their points
+  std::vector<Index> FlatFace;     ///< per facet: the first facet that is flat with it
+  std::vector<FlatPart> FlatFaces; ///< by such first facets
+  std::vector<Vec3> Normal;        ///< of the points of the patch that is being made
 };
 
 //------------------------------------------------------------------------------
@@ -195,20 +221,40 @@ Vec3 ModelMaker::areaOf(const Features::Facet& facet) const
 }
 
 //------------------------------------------------------------------------------
-/// Joins facets of a patch that have an edge and the normal in common.
-void ModelMaker::findFlatFaces()
+/// The longest edge or diagonal.
+double ModelMaker::sizeOf(const Features::Facet& facet) const
+{
+  double longest = 0;
+  for (int k = 0; k < facet.size; ++k)
+  {
+    for (int j = 0; j < k; ++j)
+    {
+      longest = std::max(longest, norm(this->at(facet.nodes[k]) - this->at(facet.nodes[j])));
+    }
+  }
+  return longest;
+}
+
+//------------------------------------------------------------------------------
+void ModelMaker::findNeighbors()
 {
   const auto& facets = this->TheFeatures.facets;
-  std::vector<std::array<Index, 2>> neighbors;
-  const auto shared = [&](Index f, Index g)
+  const auto add = [&](Index f, Index g, Index from)
   {
+    Neighbors found = { f, g, {} };
     int count = 0;
     const auto end = facets[g].nodes.begin() + facets[g].size;
     for (int k = 0; k < facets[f].size; ++k)
     {
-      count += std::find(facets[g].nodes.begin(), end, facets[f].nodes[k]) != end;
+      if (std::find(facets[g].nodes.begin(), end, facets[f].nodes[k]) != end)
+      {
+        found.edge[std::min(count++, 1)] = facets[f].nodes[k];
+      }
     }
-    return count;
+    if (count > 1 && from == std::min(found.edge[0], found.edge[1])) // once
+    {
+      this->Beside.push_back(found);
+    }
   };
   for (std::size_t p = 0; p + 1 < this->Starts.size(); ++p)
   {
@@ -217,15 +263,65 @@ void ModelMaker::findFlatFaces()
       for (Index j = this->Starts[p]; j < i; ++j)
       {
         const Index f = this->FacetsAt[i], g = this->FacetsAt[j];
-        if (facets[f].patch == facets[g].patch && shared(f, g) > 1)
+        if (facets[f].patch == facets[g].patch)
         {
-          neighbors.push_back({ f, g });
+          add(f, g, static_cast<Index>(p));
         }
       }
     }
   }
+}
+
+//------------------------------------------------------------------------------
+/**
+ * @brief The edges of facets that are long against the radius of curvature, see longestFacet.
+ *
+ * The curvature at an edge between two facets is the angle between their normals over the smaller
+ * one of their heights above the edge: where a large flat face passes into a fillet, the fillet
+ * bends, the face does not.
+ */
+void ModelMaker::findStraightEdges()
+{
+  const auto& facets = this->TheFeatures.facets;
+  std::vector<double> curvature(facets.size(), 0.0);
+  for (const Neighbors& pair : this->Beside)
+  {
+    const Vec3 a = this->areaOf(facets[pair.first]), b = this->areaOf(facets[pair.second]);
+    // Twice the area of a triangle is its height times the edge; of a quadrilateral, about twice.
+    const auto heightTimesEdge = [&](Index f, const Vec3& area)
+    { return facets[f].size == 3 ? norm(area) : 0.5 * norm(area); };
+    const double edge = norm(this->at(pair.edge[1]) - this->at(pair.edge[0])),
+                 least = std::min(heightTimesEdge(pair.first, a), heightTimesEdge(pair.second, b)),
+                 angle = std::atan2(norm(cross(a, b)), dot(a, b));
+    const double bend = least > 0 && angle > leastBend ? angle * edge / least : 0.0;
+    for (Index f : { pair.first, pair.second })
+    {
+      curvature[f] = std::max(curvature[f], bend);
+    }
+  }
+  for (std::size_t f = 0; f < facets.size(); ++f)
+  {
+    const Features::Facet& facet = facets[f];
+    const bool isLong = this->sizeOf(facet) * curvature[f] > longestFacet;
+    for (int k = 0; isLong && k < facet.size; ++k)
+    {
+      for (int j = 0; j < k; ++j) // a diagonal, too
+      {
+        const Index p = facet.nodes[k], q = facet.nodes[j];
+        this->StraightEdges.push_back({ std::min(p, q), std::max(p, q) });
+      }
+    }
+  }
+  std::sort(this->StraightEdges.begin(), this->StraightEdges.end());
+}
+
+//------------------------------------------------------------------------------
+/// Joins facets of a patch that have an edge and the normal in common.
+void ModelMaker::findFlatFaces()
+{
+  const auto& facets = this->TheFeatures.facets;
   UnionFind joined(static_cast<Index>(facets.size()));
-  for (const auto& [f, g] : neighbors)
+  for (const auto& [f, g, edge] : this->Beside)
   {
     const Vec3 a = this->areaOf(facets[f]), b = this->areaOf(facets[g]);
     if (std::atan2(norm(cross(a, b)), dot(a, b)) < flatAngle)
@@ -241,7 +337,7 @@ void ModelMaker::findFlatFaces()
     ++this->FlatFaces[face].facets;
     this->FlatFaces[face].area += norm(this->areaOf(facets[f]));
   }
-  for (const auto& [f, g] : neighbors)
+  for (const auto& [f, g, edge] : this->Beside)
   {
     FlatPart &a = this->FlatFaces[this->FlatFace[f]], &b = this->FlatFaces[this->FlatFace[g]];
     a.beside = &a != &b ? std::max(a.beside, b.area) : a.beside;
@@ -468,12 +564,21 @@ const CurveEdge* ModelMaker::edgeOf(Index a, Index b) const
 Vec3 ModelMaker::controlOf(Index from, Index to) const
 {
   const Vec3 a = this->at(from), b = this->at(to);
-  if (const CurveEdge* e = this->edgeOf(from, to))
+  const std::array<Index, 2> key = { std::min(from, to), std::max(from, to) };
+  if (std::binary_search(this->StraightEdges.begin(), this->StraightEdges.end(), key))
   {
-    return controlAt(a, b, from == e->a ? e->atA : -1.0 * e->atB);
+    return a + (1.0 / 3.0) * (b - a);
   }
-  const Vec3 &n = this->Normal[from], chord = b - a;
-  return controlAt(a, b, unitOf(chord - dot(chord, n) * n));
+  const Vec3 chord = b - a, straight = a + (1.0 / 3.0) * chord;
+  const CurveEdge* e = this->edgeOf(from, to);
+  const Vec3 n = e ? Vec3{ 0, 0, 0 } : this->Normal[from];
+  const Vec3 control = e ? controlAt(a, b, from == e->a ? e->atA : -1.0 * e->atB)
+                         : controlAt(a, b, unitOf(chord - dot(chord, n) * n));
+  // Pieces are then nowhere farther, nor apart at their edges: the middle control point, up to 1.5
+  // times as far, has a weight of at most 6/27.
+  const Vec3 off = control - straight;
+  const double length = norm(off);
+  return length > this->Farthest ? straight + (this->Farthest / length) * off : control;
 }
 
 //------------------------------------------------------------------------------
@@ -598,9 +703,10 @@ void ModelMaker::addTriangle(Index a, Index b, Index c, SurfacePart& part) const
 }
 
 //------------------------------------------------------------------------------
-SurfaceModel makeSurfaceModel(const Mesh& mesh, const Features& features, bool smooth, bool coarse)
+SurfaceModel makeSurfaceModel(
+  const Mesh& mesh, const Features& features, bool smooth, bool coarse, double farthest)
 {
-  return ModelMaker(mesh, features, smooth, coarse).make();
+  return ModelMaker(mesh, features, smooth, coarse, farthest).make();
 }
 
 //------------------------------------------------------------------------------

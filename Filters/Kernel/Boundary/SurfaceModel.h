@@ -10,11 +10,16 @@
  * "Weights for computing vertex normals from facet normals", J. Graphics Tools 4(2), 1999, which
  * are exact on spheres; where it agrees clearly better with the neighbours, and on the border of a
  * patch, those of a cubic (of few neighbours, a quadric) fitted to two rings of neighbours.
+ *
+ * Facets that are longer than the radius of curvature stay flat, unless the mesh is coarse: those
+ * of CAD programs along cylinders and fillets do not tell how the surface bends between them.
  */
 #ifndef tautline_SurfaceModel_h
 #define tautline_SurfaceModel_h
 
 #include "tautline/Mesh/Features.h"
+
+#include <limits>
 
 namespace tautline
 {
@@ -51,12 +56,15 @@ struct SurfaceModel
 
 /**
  * @brief The model of the features of a mesh, in its coordinates.
- * @param smooth whether it is smooth within patches and along curves, or made of facets
+ * @param smooth whether it is smooth within patches, where facets are short, and along curves, or
+ * made of facets
  * @param coarse whether facets may bend by large angles: fitted normals are used less, and flat
  * faces of several facets stay flat where they pass into curved ones
+ * @param farthest the largest distance of smooth pieces from their facets and edges, in the
+ * coordinates of the mesh; above 0
  */
-TAUTLINE_KERNEL_EXPORT SurfaceModel makeSurfaceModel(
-  const Mesh& mesh, const Features& features, bool smooth, bool coarse = false);
+TAUTLINE_KERNEL_EXPORT SurfaceModel makeSurfaceModel(const Mesh& mesh, const Features& features,
+  bool smooth, bool coarse = false, double farthest = std::numeric_limits<double>::infinity());
 
 /// Per point: the part of the model made of the same features that it is on; -1 for corners and
 /// points within the mesh.

@@ -372,10 +372,10 @@ bool SurfaceProjection::isOver(std::int32_t piece, const Vec3& x, Vec3& foot) co
 }
 
 //------------------------------------------------------------------------------
-SurfaceProjection::Place SurfaceProjection::find(const Vec3& x) const
+SurfaceProjection::Place SurfaceProjection::find(const Vec3& x, std::int32_t& piece) const
 {
   Vec3 foot = x;
-  std::int32_t piece = this->nearest(x, foot);
+  piece = this->nearest(x, foot, piece);
   if (piece < 0)
   {
     return { x, { 0, 0, 0 } };
@@ -399,7 +399,7 @@ SurfaceProjection::Place SurfaceProjection::find(const Vec3& x) const
     y = foot + inSurface;
     const std::int32_t before = piece;
     const Vec3 last = foot;
-    piece = this->isOver(piece, y, foot) ? piece : this->nearest(y, foot);
+    piece = this->isOver(piece, y, foot) ? piece : this->nearest(y, foot, piece);
     place = this->lift(piece, foot);
     if (piece == before && norm(foot - last) <= tolerance * size)
     {
@@ -418,13 +418,20 @@ Vec3 SurfaceProjection::closest(const Vec3& x) const
     this->nearest(x, point);
     return point;
   }
-  return this->find(x).point;
+  std::int32_t piece = -1;
+  return this->find(x, piece).point;
 }
 
 //------------------------------------------------------------------------------
 Vec3 SurfaceProjection::closest(const Vec3& x, Vec3& direction) const
 {
-  const Place place = this->find(x);
+  std::int32_t piece = -1;
+  return this->closest(x, direction, piece);
+}
+
+Vec3 SurfaceProjection::closest(const Vec3& x, Vec3& direction, std::int32_t& piece) const
+{
+  const Place place = this->find(x, piece);
   const double length = norm(place.direction);
   direction = length > 0 ? (1.0 / length) * place.direction : Vec3{ 0, 0, 0 };
   return place.point;
@@ -447,7 +454,8 @@ Vec3 SurfaceProjection::direction(const Vec3& x) const
 
 //------------------------------------------------------------------------------
 /// The flat piece closest to x, or -1 if there is none, and its closest point.
-std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
+/// @param first a piece that may be near, or -1
+std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best, std::int32_t first) const
 {
   std::int32_t found = -1;
   if (this->Nodes.empty())
@@ -459,6 +467,12 @@ std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
   int top = 0;
   stack[top++] = 0;
   double best2 = std::numeric_limits<double>::infinity();
+  if (first >= 0)
+  {
+    best = this->closestOf(first, x);
+    best2 = dot(best - x, best - x);
+    found = first;
+  }
   while (top > 0)
   {
     const Node& node = this->Nodes[stack[--top]];
@@ -468,6 +482,15 @@ std::int32_t SurfaceProjection::nearest(const Vec3& x, Vec3& best) const
     }
     for (std::int32_t i = node.first; i < node.first + node.count; ++i)
     {
+      // What is far from the ball around a piece is far from the piece.
+      const Ball& ball = this->Balls[i];
+      const Vec3 toCenter = ball.center - x;
+      const double square = dot(toCenter, toCenter), radius2 = ball.radius * ball.radius;
+      if (square > best2 + radius2 &&
+        (square - best2 - radius2) * (square - best2 - radius2) >= 4 * best2 * radius2)
+      {
+        continue;
+      }
       const Vec3 p = this->closestOf(i, x);
       const double d2 = dot(p - x, p - x);
       if (d2 < best2)

@@ -63,6 +63,11 @@ public:
   Vec3 closest(const Vec3& x) const;
   /// The same with the unit normal there, of a curve the unit tangent; zero if there is none.
   Vec3 closest(const Vec3& x, Vec3& direction) const;
+  /**
+   * @brief The same, found faster among near places.
+   * @param piece where the search begins, -1 or what a place near to x gave; set to the nearest
+   */
+  Vec3 closest(const Vec3& x, Vec3& direction, std::int32_t& piece) const;
   Vec3 direction(const Vec3& x) const;
   /// The part of the model that the closest facet belongs to; -1 without facets.
   std::int32_t nearestPart(const Vec3& x) const;
@@ -110,14 +115,14 @@ private:
   void add(const SurfacePart& part, const SimplexMesh* simplices, std::int32_t number = 0);
   void build();
   void build(std::int32_t node, std::int32_t first, std::int32_t count);
-  std::int32_t nearest(const Vec3& x, Vec3& point) const;
+  std::int32_t nearest(const Vec3& x, Vec3& point, std::int32_t first = -1) const;
   Vec3 closestOf(std::int32_t piece, const Vec3& x) const
   {
     return closestOnTriangle(this->Pieces[piece].corner, x);
   }
   bool isOver(std::int32_t piece, const Vec3& x, Vec3& foot) const;
   Place lift(std::int32_t piece, const Vec3& foot) const;
-  Place find(const Vec3& x) const;
+  Place find(const Vec3& x, std::int32_t& piece) const;
 
   std::vector<Piece> Pieces;
   std::vector<Ball> Balls; ///< around the pieces
