@@ -206,7 +206,11 @@ void BoundarySetup::setFeatures()
     this->placePoints();
     return;
   }
-  this->Model = makeSurfaceModel(this->TheMesh.mesh(), this->Found, this->Properties.smoothSurface);
+  // The rest of the tolerance is for what the elements between the points cut off.
+  constexpr double shareOfPoints = 0.5;
+  const double tolerance = this->tolerance();
+  this->Model = makeSurfaceModel(this->TheMesh.mesh(), this->Found, this->Properties.smoothSurface,
+    false, tolerance > 0 ? shareOfPoints * tolerance : std::numeric_limits<double>::infinity());
   this->Constraints.model = &this->Model;
 }
 
@@ -244,19 +248,12 @@ void BoundarySetup::placePoints()
 }
 
 //------------------------------------------------------------------------------
-void BoundarySetup::setSurfaceTolerance()
+/// The surface tolerance in the coordinates of the mesh; 0: any distance.
+double BoundarySetup::tolerance() const
 {
-  this->Constraints.onGeometry = this->HasGeometry;
-  if (this->TheMesh.inPieces())
+  if (!(this->Properties.surfaceTolerance > 0))
   {
-    return;
-  }
-  const bool slides =
-    this->Properties.motion == BoundaryMotion::OnSurface || !this->Model.interfaces.empty();
-  if (!slides || !(this->Properties.surfaceTolerance > 0) ||
-    this->TheMesh.mesh().dimension() == Dimension::Surface)
-  {
-    return;
+    return 0.0;
   }
   const MeshView& view = this->TheMesh.mesh().view();
   const double infinity = std::numeric_limits<double>::infinity();
@@ -272,8 +269,22 @@ void BoundarySetup::setSurfaceTolerance()
     }
   }
   const double diagonal = norm(high - low);
-  this->Constraints.surfaceTolerance =
-    std::isfinite(diagonal) ? this->Properties.surfaceTolerance * diagonal : 0.0;
+  return std::isfinite(diagonal) ? this->Properties.surfaceTolerance * diagonal : 0.0;
+}
+
+//------------------------------------------------------------------------------
+void BoundarySetup::setSurfaceTolerance()
+{
+  this->Constraints.onGeometry = this->HasGeometry;
+  if (this->TheMesh.inPieces())
+  {
+    return;
+  }
+  const bool surface = this->TheMesh.mesh().dimension() == Dimension::Surface;
+  const bool slides = surface
+    ? this->Properties.projectToSurface && !this->HasGeometry // whose points are on that
+    : this->Properties.motion == BoundaryMotion::OnSurface || !this->Model.interfaces.empty();
+  this->Constraints.surfaceTolerance = slides ? this->tolerance() : 0.0;
 }
 
 //------------------------------------------------------------------------------

@@ -80,6 +80,7 @@ private:
   void findFeaturesOf(bool onGeometry);
   void placePoints();
   void holdPoints();
+  double tolerance() const;
   void setSurfaceTolerance();
   void findLeaving();
 

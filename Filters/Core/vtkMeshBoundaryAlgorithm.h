@@ -101,14 +101,16 @@ public:
 
   ///@{
   /**
-   * With the boundary ON_SURFACE: how far the new boundary may be from the old one, and the old one
-   * from the new one, as a fraction of the diagonal of the bounding box, 0 to 1; 0: any distance.
+   * Of surfaces in space, and of the boundary ON_SURFACE: how far the new surface may be from the
+   * old one, and the old one from the new one, as a fraction of the diagonal of the bounding box, 0
+   * to 1; 0: any distance.
    * The same of interfaces of regions (with KeepFeatures), whatever the boundary does. Steps that
    * would take it farther are shortened or left out; the summary says how many points are held by
    * that. The distance is measured at the quarters of the edges of the boundary's triangles
    * (quadrilaterals are two), at the crossings of the lines between these, and at the centres.
    * With a geometry it is that of the boundary from the geometry; what is farther at the start may
-   * stay so. The default is 0.001.
+   * stay so. The points of a surface in space are on the geometry, whatever the tolerance. The
+   * default is 0.001.
    */
   vtkTautlineSetRangeMacro(SurfaceTolerance, double, 0.0, 1.0);
   vtkGetMacro(SurfaceTolerance, double);

@@ -351,12 +351,12 @@ public:
 
   ///@{
   /**
-   * With the preset WORST_ELEMENT (or ImproveWorst), the boundary ON_SURFACE, KeepFeatures and a
-   * SurfaceTolerance above 0: points of the boundary near the worst elements, corners and points of
-   * curves too, may leave the surface within that tolerance, where sliding does not improve these
-   * elements any more. Points on interfaces, fixed points and those given as corner or curve
-   * points (array at index 5) do not leave; with a Geometry or limits of the displacement, none
-   * does. The summary says how many did. The default is on.
+   * With the preset WORST_ELEMENT (or ImproveWorst), a surface in space or the boundary ON_SURFACE,
+   * KeepFeatures and a SurfaceTolerance above 0: points of the surface near the worst elements,
+   * corners and points of curves too, may leave the surface within that tolerance, where sliding
+   * does not improve these elements any more. Points on interfaces, fixed points and those given as
+   * corner or curve points (array at index 5) do not leave; with a Geometry or limits of the
+   * displacement, none does. The summary says how many did. The default is on.
    */
   vtkSetMacro(LeaveSurface, bool);
   vtkGetMacro(LeaveSurface, bool);

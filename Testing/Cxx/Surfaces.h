@@ -93,6 +93,61 @@ inline MeshData sphereSurface(CellType type, int n)
   return data;
 }
 
+/**
+ * @brief A closed bar as CAD programs triangulate it: a square of side 2 whose edges are rounded by
+ * a radius of 0.5, in `steps` flat strips each; the flat sides have one strip.
+ * @param length of a section along z
+ * @param shift of inner points along z at random, as a fraction of that
+ */
+inline MeshData roundedBar(int sections, double length, int steps, double shift, unsigned seed)
+{
+  MeshData data;
+  Random random(seed);
+  std::vector<Vec3> profile;
+  constexpr double radius = 0.5;
+  for (int corner = 0; corner < 4; ++corner)
+  {
+    for (int k = 0; k <= steps; ++k)
+    {
+      const double quarter = std::acos(0.0), angle = quarter * (corner + double(k) / steps),
+                   middle = quarter * (corner + 0.5);
+      const double away = (1 - radius) * std::sqrt(2.0);
+      profile.push_back({ away * std::cos(middle) + radius * std::cos(angle),
+        away * std::sin(middle) + radius * std::sin(angle), 0 });
+    }
+  }
+  const auto around = static_cast<Index>(profile.size());
+  for (int s = 0; s <= sections; ++s)
+  {
+    for (const Vec3& p : profile)
+    {
+      const bool inner = s > 0 && s < sections;
+      const double z = s + (inner ? random.uniform(-shift, shift) : 0.0);
+      data.addPoint({ p[0], p[1], length * z });
+    }
+  }
+  for (Index s = 0; s < sections; ++s)
+  {
+    for (Index i = 0; i < around; ++i)
+    {
+      const Index a = s * around + i, b = s * around + (i + 1) % around;
+      data.addCell(CellType::Triangle, { a, b, b + around });
+      data.addCell(CellType::Triangle, { a, b + around, a + around });
+    }
+  }
+  for (const bool top : { false, true })
+  {
+    const Index center = data.numberOfPoints(), first = top ? sections * around : 0;
+    data.addPoint({ 0, 0, top ? sections * length : 0.0 });
+    for (Index i = 0; i < around; ++i)
+    {
+      const Index a = first + i, b = first + (i + 1) % around;
+      data.addCell(CellType::Triangle, { top ? a : b, top ? b : a, center });
+    }
+  }
+  return data;
+}
+
 /// A closed cylinder of radius 1 and height 2 with `around` points on each rim; triangles.
 inline MeshData cylinderSurface(int around, int up)
 {

@@ -52,10 +52,10 @@ struct BoundaryConstraints
    */
   double surfaceTolerance = 0.0;
   /**
-   * @brief One flag per point, or null: nonzero for points of the boundary of a volume or planar
-   * mesh, fixed ones too, that may leave what they slide on, within surfaceTolerance, near the worst
-   * elements, where these do not improve otherwise; see OptimizeOptions::improveWorst. Not with
-   * limits or onGeometry.
+   * @brief One flag per point, or null: nonzero for points of a surface, or of the boundary of a
+   * volume or planar mesh, fixed ones too, that may leave what they slide on, within
+   * surfaceTolerance, near the worst elements, where these do not improve otherwise; see
+   * OptimizeOptions::improveWorst. Not with limits or onGeometry.
    */
   const unsigned char* leaving = nullptr;
   /// Whether the model was made of another surface than that of the mesh.

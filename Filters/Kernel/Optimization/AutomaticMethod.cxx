@@ -48,7 +48,8 @@ private:
   std::vector<IterationRecord>& History;
   StopReason& Reason;
   bool Failed = false, Repaired = false;
-  bool Fits = true; ///< the matrix of Newton's method, into memory
+  bool Fits = true;    ///< the matrix of Newton's method, into memory
+  bool TooFar = false; ///< where that led, from the surface in space
 };
 
 //------------------------------------------------------------------------------
@@ -129,8 +130,11 @@ bool Stage::useNewton(Slowness slow, const std::vector<double>& start)
   }
   // From close to the minimum, no iteration may be recorded.
   const IterationRecord found = this->Problem.record(this->History.back().iteration);
-  // Inverted elements do not count in the objective.
-  const bool valid = found.inverted <= this->History.front().inverted;
+  // Inverted elements do not count in the objective. Newton's method does not hold single points of
+  // a surface in space that go too far from where it was.
+  this->TooFar =
+    this->Problem.moving().dimension() == Dimension::Surface && !this->Problem.isWithinTolerance();
+  const bool valid = found.inverted <= this->History.front().inverted && !this->TooFar;
   if (valid && found.objective < this->History.back().objective)
   {
     const bool atStart = this->History.size() == 1; // whose row stays
@@ -192,7 +196,7 @@ void Stage::takeTurns(const IterationRecord& first)
     // From the start it may have ended at a worse place: it goes on from where sweeps lead.
     const bool worthAnother = gained
       ? reached - this->History.back().objective > worthTurn * std::abs(reached)
-      : this->Fits && fromStart && slow != Slowness::Near;
+      : this->Fits && !this->TooFar && fromStart && slow != Slowness::Near;
     if (!worthAnother)
     {
       break;

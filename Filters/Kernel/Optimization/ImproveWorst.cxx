@@ -213,6 +213,7 @@ public:
   void goBack()
   {
     std::copy(this->Best.begin(), this->Best.end(), this->Problem.simplices().coordinates());
+    this->Problem.coordinatesChanged();
     this->Problem.store();
   }
 

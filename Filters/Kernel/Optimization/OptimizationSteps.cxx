@@ -95,6 +95,7 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
       // Blocks of one colour do not use each other's changes of a composite objective, which may
       // rise or leave its domain, as a product with a factor below 0.
       std::copy(best.begin(), best.end(), simplices.coordinates());
+      problem.coordinatesChanged();
       problem.store();
       failed = true;
       return StopReason::NoProgress;

@@ -25,12 +25,13 @@ enum class Optimizer : int
    * than simplices, and where its sweeps converge slowly (by the ratio of their gains):
    * NewtonConjugateGradient from the start, or from its harmonic map if valid and the objective
    * smaller there; near the minimum, where more than 25 sweeps are to be expected, from where they
-   * are. Where that stops short of the minimum, or holds points, sweeps and
-   * NewtonConjugateGradient in turn: with slideSurface, or a model of the boundary, it moves points
-   * on flat patches and straight curves and holds the others; with limits, only sweeps move points
-   * inwards from their limit. Meshes of surfaces in space need a model for it. Not with a
-   * maximum as objective, nor several in lexicographic order. Should a sweep fail to reduce several
-   * objectives, LimitedMemoryBFGS from there, unless points slide on the surface.
+   * are. Where that stops short of the minimum, or holds points, sweeps and NewtonConjugateGradient
+   * in turn: with slideSurface, or a model of the boundary, it moves points on flat patches and
+   * straight curves and holds the others; with limits, only sweeps move points inwards from their
+   * limit. Meshes of surfaces in space need a model for it, and go back to where sweeps led if it
+   * leaves the surfaceTolerance. Not with a maximum as objective, nor several in lexicographic
+   * order. Should a sweep fail to reduce several objectives, LimitedMemoryBFGS from there, unless
+   * points slide on the surface.
    */
   Automatic = 0,
   LocalNewton = 1,            ///< sweeps over one-vertex patches, a damped Newton step in each

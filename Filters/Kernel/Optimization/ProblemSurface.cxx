@@ -8,12 +8,13 @@ namespace tautline
 {
 namespace
 {
-/// How much of the surface tolerance the other elements may use before the worst one is improved:
-/// points at the limit are in its way.
+/// How much of the surface tolerance the other elements of a volume may use before the worst one is
+/// improved: points at the limit are in its way. In a surface, the worst elements use it at once.
 constexpr double beforeWorst = 0.3;
 /// How much of the surface tolerance is used at the places where distances are measured: places in
-/// between may be farther, most of all at points that leave the surface.
-constexpr double marginOfSliding = 0.85, marginOfLeaving = 0.7;
+/// between may be farther, in surfaces more often than in volumes, whose elements hold the points
+/// of flat facets, and most of all at points that leave the surface.
+constexpr double marginOfSliding = 0.85, marginOfSurface = 0.8, marginOfLeaving = 0.7;
 }
 
 //------------------------------------------------------------------------------
@@ -41,13 +42,17 @@ void OptimizationProblem::makeSurface()
   }
   if (this->Surface && options.surfaceTolerance > 0)
   {
-    const double margin = options.leaving ? marginOfLeaving : marginOfSliding;
+    const bool surface = this->TheMesh.dimension() == Dimension::Surface;
+    const double margin = options.leaving ? marginOfLeaving
+      : surface                           ? marginOfSurface
+                                          : marginOfSliding;
     this->Limit = std::make_unique<SurfaceLimit>(this->TheMesh, surfaceFacets(this->TheMesh),
       *this->Simplices, *this->Surface,
       margin * options.surfaceTolerance / this->Simplices->scale(), !options.onGeometry);
   }
   this->makeInterfaces();
-  this->shareTolerance(options.improveWorst > 0 ? beforeWorst : 1.0);
+  const bool surface = this->TheMesh.dimension() == Dimension::Surface;
+  this->shareTolerance(options.improveWorst > 0 && !surface ? beforeWorst : 1.0);
 }
 
 //------------------------------------------------------------------------------

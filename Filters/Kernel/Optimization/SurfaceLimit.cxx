@@ -66,6 +66,140 @@ private:
   const std::vector<std::array<Vec3, 3>>& Triangles;
   std::vector<Ball> Balls;
 };
+
+/// The corners around a vertex whose triangles go once around it, seen along their mean normal.
+class Fan
+{
+public:
+  /// @param triangles those without the vertex are left out
+  Fan(const std::vector<std::array<Vec3, 3>>& triangles, const Vec3& vertex)
+    : Origin(vertex)
+  {
+    std::vector<std::array<Vec3, 2>> edges;
+    Vec3 normal = { 0, 0, 0 };
+    for (const std::array<Vec3, 3>& t : triangles)
+    {
+      const std::size_t k = std::find(t.begin(), t.end(), vertex) - t.begin();
+      if (k < t.size())
+      {
+        edges.push_back({ t[(k + 1) % 3], t[(k + 2) % 3] });
+        normal += cross(edges.back()[0] - vertex, edges.back()[1] - vertex);
+      }
+    }
+    const double length = norm(normal);
+    if (!(length > 0) || !isOneRound(edges))
+    {
+      return;
+    }
+    // Axes at right angles to the normal and to each other.
+    this->Axes[2] = (1 / length) * normal;
+    const Vec3 side = cross(this->Axes[2], edges[0][0] - vertex);
+    if (!(norm(side) > 0))
+    {
+      return;
+    }
+    this->Axes[1] = (1 / norm(side)) * side;
+    this->Axes[0] = cross(this->Axes[1], this->Axes[2]);
+    for (const auto& [corner, next] : edges)
+    {
+      this->Corners.push_back(this->seen(corner));
+    }
+  }
+
+  /**
+   * @brief The largest difference of the heights of the triangles if the vertex moves to x; its way
+   * if these are not the graph of a function, before or after.
+   *
+   * Between two such functions it is largest at one of the places of the vertex, or where an edge
+   * at the one crosses an edge at the other.
+   */
+  double changeTo(const Vec3& x) const
+  {
+    const Vec3 from = { 0, 0, 0 }, to = this->seen(x);
+    const double way = norm(to);
+    if (this->Corners.empty() || !this->isGraph(from) || !this->isGraph(to))
+    {
+      return way;
+    }
+    double largest =
+      std::max(std::abs(this->heightAt(from, to)), std::abs(this->heightAt(to, from) - to[2]));
+    for (const Vec3& p : this->Corners)
+    {
+      for (const Vec3& q : this->Corners)
+      {
+        const Vec3 d = q - to;
+        const double both = cross2(p, d);
+        const double s = cross2(to, d) / both, t = cross2(to, p) / both;
+        if (s >= 0 && s <= 1 && t >= 0 && t <= 1)
+        {
+          largest = std::max(largest, std::abs(s * p[2] - to[2] - t * d[2]));
+        }
+      }
+    }
+    return std::min(largest, way);
+  }
+
+private:
+  static double cross2(const Vec3& a, const Vec3& b) { return a[0] * b[1] - a[1] * b[0]; }
+
+  /// Sorts the edges, each from the end of the one before; whether that is a ring.
+  static bool isOneRound(std::vector<std::array<Vec3, 2>>& edges)
+  {
+    for (std::size_t i = 0; i + 1 < edges.size(); ++i)
+    {
+      const auto next = std::find_if(edges.begin() + i + 1, edges.end(),
+        [&](const std::array<Vec3, 2>& e) { return e[0] == edges[i][1]; });
+      if (next == edges.end())
+      {
+        return false;
+      }
+      std::swap(*next, edges[i + 1]);
+    }
+    return edges.size() > 2 && edges.back()[1] == edges.front()[0];
+  }
+
+  Vec3 seen(const Vec3& x) const
+  {
+    const Vec3 d = x - this->Origin;
+    return { dot(d, this->Axes[0]), dot(d, this->Axes[1]), dot(d, this->Axes[2]) };
+  }
+
+  /// Whether the triangles with the vertex at a place face the viewer and go around it once.
+  bool isGraph(const Vec3& place) const
+  {
+    int rounds = 0;
+    for (std::size_t i = 0; i < this->Corners.size(); ++i)
+    {
+      const Vec3 a = this->Corners[i] - place,
+                 b = this->Corners[(i + 1) % this->Corners.size()] - place;
+      if (!(cross2(a, b) > 0))
+      {
+        return false;
+      }
+      rounds += a[1] <= 0 && b[1] > 0;
+    }
+    return rounds == 1;
+  }
+
+  /// The height at x of the triangles with the vertex at `place`.
+  double heightAt(const Vec3& x, const Vec3& place) const
+  {
+    for (std::size_t i = 0; i < this->Corners.size(); ++i)
+    {
+      const Vec3 a = this->Corners[i] - place,
+                 b = this->Corners[(i + 1) % this->Corners.size()] - place, d = x - place;
+      if (cross2(a, d) >= 0 && cross2(d, b) >= 0)
+      {
+        return place[2] + (cross2(d, b) * a[2] + cross2(a, d) * b[2]) / cross2(a, b);
+      }
+    }
+    return std::numeric_limits<double>::infinity();
+  }
+
+  Vec3 Origin;
+  std::array<Vec3, 3> Axes;
+  std::vector<Vec3> Corners; ///< in order; empty: not once around
+};
 }
 
 //------------------------------------------------------------------------------
@@ -81,7 +215,27 @@ SurfaceLimit::SurfaceLimit(const Mesh& mesh, const std::vector<SurfaceFacet>& fa
   {
     this->Places = surface.samples(divisions);
     this->Tree = std::make_unique<PointTree>(this->Places, facetsPerLeaf);
+    if (this->isAsIn(mesh))
+    {
+      for (Facet& facet : this->Facets)
+      {
+        facet.far = { 0.0, 0.0 };
+      }
+    }
   }
+}
+
+//------------------------------------------------------------------------------
+/// Whether all vertices are where the mesh has them, and the surface, which is its own.
+bool SurfaceLimit::isAsIn(const Mesh& mesh) const
+{
+  std::int32_t v = 0;
+  while (v < this->Simplices.vertices() &&
+    this->at(v) == this->Simplices.transform(pointOf(mesh.view(), this->Simplices.point(v))))
+  {
+    ++v;
+  }
+  return v == this->Simplices.vertices();
 }
 
 //------------------------------------------------------------------------------
@@ -138,19 +292,23 @@ void SurfaceLimit::findFacets(const Mesh& mesh, const std::vector<SurfaceFacet>&
 }
 
 //------------------------------------------------------------------------------
-/// Whether the corners are where the facet cannot be too far. No point of it moves farther than
-/// the corner that moves farthest.
-bool SurfaceLimit::isLeft(const Facet& facet) const
+/// The largest distance that a facet of v may have.
+double SurfaceLimit::farOf(std::int32_t v, Way way) const
 {
-  for (int k = 0; k < MaxFaceNodes && facet.vertices[k] >= 0; ++k)
+  double far = 0;
+  for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1]; ++i)
   {
-    const Vec3 d = this->at(facet.vertices[k]) - facet.measuredAt[k];
-    if (facet.left < 0 || dot(d, d) > facet.left * facet.left)
-    {
-      return false;
-    }
+    far = std::max(far, this->Facets[this->FacetsAt[i]].far[way]);
   }
-  return true;
+  return far;
+}
+
+void SurfaceLimit::setFar(std::int32_t v, Way way, double far)
+{
+  for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1]; ++i)
+  {
+    this->Facets[this->FacetsAt[i]].far[way] = far;
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -252,8 +410,14 @@ void SurfaceLimit::forget()
 {
   for (Facet& facet : this->Facets)
   {
-    facet.left = -1;
+    facet.far = { unknown, unknown };
   }
+}
+
+void SurfaceLimit::forget(std::int32_t v)
+{
+  this->setFar(v, There, unknown);
+  this->setFar(v, Back, unknown);
 }
 
 //------------------------------------------------------------------------------
@@ -344,47 +508,35 @@ bool SurfaceLimit::coversSame(
 //------------------------------------------------------------------------------
 bool SurfaceLimit::staysNear(std::int32_t v, const Vec3& before)
 {
-  bool left = true;
-  for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1] && left; ++i)
-  {
-    left = this->isLeft(this->Facets[this->FacetsAt[i]]);
-  }
-  if (left)
-  {
-    return true;
-  }
   const std::vector<Triangle> old = this->trianglesAt(v, before);
-  if (this->coversSame(v, before, old))
+  const bool same = this->coversSame(v, before, old);
+  const double change = same ? 0.0 : Fan(old, before).changeTo(this->at(v));
+  double there = this->farOf(v, There) + change, back = this->farOf(v, Back) + change;
+  if (!same && (there > this->Distance || (this->Tree && back > this->Distance)))
   {
-    // As near as before, but by other facets: what is left of the distance is not known for these.
-    for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1]; ++i)
+    const std::vector<Triangle> now = this->trianglesAt(v, this->at(v));
+    there = there > this->Distance ? this->farthest(now, this->Distance) : there;
+    if (there > this->Distance)
     {
-      this->Facets[this->FacetsAt[i]].left = -1;
+      // The input is on its own surface, but may be far from another one.
+      const double most = this->Tree ? 0 : this->farthest(old, std::numeric_limits<double>::max());
+      if (!(most > this->Distance && this->farthest(now, most) <= most))
+      {
+        return false;
+      }
+      there = unknown;
     }
-    return true;
-  }
-  const std::vector<Triangle> now = this->trianglesAt(v, this->at(v));
-  double distance = this->farthest(now, this->Distance);
-  if (distance > this->Distance)
-  {
-    // The input is on its own surface, but may be far from another one.
-    const double most = this->Tree ? 0 : this->farthest(old, std::numeric_limits<double>::max());
-    return most > this->Distance && this->farthest(now, most) <= most;
-  }
-  distance = this->Tree ? std::max(distance, this->farthestPlace(before, old, now)) : distance;
-  if (distance > this->Distance)
-  {
-    return false;
-  }
-  for (std::int32_t i = this->Starts[v]; i < this->Starts[v + 1]; ++i)
-  {
-    Facet& facet = this->Facets[this->FacetsAt[i]];
-    facet.left = this->Distance - distance;
-    for (int k = 0; k < MaxFaceNodes && facet.vertices[k] >= 0; ++k)
+    else if (this->Tree && back > this->Distance)
     {
-      facet.measuredAt[k] = this->at(facet.vertices[k]);
+      back = this->farthestPlace(before, old, now);
+      if (back > this->Distance)
+      {
+        return false;
+      }
     }
   }
+  this->setFar(v, There, there);
+  this->setFar(v, Back, back);
   return true;
 }
 }

@@ -10,6 +10,7 @@
 #include "tautline/Boundary/SurfaceProjection.h"
 #include "tautline/Geometry/PointTree.h"
 
+#include <limits>
 #include <memory>
 
 namespace tautline
@@ -24,10 +25,10 @@ namespace tautline
  * was within the distance of them: as each step keeps these places near, all that are near at the
  * start stay near.
  *
- * What is left of the distance is kept with the corners of each facet: as long as none of these is
- * farther from there than that, nothing needs to be measured again. Nothing is measured either
- * where a vertex slides on a flat part, or along a straight edge between two: its facets cover what
- * they covered.
+ * How far a facet may be is kept with it. A step adds to that at most by how much the facets of the
+ * vertex move along their mean normal, and by its own length: as long as the sum is within the
+ * distance, nothing needs to be measured again. Nothing is added where a vertex slides on a flat
+ * part, or along a straight edge between two: its facets cover what they covered.
  */
 class TAUTLINE_KERNEL_EXPORT SurfaceLimit
 {
@@ -54,6 +55,8 @@ public:
   void setShare(double share);
   /// To be called where vertices have moved without allows().
   void forget();
+  /// The same for one vertex, which has gone back after allows().
+  void forget(std::int32_t v);
   /// One flag per free vertex: its last step was refused.
   const std::vector<unsigned char>& held() const { return this->Refused; }
 
@@ -63,18 +66,26 @@ private:
   struct Facet
   {
     std::array<std::int32_t, MaxFaceNodes> vertices;
-    std::array<Vec3, MaxFaceNodes> measuredAt = {};
-    double left = -1; ///< how far its corners may be from there; below 0: not measured
+    std::array<double, 2> far = { unknown, unknown }; ///< see Way: not farther than this
   };
+  /// From the facets to the surface, and from the surface to the facets.
+  enum Way
+  {
+    There,
+    Back
+  };
+  static constexpr double unknown = std::numeric_limits<double>::infinity();
   Vec3 at(std::int32_t v) const
   {
     const double* p = this->Simplices.coordinates() + VertexStride * static_cast<std::size_t>(v);
     return { p[0], p[1], p[2] };
   }
   void findFacets(const Mesh& mesh, const std::vector<SurfaceFacet>& facets);
+  bool isAsIn(const Mesh& mesh) const;
   bool coversSame(std::int32_t v, const Vec3& before, const std::vector<Triangle>& triangles) const;
   bool staysNear(std::int32_t v, const Vec3& before);
-  bool isLeft(const Facet& facet) const;
+  double farOf(std::int32_t v, Way way) const;
+  void setFar(std::int32_t v, Way way, double far);
   std::vector<Triangle> trianglesAt(std::int32_t v, const Vec3& place) const;
   double farthest(const std::vector<Triangle>& triangles, double most) const;
   double farthestPlace(const Vec3& center, const std::vector<Triangle>& before,

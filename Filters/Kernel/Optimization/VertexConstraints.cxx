@@ -182,7 +182,7 @@ bool VertexOptimizer<Dim>::placeOnSurface(
     step += (d[c] / this->Simplices.scale()) * w.patch.axes[c];
   }
   const std::vector<Vec3> normals =
-    Dim == 2 && this->isOnCurve(v) ? this->normalsAt(v) : std::vector<Vec3>();
+    Dim == 2 && (this->isOnCurve(v) || this->isLoose(v)) ? this->normalsAt(v) : std::vector<Vec3>();
   const SurfaceProjection* surface = this->surfaceOf(v);
   const std::vector<SurfaceLimit*>& limits = this->Options.surfaceLimits;
   const auto onSurface = [surface](const Vec3& x) { return surface ? surface->closest(x) : x; };
@@ -213,6 +213,10 @@ bool VertexOptimizer<Dim>::placeOnSurface(
     placed = norm(to - start) <= reach && upright && this->changeAt(scalarizer, w, zero) < 0 &&
       std::all_of(limits.begin(), limits.end(),
         [&](SurfaceLimit* limit) { return limit->allows(v, before); });
+    for (std::size_t i = 0; !placed && limits.size() > 1 && i < limits.size(); ++i)
+    {
+      limits[i]->forget(v); // one of them may have allowed what another one did not
+    }
   }
   if (!placed)
   {

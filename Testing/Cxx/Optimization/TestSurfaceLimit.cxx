@@ -86,6 +86,79 @@ TAUTLINE_PART(testLimit)
   }
 }
 
+/// The triangles of a surface in space.
+std::vector<Triangle> trianglesOf(const MeshData& data, const std::vector<double>& points)
+{
+  return collect<Triangle>(data.numberOfCells(),
+    [&](Index c)
+    {
+      Triangle t;
+      for (int k = 0; k < 3; ++k)
+      {
+        const double* p = &points[3 * data.connectivity[data.offsets[c] + k]];
+        t[k] = { p[0], p[1], p[2] };
+      }
+      return t;
+    });
+}
+
+/// A surface in space stays within the default tolerance, both ways, and keeps its volume: one of a
+/// CAD program with long facets along fillets, and a fine round one. It improves all the same.
+TAUTLINE_PART(testSurfaces)
+{
+  MeshData ball = sphereSurface(CellType::Triangle, 12);
+  Random random(8);
+  ball.transform(
+    [&](Vec3 p)
+    {
+      const Vec3 q =
+        p + 0.03 * Vec3{ random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1) };
+      return (1 / norm(q)) * q;
+    });
+  for (const bool round : { false, true })
+  {
+    const MeshData data = round ? ball : roundedBar(4, 2.0, 4, 0.45, 5);
+    const double diagonal = round ? 2 * std::sqrt(3.0) : norm({ 2, 2, 8 });
+    const std::vector<Triangle> before = trianglesOf(data, data.points);
+    for (const int preset : { vtkMeshOptimizer::BEST_SHAPE, vtkMeshOptimizer::WORST_ELEMENT })
+    {
+      const Context context((round ? "ball, preset " : "bar, preset ") + std::to_string(preset));
+      TAUTLINE_NEW(
+        vtkMeshOptimizer, filter, SetInputData(toGrid(data)), SetPreset(preset), Update());
+      const std::vector<double> points = toMesh(outputOf<vtkUnstructuredGrid>(filter)).points;
+      const std::vector<Triangle> after = trianglesOf(data, points);
+      constexpr double tolerance = 1e-3;
+      TAUTLINE_CHECK(distance(after, before) <= tolerance * diagonal);
+      TAUTLINE_CHECK(distance(before, after) <= tolerance * diagonal);
+      TAUTLINE_CHECK(filter->GetSurfaceError() <= tolerance * diagonal);
+      TAUTLINE_CHECK_RELATIVE(volumeWithin(data, points), volumeWithin(data, data.points), 5e-3);
+      TAUTLINE_CHECK(sumOfSquares(data, points, Metric::InverseMeanRatio) <
+        0.95 * sumOfSquares(data, data.points, Metric::InverseMeanRatio));
+      // Without a tolerance it goes farther: the limit is what holds it.
+      TAUTLINE_SET(filter, SetSurfaceTolerance(0.0), Update());
+      const std::vector<double> free = toMesh(outputOf<vtkUnstructuredGrid>(filter)).points;
+      TAUTLINE_CHECK(distance(before, trianglesOf(data, free)) > distance(before, after));
+    }
+  }
+}
+
+/// Facets are smooth where they are short against the radius of curvature.
+TAUTLINE_PART(testLongFacets)
+{
+  for (const double length : { 0.2, 2.0 })
+  {
+    const MeshData data = roundedBar(3, length, 6, 0.0, 1);
+    const Mesh mesh(data.view());
+    const Features found = findFeatures(mesh, {});
+    const SurfaceModel model = makeSurfaceModel(mesh, found, true);
+    const double highest = largestOf<double>(0, model.patches,
+      [&](int patch) { return static_cast<double>(model.parts[patch].controls.size()); });
+    // The strips of the fillets; the flat sides between them, which are wider, stay flat.
+    const double strips = 4 * 6 * 2 * 3;
+    TAUTLINE_CHECK(length < 0.5 ? highest > 0.5 * strips && highest <= strips : highest == 0);
+  }
+}
+
 /// The filter's limit is relative to the diagonal, whatever the unit.
 TAUTLINE_PART(testFilter)
 {
