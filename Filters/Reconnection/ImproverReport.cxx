@@ -222,11 +222,15 @@ std::string describeResult(const ReconnectionResult& result, bool isTriangles)
     text << "\nFacets inside the mesh that triangles mark, and that are kept: "
          << result.markedFacets << ".";
   }
-  if (result.volumeBefore > 0.0)
+  if (result.volumeBefore != 0.0)
   {
-    text << "\nLargest distance between the boundary and that of the input: "
-         << result.boundaryDistance << ". Volume: " << result.volumeBefore << " to "
-         << result.volumeAfter << ".";
+    text << "\n";
+    if (!isTriangles)
+    {
+      text << "Largest distance between the boundary and that of the input: "
+           << result.boundaryDistance << ". ";
+    }
+    text << "Volume: " << result.volumeBefore << " to " << result.volumeAfter << ".";
   }
   return text.str();
 }

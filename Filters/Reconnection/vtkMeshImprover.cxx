@@ -237,6 +237,7 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
       "improved");
   }
   tautline::TriangleOptions options;
+  options.keepVolume = this->KeepVolume;
   prepare(options);
   sizes = this->SetSize(block.input, options);
   options.sizes = sizes.data();
@@ -397,6 +398,7 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "SurfaceAngle: " << this->SurfaceAngle << "\n";
   os << indent << "SurfaceDistance: " << this->SurfaceDistance << "\n";
+  os << indent << "KeepVolume: " << this->KeepVolume << "\n";
   os << indent << "Size: " << this->Size << "\n";
   os << indent << "EdgeLength: " << this->EdgeLength << "\n";
   os << indent << "EdgeFactor: " << this->EdgeFactor << "\n";

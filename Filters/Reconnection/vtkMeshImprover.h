@@ -13,8 +13,9 @@
  *
  * Triangles: planar meshes and surfaces in space. Edges on the border, between regions, under lines
  * beside the triangles and, on surfaces, sharp edges (FeatureAngle) stay; so do corners. Other
- * points of a surface stay on the facets of the input, and changed triangles within
- * SurfaceDistance and SurfaceAngle of them. The area of a planar mesh and of each region stays.
+ * points of a surface stay on the smooth surface through the points of the input, and changed
+ * triangles within SurfaceDistance and SurfaceAngle of its facets. The area of a planar mesh and of
+ * each region stays.
  *
  * Other cells of volume (of area, where there are none of volume), ghost cells and inverted
  * elements are refused (run vtkMeshUntangler first); cells of lower dimension are left out with a
@@ -251,6 +252,17 @@ public:
 
   ///@{
   /**
+   * Whether a closed surface in space keeps the volume that it encloses: in the end, points of its
+   * curved parts move along their normals, all by the same way. An error for open surfaces and
+   * planar meshes; tetrahedra are not affected. The summary has the volumes. The default is off.
+   */
+  vtkSetMacro(KeepVolume, bool);
+  vtkGetMacro(KeepVolume, bool);
+  vtkBooleanMacro(KeepVolume, bool);
+  ///@}
+
+  ///@{
+  /**
    * The number of elements stays within these multiples of the input's: 0 to 1 and at least 1.
    * Both 1: no point is inserted or removed. The defaults are 0.9 and 1.1.
    */
@@ -441,6 +453,7 @@ private:
   double FeatureAngle = 40.0;
   double SurfaceAngle = 20.0;
   double SurfaceDistance = 5e-3;
+  bool KeepVolume = false;
   int Size = ANY_LENGTH;
   double EdgeLength = 1.0;
   double EdgeFactor = 2.0;

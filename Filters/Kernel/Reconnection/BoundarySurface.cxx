@@ -107,61 +107,6 @@ constexpr double BackFactor = 1.25;
 constexpr int SampleDivisions = 2;
 /// Cells of the grid of points along the longest side of its box, at most.
 constexpr double MostCells = 100.0;
-/// A chain of at most so many sharp edges that ends within a patch is noise.
-constexpr Index NoiseEdges = 3;
-
-/// The features without noise: chains of few sharp edges with an end where no other one begins,
-/// which divide nothing.
-Features featuresOf(const Mesh& mesh, FeatureOptions options)
-{
-  Features features = findFeatures(mesh, options);
-  std::vector<Index> degree(features.kind.size(), 0);
-  std::vector<std::vector<std::size_t>> chains(features.curves);
-  for (std::size_t e = 0; e < features.edges.size(); ++e)
-  {
-    const Features::Edge& edge = features.edges[e];
-    chains[edge.curve].push_back(e);
-    ++degree[edge.first];
-    ++degree[edge.second];
-  }
-  bool found = true, any = false;
-  while (found)
-  {
-    found = false;
-    for (std::vector<std::size_t>& chain : chains)
-    {
-      const bool dangles = std::any_of(chain.begin(), chain.end(),
-        [&](std::size_t e)
-        { return degree[features.edges[e].first] == 1 || degree[features.edges[e].second] == 1; });
-      if (!dangles || static_cast<Index>(chain.size()) > NoiseEdges)
-      {
-        continue;
-      }
-      for (std::size_t e : chain)
-      {
-        --degree[features.edges[e].first];
-        --degree[features.edges[e].second];
-      }
-      chain.clear();
-      found = any = true;
-    }
-  }
-  if (!any)
-  {
-    return features;
-  }
-  std::vector<signed char> kinds(features.kind.size(), DetectKind);
-  for (const Features::Edge& edge : features.edges)
-  {
-    for (Index v : { edge.first, edge.second })
-    {
-      kinds[v] = degree[v] == 0 ? static_cast<signed char>(PatchPoint) : kinds[v];
-    }
-  }
-  options.kinds = kinds.data();
-  return findFeatures(mesh, options);
-}
-
 /// A box around points.
 struct Box
 {
@@ -388,15 +333,16 @@ BoundarySurface::BoundarySurface(
 {
   FeatureOptions wanted;
   wanted.angle = options.featureAngle;
-  const Features features = featuresOf(mesh, wanted);
-  const SurfaceModel model = makeSurfaceModel(mesh, features, false);
+  const Features features = findFeatures(mesh, wanted);
+  const SurfacePart boundary = boundaryOf(changing);
+  this->Distance = std::max(options.surfaceDistance, LeastDistance) * diagonalOf(boundary.pieces);
+  const SurfaceModel model =
+    makeSurfaceModel(mesh, features, true, false, SmoothPart::shareOfPoints * this->Distance);
+  this->Patches = model.patches;
   for (const SurfacePart& part : model.parts)
   {
-    this->Parts.emplace_back(part, nullptr);
+    this->Parts.emplace_back(part, this->Distance);
   }
-  const SurfacePart boundary = boundaryOf(changing);
-  this->Patches = model.patches;
-  this->Distance = std::max(options.surfaceDistance, LeastDistance) * diagonalOf(boundary.pieces);
   this->Whole.emplace_back(boundary, nullptr);
   this->Sense = senseOf(changing, features);
 
@@ -490,11 +436,11 @@ int BoundarySurface::patchOf(
       continue;
     }
     // The distance decides only where there is a choice.
-    const Vec3 d = candidates.size() > 1 ? this->Parts[patch].closest(centre) - centre : Vec3();
-    if (best == NoId || dot(d, d) < smallest)
+    const double d = candidates.size() > 1 ? this->Parts[patch].distanceOf(centre) : 0.0;
+    if (best == NoId || d < smallest)
     {
       best = patch;
-      smallest = dot(d, d);
+      smallest = d;
     }
   }
   return best;
@@ -502,21 +448,8 @@ int BoundarySurface::patchOf(
 
 bool BoundarySurface::accepts(const std::array<Vec3, 3>& x, int patch) const
 {
-  const SurfaceProjection& surface = this->Parts[patch];
   const auto& [a, b, c] = x;
-  const Vec3 normal = this->Sense * cross(b - a, c - a);
-  // The mean normal: slivers of the input may be turned anywhere.
-  Vec3 below = { 0, 0, 0 };
-  for (const Vec3& p : { (1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a) })
-  {
-    Vec3 direction;
-    if (!(norm(surface.closest(p, direction) - p) <= this->Distance))
-    {
-      return false;
-    }
-    below += direction;
-  }
-  return dot(normal, below) >= this->Cosine * norm(normal) * norm(below);
+  return this->Parts[patch].accepts(x, this->Sense * cross(b - a, c - a), this->Cosine);
 }
 
 double BoundarySurface::distance(const TetrahedronMesh& changed) const

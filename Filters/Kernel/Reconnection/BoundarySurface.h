@@ -9,19 +9,19 @@
 
 #include "ReconnectionInput.h"
 #include "ReconnectionResult.h"
+#include "SmoothPart.h"
 #include "StarSmoothing.h"
-#include "tautline/Boundary/SurfaceProjection.h"
 #include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline
 {
 /**
- * @brief Patches and curves (Features) of the outer boundary of the input, made of its facets.
+ * @brief Patches and curves (Features) of the outer boundary of the input, smooth through its
+ * points.
  *
  * Points keep to their patch or curve; a facet has the patch that all its points touch, and stays
  * within a distance and an angle of it; what the input has stays within 1.25 times the distance of
- * the facets. Chains of at most three sharp edges with an end within a patch are noise, and not
- * curves; corners nearer to each other than the distance may become one. Not changed after
+ * the facets. Corners nearer to each other than the distance may become one. Not changed after
  * construction: threads share it.
  */
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT BoundarySurface
@@ -91,13 +91,13 @@ private:
   void groupCorners(const Features& features, const TetrahedronMesh& changing,
     std::vector<std::vector<std::int32_t>>& touched);
 
-  std::vector<SurfaceProjection> Parts; ///< first the patches, then the curves
+  std::vector<SmoothPart> Parts;        ///< first the patches, then the curves
   std::vector<SurfaceProjection> Whole; ///< one: the boundary
   PointGrid Kept;                       ///< what has to stay near
   int Patches = 0;
   std::vector<PointFreedom> Freedoms;
   std::vector<std::vector<std::int32_t>> Sets; ///< of patches; the first ones have one patch each
-  double Distance = 0, Cosine = 0;
+  double Cosine = 0;
   double Sense = 1; ///< -1: the facets of the patches are in the other order
 };
 }

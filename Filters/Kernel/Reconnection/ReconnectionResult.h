@@ -93,6 +93,7 @@ struct ReconnectionResult
   Index pointsInPlanes = 0, pointsOnLines = 0; ///< points of the boundary that may slide
   /// With ReconnectionBoundary::Surface: the largest distance of the boundary from that of the
   /// input, or back, at corners, middles of edges and centres of facets; and the volumes.
+  /// With TriangleOptions::keepVolume: the volumes.
   double boundaryDistance = 0, volumeBefore = 0, volumeAfter = 0;
   double meanBefore = 0, meanAfter = 0; ///< of the inverse mean ratios of tetrahedra
   /// With ReconnectionObjective::Metric: the metric's worst value.

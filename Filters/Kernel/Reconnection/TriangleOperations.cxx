@@ -257,11 +257,14 @@ bool TriangleOperations::applyMotion(VertexId v, int steps)
     return false;
   }
   this->Mesh.movePoint(v, x, this->Around);
+  // The triangles of a transaction are compared with the surface at its end.
+  const bool open = this->Mesh.inTransaction() && !this->Input.planar;
   const bool valid = std::all_of(this->Around.begin(), this->Around.end(),
     [&](TriId t)
     {
       const Triangle& triangle = this->Mesh.triangle(t);
-      return triangle.quality > before && this->accepts(triangle.vertices, triangle.origin);
+      return triangle.quality > before &&
+        (open || this->accepts(triangle.vertices, triangle.origin));
     });
   if (!valid)
   {

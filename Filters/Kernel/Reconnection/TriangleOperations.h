@@ -55,6 +55,14 @@ public:
   /// Moves a point so that the sum of the inverse mean ratios around decreases, and no quality
   /// falls below the least. @return the decrease
   double improveMean(VertexId v, double leastQuality);
+  /**
+   * @brief Moves points of curved parts of a closed surface along their normals, all by the same
+   * way, until it encloses a volume. Points go back where a quality falls below the least, or
+   * triangles are not accepted: then the volume may not be reached.
+   */
+  void keepVolume(double volume, double leastQuality);
+  /// The volume that a closed surface encloses; negative if its triangles face inwards.
+  double enclosedVolume() const;
   /// Moves vertex i into vertex j, then flips and moves around.
   bool contract(TriId t, int i, int j);
   /// Inserts a point at one of several places in or near the triangle, then flips and moves around.
@@ -79,6 +87,7 @@ private:
   bool isBetterFlip(TriId t, int i);
   bool applyMotion(VertexId v, int steps);
   double sumAround(double leastQuality) const;
+  Vec3 bentArea() const;
   void tidy();
   bool mayDivide(TriId t, int i) const;
   VertexId divide(TriId t, int i);

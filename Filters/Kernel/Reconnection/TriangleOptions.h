@@ -26,6 +26,12 @@ struct TriangleOptions : ReconnectionOptions
 
   /// Pairs of points: edges that are kept as the border is. Others than edges have no effect.
   std::vector<std::array<Index, 2>> markedEdges;
+  /**
+   * @brief Of a closed surface in space: in the end, points of its curved parts move along their
+   * normals until it encloses the volume that it had, to 1e-6 of it; less well where triangles
+   * would become too bad or leave surfaceDistance. See ReconnectionResult::volumeAfter.
+   */
+  bool keepVolume = false;
   /// First all edges are flipped that should be, also far from triangles below the target.
   bool swapEverywhere = true;
 };

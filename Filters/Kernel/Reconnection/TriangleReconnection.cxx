@@ -125,6 +125,7 @@ private:
   bool record(int pass, double fraction);
   bool runPass(const TrianglePass& pass);
   bool improveMean();
+  void keepVolume();
   bool improve(TriId t, const TrianglePass& pass);
   void pushChanged(double target);
   bool isWaiting(const Queue::Entry& entry);
@@ -138,6 +139,7 @@ private:
   std::vector<std::uint32_t> Tried; ///< clock at the last attempt in vain, per slot
   ReconnectionProgress Progress;
   Index Attempts = 0;
+  double Volume = 0; ///< of the input, if it is to be kept
 };
 
 bool TriangleRun::record(int pass, double fraction)
@@ -255,6 +257,18 @@ bool TriangleRun::improveMean()
   return this->record(before.pass + 1, 1.0) && complete;
 }
 
+/// Also of a run that was stopped: what it has changed so far has cost volume.
+void TriangleRun::keepVolume()
+{
+  const ReconnectionRecord& first = this->Result.history.front();
+  this->Operations.leastMeanRatio = 1.0 / first.worstInverseMeanRatio;
+  this->Operations.keepVolume(this->Volume, first.worstQuality);
+  const double unit = std::ldexp(1.0, 3 * this->Input.exponent);
+  this->Result.volumeBefore = unit * this->Volume;
+  this->Result.volumeAfter = unit * this->Operations.enclosedVolume();
+  this->record(this->Result.history.back().pass + 1, 1.0);
+}
+
 void TriangleRun::prepare(const std::vector<PointFreedom>& freedoms)
 {
   TriangleOperations& operations = this->Operations;
@@ -276,6 +290,7 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
 {
   const bool started = this->record(0, 0.0);
   this->prepare(freedoms);
+  this->Volume = this->Options.keepVolume ? this->Operations.enclosedVolume() : 0.0;
   std::vector<TrianglePass> passes = planPasses(this->Options);
   const std::size_t planned = passes.size();
   bool stopped = !started;
@@ -298,6 +313,10 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
     }
   }
   stopped = stopped || (this->Options.improveMean && !this->improveMean());
+  if (this->Options.keepVolume)
+  {
+    this->keepVolume();
+  }
   if (!stopped && this->Result.history.back().belowTarget == 0)
   {
     this->Result.reason = StopReason::Reduction;
@@ -311,6 +330,27 @@ void checkEdges(const TriangleMesh& mesh)
     throw Error(std::to_string(mesh.nonManifoldEdges()) +
       " edges of a planar mesh have three or more triangles, or two on the same side: remove "
       "duplicate or overlapping triangles first");
+  }
+}
+
+/// Only a closed surface encloses a volume.
+void requireClosed(const TriangleMesh& mesh)
+{
+  Index open = 0;
+  for (TriId t = 0; t < mesh.slots(); ++t)
+  {
+    for (int i = 0; i < 3; ++i)
+    {
+      open += mesh.isBorder(t, i);
+    }
+  }
+  if (mesh.planar() || open > 0)
+  {
+    throw Error("The volume can be kept of a closed surface only, and " +
+      (mesh.planar() ? std::string("this mesh is planar")
+                     : std::to_string(open) +
+            " edges of this one do not have one triangle on each side, in the same order") +
+      ": switch Keep Volume off, or close the surface first.");
   }
 }
 }
@@ -334,6 +374,10 @@ ReconnectionResult improveTriangles(const Mesh& mesh, const TriangleOptions& opt
   const TriangleInput input = convertTriangles(mesh, options);
   TriangleMesh changing(input.points, input.cells, input.regions, input.walls, input.planar);
   checkEdges(changing);
+  if (options.keepVolume)
+  {
+    requireClosed(changing);
+  }
   const TriangleMesh before = changing;
   ReconnectionResult result;
   const std::vector<PointFreedom> freedoms = findFreedoms(changing, input, options);

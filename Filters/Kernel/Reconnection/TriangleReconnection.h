@@ -15,8 +15,9 @@
  * an exact predicate.
  *
  * Kept are borders, edges between regions, given edges, fixed points and, on a surface in space,
- * its sharp edges and corners (Mesh/Features.h). Other points of a surface stay on the facets of
- * the input, and changed triangles close to them.
+ * its sharp edges and corners (Mesh/Features.h). Other points of a surface stay on the smooth
+ * surface through the points of the input (Boundary/SurfaceModel.h), and changed triangles close to
+ * its facets.
  *
  * Example: every operation, the border kept.
  *

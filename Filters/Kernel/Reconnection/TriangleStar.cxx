@@ -151,12 +151,14 @@ double TriangleStar::maximize(
       {
         trialPoint = trialPoint + step[1] * directions.second;
       }
-      if (project)
+      double trialQuality = this->evaluate(trialPoint, up);
+      moved = trialQuality > quality + this->leastGain;
+      if (project && moved) // what does not gain in the plane hardly does beside it
       {
         trialPoint = project(trialPoint);
+        trialQuality = this->evaluate(trialPoint, up);
+        moved = trialQuality > quality + this->leastGain;
       }
-      const double trialQuality = this->evaluate(trialPoint, up);
-      moved = trialQuality > quality + this->leastGain;
       if (moved)
       {
         p = trialPoint;

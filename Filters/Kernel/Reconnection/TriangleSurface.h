@@ -7,11 +7,17 @@
 #ifndef tautline_TriangleSurface_h
 #define tautline_TriangleSurface_h
 
-#include "tautline/Boundary/SurfaceProjection.h"
+#include "SmoothPart.h"
 
 namespace tautline
 {
-/// The patches of a surface; without patches it is the plane of a planar mesh.
+/**
+ * @brief The patches of a surface; without patches it is the plane of a planar mesh.
+ *
+ * Points go to the smooth surface through the points of the input (Boundary/SurfaceModel.h), or as
+ * near to it as the distance allows; how far triangles are is measured from the facets of the
+ * input.
+ */
 class TriangleSurface
 {
 public:
@@ -29,8 +35,8 @@ public:
   bool accepts(const Vec3& a, const Vec3& b, const Vec3& c, int patch) const;
 
 private:
-  std::vector<SurfaceProjection> Patches;
-  double Distance = 0, Cosine = 0;
+  std::vector<SmoothPart> Patches;
+  double Cosine = 0;
 };
 }
 #endif

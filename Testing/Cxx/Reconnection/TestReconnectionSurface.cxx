@@ -146,7 +146,8 @@ TAUTLINE_PART(testCylinder)
     double area = 0.0;
     for (const Facet& f : facets)
     {
-      const bool cap = std::all_of(f.begin(), f.end(), [](const Vec3& x) { return x[2] == 1.0; });
+      const bool cap =
+        std::all_of(f.begin(), f.end(), [](const Vec3& x) { return std::abs(x[2] - 1.0) < 1e-12; });
       area += cap ? 0.5 * norm(cross(f[1] - f[0], f[2] - f[0])) : 0.0;
     }
     return area;
