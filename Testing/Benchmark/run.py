@@ -12,6 +12,11 @@ and .csv of metrics of one's own, and curved.json and .csv of curved elements (s
 curved.py) to the output directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh
 compares with the program gmsh, where that is installed (see gmsh_comparison.py). With --only calculix, repairs decks
 that CalculiX refuses, and gives them to CalculiX again (see calculix_decks.py).
+peers.py), surfaces.json and .csv of surfaces in space next to VTK's smoother (see surfaces.py), user-metric.json and
+.csv of metrics of one's own, and curved.json and .csv of curved elements (see curved.py) to the output directory, by
+default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh compares with the program gmsh, where that is
+installed (see gmsh_comparison.py). With --only calculix, repairs decks that CalculiX refuses, and gives them to
+CalculiX again (see calculix_decks.py).
 """
 
 import argparse
@@ -247,6 +252,11 @@ def run_peers(build: Path, output: Path, repeats: int, quick: bool) -> None:
 
 def run_hexes(build: Path, output: Path, quick: bool) -> None:
     run_table(output, "hexes", *hexes.run(build / "bin" / "BenchmarkHexes", quick))
+def run_surfaces(build: Path, output: Path, quick: bool) -> None:
+    sys.path.insert(0, str(build / "lib" / "python3" / "dist-packages"))
+    import surfaces  # needs the package, which the other parts do not
+
+    run_table(output, "surfaces", *surfaces.run(quick))
 
 
 def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> None:
@@ -259,6 +269,7 @@ def main() -> int:
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
     parts = ("quality", "optimization", "deformation", "reconnection", "reconnection-aims", "stiff", "peers",
              "hexes", "user-metric", "curved", "gmsh", "calculix")
+             "surfaces", "user-metric", "curved", "gmsh", "calculix")
     parser.add_argument("--only", choices=parts, help="one part; all but reconnection-aims and calculix otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
@@ -292,6 +303,8 @@ def main() -> int:
         run_peers(options.build, output, options.repeats or 3, options.quick)
     if options.only in (None, "hexes"):
         run_hexes(options.build, output, options.quick)
+    if options.only in (None, "surfaces"):
+        run_surfaces(options.build, output, options.quick)
     if options.only in (None, "user-metric"):
         run_user_metric(options.build, output, 4 if options.quick else 30, options.repeats or 9)
     if options.only in (None, "curved"):

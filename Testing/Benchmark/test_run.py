@@ -90,6 +90,14 @@ def check_stiff(output: Path) -> None:
     assert measured["quads-aspect1000 100: sum at the start / minimum"] > 8 * 304**2 / 100, measured
 
 
+def check_surfaces(output: Path) -> None:
+    measured, _ = read(output, "surfaces")
+    for mesh in ("bar", "ball"):
+        assert measured[f"{mesh}: smallest angle"] > measured[f"{mesh}: smallest angle before"] > 0, measured
+        assert measured[f"{mesh}: distance / diagonal"] <= 1e-3, measured
+        assert measured[f"{mesh}: change of the volume"] < 5e-3, measured
+
+
 def check_peers(output: Path) -> None:
     measured, ratios = read(output, "peers")
     assert measured["stretched box: elements"] == measured["stretched box: least sum"] == 4 * 4 * 3, measured
@@ -153,6 +161,7 @@ def main(build: Path, output: Path) -> int:
     check_reconnection(output)
     check_stiff(output)
     check_peers(output)
+    check_surfaces(output)
     check_hexopt()
     check_user_metric(output)
     check_curved(output)
