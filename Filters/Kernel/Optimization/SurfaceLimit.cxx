@@ -115,9 +115,13 @@ public:
    */
   double changeTo(const Vec3& x) const
   {
+    const double way = norm(x - this->Origin);
+    if (this->Corners.empty())
+    {
+      return way;
+    }
     const Vec3 from = { 0, 0, 0 }, to = this->seen(x);
-    const double way = norm(to);
-    if (this->Corners.empty() || !this->isGraph(from) || !this->isGraph(to))
+    if (!this->isGraph(from) || !this->isGraph(to))
     {
       return way;
     }
@@ -197,7 +201,7 @@ private:
   }
 
   Vec3 Origin;
-  std::array<Vec3, 3> Axes;
+  std::array<Vec3, 3> Axes = {};
   std::vector<Vec3> Corners; ///< in order; empty: not once around
 };
 }
