@@ -7,16 +7,12 @@ nanoseconds per element, and ratios) and benchmark.csv (the same, one per line) 
 elements, optimization.json and .csv of the optimizer (see optimization.py), deformation.json and .csv of warping
 (see deformation.py), reconnection.json and .csv of changes of the connectivity (see reconnection.py), stiff.json
 and .csv of stretched meshes (see stiff.py), peers.json and .csv of meshes that other programs were run on (see
-peers.py), hexes.json and .csv of meshes of hexahedra with a boundary that slides (see hexes.py), user-metric.json
+peers.py), hexes.json and .csv of meshes of hexahedra with a boundary that slides (see hexes.py), surfaces.json and
+.csv of surfaces in space next to VTK's smoother (see surfaces.py), user-metric.json
 and .csv of metrics of one's own, and curved.json and .csv of curved elements (see
 curved.py) to the output directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh
 compares with the program gmsh, where that is installed (see gmsh_comparison.py). With --only calculix, repairs decks
 that CalculiX refuses, and gives them to CalculiX again (see calculix_decks.py).
-peers.py), surfaces.json and .csv of surfaces in space next to VTK's smoother (see surfaces.py), user-metric.json and
-.csv of metrics of one's own, and curved.json and .csv of curved elements (see curved.py) to the output directory, by
-default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh compares with the program gmsh, where that is
-installed (see gmsh_comparison.py). With --only calculix, repairs decks that CalculiX refuses, and gives them to
-CalculiX again (see calculix_decks.py).
 """
 
 import argparse
@@ -252,6 +248,8 @@ def run_peers(build: Path, output: Path, repeats: int, quick: bool) -> None:
 
 def run_hexes(build: Path, output: Path, quick: bool) -> None:
     run_table(output, "hexes", *hexes.run(build / "bin" / "BenchmarkHexes", quick))
+
+
 def run_surfaces(build: Path, output: Path, quick: bool) -> None:
     sys.path.insert(0, str(build / "lib" / "python3" / "dist-packages"))
     import surfaces  # needs the package, which the other parts do not
@@ -268,8 +266,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
     parts = ("quality", "optimization", "deformation", "reconnection", "reconnection-aims", "stiff", "peers",
-             "hexes", "user-metric", "curved", "gmsh", "calculix")
-             "surfaces", "user-metric", "curved", "gmsh", "calculix")
+             "hexes", "surfaces", "user-metric", "curved", "gmsh", "calculix")
     parser.add_argument("--only", choices=parts, help="one part; all but reconnection-aims and calculix otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
