@@ -14,9 +14,9 @@
  * have are smooth (see tautline/Boundary/GeometryMatch.h).
  *
  * Three input arrays can be chosen by SetInputArrayToProcess(), whose indices are in the
- * documentation of the filters: a point array of points that stay (where it is not 0), a point array
- * of feature kinds (0 patch, 1 curve, 2 corner, -1 as found), and a cell array of regions, whose
- * interfaces are part of the features.
+ * documentation of the filters: a point array of points that stay (where it is not 0), a point
+ * array of feature kinds (0 patch, 1 curve, 2 corner, -1 as found), and a cell array of regions,
+ * whose interfaces are part of the features.
  *
  * @sa vtkMeshOptimizer, vtkMeshUntangler
  */

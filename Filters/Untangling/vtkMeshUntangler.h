@@ -40,8 +40,9 @@
  *
  * @par Several processes:
  * Each may have pieces of the mesh. Volume meshes and planar ones are worked on where they are, in
- * the reproducible order, with a boundary that stays instead of sliding ON_SURFACE. Surfaces in space, inclined planes, blocks and what is left inverted are
- * gathered on the first process; the summary names what was gathered and why.
+ * the reproducible order, with a boundary that stays instead of sliding ON_SURFACE. Surfaces in
+ * space, inclined planes, blocks and what is left inverted are gathered on the first process; the
+ * summary names what was gathered and why.
  *
  * Dissertation section 3.3.3; Escobar et al. 2003 and Garanzha et al. 2021, see
  * tautline/Untangling/Untangle.h.

@@ -35,14 +35,14 @@ struct GeometryMatch
  *
  * An edge of the boundary is on a curve of the geometry if its ends and its middle are next to it
  * and it goes along it; a sharp edge of the mesh may be farther away than another. Curves that the
- * mesh has less than half of are left out, and sharp edges and corners of the mesh that the geometry
+ * mesh has less than half of are left out. Sharp edges and corners of the mesh that the geometry
  * does not have are smooth. Of a planar mesh the boundary is matched with the curves of the
  * geometry, between corners that both have.
  * @param options of the features of the mesh. Points given as PatchPoint are on no curve inside a
  * surface, those given as CornerPoint are corners. The angle is that of the geometry, too.
  * @param held one flag per point of the mesh: nonzero for points that stay where they are; or null
- * @param geometry triangles and quadrilaterals; for a planar mesh cells in its plane, whose boundary
- * counts, or an outline of lines; in the coordinates of the mesh
+ * @param geometry triangles and quadrilaterals; for a planar mesh cells in its plane, whose
+ * boundary counts, or an outline of lines; in the coordinates of the mesh
  * Throws Error if the geometry has no facets (no lines), or is elsewhere: half of the points are
  * farther from it than a tenth of the diagonal of the mesh.
  */

@@ -251,8 +251,7 @@ void CurvedProblem::makeSlides(CurvedRegion& region, const std::vector<char>& he
       corner[element.nodes[n]] = 1;
     }
   }
-  const SlidingBoundary* boundary =
-    motion == BoundaryMotion::Free ? nullptr : &this->boundary();
+  const SlidingBoundary* boundary = motion == BoundaryMotion::Free ? nullptr : &this->boundary();
   if (motion == BoundaryMotion::OnSurface)
   {
     this->matchGeometry();
@@ -270,8 +269,7 @@ void CurvedProblem::makeSlides(CurvedRegion& region, const std::vector<char>& he
     {
       Index piece = boundary->pieceOf(global);
       const bool stays = motion == BoundaryMotion::Fixed || piece < 0 ||
-        (motion == BoundaryMotion::FlatParts &&
-          !boundary->isFlat(global, this->Options.flatAngle));
+        (motion == BoundaryMotion::FlatParts && !boundary->isFlat(global, this->Options.flatAngle));
       if (stays)
       {
         region.slides->fix(p);

@@ -363,8 +363,8 @@ CurvedUntangleResult untangleCurved(const Mesh& mesh, const CurvedOptions& optio
 {
   CurvedProblem problem(mesh, options);
   CurvedUntangleResult result = untangleCurved(problem, options);
-  const bool slides = options.boundary == BoundaryMotion::OnSurface ||
-    options.boundary == BoundaryMotion::FlatParts;
+  const bool slides =
+    options.boundary == BoundaryMotion::OnSurface || options.boundary == BoundaryMotion::FlatParts;
   if (slides && result.invalidAfter > 0 && result.reason == StopReason::NoProgress)
   {
     // What the boundary may do is not always for the better: it is held, from the start.

@@ -11,7 +11,7 @@ namespace
 {
 /// A change of a facet may lower the smallest quality of the tetrahedra around to this fraction:
 /// these can be improved later, which a bad facet prevents.
-constexpr double Tolerated = 0.3;
+constexpr double LeastShare = 0.3;
 /// What the mean ratio of a facet has to gain, relative to it: less is not worth a change.
 constexpr double LeastFacetGain = 1e-2;
 }
@@ -29,7 +29,7 @@ double CavityOperations::tolerated(const std::vector<TetId>& tets) const
   {
     least = std::min(least, this->Mesh.quality(t));
   }
-  return std::max(Tolerated * least, this->floor.quality * (1.0 - SameQuality));
+  return std::max(LeastShare * least, this->floor.quality * (1.0 - SameQuality));
 }
 
 /// Replaces the edge of vertices i and j, at which two facets meet, by the other diagonal.

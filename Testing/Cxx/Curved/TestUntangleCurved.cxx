@@ -138,8 +138,8 @@ TAUTLINE_PART(testOnSurface)
   const MeshData data = turnedRing(around, cells);
   TAUTLINE_CHECK(invalidCells(data, data.points) > 0);
   TAUTLINE_CHECK(untangle(data).invalidAfter > 0);
-  const CurvedUntangleResult result = untangle(
-    data, [](CurvedOptions& options) { options.boundary = BoundaryMotion::OnSurface; });
+  const CurvedUntangleResult result =
+    untangle(data, [](CurvedOptions& options) { options.boundary = BoundaryMotion::OnSurface; });
   TAUTLINE_CHECK_EQUAL(result.invalidAfter, 0);
   TAUTLINE_CHECK_EQUAL(invalidCells(data, result.points), 0);
   // The quadratic edges are near the circles.
