@@ -117,6 +117,7 @@ private:
   Vec3 areaOf(const Features::Facet& facet) const;
   double sizeOf(const Features::Facet& facet) const;
   void findNeighbors();
+  double widthOf(Index f, const Vec3& middleOfEdge, const Vec3& axis) const;
   void findStraightEdges();
   void findFlatFaces();
   Vec3 flatNormal(Index point, int patch) const;
@@ -273,12 +274,28 @@ void ModelMaker::findNeighbors()
 }
 
 //------------------------------------------------------------------------------
+/// The width of a facet from one of its edges on, across an axis: that of a thin triangle of a row
+/// is the length of the row.
+double ModelMaker::widthOf(Index f, const Vec3& middleOfEdge, const Vec3& axis) const
+{
+  const Features::Facet& facet = this->TheFeatures.facets[f];
+  Vec3 center = { 0, 0, 0 };
+  for (int k = 0; k < facet.size; ++k)
+  {
+    center += (1.0 / facet.size) * this->at(facet.nodes[k]);
+  }
+  const Vec3 d = center - middleOfEdge;
+  // The centre of a triangle is at a third of its height, of a quadrilateral at half.
+  return (facet.size == 3 ? 3.0 : 2.0) * norm(d - dot(d, axis) * axis);
+}
+
+//------------------------------------------------------------------------------
 /**
  * @brief The edges of facets that are long against the radius of curvature, see longestFacet.
  *
  * The curvature at an edge between two facets is the angle between their normals over the smaller
- * one of their heights above the edge: where a large flat face passes into a fillet, the fillet
- * bends, the face does not.
+ * one of their widths across the axis of the turn: where a large flat face passes into a fillet, the
+ * fillet bends, the face does not.
  */
 void ModelMaker::findStraightEdges()
 {
@@ -287,13 +304,17 @@ void ModelMaker::findStraightEdges()
   for (const Neighbors& pair : this->Beside)
   {
     const Vec3 a = this->areaOf(facets[pair.first]), b = this->areaOf(facets[pair.second]);
-    // Twice the area of a triangle is its height times the edge; of a quadrilateral, about twice.
-    const auto heightTimesEdge = [&](Index f, const Vec3& area)
-    { return facets[f].size == 3 ? norm(area) : 0.5 * norm(area); };
-    const double edge = norm(this->at(pair.edge[1]) - this->at(pair.edge[0])),
-                 least = std::min(heightTimesEdge(pair.first, a), heightTimesEdge(pair.second, b)),
-                 angle = std::atan2(norm(cross(a, b)), dot(a, b));
-    const double bend = least > 0 && angle > leastBend ? angle * edge / least : 0.0;
+    const Vec3 turn = cross(a, b);
+    const double angle = std::atan2(norm(turn), dot(a, b));
+    if (!(angle > leastBend))
+    {
+      continue;
+    }
+    const Vec3 axis = unitOf(turn);
+    const Vec3 middle = 0.5 * (this->at(pair.edge[0]) + this->at(pair.edge[1]));
+    const double least =
+      std::min(this->widthOf(pair.first, middle, axis), this->widthOf(pair.second, middle, axis));
+    const double bend = least > 0 ? angle / least : 0.0;
     for (Index f : { pair.first, pair.second })
     {
       curvature[f] = std::max(curvature[f], bend);

@@ -88,17 +88,18 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
       stopped = !steps.report(record);
       return !stopped;
     };
-    // Sweeps are for simplices, where they have a closed form: others take long, and stall.
-    const bool slides = wanted && canSlideWorst(problem, guard.judged());
-    const bool sweeps = !slides || !steps.hasManyCorners();
-    bool outOfTime = sweeps && improveWorst(problem, guard, limits, report);
-    if (sweeps && leaves && !stopped && !outOfTime)
+    bool outOfTime = improveWorst(problem, guard, limits, report);
+    if (leaves && !stopped && !outOfTime)
     {
       leaveNearWorst(mesh, steps, first, guard, limits, clock, left);
       stopped = left.stopped;
       outOfTime = left.outOfTime;
     }
-    if (slides && !stopped && !outOfTime)
+    // Where the points of cells with several corners are at an end one by one, all of them together
+    // may go on; those on a model then leave it somewhat.
+    const bool mayLeave = !options.model || leaves || options.onGeometry;
+    if (wanted && mayLeave && !stopped && !outOfTime && steps.hasManyCorners() &&
+      canSlideWorst(problem, guard.judged()))
     {
       outOfTime = slideWorst(mesh, problem, guard, limits, report);
     }

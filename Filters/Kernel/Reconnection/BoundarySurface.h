@@ -94,6 +94,7 @@ private:
   std::vector<SmoothPart> Parts;        ///< first the patches, then the curves
   std::vector<SurfaceProjection> Whole; ///< one: the boundary
   PointGrid Kept;                       ///< what has to stay near
+  double Distance = 0.0;                ///< that facets may have from the input
   int Patches = 0;
   std::vector<PointFreedom> Freedoms;
   std::vector<std::vector<std::int32_t>> Sets; ///< of patches; the first ones have one patch each

@@ -114,8 +114,10 @@ TAUTLINE_PART(testThinWall)
   MeshData mesh = plate;
   // Off by more than half of the thickness, so that the other side is nearer.
   mesh.transform(
-    [](Vec3 p) {
-      return Vec3{ p[0], p[1], p[2] == thickness && p[0] == 0.5 ? 0.3 * thickness : p[2] };
+    [](Vec3 p)
+    {
+      return Vec3{ p[0], p[1],
+        p[2] == thickness && p[0] == 0.5 && p[1] == 0.5 ? 0.3 * thickness : p[2] };
     });
   const GeometryMatch found = match(mesh, plate);
   checkCounts(found, 8, 12, 6);
@@ -130,7 +132,7 @@ TAUTLINE_PART(testElsewhere)
   const MeshData cube = cubeSurface(CellType::Triangle, 4);
   MeshData far = cube;
   constexpr double millimeters = 1000;
-  far.transform([](Vec3 p) { return millimeters * p; });
+  far.transform([](Vec3 p) { return millimeters * (p - Vec3{ 0.5, 0.5, 0.5 }); });
   TAUTLINE_CHECK_THROWS(match(cube, far), wording("geometry-is-elsewhere"));
   far = cube;
   far.transform([](Vec3 p) { return p + Vec3{ 0.05, 0, 0 }; });
@@ -141,7 +143,7 @@ TAUTLINE_PART(testElsewhere)
 TAUTLINE_PART(testNoise)
 {
   constexpr int n = 12;
-  for (int length : { 2, 3, 6 })
+  for (int length : { 1, 6 })
   {
     MeshData sheet = blockMesh(CellType::Quadrilateral, n, n, 0);
     sheet.transform(
@@ -150,14 +152,11 @@ TAUTLINE_PART(testNoise)
         const bool ridge = p[1] == n / 2 && p[0] >= 3 && p[0] <= 3 + length;
         return Vec3{ p[0], p[1], ridge ? 0.5 : 0.0 };
       });
-    const int inside =
-      static_cast<int>(std::count(findFeatures(Mesh(sheet.view()), {}).kind.begin(),
-                         findFeatures(Mesh(sheet.view()), {}).kind.end(), CurvePoint) -
-        4 * (n - 1));
-    TAUTLINE_CHECK_EQUAL(inside > 0, length > 3);
+    const auto edgesInside = [&](const FeatureOptions& options)
+    { return static_cast<int>(findFeatures(Mesh(sheet.view()), options).edges.size()) - 4 * n; };
     TAUTLINE_LET(FeatureOptions, all, shortestCurve = 0);
-    const Features found = findFeatures(Mesh(sheet.view()), all);
-    TAUTLINE_CHECK(std::count(found.kind.begin(), found.kind.end(), CurvePoint) > 4 * (n - 1));
+    TAUTLINE_CHECK_EQUAL(edgesInside({}) > 0, length > 1);
+    TAUTLINE_CHECK(edgesInside(all) > 0);
   }
 }
 

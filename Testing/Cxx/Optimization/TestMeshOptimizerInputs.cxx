@@ -468,6 +468,9 @@ TAUTLINE_PART(testSurface)
     SetOutputPointsPrecision(vtkAlgorithm::DOUBLE_PRECISION));
   TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputConnection(sphere->GetOutputPort()), Update());
   TAUTLINE_CHECK(meshOf(filter)->IsA("vtkPolyData"));
+  TAUTLINE_CHECK(filter->GetSurfaceError() <= 0.001 * meshOf(filter)->GetLength());
+  TAUTLINE_CHECK(!contains(filter->GetSummary(), "Warning: The surface has moved by up to "));
+  TAUTLINE_SET(filter, SetSurfaceTolerance(0), Update());
   const double longest = 2 * vtkMath::Pi() / 24;
   double off = 0;
   for (vtkIdType i = 0; i < meshOf(filter)->GetNumberOfPoints(); ++i)
