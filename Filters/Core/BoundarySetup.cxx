@@ -208,7 +208,8 @@ void BoundarySetup::setFeatures()
   }
   // The rest of the tolerance is for what the elements between the points cut off.
   constexpr double shareOfPoints = 0.5;
-  const double tolerance = this->tolerance();
+  const bool surface = this->TheMesh.mesh().dimension() == Dimension::Surface;
+  const double tolerance = surface ? this->tolerance() : 0.0;
   this->Model = makeSurfaceModel(this->TheMesh.mesh(), this->Found, this->Properties.smoothSurface,
     false, tolerance > 0 ? shareOfPoints * tolerance : std::numeric_limits<double>::infinity());
   this->Constraints.model = &this->Model;

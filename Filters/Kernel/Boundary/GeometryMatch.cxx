@@ -37,7 +37,7 @@ constexpr double shortestCurve = 3;
 /// A patch (curve) of the geometry belongs to one of the mesh if it is nearest to this part of it.
 constexpr double leastVotes = 0.1;
 /// Half of the points may be so far from the geometry, of the diagonal of the mesh.
-constexpr double farthest = 0.1;
+constexpr double farthest = 0.5;
 
 using Edge = std::array<Index, 2>;
 

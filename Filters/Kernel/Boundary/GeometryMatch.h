@@ -44,7 +44,7 @@ struct GeometryMatch
  * @param geometry triangles and quadrilaterals; for a planar mesh cells in its plane, whose
  * boundary counts, or an outline of lines; in the coordinates of the mesh
  * Throws Error if the geometry has no facets (no lines), or is elsewhere: half of the points are
- * farther from it than a tenth of the diagonal of the mesh.
+ * farther from it than half of the diagonal of the mesh.
  */
 TAUTLINE_KERNEL_EXPORT GeometryMatch matchGeometry(
   const Mesh& mesh, const FeatureOptions& options, const unsigned char* held, const Mesh& geometry);

@@ -98,7 +98,7 @@ public:
       {
         this->findFlatFaces();
       }
-      else
+      else if (std::isfinite(this->Farthest))
       {
         this->findStraightEdges();
       }
@@ -294,8 +294,8 @@ double ModelMaker::widthOf(Index f, const Vec3& middleOfEdge, const Vec3& axis) 
  * @brief The edges of facets that are long against the radius of curvature, see longestFacet.
  *
  * The curvature at an edge between two facets is the angle between their normals over the smaller
- * one of their widths across the axis of the turn: where a large flat face passes into a fillet, the
- * fillet bends, the face does not.
+ * one of their widths across the axis of the turn: where a large flat face passes into a fillet,
+ * the fillet bends, the face does not.
  */
 void ModelMaker::findStraightEdges()
 {

@@ -56,12 +56,12 @@ struct SurfaceModel
 
 /**
  * @brief The model of the features of a mesh, in its coordinates.
- * @param smooth whether it is smooth within patches, where facets are short, and along curves, or
- * made of facets
+ * @param smooth whether it is smooth within patches and along curves, or made of facets
  * @param coarse whether facets may bend by large angles: fitted normals are used less, and flat
  * faces of several facets stay flat where they pass into curved ones
  * @param farthest the largest distance of smooth pieces from their facets and edges, in the
- * coordinates of the mesh; above 0
+ * coordinates of the mesh; above 0. If finite, facets that are long against the radius of
+ * curvature, as CAD programs make along fillets, are flat
  */
 TAUTLINE_KERNEL_EXPORT SurfaceModel makeSurfaceModel(const Mesh& mesh, const Features& features,
   bool smooth, bool coarse = false, double farthest = std::numeric_limits<double>::infinity());

@@ -336,8 +336,7 @@ BoundarySurface::BoundarySurface(
   const Features features = findFeatures(mesh, wanted);
   const SurfacePart boundary = boundaryOf(changing);
   this->Distance = std::max(options.surfaceDistance, LeastDistance) * diagonalOf(boundary.pieces);
-  const SurfaceModel model =
-    makeSurfaceModel(mesh, features, true, false, SmoothPart::shareOfPoints * this->Distance);
+  const SurfaceModel model = makeSurfaceModel(mesh, features, false);
   this->Patches = model.patches;
   for (const SurfacePart& part : model.parts)
   {

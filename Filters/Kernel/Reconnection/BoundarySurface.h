@@ -16,8 +16,7 @@
 namespace tautline
 {
 /**
- * @brief Patches and curves (Features) of the outer boundary of the input, smooth through its
- * points.
+ * @brief Patches and curves (Features) of the outer boundary of the input, made of its facets.
  *
  * Points keep to their patch or curve; a facet has the patch that all its points touch, and stays
  * within a distance and an angle of it; what the input has stays within 1.25 times the distance of

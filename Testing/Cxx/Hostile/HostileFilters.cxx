@@ -323,13 +323,13 @@ std::vector<HostileFilter> hostileFilters(const std::string& directory)
 const std::vector<std::string>& classesWithoutInput()
 {
   static const std::vector<std::string> names = { "vtkTautlineAlgorithm",
-    "vtkTautlineTimedAlgorithm", "vtkMeshMotionAlgorithm", "vtkMetricAlgorithm",
-    "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm", "vtkBoundaryMesher",
-    "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField", "vtkDomainSource", "vtkGmshReader",
-    "vtkAbaqusReader", "vtkNastranReader", "vtkMeditReader", "vtkMfemReader", "vtkOffReader",
-    "vtkTetGenReader", "vtkSilhouetteSetReader", "vtkHtmlReport", "vtkImageFileReader",
-    "vtkInterruption", "vtkMeshDecomposition", "vtkTautlineSetRange", "vtkUpdateGuard",
-    "vtkUserMetric" };
+    "vtkTautlineTimedAlgorithm", "vtkMeshBoundaryAlgorithm", "vtkMeshMotionAlgorithm",
+    "vtkMetricAlgorithm", "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm",
+    "vtkBoundaryMesher", "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField",
+    "vtkDomainSource", "vtkGmshReader", "vtkAbaqusReader", "vtkNastranReader", "vtkMeditReader",
+    "vtkMfemReader", "vtkOffReader", "vtkTetGenReader", "vtkSilhouetteSetReader", "vtkHtmlReport",
+    "vtkImageFileReader", "vtkInterruption", "vtkMeshDecomposition", "vtkTautlineSetRange",
+    "vtkUpdateGuard", "vtkUserMetric" };
   return names;
 }
 

@@ -187,7 +187,7 @@ TAUTLINE_PART(testMemory)
 /// The records of a mesh of several chunks have its worst values, wherever these are.
 TAUTLINE_PART(testRecords)
 {
-  const MeshData data = sliverBlock(12, 6);
+  const MeshData data = sliverBlock(12, 7);
   ReconnectionOptions options = optionsOf(ReconnectionPreset::SwapAndSmooth);
   options.targetAngle = 20.0;
   std::set<Index> chunks;
