@@ -20,6 +20,7 @@ from ._vtk import vtkInterruption as vtkInterruption
 from ._vtk import vtkKrylovAlgorithm as vtkKrylovAlgorithm
 from ._vtk import vtkMeditReader as vtkMeditReader
 from ._vtk import vtkMeditWriter as vtkMeditWriter
+from ._vtk import vtkMeshBoundaryAlgorithm as vtkMeshBoundaryAlgorithm
 from ._vtk import vtkMeshComparison as vtkMeshComparison
 from ._vtk import vtkMeshCurving as vtkMeshCurving
 from ._vtk import vtkMeshDecomposition as vtkMeshDecomposition

@@ -3,6 +3,7 @@
 
 #include "Constants.h"
 #include "FacetBound.h"
+#include "tautline/Core/Interruption.h"
 
 namespace tautline
 {
@@ -185,14 +186,16 @@ Index TetrahedronPasses::runFacets(double target)
   std::vector<std::uint32_t> tried;
   for (TetId t = 0; t < this->Mesh.slots(); ++t)
   {
+    pollInterruption(t);
     if (this->startsWith(t))
     {
       push(t);
     }
   }
   Index accepted = 0, tries = 0;
-  while (!waiting.empty())
+  for (Index looked = 0; !waiting.empty(); ++looked)
   {
+    pollInterruption(looked);
     const auto [ratio, code] = waiting.pop();
     const TetId t = code >> 2;
     if (!this->Mesh.alive(t) || this->Mesh.tet(t).neighbors[code & 3] != NoId ||
@@ -250,8 +253,11 @@ Index TetrahedronPasses::run(const PassOptions& options)
   this->Waiting.fill(this->Mesh,
     [&](TetId t) { return this->startsWith(t) && this->Mesh.quality(t) < options.target; });
   Index tries = 0, failures = 0;
-  while (!this->Waiting.empty() && (options.maxFailures == 0 || failures < options.maxFailures))
+  for (Index looked = 0;
+       !this->Waiting.empty() && (options.maxFailures == 0 || failures < options.maxFailures);
+       ++looked)
   {
+    pollInterruption(looked);
     const auto [quality, t] = this->Waiting.pop();
     if (!this->Mesh.alive(t) || this->Mesh.quality(t) != quality)
     {
