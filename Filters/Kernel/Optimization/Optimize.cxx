@@ -21,6 +21,23 @@ namespace tautline
 {
 namespace
 {
+/// Goes back to points if a step from them on has made the objective larger than at first, or an
+/// element worse than the worst one.
+bool goesBack(OptimizationSteps& steps, const IterationRecord& first, const QualityGuard& guard,
+  const std::vector<double>& points)
+{
+  OptimizationProblem& problem = steps.problem();
+  const bool larger = guard.holdsObjective() &&
+    isLarger(problem.options().scalarization, problem.scalarizer(), problem.record(0), first);
+  const bool back = larger || guard.violated(problem);
+  if (back)
+  {
+    problem.restart(points);
+    steps.report(problem.record(steps.next()));
+  }
+  return back;
+}
+
 /// Lets points leave the surface, see leaveSurface(), unless the result is worse than the input,
 /// which is better already where they are.
 void leaveNearWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord& first,
@@ -39,13 +56,9 @@ void leaveNearWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationR
       }
       return steps.report(now, record);
     });
-  const bool larger = guard.holdsObjective() &&
-    isLarger(problem.options().scalarization, problem.scalarizer(), problem.record(0), first);
-  if (larger || guard.violated(problem))
+  if (goesBack(steps, first, guard, slid))
   {
-    problem.restart(slid);
     left.points.clear();
-    steps.report(problem.record(steps.next()));
   }
 }
 
@@ -101,7 +114,10 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
     if (wanted && mayLeave && !stopped && !outOfTime && steps.hasManyCorners() &&
       canSlideWorst(problem, guard.judged()))
     {
+      problem.store();
+      const std::vector<double> slid = problem.points();
       outOfTime = slideWorst(mesh, problem, guard, limits, report);
+      goesBack(steps, first, guard, slid);
     }
     result.reason = stopped ? StopReason::Aborted
       : outOfTime           ? StopReason::TimeLimit
