@@ -53,6 +53,47 @@ std::vector<signed char> kindsOf(vtkDataArray* array, const std::vector<Index>& 
 }
 
 //------------------------------------------------------------------------------
+bool choosesFeatures(const BoundaryProperties& properties, vtkDataSet* input)
+{
+  const auto isChosen = [&](int index)
+  {
+    try
+    {
+      return input && input->GetNumberOfPoints() > 0 &&
+        chosenArray(properties.arrays, index, input, "");
+    }
+    catch (const Error&)
+    {
+      return true;
+    }
+  };
+  return isChosen(properties.kindArray) || isChosen(properties.regionArray);
+}
+
+//------------------------------------------------------------------------------
+NeedOfWholeMesh needOfWholeMesh(const BoundaryProperties& properties, bool features)
+{
+  if (properties.motion == BoundaryMotion::OnSurface || properties.geometry)
+  {
+    return { "points that slide on curved surfaces and geometries",
+      "choose the Boundary Fixed, Slide on flat parts (sliding) or Free, without a Geometry" };
+  }
+  if (features)
+  {
+    return { "regions and feature kinds", "choose None for these arrays" };
+  }
+  if (properties.freeInvalid)
+  {
+    return { "points of invalid elements that are freed", "switch Free Invalid Elements off" };
+  }
+  if (properties.showFeatures)
+  {
+    return { "features that are shown", "switch Show Features off" };
+  }
+  return {};
+}
+
+//------------------------------------------------------------------------------
 std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose)
 {
   std::vector<double> values;
@@ -179,7 +220,7 @@ void BoundarySetup::setFeatures()
 {
   if (this->TheMesh.inPieces())
   {
-    return; // see requireLocalSettings()
+    return; // see needOfWholeMesh()
   }
   const bool keep = this->slidesOnModel() || (this->Properties.keepFeatures && this->regionArray());
   if (this->Properties.geometry && !this->slidesOnModel())

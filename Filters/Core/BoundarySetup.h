@@ -45,6 +45,12 @@ struct BoundaryProperties
   int threads = 0;
 };
 
+/// Whether feature kinds or regions are chosen; also arrays that are missing, which others report.
+TAUTLINECORE_EXPORT bool choosesFeatures(const BoundaryProperties& properties, vtkDataSet* input);
+/// @param features whether feature kinds or regions are chosen, on any process
+TAUTLINECORE_EXPORT NeedOfWholeMesh needOfWholeMesh(
+  const BoundaryProperties& properties, bool features);
+
 /// The values of an array of one component, or none without one; throws Error if it has more.
 TAUTLINECORE_EXPORT std::vector<double> scalarsOf(vtkDataArray* array, const char* purpose);
 

@@ -62,6 +62,7 @@ void TableRows::fill(vtkTable* table) const
     array->SetNumberOfValues(static_cast<vtkIdType>(column.texts.size()));
     for (std::size_t i = 0; i < column.texts.size(); ++i)
     {
+      pollInterruption(static_cast<Index>(i));
       array->SetValue(static_cast<vtkIdType>(i), column.texts[i]);
     }
     table->AddColumn(array);

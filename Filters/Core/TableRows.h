@@ -13,6 +13,8 @@
 
 #include "TautlineCoreModule.h" // for export macro
 
+#include "tautline/Core/Interruption.h"
+
 #include <string>
 #include <string_view>
 #include <vector>
@@ -38,6 +40,7 @@ public:
     values.reserve(values.size() + rows);
     for (std::size_t i = 0; i < rows; ++i)
     {
+      pollInterruption(static_cast<Index>(i));
       values.push_back(value(i));
     }
   }
@@ -48,6 +51,7 @@ public:
     texts.reserve(texts.size() + rows);
     for (std::size_t i = 0; i < rows; ++i)
     {
+      pollInterruption(static_cast<Index>(i));
       texts.emplace_back(text(i));
     }
   }

@@ -108,8 +108,8 @@ public:
    * would take it farther are shortened or left out; the summary says how many points are held by
    * that. The distance is measured at the quarters of the edges of the boundary's triangles
    * (quadrilaterals are two), at the crossings of the lines between these, and at the centres.
-   * With a geometry it is that of the boundary from the geometry; what is farther at the start may
-   * stay so. The points of a surface in space are on the geometry, whatever the tolerance. The
+   * With a geometry it is measured from the boundary to the geometry; what is farther at the start
+   * may stay so. The points of a surface in space are on the geometry, whatever the tolerance. The
    * default is 0.001.
    */
   vtkTautlineSetRangeMacro(SurfaceTolerance, double, 0.0, 1.0);

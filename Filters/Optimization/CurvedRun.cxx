@@ -39,7 +39,7 @@ void requireSettings(
   require(options.optimizer == Optimizer::Automatic ||
       options.optimizer == Optimizer::NewtonConjugateGradient,
     "This optimizer", "choose Automatic");
-  require(!choosesFeatures(settings, block.input), "An array of regions or feature kinds",
+  require(!choosesFeatures(settings.boundary, block.input), "An array of regions or feature kinds",
     "give the points that stay as Fixed Points");
 }
 

@@ -128,10 +128,6 @@ private:
  * @param animation whether iterations are kept
  */
 NeedOfWholeMesh needOfWholeMesh(const OptimizerSettings& settings, bool features, bool animation);
-/// Throws Error for settings that need the whole mesh in one place, in its own order.
-void requireLocalSettings(const OptimizerSettings& settings, bool features, bool animation);
-/// Whether feature kinds or regions are chosen; also arrays that are missing, which others report.
-bool choosesFeatures(const OptimizerSettings& settings, vtkDataSet* input);
 
 /// The objectives of CUSTOM, without targets; one at least.
 std::vector<Objective> customObjectives(const OptimizerSettings& settings);

@@ -535,8 +535,9 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
 {
   if (this->WorksOnPieces())
   {
-    tautline::requireLocalSettings(
-      settings, tautline::choosesFeatures(settings, block.input), this->Animation);
+    tautline::needOfWholeMesh(
+      settings, tautline::choosesFeatures(settings.boundary, block.input), this->Animation)
+      .refuse();
   }
   const std::unique_ptr<tautline::CurvedMotion> curved = this->MakeCurved(block);
   const std::unique_ptr<tautline::MovableMesh> linear =
@@ -646,7 +647,8 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
   tautline::OptimizerSettings settings = this->GetSettings();
   settings.boundary.geometry = vtkDataObject::GetData(inputs[tautline::OptimizerPorts::Geometry]);
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
-  const bool features = onAny(tautline::choosesFeatures(settings, vtkDataSet::SafeDownCast(input)));
+  const bool features =
+    onAny(tautline::choosesFeatures(settings.boundary, vtkDataSet::SafeDownCast(input)));
   const std::string what = onAny(tautline::hasCurvedCells(input))
     ? "curved cells"
     : tautline::needOfWholeMesh(settings, features, this->Animation).what;

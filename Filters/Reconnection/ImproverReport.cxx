@@ -2,6 +2,7 @@
 #include "ImproverReport.h"
 
 #include "TableRows.h"
+#include "tautline/Core/Interruption.h"
 
 #include <algorithm>
 #include <array>
@@ -120,6 +121,7 @@ std::vector<RemainingElement> remainingOf(const std::vector<signed char>& obstac
   std::vector<RemainingElement> remaining;
   for (std::size_t i = 0; i < obstacles.size(); ++i)
   {
+    pollInterruption(static_cast<Index>(i));
     if (obstacles[i] != static_cast<signed char>(ReconnectionObstacle::None))
     {
       remaining.push_back(

@@ -109,6 +109,16 @@ std::vector<signed char> obstaclesOf(
   return obstacles;
 }
 
+/// Why the boundary needs the whole mesh, which is untangled in pieces only where it does not move.
+tautline::NeedOfWholeMesh needOfUntangling(
+  const tautline::BoundaryProperties& properties, bool features)
+{
+  return properties.motion == tautline::BoundaryMotion::FlatParts
+    ? tautline::NeedOfWholeMesh{ "points that slide on flat parts",
+        "choose the Boundary Fixed or Slide on smooth parts (on surface)" }
+    : tautline::needOfWholeMesh(properties, features);
+}
+
 /// ", and N that were valid are not any more", or "".
 std::string newlySentence(tautline::Index newlyInvalid)
 {
@@ -207,15 +217,17 @@ void vtkMeshUntangler::Untangle(
 {
   const std::unique_ptr<tautline::MovableMesh> made = this->MakeMesh(block, true);
   tautline::MovableMesh& mesh = *made;
-  if (this->FreeInvalid && mesh.inPieces())
-  {
-    throw tautline::Error("Points of invalid elements that are freed need one process and its own "
-                          "order: switch Reproducible Order or Free Invalid Elements off.");
-  }
   tautline::BoundaryProperties properties = this->GetBoundaryProperties(geometry);
-  if (this->Boundary == ON_SURFACE && (mesh.inPieces() || !this->GetBlockNotice().empty()))
+  // What is chosen without being asked for must not refuse pieces and blocks that touch.
+  const bool stays = this->Boundary == ON_SURFACE && !geometry &&
+    (mesh.inPieces() || !this->GetBlockNotice().empty());
+  if (stays)
   {
     properties.motion = tautline::BoundaryMotion::Fixed;
+  }
+  if (mesh.inPieces())
+  {
+    needOfUntangling(properties, tautline::choosesFeatures(properties, block.input)).refuse();
   }
   const tautline::BoundarySetup boundary(properties, block, mesh);
   tautline::UntangleOptions options = this->GetOptions(block.number);
@@ -232,7 +244,28 @@ void vtkMeshUntangler::Untangle(
     this->Warn(unsettled);
   }
 
-  this->Show(block, mesh, result, "", history);
+  const bool asked = this->ShowFeatures || geometry;
+  std::string more = asked ? boundary.describeFeatures() : "";
+  if (this->ShowFeatures)
+  {
+    boundary.addFeatures(block.output);
+  }
+  if (result.offSurface > 0)
+  {
+    more += (more.empty() ? "" : " ") + std::to_string(result.offSurface) +
+      (result.offSurface == 1 ? " point is" : " points are") +
+      " not on the surface that they slide on, at most " +
+      tautline::distanceText(
+        mesh.frame().unit() * result.offSurfaceDistance, block.input->GetLength()) +
+      " away.";
+  }
+  if (stays && result.invertedAfter > 0)
+  {
+    more += std::string(more.empty() ? "" : " ") +
+      "The boundary stayed, as it must on several processes and where blocks touch: merge the "
+      "blocks, or aggregate the mesh with Reproducible Order off, to let it slide.";
+  }
+  this->Show(block, mesh, result, more, history);
   this->AddToSummary(result.exceededMemory
       ? "The whole mesh did not fit into the memory of the first process, where the elements that "
         "are left would have been untangled: take fewer cells, or more memory."
@@ -375,11 +408,19 @@ tautline::GatheredRules vtkMeshUntangler::GetGatheredRules()
 bool vtkMeshUntangler::TakesPieces(vtkInformationVector** inputs)
 {
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
-  const bool curved = tautline::minimumOverProcesses(tautline::hasCurvedCells(input) ? 0 : 1) == 0;
-  return this->TakePiece(input,
-    curved                ? "curved cells need the whole mesh"
-      : this->FreeInvalid ? "points of invalid elements that are freed need the whole mesh"
-                          : "");
+  const auto onAny = [](bool here) { return tautline::minimumOverProcesses(here ? 0 : 1) == 0; };
+  tautline::BoundaryProperties properties =
+    this->GetBoundaryProperties(vtkDataObject::GetData(inputs[GeometryPort]));
+  if (this->Boundary == ON_SURFACE && !properties.geometry)
+  {
+    properties.motion = tautline::BoundaryMotion::Fixed;
+  }
+  const bool features =
+    onAny(tautline::choosesFeatures(properties, vtkDataSet::SafeDownCast(input)));
+  const std::string what = onAny(tautline::hasCurvedCells(input))
+    ? "curved cells"
+    : needOfUntangling(properties, features).what;
+  return this->TakePiece(input, what.empty() ? "" : what + " need the whole mesh");
 }
 
 //------------------------------------------------------------------------------

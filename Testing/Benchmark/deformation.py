@@ -13,7 +13,7 @@ CUBES = (60, 10)  # 1,071,360 tetrahedra
 DOMAINS = (1.0, 0.3)
 HEXAHEDRA = (40, 8)  # along each edge of a cube
 DEGREES = (30, 60, 90, 120, 180)
-WALL_POINTS = (160, 60)  # of an airfoil
+WALL_POINTS = (160, 100)  # of an airfoil
 
 
 def run(program: Path, repeats: int, quick: bool) -> tuple[dict[str, float], list[Row]]:

@@ -85,7 +85,7 @@ def test_features():
     placed = tl.optimize(mesh, geometry=larger)
     far = points(placed.mesh)[flush]
     assert np.allclose(np.minimum(np.abs(far + 0.02), np.abs(far - 1.02)), 0, atol=1e-12)
-    assert wording("8-corners-and-12-curves-have-a") in placed.summary and placed.surface_error < 1e-12
+    assert wording("8-of-8-corners-and-12-of-12") in placed.summary and placed.surface_error < 1e-12
     for wrong, message in (
         ({"feature_kinds": [1.0]}, "shape"),
         ({"feature_kinds": np.full(len(places), 4)}, "must be 0 (patch)"),

@@ -8,8 +8,20 @@
 
 #include "SurfaceModel.h"
 
+#include <string>
+
 namespace tautline
 {
+/// Why settings need the whole mesh in one place.
+struct NeedOfWholeMesh
+{
+  std::string what;   ///< in the plural, "steps that improve the worst element"; "": none
+  std::string remedy; ///< "set ... to 0"
+
+  /// Throws Error with both, unless there is no need.
+  TAUTLINE_KERNEL_EXPORT void refuse() const;
+};
+
 /// What the points of the boundary do. The numbers are stable: ParaView state files hold them.
 enum class BoundaryMotion : int
 {
@@ -58,7 +70,7 @@ struct BoundaryConstraints
    * OptimizeOptions::improveWorst. Not with limits or onGeometry.
    */
   const unsigned char* leaving = nullptr;
-  /// Whether the model was made of another surface than that of the mesh.
+  /// Whether the model was made of another surface than the mesh.
   bool onGeometry = false;
 };
 }

@@ -39,7 +39,7 @@ struct GeometryMatch
  * does not have are smooth. Of a planar mesh the boundary is matched with the curves of the
  * geometry, between corners that both have.
  * @param options of the features of the mesh. Points given as PatchPoint are on no curve inside a
- * surface, those given as CornerPoint are corners. The angle is that of the geometry, too.
+ * surface, those given as CornerPoint are corners. The angle is used for the geometry, too.
  * @param held one flag per point of the mesh: nonzero for points that stay where they are; or null
  * @param geometry triangles and quadrilaterals; for a planar mesh cells in its plane, whose
  * boundary counts, or an outline of lines; in the coordinates of the mesh

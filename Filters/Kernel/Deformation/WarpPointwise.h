@@ -30,17 +30,17 @@ namespace tautline
  *
  * `prescribed` has a flag per point; `displacement` has 3 numbers per point of the mesh and is
  * read, and returned as it is, where the flag is set. Without any prescribed point nothing moves.
- * The result is empty when the control stopped the work. `options` are those of the control.
+ * The result is empty when the control stopped the work. Options come from the control.
  */
 TAUTLINE_SOLVERS_EXPORT std::vector<double> warpByWeightedLaplacian(const Mesh& mesh,
   const std::vector<unsigned char>& prescribed, const double* displacement, WarpControl& control);
 
 class WarpParts;
 /**
- * @brief The same on several ranks, for the local points: the affine motion is that of the
- * prescribed points of all, in the order of their ids, and the rows of the matrix are those of the
- * own points. Solved by WarpSystem, so that points differ from those of one rank by the tolerance.
- * Empty, on all ranks, when the control stopped the work. Collective.
+ * @brief The same on several ranks, for the local points: the affine motion is fitted to
+ * the prescribed points of all, in the order of their ids, and each rank has the rows of its own
+ * points. Solved by WarpSystem, so that points differ from one rank's by the tolerance. Empty, on
+ * all ranks, when the control stopped the work. Collective.
  * @param mesh DistributedMesh::view(), the points of which may have moved
  */
 std::vector<double> warpByWeightedLaplacian(
@@ -62,7 +62,7 @@ public:
   /// A point in units of scale(), from the middle of the prescribed ones.
   Vec3 local(Index id) const;
   double scale() const { return this->Scale; }
-  /// The wall at prescribed()[i]; lengths are those of the mesh.
+  /// The wall at prescribed()[i]; in the unit of the mesh.
   const WallPoint& wall(std::size_t i) const { return this->Walls[this->Prescribed[i]]; }
   /// Largest norm of a prescribed displacement.
   double largest() const { return this->Largest; }

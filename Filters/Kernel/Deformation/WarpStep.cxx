@@ -398,7 +398,15 @@ void WarpStep::improve(
     }
     if (restoresAll && !this->Following && !control.stopped())
     {
+      const std::vector<double> before = points;
+      const auto worstOf = [&](const std::vector<double>& x)
+      { return qualityOf(this->Initial, x.data(), options.threads, ranks).worstRatio; };
       iterations += this->optimize(Aim::Shape, fixed, control, points);
+      if (!control.stopped() && worstOf(points) > worstOf(before))
+      {
+        points = before;
+        iterations += this->optimize(Aim::HeldShape, fixed, control, points);
+      }
     }
     stage("optimize", iterations);
   }
@@ -506,16 +514,16 @@ int WarpStep::optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpCon
   optimization.threads = options.threads;
   optimization.scalarization.method = Scalarization::ExponentialSum;
   optimization.objectives.assign(2, Objective());
-  // (4.24): the exponential sum of the shape and of a second metric, which comes first where it is
-  // the one that no element may get worse by.
-  const bool holds = aim == Aim::Shape && options.untangleFirst;
+  // (4.24): the exponential sum of the shape and of a second metric. No element may get worse by
+  // the first of them.
+  const bool holds = aim == Aim::HeldShape;
   Objective &shape = optimization.objectives[holds ? 1 : 0],
             &other = optimization.objectives[holds ? 0 : 1];
   shape.metric = Metric::ShapeSimilarity;
   shape.objectiveTemplate = ObjectiveTemplate::SumOfSquares;
   shape.evaluation.targets = &targets;
   other.objectiveTemplate = ObjectiveTemplate::SumOfSquares;
-  if (aim != Aim::Shape)
+  if (aim != Aim::Shape && aim != Aim::HeldShape)
   {
     constexpr int few = 10;             // sweeps between two steps
     constexpr double costOfWorst = 0.1; // of the mean

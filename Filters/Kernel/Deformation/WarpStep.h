@@ -67,9 +67,10 @@ private:
     std::vector<double>& points) const;
   enum class Aim
   {
-    Barrier, ///< the squared inverse mean ratios of T alone
-    Worst,   ///< then the worst of them, while the mean hardly grows
-    Shape    ///< the exponential sum, see WarpOptions::untangleFirst
+    Barrier,  ///< the squared inverse mean ratios of T alone
+    Worst,    ///< then the worst of them, while the mean hardly grows
+    Shape,    ///< the exponential sum, see WarpOptions::untangleFirst
+    HeldShape ///< the same while no inverse mean ratio exceeds the worst at the start
   };
   int optimize(Aim aim, const std::vector<unsigned char>& fixed, WarpControl& control,
     std::vector<double>& points) const;

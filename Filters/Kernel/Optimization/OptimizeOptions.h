@@ -167,12 +167,7 @@ struct OptimizeOptions : BoundaryConstraints
  */
 TAUTLINE_KERNEL_EXPORT void applyPreset(Preset preset, OptimizeOptions& options);
 
-/// Why options need the whole mesh in one place.
-struct NeedOfWholeMesh
-{
-  std::string what;   ///< in the plural, "steps that improve the worst element"; "": none
-  std::string remedy; ///< "set ... to 0"
-};
+/// Why options need the whole mesh in one place, if they do.
 TAUTLINE_KERNEL_EXPORT NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& options);
 
 /**

@@ -269,14 +269,6 @@ NeedOfWholeMesh needOfWholeMesh(const OptimizeOptions& options)
 
 void requireLocalOptions(const OptimizeOptions& options)
 {
-  NeedOfWholeMesh need = needOfWholeMesh(options);
-  if (!need.what.empty())
-  {
-    need.what[0] = static_cast<char>(std::toupper(need.what[0]));
-    throw Error(need.what +
-      " need the whole mesh on one process: gather it, in ParaView by Aggregate Dataset, with "
-      "Reproducible Order off; or " +
-      need.remedy + ".");
-  }
+  needOfWholeMesh(options).refuse();
 }
 }

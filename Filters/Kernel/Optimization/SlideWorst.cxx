@@ -55,13 +55,8 @@ bool slideWorst(const Mesh& mesh, OptimizationProblem& problem, const QualityGua
     const std::vector<char> boundary = mesh.boundary().isBoundaryPoint;
     fixed.assign(boundary.begin(), boundary.end());
   }
-  PointConstraints constraints;
+  BoundaryConstraints constraints = options;
   constraints.fixed = options.fixed ? options.fixed : fixed.data();
-  constraints.slidePlanes = options.slidePlanes;
-  constraints.slideLines = options.slideLines;
-  constraints.model = options.model;
-  constraints.parts = options.parts;
-  constraints.tolerance = options.surfaceTolerance;
   std::unique_ptr<WholeSurface> whole;
   if (options.slideSurface && !options.model)
   {

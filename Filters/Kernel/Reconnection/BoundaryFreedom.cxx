@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "BoundaryFreedom.h"
 
+#include "tautline/Core/Interruption.h"
+
 namespace tautline
 {
 namespace
@@ -34,6 +36,7 @@ void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms)
   std::vector<std::int32_t> uses(mesh.pointSlots(), 0);
   for (TetId t = 0; t < mesh.slots(); ++t)
   {
+    pollInterruption(t);
     for (PointId v : mesh.tet(t).vertices)
     {
       ++uses[v];
@@ -42,6 +45,7 @@ void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms)
   std::vector<TetId> star;
   for (PointId v = 0; v < mesh.pointSlots(); ++v)
   {
+    pollInterruption(v);
     if (mesh.used(v) && freedoms[v].kind != PointFreedom::Fixed)
     {
       mesh.star(v, star);
@@ -59,6 +63,7 @@ std::vector<PointFreedom> findFreedoms(TetrahedronMesh& mesh, bool slide, double
   std::vector<WallPlanes> planes(slide ? mesh.pointSlots() : 0);
   for (TetId t = 0; t < mesh.slots(); ++t)
   {
+    pollInterruption(t);
     for (int i = 0; i < 4; ++i)
     {
       if (!mesh.isWall(t, i))

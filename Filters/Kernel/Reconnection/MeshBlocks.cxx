@@ -4,6 +4,7 @@
 #include "CuttingFrames.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/BisectionTree.h"
+#include "tautline/Core/Interruption.h"
 
 #include <limits>
 #include <numeric>
@@ -190,6 +191,7 @@ MeshBlockList cutIntoBlocks(
   std::vector<std::vector<TetId>> own(std::size_t(1) << levels);
   for (TetId t = 0; t < whole.slots(); ++t)
   {
+    pollInterruption(t);
     if (whole.alive(t))
     {
       own[blocks[t]].push_back(t);

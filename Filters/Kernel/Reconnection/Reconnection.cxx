@@ -9,6 +9,7 @@
 #include "ReconnectionOutput.h"
 #include "ReconnectionProgress.h"
 #include "TetrahedronPasses.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/LoopInterruption.h"
 #include "tautline/Core/Parallel.h"
 
@@ -401,6 +402,7 @@ std::vector<char> Run::addRings(std::vector<char> flags) const
     const std::vector<char> inner = flags;
     for (TetId t = 0; t < this->Mesh.slots(); ++t)
     {
+      pollInterruption(t);
       const TetVertices& v = this->Mesh.tet(t).vertices;
       if (this->Mesh.alive(t) &&
         std::any_of(v.begin(), v.end(), [&](PointId p) { return inner[p] != 0; }))
@@ -487,6 +489,7 @@ bool Run::paysInBlocks(const std::vector<char>& starts, double target) const
   Index count = 0;
   for (TetId t = 0; t < this->Mesh.slots(); ++t)
   {
+    pollInterruption(t);
     const TetVertices& v = this->Mesh.tet(t).vertices;
     count += this->Mesh.alive(t) && this->Mesh.quality(t) < target &&
       (starts.empty() ||

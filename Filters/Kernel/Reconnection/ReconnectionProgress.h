@@ -11,6 +11,7 @@
 #include "Constants.h"
 #include "ReconnectionOptions.h"
 #include "ReconnectionResult.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Stopwatch.h"
 
 #include <algorithm>
@@ -101,6 +102,7 @@ public:
     this->Heap.clear();
     for (Cell t = 0; t < mesh.slots(); ++t)
     {
+      pollInterruption(t);
       if (counts(t))
       {
         this->Heap.push_back({ mesh.quality(t), t });

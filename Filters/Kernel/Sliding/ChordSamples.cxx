@@ -110,7 +110,7 @@ void ChordSamples::findFacets(const Mesh& mesh)
 /// -1 where they differ.
 std::int32_t ChordSamples::patchOf(const SurfaceFacet& facet, const std::vector<Vec3>& x) const
 {
-  const PointConstraints& given = this->Constrained.constraints();
+  const BoundaryConstraints& given = this->Constrained.constraints();
   const int patches = given.model->patches;
   const bool curves = patches == 0;
   std::int32_t found = -1;
@@ -146,7 +146,7 @@ std::int32_t ChordSamples::patchOf(const SurfaceFacet& facet, const std::vector<
 /// The curve that the edge between two points is along, or -1.
 std::int32_t ChordSamples::curveOf(Index a, Index b, const std::vector<Vec3>& x) const
 {
-  const PointConstraints& given = this->Constrained.constraints();
+  const BoundaryConstraints& given = this->Constrained.constraints();
   const auto curveAt = [&](Index p)
   { return given.parts[p] >= given.model->patches ? given.parts[p] : -1; };
   const std::int32_t first = curveAt(a), second = curveAt(b);

@@ -8,7 +8,7 @@
 #ifndef tautline_ChordSamples_h
 #define tautline_ChordSamples_h
 
-#include "PointConstraints.h"
+#include "ConstrainedPoints.h"
 
 namespace tautline
 {

@@ -9,7 +9,7 @@
 namespace tautline
 {
 //------------------------------------------------------------------------------
-std::vector<double> improveSliding(const Mesh& mesh, const PointConstraints& constraints,
+std::vector<double> improveSliding(const Mesh& mesh, const BoundaryConstraints& constraints,
   const std::vector<double>& from, const SlidingImprovement& options)
 {
   const Index points = mesh.view().numberOfPoints;

@@ -8,7 +8,7 @@
 #define tautline_ImproveSliding_h
 
 #include "CornerShape.h"
-#include "PointConstraints.h"
+#include "ConstrainedPoints.h"
 
 #include <functional>
 
@@ -34,7 +34,7 @@ struct SlidingImprovement
  * @return the points; where there is no better place, those of the start
  */
 TAUTLINE_KERNEL_EXPORT std::vector<double> improveSliding(const Mesh& mesh,
-  const PointConstraints& constraints, const std::vector<double>& from,
+  const BoundaryConstraints& constraints, const std::vector<double>& from,
   const SlidingImprovement& options);
 }
 #endif

@@ -7,7 +7,7 @@
 #ifndef tautline_SlidingCells_h
 #define tautline_SlidingCells_h
 
-#include "PointConstraints.h"
+#include "ConstrainedPoints.h"
 
 namespace tautline
 {

@@ -26,7 +26,7 @@ constexpr double clearlyValid[] = { 0.02, 0.1, 0.3 };
 class SlidingRun
 {
 public:
-  SlidingRun(const Mesh& mesh, const PointConstraints& constraints, int threads,
+  SlidingRun(const Mesh& mesh, const BoundaryConstraints& constraints, int threads,
     const std::function<bool(const SlidingState&)>& report)
     : TheMesh(mesh)
     , Threads(threads)
@@ -182,7 +182,7 @@ private:
 }
 
 //------------------------------------------------------------------------------
-std::vector<double> untangleSliding(const Mesh& mesh, const PointConstraints& constraints,
+std::vector<double> untangleSliding(const Mesh& mesh, const BoundaryConstraints& constraints,
   int threads, const std::function<bool(const SlidingState&)>& report)
 {
   return SlidingRun(mesh, constraints, threads, report).run();

@@ -29,7 +29,7 @@ struct SlidingState
  * @return 3 coordinates per point, which may be no better than the input
  */
 TAUTLINE_KERNEL_EXPORT std::vector<double> untangleSliding(const Mesh& mesh,
-  const PointConstraints& constraints, int threads,
+  const BoundaryConstraints& constraints, int threads,
   const std::function<bool(const SlidingState&)>& report);
 }
 #endif

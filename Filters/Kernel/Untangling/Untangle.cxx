@@ -194,15 +194,10 @@ bool slides(const UntangleOptions& options)
   return options.slidePlanes || options.slideLines || options.model;
 }
 
-PointConstraints constraintsOf(const UntangleOptions& options, const unsigned char* fixed)
+BoundaryConstraints constraintsOf(const UntangleOptions& options, const unsigned char* fixed)
 {
-  PointConstraints constraints;
+  BoundaryConstraints constraints = options;
   constraints.fixed = fixed;
-  constraints.slidePlanes = options.slidePlanes;
-  constraints.slideLines = options.slideLines;
-  constraints.model = options.model;
-  constraints.parts = options.parts;
-  constraints.tolerance = options.surfaceTolerance;
   return constraints;
 }
 

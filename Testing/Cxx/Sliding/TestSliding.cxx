@@ -43,13 +43,13 @@ struct SlidingMesh
     this->diagonal = norm(high - low);
   }
 
-  PointConstraints constraints() const
+  BoundaryConstraints constraints() const
   {
-    PointConstraints result;
+    BoundaryConstraints result;
     result.fixed = this->fixed.data();
     result.model = &this->model;
     result.parts = this->parts.data();
-    result.tolerance = 1e-3 * this->diagonal;
+    result.surfaceTolerance = 1e-3 * this->diagonal;
     return result;
   }
   UntangleOptions untangling() const
@@ -160,7 +160,7 @@ void testBarrierGradient(CellType type, CornerMeasure measure, double amplitude)
   const bool flat = topology(type).dimension == 2;
   const MeshData data = looseBlock(type, amplitude);
   const Mesh mesh(data.view());
-  const PointConstraints constraints;
+  const BoundaryConstraints constraints;
   const ConstrainedPoints constrained(mesh, constraints);
   std::vector<Vec3> x = pointsOf(data.points.data(), data.numberOfPoints());
   const SlidingCells cells(mesh, constrained);
@@ -222,7 +222,7 @@ TAUTLINE_PART(testUntanglingDerivatives)
     {
       const MeshData data = looseBlock(type, amplitude);
       const Mesh mesh(data.view());
-      const ConstrainedPoints constrained(mesh, PointConstraints());
+      const ConstrainedPoints constrained(mesh, BoundaryConstraints());
       std::vector<Vec3> x = pointsOf(data.points.data(), data.numberOfPoints());
       const SlidingCells cells(mesh, constrained);
       BoundaryTerms boundary(mesh, constrained, x);

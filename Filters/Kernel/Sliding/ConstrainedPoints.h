@@ -1,31 +1,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
- * @file PointConstraints.h
+ * @file ConstrainedPoints.h
  * @brief What the points of a mesh can do: stay, slide, leave a surface by a distance, or move
  * freely.
  * Internal: not installed.
  */
-#ifndef tautline_PointConstraints_h
-#define tautline_PointConstraints_h
+#ifndef tautline_ConstrainedPoints_h
+#define tautline_ConstrainedPoints_h
 
 #include "QuadraticModel.h"
+#include "tautline/Boundary/BoundaryConstraints.h"
 #include "tautline/Boundary/SurfaceProjection.h"
 
 namespace tautline
 {
-/// Constraints as OptimizeOptions has them.
-struct PointConstraints
-{
-  const unsigned char* fixed = nullptr; ///< one flag per point; null: none is
-  /// Unit normals and unit directions, 3 per point, zero for none; or null.
-  const double *slidePlanes = nullptr, *slideLines = nullptr;
-  const SurfaceModel* model = nullptr;
-  const std::int32_t* parts = nullptr; ///< with a model, per point: its part, or -1
-  /// How far points, and the facets between them, may be from the surface; 0: a thousandth of the
-  /// diagonal of the points.
-  double tolerance = 0;
-};
-
 /**
  * @class tautline::ConstrainedPoints
  * @brief The freedom of each point of a planar or volume mesh.
@@ -33,15 +21,16 @@ struct PointConstraints
  * Points on a flat patch or a straight curve slide in its plane or on its line. Points on other
  * parts are free within a band about the facets of the part: half of the tolerance costs nothing,
  * what is beyond costs the square of it. Points that slide on facets would stop at the ridges
- * between them.
+ * between them. A BoundaryConstraints::surfaceTolerance of 0 is a thousandth of the diagonal here.
+ * Without flags of fixed points, none is fixed.
  */
 class TAUTLINE_KERNEL_EXPORT ConstrainedPoints
 {
 public:
   /// The mesh and what the constraints point to must outlive this.
-  ConstrainedPoints(const Mesh& mesh, const PointConstraints& constraints);
+  ConstrainedPoints(const Mesh& mesh, const BoundaryConstraints& constraints);
 
-  const PointConstraints& constraints() const { return this->Given; }
+  const BoundaryConstraints& constraints() const { return this->Given; }
   double tolerance() const { return this->Tolerance; }
   bool planar() const { return this->Planar; }
   Freedom freedom(Index p) const { return this->Freedoms[p]; }
@@ -59,7 +48,7 @@ public:
 private:
   void slideOnPart(Index p, std::int32_t part, const Vec3& x);
 
-  PointConstraints Given;
+  BoundaryConstraints Given;
   double Tolerance;
   bool Planar;
   Vec3 Normal; ///< of a planar mesh

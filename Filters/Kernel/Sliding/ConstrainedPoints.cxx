@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "PointConstraints.h"
+#include "ConstrainedPoints.h"
 
 #include "tautline/Boundary/FlatPart.h"
 #include "tautline/Core/Interruption.h"
@@ -40,10 +40,10 @@ Vec3 entryOf(const double* vectors, Index p)
 }
 
 //------------------------------------------------------------------------------
-ConstrainedPoints::ConstrainedPoints(const Mesh& mesh, const PointConstraints& constraints)
+ConstrainedPoints::ConstrainedPoints(const Mesh& mesh, const BoundaryConstraints& constraints)
   : Given(constraints)
-  , Tolerance(constraints.tolerance > 0 ? constraints.tolerance
-                                        : defaultTolerance * diagonalOf(mesh.view()))
+  , Tolerance(constraints.surfaceTolerance > 0 ? constraints.surfaceTolerance
+                                               : defaultTolerance * diagonalOf(mesh.view()))
   , Planar(mesh.dimension() == Dimension::Planar)
   , Normal(mesh.normal())
 {
