@@ -402,7 +402,7 @@ void WarpStep::improve(
       const auto worstOf = [&](const std::vector<double>& x)
       { return qualityOf(this->Initial, x.data(), options.threads, ranks).worstRatio; };
       iterations += this->optimize(Aim::Shape, fixed, control, points);
-      if (!control.stopped() && worstOf(points) > worstOf(before))
+      if (!control.stopped() && worstOf(points) > std::max(PoorRatio, worstOf(before)))
       {
         points = before;
         iterations += this->optimize(Aim::HeldShape, fixed, control, points);
