@@ -53,6 +53,9 @@ constexpr double borderCosine = -2;
 /// far the surface has to bend on, as a fraction of the bend.
 constexpr double coarsest = 1.5, alike = 1.0 / 3;
 
+/// An edge at a free end of a curve is clearly sharp from this multiple of the angle on.
+constexpr double clearlySharp = 1.25;
+
 /// The angle from one vector to another.
 double angleBetween(const Vec3& from, const Vec3& to)
 {
@@ -490,7 +493,8 @@ void FeatureFinder::obeyKinds()
 }
 
 //------------------------------------------------------------------------------
-/// Makes short curves with a free end smooth, see FeatureOptions::shortestCurve.
+/// Makes curves smooth as far as they fade at a free end, and those with a free end that are short,
+/// see FeatureOptions::shortestCurve.
 void FeatureFinder::dropNoise()
 {
   const auto isGiven = [this](Index p)
@@ -507,6 +511,21 @@ void FeatureFinder::dropNoise()
   const auto countAt = [&at](Index p) {
     return std::count_if(at[p].begin(), at[p].end(), [](const Candidate* e) { return e->sharp; });
   };
+  const double clear = std::cos(std::min(clearlySharp * this->Options.angle, 180.0) * Pi / 180);
+  for (Index p = 0; p<this->View.numberOfPoints&& this->Options.shortestCurve> 0; ++p)
+  {
+    for (Index end = p; countAt(end) == 1 && !isGiven(end);)
+    {
+      Candidate* last =
+        *std::find_if(at[end].begin(), at[end].end(), [](const Candidate* e) { return e->sharp; });
+      if (last->cosine < clear)
+      {
+        break; // clearly sharp, or a border
+      }
+      last->sharp = false;
+      end = last->a == end ? last->b : last->a;
+    }
+  }
   for (Index p = 0; p < this->View.numberOfPoints; ++p)
   {
     // From a free end to where the curve ends, too, or meets others.

@@ -52,8 +52,13 @@ struct FeatureOptions
    * only by their kind, and the kinds make no edge sharp or smooth.
    */
   const std::vector<std::array<Index, 2>>* edges = nullptr;
-  /// Sharp edges that form a curve of fewer than this with a free end are noise, and smooth; 0:
-  /// none. Not edges at points that are given as CurvePoint or CornerPoint.
+  /**
+   * @brief Sharp edges that form a curve of fewer than this with a free end are noise, and smooth.
+   * So are the edges at a free end up to the first one that bends by 1.25 times the angle, where a
+   * curve fades out, as on coarse curved surfaces (hysteresis as of J. Canny, "A computational
+   * approach to edge detection", 1986). 0: none of both. Not edges at points that are given as
+   * CurvePoint or CornerPoint.
+   */
   int shortestCurve = 4;
 };
 

@@ -160,6 +160,40 @@ TAUTLINE_PART(testNoise)
   }
 }
 
+/// A crease that fades out is a curve up to where it clearly bends.
+TAUTLINE_PART(testFadingCrease)
+{
+  constexpr int n = 24;
+  constexpr double sharpest = 70, ofTheAngle = 1.25;
+  const FeatureOptions options;
+  // The normals of the two sides of a roof differ by 2 atan(slope).
+  MeshData roof = blockMesh(CellType::Quadrilateral, n, 2, 0);
+  const auto bendAt = [=](double x) { return sharpest * (1 - x / n); };
+  roof.transform(
+    [=](Vec3 p)
+    {
+      const double slope = std::tan(bendAt(p[0]) / 2 * Pi / 180);
+      return Vec3{ p[0], p[1], p[1] == 1 ? slope : 0.0 };
+    });
+  const Features found = findFeatures(Mesh(roof.view()), options);
+  TAUTLINE_LET(FeatureOptions, all, shortestCurve = 0);
+  const Features whole = findFeatures(Mesh(roof.view()), all);
+  const auto lastOf = [&](const Features& features)
+  {
+    double last = 0;
+    for (const Features::Edge& edge : features.edges)
+    {
+      const Vec3 &a = roof.point(edge.first), &b = roof.point(edge.second);
+      last = a[1] == 1 && b[1] == 1 ? std::max({ last, a[0], b[0] }) : last;
+    }
+    return last;
+  };
+  // The middle of the last edge that is sharp; the facets beside it are nearly flat.
+  constexpr double slack = 3;
+  TAUTLINE_CHECK_NEAR(bendAt(lastOf(whole) - 0.5), options.angle, slack);
+  TAUTLINE_CHECK_NEAR(bendAt(lastOf(found) - 0.5), ofTheAngle * options.angle, slack);
+}
+
 /// A planar mesh and an outline of lines: corners that only one of them has are smooth.
 TAUTLINE_PART(testOutline)
 {
