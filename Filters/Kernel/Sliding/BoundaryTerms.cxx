@@ -34,6 +34,7 @@ BoundaryTerms::BoundaryTerms(
   for (std::size_t i = 0; i < this->Samples.size(); ++i)
   {
     this->Upper.push_back(this->Samples.measure(i, x).value);
+    this->Allowed.push_back(this->Samples.limit(i));
   }
   this->select(std::vector<char>(x.size(), 1));
 }
@@ -58,7 +59,15 @@ double BoundaryTerms::freeBand() const
 /// Where the energy of a sample begins.
 double BoundaryTerms::bound(std::size_t sample) const
 {
-  return this->Samples.limit(sample) - beforeLimit * this->Constrained.tolerance();
+  return this->Allowed[sample] - beforeLimit * this->Constrained.tolerance();
+}
+
+void BoundaryTerms::allowWhatIs()
+{
+  for (std::size_t i = 0; i < this->Allowed.size(); ++i)
+  {
+    this->Allowed[i] = std::max(this->Samples.limit(i), this->Upper[i]);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -221,7 +230,7 @@ void BoundaryTerms::flagBeyond(std::vector<char>& flags) const
   }
   for (std::size_t i = 0; i < this->Upper.size(); ++i)
   {
-    if (this->Upper[i] > this->Samples.limit(i))
+    if (this->Upper[i] > this->Allowed[i])
     {
       const SurfaceFacet& facet = this->Samples.facets()[this->Samples.facet(i)];
       std::for_each(
@@ -260,7 +269,7 @@ bool BoundaryTerms::allows(Index p, const std::vector<Vec3>& x) const
   {
     for (const std::size_t i : this->ChordsAt[f])
     {
-      if (this->Samples.measure(i, x).value > std::max(this->Samples.limit(i), this->Upper[i]))
+      if (this->Samples.measure(i, x).value > std::max(this->Allowed[i], this->Upper[i]))
       {
         return false;
       }
@@ -303,7 +312,7 @@ bool BoundaryTerms::isWithin() const
   }
   for (std::size_t i = 0; i < this->Upper.size(); ++i)
   {
-    if (this->Upper[i] > this->Samples.limit(i))
+    if (this->Upper[i] > this->Allowed[i])
     {
       return false;
     }

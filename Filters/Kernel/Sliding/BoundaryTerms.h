@@ -51,6 +51,8 @@ public:
   /// The largest distance of a point from its part, beyond that at the start; at least 0.
   double farthestPoint() const;
 
+  /// Samples that are beyond their limits now may stay as far from now on, but not go farther.
+  void allowWhatIs();
   /// Multiplies the energy from now on.
   void strengthen(double factor) { this->Weight *= factor; }
   void setWeight(double weight) { this->Weight = weight; }
@@ -75,6 +77,7 @@ private:
   std::vector<Vec3> X;
   std::vector<Banded> Bands;
   std::vector<double> Upper;                       ///< per sample
+  std::vector<double> Allowed;                     ///< per sample: its limit, or what it is
   std::vector<std::size_t> Points;                 ///< selected: of Bands
   std::vector<std::size_t> Chords;                 ///< selected samples
   std::vector<std::int32_t> Facets;                ///< selected

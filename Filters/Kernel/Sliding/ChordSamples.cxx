@@ -19,6 +19,8 @@ constexpr int divisions = 4;
 constexpr double spacing = 0.2;
 /// Places of the surface that are farther from the mesh than so many mean edges are not of it.
 constexpr double beyondMesh = 2.0;
+/// Of the tolerance: the rest is for places between the samples.
+constexpr double atSamples = 0.95;
 /// Edges of pieces of the surface are divided into so many parts for samples, at most.
 constexpr int mostDivisions = 64;
 
@@ -240,6 +242,16 @@ void ChordSamples::addBackward(const std::vector<Vec3>& x)
   const int surfaces = model.patches > 0 ? model.patches : parts;
   const double apart = spacing * this->MeanEdge, most = beyondMesh * this->MeanEdge;
   std::set<std::array<Index, 3>> cubes;
+  std::set<Vec3> corners;
+  const auto cubeOf = [apart](const Vec3& place)
+  {
+    std::array<Index, 3> cube;
+    for (int k = 0; k < 3; ++k)
+    {
+      cube[k] = static_cast<Index>(std::floor(place[k] / apart));
+    }
+    return cube;
+  };
   for (int i = 0; i < surfaces; ++i)
   {
     // The facets of the patch, or all if it has none.
@@ -259,25 +271,36 @@ void ChordSamples::addBackward(const std::vector<Vec3>& x)
       }
     }
     const SurfaceProjection ofMesh(pieces, nullptr);
+    const auto add = [&](const Vec3& place)
+    {
+      std::int32_t piece = 0;
+      if (ofMesh.distanceOf(place, 0.0, most, piece) <= most)
+      {
+        this->Backward.push_back({ place, facetOf[ofMesh.source(piece)] });
+      }
+    };
     std::vector<Vec3> places;
     for (const auto& [a, b, c] : model.parts[i].pieces)
     {
       throwIfInterrupted();
       const double longest = std::max({ norm(b - a), norm(c - b), norm(a - c) });
+      // The facets go away first where the surface bends: at the corners of its pieces.
+      for (const Vec3& corner : { a, b, c })
+      {
+        if (longest > apart && corners.insert(corner).second)
+        {
+          cubes.insert(cubeOf(corner));
+          add(corner);
+        }
+      }
       const double parts = std::min<double>(std::ceil(longest / apart), mostDivisions);
       places.clear();
       addSamples({ a, b, c }, std::max(2, static_cast<int>(parts)), places);
       for (const Vec3& place : places)
       {
-        std::array<Index, 3> cube;
-        for (int k = 0; k < 3; ++k)
+        if (cubes.insert(cubeOf(place)).second)
         {
-          cube[k] = static_cast<Index>(std::floor(place[k] / apart));
-        }
-        std::int32_t piece = 0;
-        if (cubes.insert(cube).second && ofMesh.distanceOf(place, 0.0, most, piece) <= most)
-        {
-          this->Backward.push_back({ place, facetOf[ofMesh.source(piece)] });
+          add(place);
         }
       }
     }
@@ -307,7 +330,7 @@ void ChordSamples::setLimits(const std::vector<Vec3>& x)
     {
       most = std::max(most, before[this->Neighbors[k]]);
     }
-    this->Limits.push_back(most + this->Constrained.tolerance());
+    this->Limits.push_back(most + atSamples * this->Constrained.tolerance());
   }
 }
 

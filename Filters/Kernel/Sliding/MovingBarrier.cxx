@@ -442,7 +442,7 @@ void MovingBarrier::moveTo(std::vector<Vec3>& x)
 /// One step; false if none reduces the energy by what is worth it.
 bool MovingBarrier::step()
 {
-  constexpr int trials = 6, halvings = 3;
+  constexpr int trials = 6, halvings = 8;
   constexpr double enough = 1e-4, good = 0.75, poor = 0.25, worthwhile = 1e-3;
   constexpr double leastDamping = 1e-8, mostDamping = 1e6;
   QuadraticModel model;
@@ -479,8 +479,11 @@ bool MovingBarrier::step()
       if (now < before + enough * t * promised)
       {
         this->moveTo(x);
+        // A step that the barrier shortens says nothing against the model: more damping there would
+        // leave points that are far from the barrier behind.
+        constexpr int fewHalvings = 1;
         const double ratio = (now - before) / (t * promised);
-        this->Damping *= half > 0 || ratio < poor ? 3.0 : ratio > good ? 0.3 : 1.0;
+        this->Damping *= ratio < poor ? 3.0 : ratio > good && half <= fewHalvings ? 0.3 : 1.0;
         this->Damping = std::max(this->Damping, leastDamping);
         return before - now > worthwhile * before;
       }
@@ -499,6 +502,7 @@ void MovingBarrier::run(const std::function<bool(const std::vector<Vec3>&)>& acc
   double window = firstWindow;
   int poor = 0;
   constexpr double mostDamping = 1e3;
+  this->Boundary.allowWhatIs();
   // Where the start is beyond its bounds, any better place counts until one is within.
   bool bestWithin = this->Boundary.isWithin();
   while (window > lastWindow && this->Steps < this->Options.steps)
@@ -533,6 +537,7 @@ void MovingBarrier::run(const std::function<bool(const std::vector<Vec3>&)>& acc
       best = this->X;
       bestWorst = now;
       bestWithin = within;
+      this->Boundary.allowWhatIs();
     }
     poor = now - worst < poorGain * window ? poor + 1 : 0;
     if (poor >= poorRounds)

@@ -526,7 +526,7 @@ TAUTLINE_PART(testHexahedra)
     double angle, aim;
   };
   const std::string folder = externalData("hex");
-  for (const Case& c : { Case{ "CAD4", 40, 0.3 }, Case{ "rkm012", 40, 0.58 },
+  for (const Case& c : { Case{ "CAD4", 40, 0.6 }, Case{ "rkm012", 40, 0.6 },
          Case{ "lower_arm", 50, 0.28 }, Case{ "lower_arm", 180, 0.4 } })
   {
     const Context context(c.name + (" " + std::to_string(c.angle)));
@@ -535,7 +535,7 @@ TAUTLINE_PART(testHexahedra)
     TAUTLINE_CHECK_EQUAL(invalidOf(after), 0);
     const double worst = worstJacobian(after);
     TAUTLINE_CHECK(worst > c.aim);
-    TAUTLINE_CHECK(twoSided(sliding.data, after) <= 1.2e-3 * sliding.diagonal);
+    TAUTLINE_CHECK(twoSided(sliding.data, after) <= 1.1e-3 * sliding.diagonal);
   }
 }
 
