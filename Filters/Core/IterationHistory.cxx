@@ -111,6 +111,11 @@ std::string summarize(
                 : ": no others with a smaller objective were found without a worse worst element "
                   "or more invalid elements.");
   }
+  const bool larger =
+    !result.history.empty() && result.history.back().objective > result.history.front().objective;
+  text << (result.worstFirst && larger
+      ? "\nThe worst element came first: the objective is larger than that of the input."
+      : "");
   text << surfaceErrorSentence(result.surfaceError, diagonal);
   if (result.leftSurface > 0)
   {

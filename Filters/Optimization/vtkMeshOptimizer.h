@@ -9,8 +9,9 @@
  * number of objectives (a metric, aggregated over the elements by a template, against a target),
  * their scalarization, and the algorithm.
  *
- * The output is never worse than the input: the combined objective does not rise, and no valid
- * element becomes inverted unless AllowInversion. An input with inverted elements is untangled
+ * The output is never worse than the input: the combined objective does not rise (but where the
+ * worst element comes first, see ImproveWorst), and no valid element becomes inverted unless
+ * AllowInversion. An input with inverted elements is untangled
  * first (UntangleFirst) where the objectives cannot repair it. Points of a planar mesh stay in its
  * plane, those of a surface stay on it, or on the geometry. A mesh reversed throughout is
  * treated as its mirror image, and so is a cell that lists its points in the opposite order of the

@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 namespace tautline
 {
@@ -41,7 +42,8 @@ bool goesBack(OptimizationSteps& steps, const IterationRecord& first, const Qual
 /// Lets points leave the surface, see leaveSurface(), unless the result is worse than the input,
 /// which is better already where they are.
 void leaveNearWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord& first,
-  const QualityGuard& guard, const WorstLimits& limits, const Stopwatch& clock, LeavingResult& left)
+  const QualityGuard& guard, const WorstLimits& limits, const Stopwatch& clock, bool worstFirst,
+  LeavingResult& left)
 {
   OptimizationProblem& problem = steps.problem();
   problem.store();
@@ -56,17 +58,84 @@ void leaveNearWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationR
       }
       return steps.report(now, record);
     });
-  if (goesBack(steps, first, guard, slid))
+  if (!worstFirst && goesBack(steps, first, guard, slid))
   {
     left.points.clear();
   }
 }
 
+/// The fraction of the way to the ideal that the worst element goes from one value to another.
+double wayToIdeal(OptimizationProblem& problem, const Objective& judged, double from, double to)
+{
+  const int dimension = problem.moving().dimension() == Dimension::Planar ? 2 : 3;
+  const double ideal = metricInfo(judged.metric).ideal(dimension);
+  return std::abs(from - ideal) > 0 ? 1 - std::abs(to - ideal) / std::abs(from - ideal) : 0.0;
+}
+
+/**
+ * @brief Raises the worst element by moving all points together from where the optimization began,
+ * then lowers the objective by sweeps that hold what was reached. From where sweeps alone end there
+ * is no way back: they make stretched cells skewed.
+ * @param start points at which all elements are valid
+ * @return whether the points are these now; if not, they are where they were before, which is
+ * better or as good for less
+ */
+bool raiseWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord& first,
+  const QualityGuard& guard, const std::vector<double>& start, double allowance,
+  const StoppingTest& watch, const std::function<bool(const IterationRecord&)>& report,
+  bool& outOfTime)
+{
+  OptimizationProblem& problem = steps.problem();
+  problem.store();
+  const std::vector<double> swept = problem.points();
+  const auto worst = [&]
+  { return problem.worstMovable(guard.judged(), problem.measure(guard.judged())); };
+  const double before = worst();
+  problem.restart(std::vector<double>(start));
+  const double atStart = worst();
+  constexpr double anyMean = std::numeric_limits<double>::infinity();
+  outOfTime = slideWorst(mesh, problem, guard, { anyMean }, report);
+  problem.store();
+  const std::vector<double> raised = problem.points();
+  const double after = worst();
+  const auto way = [&](double from) { return wayToIdeal(problem, guard.judged(), from, after); };
+  // What is about as good as the sweeps improves further one by one, where the mean costs less.
+  constexpr double littleWay = 0.02, littleGain = 0.02; // the gain: of all sweeps
+  bool better = way(before) > littleWay;
+  if (better)
+  {
+    const Mesh there = mesh.at(raised.data());
+    const QualityGuard held(there, problem.options());
+    std::vector<IterationRecord> history = { problem.record(steps.next()) };
+    history.front().objective = scalarized(problem.scalarizer(), history.front());
+    const double atFirst = history.front().objective;
+    sweepHoldingWorst(
+      problem, held, watch,
+      [&](const IterationRecord& record)
+      {
+        const double gain = history.back().objective - record.objective;
+        history.push_back(record);
+        return report(record) && gain > littleGain * (atFirst - record.objective);
+      },
+      history);
+    const bool larger =
+      metricInfo(problem.options().objectives[0].metric).direction == Direction::LargerIsBetter;
+    const double cost = (larger ? -1 : 1) * (problem.record(0).mean[0] - first.mean[0]);
+    better = cost <= (allowance + std::max(way(atStart), 0.0)) * std::abs(first.mean[0]);
+  }
+  if (!better)
+  {
+    problem.restart(swept);
+    steps.report(problem.record(steps.next()));
+  }
+  return better;
+}
+
 /// Improves the worst element as far as wanted, and at least to that of the input. Stores the
 /// points and measures the elements there.
 QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
-  const IterationRecord& first, const QualityGuard& guard, const Stopwatch& clock,
-  OptimizeResult& result)
+  const IterationRecord& first, const QualityGuard& guard, const std::vector<double>& start,
+  const StoppingTest& watch, const Stopwatch& clock, OptimizeResult& result)
 {
   OptimizationProblem& problem = steps.problem();
   // The metrics of the mean and of the worst element disagree on stretched hexahedra.
@@ -101,18 +170,30 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
       stopped = !steps.report(record);
       return !stopped;
     };
-    bool outOfTime = improveWorst(problem, guard, limits, report);
-    if (leaves && !stopped && !outOfTime)
-    {
-      leaveNearWorst(mesh, steps, first, guard, limits, clock, left);
-      stopped = left.stopped;
-      outOfTime = left.outOfTime;
-    }
     // Where the points of cells with several corners are at an end one by one, all of them together
     // may go on; those on a model then leave it somewhat.
     const bool mayLeave = !options.model || leaves || options.onGeometry;
-    if (wanted && mayLeave && !stopped && !outOfTime && steps.hasManyCorners() &&
-      canSlideWorst(problem, guard.judged()))
+    const bool together = wanted && mayLeave && steps.hasManyCorners() && first.inverted == 0 &&
+      canSlideWorst(problem, guard.judged());
+    bool outOfTime = false;
+    result.worstFirst =
+      together && raiseWorst(mesh, steps, first, guard, start, allowance, watch, report, outOfTime);
+    const auto proceeds = [&] { return !result.worstFirst && !stopped && !outOfTime; };
+    if (proceeds())
+    {
+      outOfTime = improveWorst(problem, guard, limits, report);
+    }
+    if (leaves && !stopped && !outOfTime)
+    {
+      if (result.worstFirst)
+      {
+        limits.mean = problem.record(0).mean[0];
+      }
+      leaveNearWorst(mesh, steps, first, guard, limits, clock, result.worstFirst, left);
+      stopped = left.stopped;
+      outOfTime = left.outOfTime;
+    }
+    if (together && proceeds())
     {
       problem.store();
       const std::vector<double> slid = problem.points();
@@ -145,7 +226,7 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
 {
   const auto isLargerThere = [&](const IterationRecord& now)
   { return isLarger(problem.options().scalarization, problem.scalarizer(), now, first); };
-  bool larger = guard.holdsObjective();
+  bool larger = guard.holdsObjective() && !result.worstFirst;
   const auto cells = static_cast<std::size_t>(mesh.view().numberOfCells);
   if (larger && state.values.size() == cells && problem.isSumOfSquaresOf(guard.judged()))
   {
@@ -173,6 +254,7 @@ void verify(const Mesh& mesh, OptimizationProblem& problem, const IterationRecor
       result.reason = StopReason::NoProgress;
     }
     result.unchanged = true;
+    result.worstFirst = false;
     result.restored = result.leftSurface = 0;
     problem.moving().classifyCells(state.validity.data(), problem.options().threads);
     state.values = guard.values();
@@ -219,6 +301,7 @@ void holdWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord
 bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const QualityGuard& guard,
   const Stopwatch& clock, const Ranks& ranks, OptimizeResult& result)
 {
+  const std::vector<double> start = result.points;
   OptimizationProblem problem(mesh, options, result.points, clock, ranks);
   result.freeVertices = problem.freePoints();
   const StoppingTest watch(options, [&problem] { return problem.outOfTime(); });
@@ -261,7 +344,7 @@ bool optimizeStage(const Mesh& mesh, const OptimizeOptions& options, const Quali
   }
   else
   {
-    state = settleWorst(mesh, steps, first, guard, clock, result);
+    state = settleWorst(mesh, steps, first, guard, start, watch, clock, result);
     const StopReason ended = result.reason;
     verify(mesh, problem, first, guard, state, result);
     if (result.unchanged && steps.slidesOnSurface())

@@ -54,6 +54,9 @@ struct OptimizeResult
   /// The points are those of the input, or those that untangling left, because what was found from
   /// there was worse in one of the three numbers.
   bool unchanged = false;
+  /// All points moved together for the worst element, see OptimizeOptions::improveWorst: the
+  /// objective may be larger than that of the input.
+  bool worstFirst = false;
   VerifiedElements elements; ///< at `points`
 
   /// Goes back to the points of the start, as what was found is worse: sets all else to what it is
@@ -69,7 +72,8 @@ struct OptimizeResult
  *
  * Unless allowInversion, the result is never worse than the input in three numbers, which are
  * computed anew from its points: the invalid elements, and, where the input has none, the value of
- * the worst element (see OptimizeOptions::worstMetric and holdWorst) and the scalarized objective.
+ * the worst element (see OptimizeOptions::worstMetric and holdWorst) and the scalarized objective
+ * (not with OptimizeResult::worstFirst).
  * Throws Error on options that cannot be met and names the remedy.
  *
  * On several ranks each has a part of the mesh, and the call is collective. The result then does

@@ -135,11 +135,17 @@ struct OptimizeOptions : BoundaryConstraints
    * @brief WorstElement: after the objective has converged, improves the worst element as long as
    * the mean of the first objective's metric does not get worse by more than this fraction of it,
    * or by five times as much where another metric judges the worst element (the two disagree on
-   * stretched hexahedra); 0: off. In planar and volume meshes of one process, by the scaled
-   * Jacobian of corners or the inverse mean ratio, all points move together, those of the boundary
-   * within half of surfaceTolerance of what they slide on; at places on facets and surface the
-   * distances are at most what they were about there, and surfaceTolerance (0: a thousandth of the
-   * diagonal).
+   * stretched hexahedra); 0: off.
+   *
+   * In planar and volume meshes of one process that have more than a few other cells than
+   * simplices, judged by the scaled Jacobian of corners or the inverse mean ratio, all points move
+   * together first, from the input on if its elements are valid, and sweeps that hold what was
+   * reached follow. This is the result if its worst element is better, and if the mean is worse
+   * than in the input by at most that fraction and the fraction of the way to the ideal that the
+   * worst element has gone; the objective may then be larger than that of the input, see
+   * OptimizeResult::worstFirst. Points of the boundary stay within half of surfaceTolerance of what
+   * they slide on; at places on facets and surface the distances are at most what they were about
+   * there, and surfaceTolerance (0: a thousandth of the diagonal).
    */
   double improveWorst = 0.0;
   /**

@@ -60,6 +60,8 @@ public:
 
   /// Tells which element is the worst.
   const Objective& judged() const { return this->Judged; }
+  /// Whether its larger values are better.
+  bool isLarger() const { return this->Larger; }
   /// Its values on the input; empty if inversion is allowed.
   const std::vector<double>& values() const { return this->Values; }
   std::vector<double> takeValues() { return std::move(this->Values); }

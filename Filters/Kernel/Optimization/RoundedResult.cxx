@@ -137,6 +137,7 @@ RoundedResult measureRounded(const Mesh& mesh, const std::vector<signed char>& v
     }
   }
   compareObjectives(options, start, found);
+  found.largerObjective = found.largerObjective && !result.worstFirst;
   return found;
 }
 }

@@ -261,7 +261,24 @@ vtkSmartPointer<vtkUnstructuredGrid> runOne(
   const double worst = worstOf(mesh, options, test.type);
   TAUTLINE_CHECK(worstOf(now, options, test.type) <= worst + rounding * std::abs(worst));
   const double first = objectiveAt(test, data, mesh, of), last = objectiveAt(test, data, now, of);
-  TAUTLINE_CHECK(last <= first * (1 + rounding));
+  if (test.preset == Preset::WorstElement && topology(test.type).samples > 1)
+  {
+    // The worst element comes first: the mean may grow by 5 %, and by the way of that to the ideal.
+    constexpr double allowance = 0.05;
+    const double ideal = test.type == CellType::Pyramid ? 1 : -1;
+    const double way = 1 - std::abs(worstOf(now, options, test.type) - ideal) / (worst - ideal);
+    const auto meanOf = [](const MeshData& of)
+    {
+      const std::vector<double> q = valuesOf(of, Metric::InverseMeanRatio);
+      return std::accumulate(q.begin(), q.end(), 0.0) / static_cast<double>(q.size());
+    };
+    TAUTLINE_CHECK(
+      last <= first * (1 + rounding) || meanOf(after) <= (1 + allowance + way) * meanOf(data));
+  }
+  else
+  {
+    TAUTLINE_CHECK(last <= first * (1 + rounding));
+  }
   totals.better += last < 0.999 * first;
   return output;
 }
