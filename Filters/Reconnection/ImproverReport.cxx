@@ -64,16 +64,16 @@ const Words& wordsOf(bool isTriangles)
 }
 
 /// What would help where the boundary may move as it does.
-const Reasons& remediesFor(bool isTriangles, ReconnectionBoundary boundary)
+const Reasons& remediesFor(bool isTriangles, BoundaryMotion boundary)
 {
-  const bool fixed = boundary == ReconnectionBoundary::Fixed;
+  const bool fixed = boundary == BoundaryMotion::Fixed;
   if (isTriangles)
   {
     return fixed ? edgeRemedies : edgeRemediesOfSliding;
   }
-  return fixed                                  ? remedies
-    : boundary == ReconnectionBoundary::Sliding ? remediesOfSliding
-                                                : remediesOnSurface;
+  return fixed                              ? remedies
+    : boundary == BoundaryMotion::FlatParts ? remediesOfSliding
+                                            : remediesOnSurface;
 }
 
 /// "12 edge removals, 3 motions of points"
@@ -239,7 +239,7 @@ std::string describeResult(const ReconnectionResult& result, bool isTriangles)
 
 //------------------------------------------------------------------------------
 std::string describeRemaining(const std::vector<RemainingElement>& remaining, bool isTriangles,
-  ReconnectionBoundary boundary, double targetAngle)
+  BoundaryMotion boundary, double targetAngle)
 {
   const Reasons& helps = remediesFor(isTriangles, boundary);
   const Words& words = wordsOf(isTriangles);

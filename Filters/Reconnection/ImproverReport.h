@@ -67,7 +67,7 @@ void addRemaining(TableRows& rows, const std::vector<RemainingElement>& remainin
 std::string describeResult(const ReconnectionResult& result, bool isTriangles);
 /// What remains below the target, why, and which are the worst.
 std::string describeRemaining(const std::vector<RemainingElement>& remaining, bool isTriangles,
-  ReconnectionBoundary boundary, double targetAngle);
+  BoundaryMotion boundary, double targetAngle);
 /// What the boundary forces on any mesh, if something remains.
 std::string describeForced(
   const std::vector<RemainingElement>& remaining, bool isTriangles, double forcedInverseMeanRatio);

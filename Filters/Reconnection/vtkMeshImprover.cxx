@@ -165,11 +165,11 @@ void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
   options.compound = this->Compound;
   options.objective = static_cast<tautline::ReconnectionObjective>(this->Objective);
   options.metric = static_cast<tautline::Metric>(this->Metric);
-  options.boundary = static_cast<tautline::ReconnectionBoundary>(this->Boundary);
+  options.boundary = static_cast<tautline::BoundaryMotion>(this->Boundary);
   options.flatAngle = this->FlatAngle;
   options.featureAngle = this->FeatureAngle;
   options.surfaceAngle = this->SurfaceAngle;
-  options.surfaceDistance = this->SurfaceDistance;
+  options.surfaceTolerance = this->SurfaceTolerance;
   options.smallestCount = this->SmallestCount;
   options.largestCount = this->LargestCount;
   options.threads = this->Threads;
@@ -311,7 +311,7 @@ void vtkMeshImprover::Report(const tautline::ReconnectionResult& result,
   std::vector<tautline::RemainingElement> left, const tautline::ImproverRemarks& remarks,
   tautline::TableRows& history, tautline::TableRows& remaining)
 {
-  const auto boundary = static_cast<tautline::ReconnectionBoundary>(this->Boundary);
+  const auto boundary = static_cast<tautline::BoundaryMotion>(this->Boundary);
   const bool triangles = remarks.triangles;
   tautline::sortWorstFirst(left);
   tautline::addHistory(history, result.history, remarks.block);
@@ -397,7 +397,7 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "LargestCount: " << this->LargestCount << "\n";
   os << indent << "FeatureAngle: " << this->FeatureAngle << "\n";
   os << indent << "SurfaceAngle: " << this->SurfaceAngle << "\n";
-  os << indent << "SurfaceDistance: " << this->SurfaceDistance << "\n";
+  os << indent << "SurfaceTolerance: " << this->SurfaceTolerance << "\n";
   os << indent << "KeepVolume: " << this->KeepVolume << "\n";
   os << indent << "Size: " << this->Size << "\n";
   os << indent << "EdgeLength: " << this->EdgeLength << "\n";

@@ -14,8 +14,8 @@
  * Triangles: planar meshes and surfaces in space. Edges on the border, between regions, under lines
  * beside the triangles and, on surfaces, sharp edges (FeatureAngle) stay; so do corners. Other
  * points of a surface stay on the smooth surface through the points of the input, and changed
- * triangles within SurfaceDistance and SurfaceAngle of its facets. The area of a planar mesh and of
- * each region stays.
+ * triangles within SurfaceTolerance and SurfaceAngle of its facets. The area of a planar mesh and
+ * of each region stays.
  *
  * Other cells of volume (of area, where there are none of volume), ghost cells and inverted
  * elements are refused (run vtkMeshUntangler first); cells of lower dimension are left out with a
@@ -210,14 +210,14 @@ public:
   {
     FIXED = 0,
     SLIDING = 1,
-    ON_SURFACE = 2
+    ON_SURFACE = 3 ///< as vtkMeshBoundaryAlgorithm has it, whose FREE is an error here
   };
   ///@{
   /**
    * FIXED, the default: the points and facets of the boundary and between regions stay. SLIDING:
    * points slide within flat parts of the boundary and along straight edges, and are contracted
    * there; edges between coplanar facets are swapped. The shape and the volumes stay. ON_SURFACE
-   * (tetrahedra only): the same on curved parts; facets stay within SurfaceDistance and
+   * (tetrahedra only): the same on curved parts; facets stay within SurfaceTolerance and
    * SurfaceAngle of the input's, which stays within 1.25 times the distance of them; corners, sharp
    * edges (FeatureAngle) and facets between regions stay, but for sharp edges of noise and corners
    * nearer to each other than the distance. The shape and the volume change within these bounds;
@@ -239,15 +239,15 @@ public:
   /**
    * Of surfaces in space, and of a boundary ON_SURFACE. FeatureAngle, 0 to 180 degrees: edges
    * between facets that differ by more are kept. SurfaceAngle, 0 to 90 degrees, and
-   * SurfaceDistance, 0 to 1 times the diagonal of the mesh: how far changed facets turn and move
+   * SurfaceTolerance, 0 to 1 times the diagonal of the mesh: how far changed facets turn and move
    * away from the input. The defaults are 40, 20 and 0.005.
    */
   vtkTautlineSetRangeMacro(FeatureAngle, double, 0.0, 180.0);
   vtkGetMacro(FeatureAngle, double);
   vtkTautlineSetRangeMacro(SurfaceAngle, double, 0.0, 90.0);
   vtkGetMacro(SurfaceAngle, double);
-  vtkTautlineSetRangeMacro(SurfaceDistance, double, 0.0, 1.0);
-  vtkGetMacro(SurfaceDistance, double);
+  vtkTautlineSetRangeMacro(SurfaceTolerance, double, 0.0, 1.0);
+  vtkGetMacro(SurfaceTolerance, double);
   ///@}
 
   ///@{
@@ -452,7 +452,7 @@ private:
   double LargestCount = 1.1;
   double FeatureAngle = 40.0;
   double SurfaceAngle = 20.0;
-  double SurfaceDistance = 5e-3;
+  double SurfaceTolerance = 5e-3;
   bool KeepVolume = false;
   int Size = ANY_LENGTH;
   double EdgeLength = 1.0;

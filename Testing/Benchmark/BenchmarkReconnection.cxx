@@ -29,7 +29,7 @@ struct Case
 {
   const char* name;
   ReconnectionPreset preset;
-  ReconnectionBoundary boundary;
+  BoundaryMotion boundary;
   double targetAngle; ///< 0: that of the preset
 };
 
@@ -37,12 +37,12 @@ struct Case
 constexpr double SlidingTarget = 38.8;
 
 constexpr Case cases[] = {
-  { "slivers", ReconnectionPreset::RemoveSlivers, ReconnectionBoundary::Fixed, 0.0 },
-  { "swap", ReconnectionPreset::SwapOnly, ReconnectionBoundary::Fixed, 0.0 },
-  { "swap and smooth", ReconnectionPreset::SwapAndSmooth, ReconnectionBoundary::Fixed, 0.0 },
-  { "aggressive", ReconnectionPreset::Aggressive, ReconnectionBoundary::Fixed, 0.0 },
-  { "sliding", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding, 0.0 },
-  { "sliding, high target", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding,
+  { "slivers", ReconnectionPreset::RemoveSlivers, BoundaryMotion::Fixed, 0.0 },
+  { "swap", ReconnectionPreset::SwapOnly, BoundaryMotion::Fixed, 0.0 },
+  { "swap and smooth", ReconnectionPreset::SwapAndSmooth, BoundaryMotion::Fixed, 0.0 },
+  { "aggressive", ReconnectionPreset::Aggressive, BoundaryMotion::Fixed, 0.0 },
+  { "sliding", ReconnectionPreset::Aggressive, BoundaryMotion::FlatParts, 0.0 },
+  { "sliding, high target", ReconnectionPreset::Aggressive, BoundaryMotion::FlatParts,
     SlidingTarget },
 };
 
@@ -88,12 +88,11 @@ MeshData makeMesh(Index n)
 
 /// Cases of triangles.
 constexpr Case triangleCases[] = {
-  { "triangles, slivers", ReconnectionPreset::RemoveSlivers, ReconnectionBoundary::Fixed, 0.0 },
-  { "triangles, swap", ReconnectionPreset::SwapOnly, ReconnectionBoundary::Fixed, 0.0 },
-  { "triangles, swap and smooth", ReconnectionPreset::SwapAndSmooth, ReconnectionBoundary::Fixed,
-    0.0 },
-  { "triangles", ReconnectionPreset::Aggressive, ReconnectionBoundary::Fixed, 0.0 },
-  { "triangles, sliding", ReconnectionPreset::Aggressive, ReconnectionBoundary::Sliding, 0.0 },
+  { "triangles, slivers", ReconnectionPreset::RemoveSlivers, BoundaryMotion::Fixed, 0.0 },
+  { "triangles, swap", ReconnectionPreset::SwapOnly, BoundaryMotion::Fixed, 0.0 },
+  { "triangles, swap and smooth", ReconnectionPreset::SwapAndSmooth, BoundaryMotion::Fixed, 0.0 },
+  { "triangles", ReconnectionPreset::Aggressive, BoundaryMotion::Fixed, 0.0 },
+  { "triangles, sliding", ReconnectionPreset::Aggressive, BoundaryMotion::FlatParts, 0.0 },
 };
 
 /// The points inside a square moved at random by up to a third of the spacing.

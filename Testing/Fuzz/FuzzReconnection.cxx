@@ -351,7 +351,7 @@ BoundaryTotals boundaryOf(const TetrahedronMesh& mesh)
 class TetrahedronSteps
 {
 public:
-  TetrahedronSteps(const MeshData& data, ReconnectionBoundary boundary, Choices& choices)
+  TetrahedronSteps(const MeshData& data, BoundaryMotion boundary, Choices& choices)
     : Choose(choices)
     , Changing(pointsOf(data), cellsOf(data))
     , Operations(this->Changing)
@@ -359,18 +359,18 @@ public:
     ReconnectionOptions options;
     options.boundary = boundary;
     this->Operations.flatTolerance = std::sin(options.flatAngle * (Pi / 180.0));
-    this->Operations.swapsBoundary = boundary != ReconnectionBoundary::Fixed;
-    if (boundary == ReconnectionBoundary::Surface)
+    this->Operations.swapsBoundary = boundary != BoundaryMotion::Fixed;
+    if (boundary == BoundaryMotion::OnSurface)
     {
       const Mesh mesh(data.view());
       this->Operations.surface = std::make_shared<BoundarySurface>(mesh, this->Changing, options);
       this->Operations.freedoms = this->Operations.surface->freedoms();
-      this->Distance = options.surfaceDistance * diagonalOf(data);
+      this->Distance = options.surfaceTolerance * diagonalOf(data);
     }
     else
     {
       this->Operations.freedoms = findFreedoms(
-        this->Changing, boundary == ReconnectionBoundary::Sliding, this->Operations.flatTolerance);
+        this->Changing, boundary == BoundaryMotion::FlatParts, this->Operations.flatTolerance);
     }
     this->Operations.smallestSize = this->Changing.size() / 2;
     this->Operations.largestSize = 2 * this->Changing.size();
@@ -469,14 +469,14 @@ long changeTetrahedra(Choices& choices, long attempts)
 {
   MeshData data = sliverBlock(3, 1 + choices.next() % 1000, 0.9);
   data.transform([](const Vec3& p) { return (1.0 / 4.0) * p; });
-  return TetrahedronSteps(data, ReconnectionBoundary::Fixed, choices).run(attempts);
+  return TetrahedronSteps(data, BoundaryMotion::Fixed, choices).run(attempts);
 }
 
 long changeSliding(Choices& choices, long attempts)
 {
   MeshData data = sliverBlock(3, 1 + choices.next() % 1000, 0.9);
   data.transform([](const Vec3& p) { return (1.0 / 4.0) * p; });
-  return TetrahedronSteps(data, ReconnectionBoundary::Sliding, choices).run(attempts);
+  return TetrahedronSteps(data, BoundaryMotion::FlatParts, choices).run(attempts);
 }
 
 long changeSurface(Choices& choices, long attempts)
@@ -484,7 +484,7 @@ long changeSurface(Choices& choices, long attempts)
   constexpr Index Cubes = 4;
   const int directions = 2 + choices(2); // a cylinder or a ball
   const MeshData data = roundMesh(directions, 1 + choices.next() % 1000, Cubes);
-  return TetrahedronSteps(data, ReconnectionBoundary::Surface, choices).run(attempts);
+  return TetrahedronSteps(data, BoundaryMotion::OnSurface, choices).run(attempts);
 }
 
 void fuzzReconnection(std::string_view bytes)

@@ -194,7 +194,7 @@ def test_on_surface():
     """The points of a ball's surface move on it; a cube's stay as they are without a distance."""
     ball = tl.perturb(tl.domain("sphere", 3000), 0.9, seed=3).mesh
     fixed = tl.improve(ball, "aggressive")
-    moved = tl.improve(ball, "aggressive", boundary="on surface", surface_distance=0.01)
+    moved = tl.improve(ball, "aggressive", boundary="on surface", surface_tolerance=0.01)
     diagonal = np.linalg.norm(np.ptp(points(ball), axis=0))
     assert fixed.boundary_distance == 0 < moved.boundary_distance < 0.02 * diagonal, moved.boundary_distance
     target = 33.4  # degrees, where it ends: with GCC 16 both come as far
@@ -205,7 +205,7 @@ def test_on_surface():
     source, out = OUT / "ball.vtu", OUT / "ball_improved.vtu"
     tl.write(ball, source)
     run("improve", source, "-o", out, "--preset", "aggressive", "--boundary", "on surface",
-        "--surface-distance", "0.01")  # fmt: skip
+        "--surface-tolerance", "0.01")  # fmt: skip
     assert (points(tl.read(out)) == points(moved.mesh)).all()
 
 
@@ -347,7 +347,7 @@ def test_refused():
     for text, options in (
         ("feature_angle is 181", {"feature_angle": 181}),
         ("surface_angle is -1", {"surface_angle": -1}),
-        ("surface_distance is 2", {"surface_distance": 2}),
+        ("surface_tolerance is 2", {"surface_tolerance": 2}),
     ):
         refused(text, tl.improve, sheet(), **options)
     quads = tl.from_arrays([[0, 0], [1, 0], [1, 1], [0, 1], [2, 0]], {
@@ -386,7 +386,7 @@ def test_command():
     flat = OUT / "sheet.vtu"
     tl.write(sheet(), flat)
     text = run("improve", flat, "-o", mesh, "--preset", "aggressive", "--feature-angle", "30", "--surface-angle", "10",
-               "--surface-distance", "0.01")
+               "--surface-tolerance", "0.01")
     assert "Triangles: " in text and (points(tl.read(mesh)) == points(tl.improve(flat, "aggressive").mesh)).all()
     sized, plain = (tl.improve(flat, "aggressive", edge_length=length, smallest_count=0) for length in (1e-3, None))
     assert sized.history["contractions"][-1] == 0 < plain.history["contractions"][-1]  # no edge is as short

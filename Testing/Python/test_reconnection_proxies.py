@@ -40,8 +40,8 @@ for preset in ("Swap only", "Swap and smooth", "Aggressive"):
 best.Preset, best.Smooth, best.Insert, best.Contract, best.Compound = "Custom", 0, 0, 0, 0
 best.TargetAngle, best.Boundary, best.FlatAngle = 20, "Slide on flat parts", 1e-6
 best.SmallestCount, best.LargestCount, best.Objective = 0.8, 1.3, "Shape"
-best.FeatureAngle, best.SurfaceAngle, best.SurfaceDistance = 30, 15, 0.01
-best.RegionArray = ["CELLS", "region"]
+best.FeatureAngle, best.SurfaceAngle, best.SurfaceTolerance = 30, 15, 0.01
+best.Regions = ["CELLS", "region"]
 best.UpdatePipeline()
 best.UpdatePropertyInformation()
 assert column(best, 1, "N moves")[-1] == 0 and column(best, 1, "N edge removals")[-1] > 0
@@ -69,7 +69,7 @@ assert column(averaged, 1, "N moves")[-1] > column(plain, 1, "N moves")[-1]
 
 # a metric; a boundary that changes within a distance
 named = ImproveMesh(Input=worse, Preset="Aggressive", Objective="Metric", Metric="Radius ratio")  # noqa: F821
-named.Boundary, named.SurfaceDistance = "Slide on smooth parts", 0.01
+named.Boundary, named.SurfaceTolerance = "Slide on smooth parts", 0.01
 named.UpdatePipeline()
 named.UpdatePropertyInformation()
 assert wording("radius-ratio-of-the-worst-tetrahedron") in named.Summary, named.Summary
@@ -97,6 +97,6 @@ assert (again.Preset, again.Boundary, again.TargetAngle, again.LargestCount) == 
     20,
     1.3,
 )
-assert list(again.RegionArray) == ["CELLS", "region"]
+assert list(again.Regions) == ["CELLS", "region"]
 again.UpdatePipeline()
 assert again.CellData["min_angle"].GetRange() == expected

@@ -335,7 +335,7 @@ BoundarySurface::BoundarySurface(
   wanted.angle = options.featureAngle;
   const Features features = findFeatures(mesh, wanted);
   const SurfacePart boundary = boundaryOf(changing);
-  this->Distance = std::max(options.surfaceDistance, LeastDistance) * diagonalOf(boundary.pieces);
+  this->Distance = std::max(options.surfaceTolerance, LeastDistance) * diagonalOf(boundary.pieces);
   const SurfaceModel model = makeSurfaceModel(mesh, features, false);
   this->Patches = model.patches;
   for (const SurfacePart& part : model.parts)

@@ -57,7 +57,7 @@ struct OperationRules
   bool swapsBoundary = false;
   /// Sine of the largest angle between coplanar facets, or directions that are the same.
   double flatTolerance = 0;
-  /// Of ReconnectionBoundary::Surface, else null.
+  /// Of BoundaryMotion::OnSurface, else null.
   std::shared_ptr<const BoundarySurface> surface;
 };
 

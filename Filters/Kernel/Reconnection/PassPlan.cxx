@@ -38,8 +38,8 @@ std::vector<PassOptions> planStage(
   PassOptions pass;
   pass.swap = options.swap;
   pass.smooth = options.smooth;
-  pass.skipsBound = options.boundary == ReconnectionBoundary::Fixed && !sums;
-  pass.facets = options.boundary != ReconnectionBoundary::Fixed && !sums;
+  pass.skipsBound = options.boundary == BoundaryMotion::Fixed && !sums;
+  pass.facets = options.boundary != BoundaryMotion::Fixed && !sums;
   std::vector<PassOptions> passes;
   for (double first : FirstTargets)
   {

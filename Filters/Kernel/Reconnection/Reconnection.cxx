@@ -287,7 +287,7 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   this->Operations.edgeFactor = this->Options.edgeFactor;
   this->Operations.sums = this->Options.objective == ReconnectionObjective::Sum;
   this->Operations.swapsBoundary =
-    this->Options.swap && this->Options.boundary != ReconnectionBoundary::Fixed;
+    this->Options.swap && this->Options.boundary != BoundaryMotion::Fixed;
   this->Operations.flatTolerance = std::max(
     std::sin(radians(this->Options.flatAngle)), 4.0 * std::numeric_limits<double>::epsilon());
   this->setBounds();
@@ -599,12 +599,12 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   result.markedFacets = static_cast<Index>(changing.keptFaces().size());
   std::shared_ptr<const BoundarySurface> surface;
   std::vector<PointFreedom> freedoms;
-  if (result.markedFacets > 0 && options.boundary == ReconnectionBoundary::Surface)
+  if (result.markedFacets > 0 && options.boundary == BoundaryMotion::OnSurface)
   {
     throw Error("facets inside the mesh are marked, which works with a fixed or sliding boundary "
                 "only: choose one of these, or a region array instead of the marks");
   }
-  if (options.boundary == ReconnectionBoundary::Surface && changing.size() > 0)
+  if (options.boundary == BoundaryMotion::OnSurface && changing.size() > 0)
   {
     MeshView scaled = mesh.view();
     scaled.points = input.points.data()->data();
@@ -615,7 +615,7 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   }
   else
   {
-    freedoms = findFreedoms(changing, options.boundary == ReconnectionBoundary::Sliding,
+    freedoms = findFreedoms(changing, options.boundary == BoundaryMotion::FlatParts,
       std::max(std::sin(radians(options.flatAngle)), 4.0 * std::numeric_limits<double>::epsilon()));
   }
   const std::vector<char> fixedPoints = fixPoints(changing, options, marked, freedoms);

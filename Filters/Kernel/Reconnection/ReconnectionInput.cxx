@@ -82,14 +82,16 @@ void checkReconnectionOptions(const ReconnectionOptions& options)
   };
   check(options.targetAngle > 0.0 && options.targetAngle <= LargestTargetAngle,
     "the target angle must be above 0 and at most 60 degrees");
+  check(options.boundary != BoundaryMotion::Free,
+    "the boundary cannot move freely: it must stay, or slide on flat or smooth parts");
   check(options.flatAngle >= 0.0 && options.flatAngle <= LargestFlatAngle,
     "the flat angle must be from 0 to 1 degree");
   check(options.featureAngle >= 0.0 && options.featureAngle <= LargestFeatureAngle,
     "the feature angle must be 0 to 180 degrees");
   check(options.surfaceAngle >= 0.0 && options.surfaceAngle <= LargestSurfaceAngle,
     "the surface angle must be 0 to 90 degrees");
-  check(options.surfaceDistance >= 0.0 && options.surfaceDistance <= 1.0,
-    "the surface distance must be 0 to 1 times the diagonal of the mesh");
+  check(options.surfaceTolerance >= 0.0 && options.surfaceTolerance <= 1.0,
+    "the surface tolerance must be 0 to 1 times the diagonal of the mesh");
   check(options.smallestCount >= 0.0 && options.smallestCount <= 1.0,
     "the smallest count must be from 0 to 1 times that of the input");
   check(options.largestCount >= 1.0 && std::isfinite(options.largestCount),

@@ -6,6 +6,7 @@
 #ifndef tautline_ReconnectionOptions_h
 #define tautline_ReconnectionOptions_h
 
+#include "tautline/Boundary/BoundaryConstraints.h"
 #include "tautline/Core/Iteration.h"
 #include "tautline/Quality/Metrics.h"
 #include "tautline/ReconnectionKernelExport.h"
@@ -24,27 +25,6 @@ enum class ReconnectionPreset : int
   SwapOnly = 2,      ///< edges and faces are removed, no point moves
   SwapAndSmooth = 3, ///< the same, and points move; none are inserted or removed
   Aggressive = 4     ///< every operation, also those that pay only after the points around moved
-};
-
-/// What may happen to the boundary and to the interfaces between regions. The numbers are stable.
-enum class ReconnectionBoundary : int
-{
-  Fixed = 0, ///< same points, same facets: coordinates and facets are bitwise the same
-  /**
-   * @brief Points of the boundary move within flat parts and along straight edges, and are
-   * contracted there; edges between coplanar facets of the boundary are removed. The shape, the
-   * volume and the volume of each region stay, within the flat angle. Facets between regions
-   * are not swapped or contracted.
-   */
-  Sliding = 1,
-  /**
-   * @brief Also on curved parts: points of the boundary move on it, or along its sharp edges, and
-   * are contracted, inserted and swapped there; facets stay within surfaceDistance and surfaceAngle
-   * of the boundary of the input. Corners, sharp edges (featureAngle) and facets between regions
-   * stay. The shape and the volume change within these bounds. Boundaries closer to each other than
-   * the distance may come to overlap. Tetrahedra only.
-   */
-  Surface = 2
 };
 
 /// What the worst tetrahedra are improved for. The numbers are stable.
@@ -118,7 +98,7 @@ struct ReconnectionOptions
    * it, and the run ends. The run goes through stages of 15, 25, 33.4, 40, 45, 50, 55 and 60
    * degrees, up to the first that is not below this angle, each with every operation: so a higher
    * target is never worse in any of the worst values, on one rank and without a time limit. The
-   * default is about what fixed boundaries of good facets allow; with Sliding, 38 to 39 is in
+   * default is about what fixed boundaries of good facets allow; with FlatParts, 38 to 39 is in
    * reach, at some ten times the cost.
    */
   double targetAngle = 33.4;
@@ -126,17 +106,30 @@ struct ReconnectionOptions
   /// With ReconnectionObjective::Metric: any with derivatives that is defined on tetrahedra, better
   /// larger or smaller, and does not depend on the orientation in space.
   Metric metric = Metric::InverseMeanRatio;
-  ReconnectionBoundary boundary = ReconnectionBoundary::Fixed;
-  /// With Sliding: facets whose normals differ by at most so many degrees are coplanar; 0 to 1. The
-  /// default allows for coordinates in single precision, or with six decimals in a file.
+  /**
+   * @brief What may happen to the boundary and to the interfaces between regions.
+   *
+   * Fixed: same points, same facets; coordinates and facets are bitwise the same. FlatParts: points
+   * of the boundary move within flat parts and along straight edges, and are contracted there;
+   * edges between coplanar facets of the boundary are removed. The shape, the volume and the volume
+   * of each region stay, within the flat angle. Facets between regions are not swapped or
+   * contracted. OnSurface (tetrahedra): also on curved parts; points of the boundary move on it, or
+   * along its sharp edges, and are contracted, inserted and swapped there; facets stay within
+   * surfaceTolerance and surfaceAngle of the boundary of the input. Corners, sharp edges
+   * (featureAngle) and facets between regions stay. The shape and the volume change within these
+   * bounds. Boundaries closer to each other than the tolerance may come to overlap. Free: an error.
+   */
+  BoundaryMotion boundary = BoundaryMotion::Fixed;
+  /// With FlatParts: facets whose normals differ by at most so many degrees are coplanar; 0 to 1.
+  /// The default allows for coordinates in single precision, or with six decimals in a file.
   double flatAngle = 0.01;
-  ///@{ With Surface, and of triangles of surfaces in space.
+  ///@{ With OnSurface, and of triangles of surfaces in space.
   /// Degrees, 0 to 180: edges between facets that differ by more are kept.
   double featureAngle = 40.0;
   /// Degrees, 0 to 90: the normals of changed facets are as close to that of the input below.
   double surfaceAngle = 20.0;
   /// Changed facets are as close to the input, as a multiple of the diagonal of its box; 0 to 1.
-  double surfaceDistance = 5e-3;
+  double surfaceTolerance = 5e-3;
   ///@}
   /// One flag per point, nonzero = it stays where it is and is not removed; null: none besides
   /// those of the boundary.
@@ -146,7 +139,7 @@ struct ReconnectionOptions
   /**
    * @brief Triples of points: facets that are kept as those between regions are, and their points
    * stay. Of tetrahedra; those that are not between two of these have no effect. Refused with
-   * ReconnectionBoundary::Surface.
+   * BoundaryMotion::OnSurface.
    */
   std::vector<std::array<Index, 3>> markedFacets;
   /**

@@ -91,7 +91,7 @@ struct ReconnectionResult
   StopReason reason = StopReason::NoProgress;  ///< or Reduction (target), TimeLimit, Aborted
   Index markedFacets = 0;                      ///< of tetrahedra: those that were kept
   Index pointsInPlanes = 0, pointsOnLines = 0; ///< points of the boundary that may slide
-  /// With ReconnectionBoundary::Surface: the largest distance of the boundary from that of the
+  /// With BoundaryMotion::OnSurface: the largest distance of the boundary from that of the
   /// input, or back, at corners, middles of edges and centres of facets; and the volumes.
   /// With TriangleOptions::keepVolume: the volumes.
   double boundaryDistance = 0, volumeBefore = 0, volumeAfter = 0;

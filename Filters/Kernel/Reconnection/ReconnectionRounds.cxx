@@ -637,10 +637,10 @@ RankReconnection RankRounds::run(int rounds)
 //------------------------------------------------------------------------------
 std::string needsOneRank(const ReconnectionOptions& options)
 {
-  return options.boundary == ReconnectionBoundary::Surface ? "a boundary on the surface"
-    : options.objective == ReconnectionObjective::Metric   ? "a metric as objective"
-    : options.improveMean                                  ? "the best shape at the end"
-    : options.overlaps                                     ? "a conservative transfer"
+  return options.boundary == BoundaryMotion::OnSurface   ? "a boundary on the surface"
+    : options.objective == ReconnectionObjective::Metric ? "a metric as objective"
+    : options.improveMean                                ? "the best shape at the end"
+    : options.overlaps                                   ? "a conservative transfer"
     : options.size != ReconnectionSize::None && options.size != ReconnectionSize::Length
     ? "lengths per point"
     : "";

@@ -67,7 +67,7 @@ struct RankReconnection : ReconnectionResult
  * follow from those of former ones, original cells too.
  *
  * Throws Error on all ranks where improveConnectivity() would on any, and for options that need the
- * whole mesh: ReconnectionBoundary::Surface, ReconnectionObjective::Metric, improveMean, overlaps,
+ * whole mesh: BoundaryMotion::OnSurface, ReconnectionObjective::Metric, improveMean, overlaps,
  * sizes per point.
  * @param mesh moved from, so that its memory can be freed
  * @param options fixed, regions, markedFacets, outside and starts have no effect. `observer` is

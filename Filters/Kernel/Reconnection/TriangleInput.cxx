@@ -125,7 +125,7 @@ void convertSurface(const Mesh& mesh, const TriangleOptions& options, TriangleIn
       high[k] = n > 0 ? std::max(high[k], x[k]) : x[k];
     }
   }
-  const double distance = std::max(options.surfaceDistance, LeastDistance) * norm(high - low);
+  const double distance = std::max(options.surfaceTolerance, LeastDistance) * norm(high - low);
   input.surface = TriangleSurface(scaled, found, distance, options.surfaceAngle);
 }
 }
@@ -133,7 +133,7 @@ void convertSurface(const Mesh& mesh, const TriangleOptions& options, TriangleIn
 void checkTriangleOptions(const TriangleOptions& options)
 {
   checkReconnectionOptions(options);
-  if (options.boundary == ReconnectionBoundary::Surface)
+  if (options.boundary == BoundaryMotion::OnSurface)
   {
     throw Error("motion within a distance of the boundary is for tetrahedra: let the boundary of "
                 "triangles slide in flat parts (their points stay on the surface in any case)");
@@ -220,7 +220,7 @@ std::vector<PointFreedom> findFreedoms(
 {
   const double tolerance = std::max(
     std::sin(options.flatAngle * (Pi / 180.0)), 4.0 * std::numeric_limits<double>::epsilon());
-  const bool slide = options.boundary == ReconnectionBoundary::Sliding;
+  const bool slide = options.boundary == BoundaryMotion::FlatParts;
   std::vector<PointFreedom> freedoms(mesh.pointSlots());
   std::vector<TriId> around;
   for (VertexId v = 0; v < mesh.pointSlots(); ++v)
@@ -292,7 +292,7 @@ void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoint
   const TriangleOptions& options, ReconnectionResult& result)
 {
   const double target = std::sin(options.targetAngle * (Pi / 180.0));
-  const bool divides = options.boundary == ReconnectionBoundary::Sliding && options.insert;
+  const bool divides = options.boundary == BoundaryMotion::FlatParts && options.insert;
   std::vector<char> atBorder(mesh.pointSlots(), 0), atInterface(atBorder);
   double forced = 1.0, smallestCorner = Pi;
   std::vector<double> bounds(mesh.slots(), RegularSine);

@@ -45,7 +45,7 @@ void checkTriangleOptions(const TriangleOptions& options);
 TriangleInput convertTriangles(const Mesh& mesh, const TriangleOptions& options);
 
 /// What the points may do: Free is within the plane or patch. Points of walls and non-manifold ones
-/// are fixed; with Sliding, those within straight walls move along these.
+/// are fixed; with FlatParts, those within straight walls move along these.
 std::vector<PointFreedom> findFreedoms(
   const TriangleMesh& mesh, const TriangleInput& input, const TriangleOptions& options);
 

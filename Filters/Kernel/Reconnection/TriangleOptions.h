@@ -15,7 +15,7 @@ namespace tautline
 {
 /**
  * @brief The options; those of tetrahedra hold for triangles, with these remarks. `boundary` is
- * that of borders, edges between regions and sharp edges: with Sliding, their points move along
+ * that of borders, edges between regions and sharp edges: with FlatParts, their points move along
  * straight parts and are contracted there, and their edges are divided. `targetAngle` is of the
  * angles of triangles, 40 degrees by default; counts are of triangles.
  */
@@ -29,7 +29,7 @@ struct TriangleOptions : ReconnectionOptions
   /**
    * @brief Of a closed surface in space: in the end, points of its curved parts move along their
    * normals until it encloses the volume that it had, to 1e-6 of it; less well where triangles
-   * would become too bad or leave surfaceDistance. See ReconnectionResult::volumeAfter.
+   * would become too bad or leave surfaceTolerance. See ReconnectionResult::volumeAfter.
    */
   bool keepVolume = false;
   /// First all edges are flipped that should be, also far from triangles below the target.

@@ -275,7 +275,7 @@ void TriangleRun::prepare(const std::vector<PointFreedom>& freedoms)
   operations.freedoms = freedoms;
   operations.flips = this->Options.swap;
   operations.moves = this->Options.smooth;
-  operations.dividesWalls = this->Options.boundary == ReconnectionBoundary::Sliding;
+  operations.dividesWalls = this->Options.boundary == BoundaryMotion::FlatParts;
   operations.metrics = this->Input.metrics;
   operations.edgeFactor = this->Options.edgeFactor;
   operations.target = sineOf(this->Options.targetAngle);

@@ -221,7 +221,7 @@ void testKept()
     }
   }
   given.marked.assign(marked.begin(), marked.end());
-  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (auto boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     ReconnectionOptions options;
     options.boundary = boundary;
@@ -245,7 +245,7 @@ void testKept()
     }
     TAUTLINE_CHECK_RELATIVE(volumes[1][0], volumes[0][0], 1e-13);
     TAUTLINE_CHECK_RELATIVE(volumes[1][1], volumes[0][1], 1e-13);
-    if (boundary == ReconnectionBoundary::Fixed)
+    if (boundary == BoundaryMotion::Fixed)
     {
       TAUTLINE_CHECK(outerFacets(joined.data, after, 1) == outerFacets(data, given.regions, 1));
     }
@@ -382,7 +382,7 @@ void testBounds()
   for (double bound : { 0.0, 0.02 })
   {
     ReconnectionOptions options;
-    options.boundary = ReconnectionBoundary::Sliding;
+    options.boundary = BoundaryMotion::FlatParts;
     options.targetAngle = 38.8;
     options.largestCount = 1.0 + bound;
     options.smallestCount = 1.0 - bound;
@@ -436,7 +436,7 @@ void testStops()
   };
   const auto nothing = [](ReconnectionOptions&) {};
   refused(
-    data, [](auto& o) { o.boundary = ReconnectionBoundary::Surface; }, "on one rank");
+    data, [](auto& o) { o.boundary = BoundaryMotion::OnSurface; }, "on one rank");
   refused(
     data, [](auto& o) { o.objective = ReconnectionObjective::Metric; }, "on one rank");
   refused(

@@ -155,7 +155,7 @@ TAUTLINE_PART(testCount)
   ReconnectionOptions none; // nor by repairs, which are tried for high targets
   none.smallestCount = none.largestCount = 1.0;
   ReconnectionOptions high = none;
-  TAUTLINE_SET(high, boundary = ReconnectionBoundary::Sliding, targetAngle = 38.8);
+  TAUTLINE_SET(high, boundary = BoundaryMotion::FlatParts, targetAngle = 38.8);
   TAUTLINE_LET(ReconnectionOptions, off, insert = off.contract = false);
   for (const ReconnectionOptions& options : { none, high, off })
   {
@@ -224,11 +224,10 @@ TAUTLINE_PART(testRegions)
     const Vec3 m = Mesh(data.view()).center(c, CellType::Tetrahedron);
     regions.push_back(m[0] < 3 ? -7 : (m[1] < 3 ? 100 : 4));
   }
-  for (ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     TAUTLINE_LET(ReconnectionOptions, options, regions = regions.data(), boundary = boundary);
-    const bool fixed = boundary == ReconnectionBoundary::Fixed;
+    const bool fixed = boundary == BoundaryMotion::Fixed;
     // With the flat boundary the interfaces are to be flat at the start.
     MeshData input = slivers;
     if (!fixed)
@@ -279,7 +278,7 @@ TAUTLINE_PART(testDividedBoundary)
   data.transform(TAUTLINE_PLACE(length * p[0], p[1], p[2]));
   TAUTLINE_LET(ReconnectionOptions, options, largestCount = 100.0);
   const ReconnectionResult fixed = reconnect(data, options);
-  options.boundary = ReconnectionBoundary::Sliding;
+  options.boundary = BoundaryMotion::FlatParts;
   const ReconnectionResult flat = reconnect(data, options);
   checkResult(data, flat);
   checkOrigins(data, flat);
@@ -323,7 +322,7 @@ TAUTLINE_PART(testFlat)
   ReconnectionOptions options;
   const ReconnectionResult fixed = reconnect(data, options);
   checkResult(data, fixed);
-  options.boundary = ReconnectionBoundary::Sliding;
+  options.boundary = BoundaryMotion::FlatParts;
   const ReconnectionResult flat = reconnect(data, options);
   checkResult(data, flat);
   checkOrigins(data, flat);
@@ -440,8 +439,7 @@ TAUTLINE_PART_SLOW(testBlocks)
   {
     TAUTLINE_CHECK(outerFacets(output, regionsAfter, region) == outerFacets(data, regions, region));
   }
-  for (ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     TAUTLINE_SET(options, boundary = boundary, threads = 1);
     const ReconnectionResult one = reconnect(data, options);
@@ -562,8 +560,7 @@ TAUTLINE_PART(testMean)
     const std::vector<double> values = valuesOf(mesh, Metric::InverseMeanRatio);
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
-  for (ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     ReconnectionOptions options = optionsOf(Kind::Aggressive);
     options.boundary = boundary;
@@ -576,7 +573,7 @@ TAUTLINE_PART(testMean)
     TAUTLINE_CHECK(after.smallestAngle >= before.smallestAngle * (1.0 - 1e-12));
     TAUTLINE_CHECK(after.worstInverseMeanRatio <= before.worstInverseMeanRatio * (1.0 + 1e-12));
     TAUTLINE_CHECK(meanOf(outputOf(held)) < 0.99 * meanOf(outputOf(plain)));
-    if (boundary == ReconnectionBoundary::Fixed)
+    if (boundary == BoundaryMotion::Fixed)
     {
       MeshData shape = outputOf(plain);
       const OptimizeResult best = optimize(Mesh(shape.view()), OptimizeOptions());
@@ -596,8 +593,7 @@ TAUTLINE_PART(testOverlaps)
   {
     field.push_back(random.vector(-1.0, 3.0)[0]);
   }
-  for (ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     ReconnectionOptions options = optionsOf(Kind::Aggressive);
     options.boundary = boundary;

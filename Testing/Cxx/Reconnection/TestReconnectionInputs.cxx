@@ -82,8 +82,7 @@ TAUTLINE_PART(testOptions)
 TAUTLINE_PART(testSmall)
 {
   TAUTLINE_LET(ReconnectionOptions, options, smallestCount = 0.0, largestCount = 100.0);
-  for (ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     options.boundary = boundary;
     const ReconnectionResult empty = reconnect(MeshData(), options);
@@ -97,7 +96,7 @@ TAUTLINE_PART(testSmall)
     const ReconnectionResult result = reconnect(one, options);
     checkResult(one, result);
     TAUTLINE_CHECK(
-      boundary != ReconnectionBoundary::Fixed || outerFacets(outputOf(result)) == outerFacets(one));
+      boundary != BoundaryMotion::Fixed || outerFacets(outputOf(result)) == outerFacets(one));
     TAUTLINE_CHECK(std::count(result.originalPoints.begin(), result.originalPoints.end(), 4) == 1);
 
     // Everything is fixed, and no operation may change anything.
@@ -140,14 +139,13 @@ TAUTLINE_PART(testNonManifold)
       data.addCell(
         CellType::Tetrahedron, std::vector<Index>{ ids[v[0]], ids[v[1]], ids[v[2]], ids[v[3]] });
     }
-    for (ReconnectionBoundary boundary :
-      { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+    for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
     {
       TAUTLINE_LET(ReconnectionOptions, options, boundary = boundary);
       const ReconnectionResult result = reconnect(data, options);
       checkResult(data, result);
       TAUTLINE_CHECK(result.history.back().smallestAngle > result.history.front().smallestAngle);
-      if (boundary == ReconnectionBoundary::Fixed)
+      if (boundary == BoundaryMotion::Fixed)
       {
         TAUTLINE_CHECK(outerFacets(outputOf(result)) == outerFacets(data));
       }
@@ -248,7 +246,7 @@ TAUTLINE_PART(testMarkedFacets)
             return found == uses.end() || found->second != 2;
           });
       };
-      for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+      for (auto boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
       {
         for (Index blockSize : { data.numberOfCells(), data.numberOfCells() / 4 })
         {
@@ -263,8 +261,8 @@ TAUTLINE_PART(testMarkedFacets)
           TAUTLINE_CHECK(result.history.back().edgeRemovals > 0);
         }
       }
-      TAUTLINE_LET(ReconnectionOptions, options, markedFacets = marked,
-        boundary = ReconnectionBoundary::Surface);
+      TAUTLINE_LET(
+        ReconnectionOptions, options, markedFacets = marked, boundary = BoundaryMotion::OnSurface);
       TAUTLINE_CHECK_THROWS(reconnect(data, options), "marked");
       options.markedFacets = { { 0, 1, data.numberOfPoints() } };
       TAUTLINE_CHECK_THROWS(reconnect(data, options), wording("does-not-have"));
@@ -284,13 +282,12 @@ TAUTLINE_PART(testThinPlate)
       const Vec3 d = random.vector(-0.2, 0.2);
       return rim ? p : p + Vec3{ d[0], d[1], 0.0 };
     });
-  for (ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     TAUTLINE_LET(ReconnectionOptions, options, boundary = boundary);
     const ReconnectionResult result = reconnect(data, options);
     checkResult(data, result);
-    if (boundary == ReconnectionBoundary::Fixed)
+    if (boundary == BoundaryMotion::Fixed)
     {
       TAUTLINE_CHECK(outerFacets(outputOf(result)) == outerFacets(data));
     }

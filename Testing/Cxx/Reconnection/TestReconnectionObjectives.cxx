@@ -100,8 +100,7 @@ double excessOf(const MeshData& data)
 TAUTLINE_PART(testSum)
 {
   const MeshData data = sliverBlock(6, 9, 0.9);
-  for (ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     ReconnectionOptions options = optionsOf(ReconnectionPreset::Aggressive);
     options.boundary = boundary;

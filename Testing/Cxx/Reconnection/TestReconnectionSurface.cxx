@@ -68,7 +68,7 @@ Index eulerOf(const std::set<Facet>& facets)
 ReconnectionOptions surfaceOptions()
 {
   ReconnectionOptions options = optionsOf(ReconnectionPreset::Aggressive);
-  TAUTLINE_SET(options, boundary = ReconnectionBoundary::Surface, threads = 1);
+  TAUTLINE_SET(options, boundary = BoundaryMotion::OnSurface, threads = 1);
   return options;
 }
 
@@ -114,13 +114,13 @@ TAUTLINE_PART(testBall)
   const MeshData ball = roundMesh(3);
   ReconnectionOptions options = surfaceOptions();
   const ReconnectionResult result = reconnect(ball, options);
-  const double tolerance = options.surfaceDistance * diagonalOf(ball);
+  const double tolerance = options.surfaceTolerance * diagonalOf(ball);
   checkBoundary(ball, result, tolerance);
   const ReconnectionRecord& last = result.history.back();
   TAUTLINE_CHECK(last.boundarySwaps > 0);
   // Facets cut off more or less of the ball; which are swapped, rounding decides.
   TAUTLINE_CHECK(std::abs(result.volumeAfter / result.volumeBefore - 1.0) < 0.015);
-  ReconnectionOptions fixed = TAUTLINE_CHANGED(options, boundary = ReconnectionBoundary::Fixed);
+  ReconnectionOptions fixed = TAUTLINE_CHANGED(options, boundary = BoundaryMotion::Fixed);
   const ReconnectionRecord still = reconnect(ball, fixed).history.back();
   std::cout << "ball: smallest angle " << still.smallestAngle << " fixed, " << last.smallestAngle
             << " on the surface; worst " << still.worstInverseMeanRatio << ", "
@@ -138,7 +138,7 @@ TAUTLINE_PART(testCylinder)
   const MeshData cylinder = roundMesh(2);
   const ReconnectionOptions options = surfaceOptions();
   const ReconnectionResult result = reconnect(cylinder, options);
-  const double tolerance = options.surfaceDistance * diagonalOf(cylinder);
+  const double tolerance = options.surfaceTolerance * diagonalOf(cylinder);
   checkBoundary(cylinder, result, tolerance);
   double before = 0.0, after = 0.0;
   const auto capArea = [](const std::set<Facet>& facets)
@@ -161,7 +161,7 @@ TAUTLINE_PART(testCylinder)
   TAUTLINE_CHECK(result.history.back().smallestAngle > 20.0);
 
   // Without a distance only what is flat changes.
-  ReconnectionOptions exact = TAUTLINE_CHANGED(options, surfaceDistance = 0.0);
+  ReconnectionOptions exact = TAUTLINE_CHANGED(options, surfaceTolerance = 0.0);
   const ReconnectionResult same = reconnect(cylinder, exact);
   checkBoundary(cylinder, same, 1e-11);
   TAUTLINE_CHECK_RELATIVE(same.volumeAfter, same.volumeBefore, 1e-10);
@@ -190,7 +190,7 @@ TAUTLINE_PART(testKept)
   TAUTLINE_SET(options, regions = regions.data(), fixed = fixed.data());
   const ReconnectionResult result = reconnect(ball, options);
   const MeshData output = outputOf(result);
-  checkBoundary(ball, result, options.surfaceDistance * diagonalOf(ball));
+  checkBoundary(ball, result, options.surfaceTolerance * diagonalOf(ball));
   auto after =
     collect<Index>(result.originalCells, [&](Index original) { return regions[original]; });
   const auto interface = [](const MeshData& data, const std::vector<Index>& of)
@@ -226,7 +226,7 @@ TAUTLINE_PART(testThreads)
   const ReconnectionResult three = reconnect(ball, options);
   TAUTLINE_CHECK(one.points == three.points);
   TAUTLINE_CHECK(one.tetrahedra == three.tetrahedra);
-  checkBoundary(ball, one, options.surfaceDistance * diagonalOf(ball));
+  checkBoundary(ball, one, options.surfaceTolerance * diagonalOf(ball));
 }
 
 /// The ball with needles for facets: points of the boundary at the side of one of their neighbours.
@@ -274,8 +274,8 @@ TAUTLINE_PART(testNeedles)
   const MeshData ball = needleBall();
   ReconnectionOptions options = surfaceOptions();
   const ReconnectionResult result = reconnect(ball, options);
-  checkBoundary(ball, result, options.surfaceDistance * diagonalOf(ball));
-  options.boundary = ReconnectionBoundary::Fixed;
+  checkBoundary(ball, result, options.surfaceTolerance * diagonalOf(ball));
+  options.boundary = BoundaryMotion::Fixed;
   const ReconnectionResult fixed = reconnect(ball, options);
   std::cout << "needles: " << result.history.front().smallestAngle << " to "
             << fixed.history.back().smallestAngle << " fixed, "
@@ -289,8 +289,8 @@ TAUTLINE_PART(testTargets)
 {
   const Context context("targets");
   const MeshData ball = needleBall();
-  for (const ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding, ReconnectionBoundary::Surface })
+  for (const BoundaryMotion boundary :
+    { BoundaryMotion::Fixed, BoundaryMotion::FlatParts, BoundaryMotion::OnSurface })
   {
     for (const Index block : { ball.numberOfCells(), ball.numberOfCells() / 4 })
     {
@@ -315,8 +315,8 @@ TAUTLINE_PART(testOptions)
 {
   const Context context("options");
   const MeshData ball = roundMesh(3);
-  ReconnectionOptions options = TAUTLINE_CHANGED(surfaceOptions(), surfaceDistance = -1.0);
-  TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("surface-distance-must-be-0-to-1"));
+  ReconnectionOptions options = TAUTLINE_CHANGED(surfaceOptions(), surfaceTolerance = -1.0);
+  TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("surface-tolerance-must-be-0-to-1"));
   options = TAUTLINE_CHANGED(surfaceOptions(), featureAngle = 181.0);
   TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("feature-angle-must-be-0-to-180"));
 }

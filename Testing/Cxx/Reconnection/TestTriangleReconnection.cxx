@@ -250,7 +250,7 @@ TAUTLINE_PART(testRegions)
   const MeshData data = sliverSheet(14, 7);
   auto regions = collect<Index>(data.numberOfCells(),
     [&](Index c) { return (c / 2 % 14 < 6 ? 4 : -1) + (c / 28 < 5 ? 7 : 0); });
-  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (auto boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     TriangleOptions options = triangleOptions(Preset::Aggressive);
     TAUTLINE_SET(options, regions = regions.data(), boundary = boundary);
@@ -276,7 +276,7 @@ TAUTLINE_PART(testFlat)
   data.transform(TAUTLINE_PLACE(p[0] + 0.07 * p[0] * p[0], p[1] + 0.3 * std::sin(p[1]), 0.0));
   TriangleOptions options = triangleOptions(Preset::Aggressive);
   const double kept = reconnect(data, options).history.back().smallestAngle;
-  TAUTLINE_SET(options, boundary = ReconnectionBoundary::Sliding, smallestCount = 0.5);
+  TAUTLINE_SET(options, boundary = BoundaryMotion::FlatParts, smallestCount = 0.5);
   const ReconnectionResult result = reconnect(data, options);
   const MeshData output = trianglesOf(result);
   checkTriangles(data, result);
@@ -296,8 +296,7 @@ TAUTLINE_PART(testFlat)
 /// Then best shape: the mean becomes better, the worst does not become worse, the shape stays.
 TAUTLINE_PART(testMean)
 {
-  for (ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     const MeshData data = sliverSheet(12);
     TriangleOptions options = triangleOptions(Preset::Aggressive);

@@ -220,7 +220,7 @@ TAUTLINE_PART(testKeepVolume)
 TAUTLINE_PART(testCube)
 {
   const MeshData data = slid(cubeSurface(CellType::Triangle, 8), 5, 0.95, false);
-  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (auto boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     TriangleOptions options = triangleOptions(Preset::Aggressive);
     options.boundary = boundary;
@@ -277,7 +277,8 @@ TAUTLINE_PART(testFold)
   const auto flips = [](double fold, double angle, double distance, double feature)
   {
     TriangleOptions options = triangleOptions(Preset::SwapOnly);
-    TAUTLINE_SET(options, surfaceAngle = angle, surfaceDistance = distance, featureAngle = feature);
+    TAUTLINE_SET(
+      options, surfaceAngle = angle, surfaceTolerance = distance, featureAngle = feature);
     return reconnect(roof(fold), options).history.back().edgeRemovals;
   };
   TAUTLINE_CHECK_EQUAL(flips(30, 60, 1, 40), 1);
@@ -310,7 +311,7 @@ TAUTLINE_PART(testNonManifold)
       sheets.addCell(CellType::Triangle, { ids[v[0]], ids[v[1]], ids[v[2]] });
     }
   }
-  for (auto boundary : { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (auto boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     TriangleOptions options = triangleOptions(Preset::Aggressive);
     options.boundary = boundary;
@@ -376,7 +377,7 @@ TAUTLINE_PART(testSmall)
     tetrahedron.addCell(CellType::Triangle, v);
   }
   TriangleOptions free = triangleOptions(Preset::Aggressive);
-  TAUTLINE_SET(free, featureAngle = 180.0, surfaceAngle = 90.0, surfaceDistance = 1.0,
+  TAUTLINE_SET(free, featureAngle = 180.0, surfaceAngle = 90.0, surfaceTolerance = 1.0,
     smallestCount = 0.0, largestCount = 10.0);
   const ReconnectionResult closed = reconnect(tetrahedron, free);
   checkTriangles(tetrahedron, closed);
@@ -412,7 +413,7 @@ TAUTLINE_PART(testRefusals)
   const MeshData data = blockMesh(CellType::Triangle, 2, 2, 0);
   REFUSED(featureAngle = -1, "feature angle");
   REFUSED(surfaceAngle = 91, "surface angle");
-  REFUSED(surfaceDistance = std::nan(""), "surface distance");
+  REFUSED(surfaceTolerance = std::nan(""), "surface tolerance");
   REFUSED(targetAngle = 61, "target angle");
   // Points that coincide where cells only touch are borders.
   MeshData apart = blockMesh(CellType::Triangle, 3, 3, 0);

@@ -159,8 +159,7 @@ std::vector<double> averages(const ReconnectionResult& result, const std::vector
 TAUTLINE_PART(testPlanarOverlaps)
 {
   const Context context("planar overlaps");
-  for (ReconnectionBoundary boundary :
-    { ReconnectionBoundary::Fixed, ReconnectionBoundary::Sliding })
+  for (BoundaryMotion boundary : { BoundaryMotion::Fixed, BoundaryMotion::FlatParts })
   {
     const MeshData data = sliverSheet(8);
     std::vector<Index> regions;
