@@ -11,6 +11,7 @@
 #include "tautline/Core/Interruption.h"
 
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <vector>
 
@@ -38,34 +39,68 @@ inline bool sameNodes(const MeshView& view, Index a, Index b)
 /**
  * @brief The facets (edges or faces) of a mesh's cells of highest dimension, filed by smallest
  * node. Of cells with the same nodes the first one counts: the facets of a duplicate on the
- * boundary are used once.
+ * boundary are used once. Those of large meshes are filed in parts, one after the other, which take
+ * a quarter of the memory.
  */
 class FacetTable
 {
 public:
-  /// @param skip one flag per cell: it does not count; may be null
+  /// @param skip one flag per cell: it does not count; may be null. Both must outlive the table.
   explicit FacetTable(const Mesh& mesh, const unsigned char* skip = nullptr)
-    : View(mesh.view())
+    : TheMesh(mesh)
+    , View(mesh.view())
+    , Skip(skip)
     , Starts(mesh.view().numberOfPoints + 1, 0)
   {
-    const int dimension = mesh.dimension() == Dimension::Volume ? 3 : 2;
-    forEachUse(mesh, dimension, skip,
-      [&](Index smallest, const FacetUse&) { ++this->Starts[smallest + 1]; });
+    this->forEachUse([&](Index smallest, const FacetUse&) { ++this->Starts[smallest + 1]; });
     std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
-    this->makeRoom(this->Starts.back());
-    std::vector<Index> next(this->Starts.begin(), this->Starts.end() - 1);
-    forEachUse(mesh, dimension, skip,
-      [&](Index smallest, const FacetUse& use) { this->Uses[next[smallest]++] = use; });
   }
 
   /// Calls visit(smallest node, uses, count) for every facet; its uses are in order of cell.
   template <class Visit>
   void forEachFacet(const Visit& visit)
   {
-    for (Index node = 0; node + 1 < static_cast<Index>(this->Starts.size()); ++node)
+    constexpr Index small = Index(1) << 20; // uses that are filed at once in any case
+    constexpr Index parts = 4;
+    const Index nodes = static_cast<Index>(this->Starts.size()) - 1;
+    const Index most = std::max(small, this->Starts.back() / parts);
+    for (Index first = 0; first < nodes;)
+    {
+      const Index limit = this->Starts[first] + most;
+      const auto after = std::upper_bound(
+        this->Starts.begin() + first + 2, this->Starts.end(), limit, std::less<Index>());
+      const Index last = static_cast<Index>(after - this->Starts.begin()) - 1;
+      this->fileUses(first, last);
+      this->visitFacets(first, last, visit);
+      first = last;
+    }
+  }
+
+private:
+  /// Files the uses of facets whose smallest node is one from `first` to `last` - 1.
+  void fileUses(Index first, Index last)
+  {
+    const Index begin = this->Starts[first];
+    this->makeRoom(this->Starts[last] - begin);
+    std::vector<Index> next(this->Starts.begin() + first, this->Starts.begin() + last);
+    this->forEachUse(
+      [&](Index smallest, const FacetUse& use)
+      {
+        if (smallest >= first && smallest < last)
+        {
+          this->Uses[next[smallest - first]++ - begin] = use;
+        }
+      });
+  }
+
+  template <class Visit>
+  void visitFacets(Index first, Index last, const Visit& visit)
+  {
+    for (Index node = first; node < last; ++node)
     {
       pollInterruption(node);
-      const Index begin = this->Starts[node], end = this->Starts[node + 1];
+      const Index begin = this->Starts[node] - this->Starts[first],
+                  end = this->Starts[node + 1] - this->Starts[first];
       if (begin == end)
       {
         continue;
@@ -86,11 +121,11 @@ public:
     }
   }
 
-private:
   /// In parts, because clearing that much memory takes a while.
   void makeRoom(Index uses)
   {
     constexpr Index part = Index(1) << 18;
+    this->Uses.clear();
     this->Uses.reserve(uses);
     for (Index size = 0; size < uses;)
     {
@@ -124,11 +159,12 @@ private:
   }
 
   template <class Visit>
-  static void forEachUse(
-    const Mesh& mesh, int dimension, const unsigned char* skip, const Visit& visit)
+  void forEachUse(const Visit& visit) const
   {
-    const MeshView& view = mesh.view();
-    for (const CellBlock& block : mesh.blocks())
+    const MeshView& view = this->View;
+    const int dimension = this->TheMesh.dimension() == Dimension::Volume ? 3 : 2;
+    const unsigned char* skip = this->Skip;
+    for (const CellBlock& block : this->TheMesh.blocks())
     {
       const CellTopology& t = topology(block.type);
       if (t.dimension != dimension)
@@ -176,7 +212,9 @@ private:
     }
   }
 
+  const Mesh& TheMesh;
   MeshView View;
+  const unsigned char* Skip;
   std::vector<Index> Starts;
   std::vector<FacetUse> Uses;
 };

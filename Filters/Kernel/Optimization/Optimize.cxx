@@ -77,11 +77,13 @@ double wayToIdeal(OptimizationProblem& problem, const Objective& judged, double 
  * then lowers the objective by sweeps that hold what was reached. From where sweeps alone end there
  * is no way back: they make stretched cells skewed.
  * @param start points at which all elements are valid
+ * @param limits have the allowance of the mean; if the points are raised, its rest counts from
+ * where they are
  * @return whether the points are these now; if not, they are where they were before, which is
  * better or as good for less
  */
 bool raiseWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecord& first,
-  const QualityGuard& guard, const std::vector<double>& start, double allowance,
+  const QualityGuard& guard, const std::vector<double>& start, WorstLimits& limits,
   const StoppingTest& watch, const std::function<bool(const IterationRecord&)>& report,
   bool& outOfTime)
 {
@@ -93,7 +95,7 @@ bool raiseWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecor
   const double before = worst();
   problem.restart(std::vector<double>(start));
   const double atStart = worst();
-  constexpr double anyMean = std::numeric_limits<double>::infinity();
+  constexpr double anyMean = std::numeric_limits<double>::max();
   outOfTime = slideWorst(mesh, problem, guard, { anyMean }, report);
   problem.store();
   const std::vector<double> raised = problem.points();
@@ -118,10 +120,16 @@ bool raiseWorst(const Mesh& mesh, OptimizationSteps& steps, const IterationRecor
         return report(record) && gain > littleGain * (atFirst - record.objective);
       },
       history);
-    const bool larger =
-      metricInfo(problem.options().objectives[0].metric).direction == Direction::LargerIsBetter;
-    const double cost = (larger ? -1 : 1) * (problem.record(0).mean[0] - first.mean[0]);
-    better = cost <= (allowance + std::max(way(atStart), 0.0)) * std::abs(first.mean[0]);
+    const Metric metric = problem.options().objectives[0].metric;
+    const double sign = metricInfo(metric).direction == Direction::LargerIsBetter ? -1 : 1;
+    const double bound = first.mean[0] +
+      sign * (limits.allowance + std::max(way(atStart), 0.0)) * std::abs(first.mean[0]);
+    const double mean = problem.record(0).mean[0];
+    better = sign * (mean - bound) <= 0;
+    if (better)
+    {
+      limits = { mean != 0 ? sign * (bound - mean) / std::abs(mean) : 0.0, false, mean };
+    }
   }
   if (!better)
   {
@@ -177,7 +185,7 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
       canSlideWorst(problem, guard.judged());
     bool outOfTime = false;
     result.worstFirst =
-      together && raiseWorst(mesh, steps, first, guard, start, allowance, watch, report, outOfTime);
+      together && raiseWorst(mesh, steps, first, guard, start, limits, watch, report, outOfTime);
     const auto proceeds = [&] { return !result.worstFirst && !stopped && !outOfTime; };
     if (proceeds())
     {
@@ -185,10 +193,6 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
     }
     if (leaves && !stopped && !outOfTime)
     {
-      if (result.worstFirst)
-      {
-        limits.mean = problem.record(0).mean[0];
-      }
       leaveNearWorst(mesh, steps, first, guard, limits, clock, result.worstFirst, left);
       stopped = left.stopped;
       outOfTime = left.outOfTime;
