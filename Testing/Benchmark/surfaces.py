@@ -30,7 +30,7 @@ DATA = os.environ.get("TAUTLINE_TEST_DATA")
 PACKAGED = [Path("/usr/share/doc/netgen/examples/hinge.stl"), Path("/usr/share/doc/netgen/examples/part1.stl"),
             Path("/usr/share/doc/gmsh-doc/converters/stl_to_cartesian/lever.stl.gz")]
 TOLERANCE = 1e-3  # of the diagonal: the default of Surface Tolerance
-SHIFT = 0.7  # of the points of the sphere, in halves of an edge
+SHIFT = 0.5  # of the points of the sphere, in halves of an edge
 DIVISIONS = 6  # of edges, for the places at which distances are measured
 
 
@@ -177,7 +177,7 @@ def of_mesh(name: str, surface: vtkPolyData, measured: dict[str, float]) -> list
 
 def run(quick: bool) -> tuple[dict[str, float], list[Row]]:
     """What is measured, and the table."""
-    meshes = {"bar": bar(4, 2.0, 4), "ball": ball(16 if quick else 30)}
+    meshes = {"bar": bar(4, 2.0, 4), "ball": ball(6 if quick else 30)}
     files = [] if quick else [file for file in PACKAGED if file.exists()]
     if DATA and not quick:
         files += sorted(f for f in Path(DATA, "surfaces").glob("*") if f.suffix in (".stl", ".ply"))
