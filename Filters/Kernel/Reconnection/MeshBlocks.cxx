@@ -152,6 +152,17 @@ void MeshBlock::numberPoints(const TetrahedronMesh& whole, TetrahedronArrays& ar
   {
     arrays.points.push_back(whole.point(v));
   }
+  // The numbers are in the same order, and so are the faces.
+  for (TriangleVertices f : whole.keptFaces())
+  {
+    if (std::all_of(f.begin(), f.end(),
+          [&](PointId v)
+          { return std::binary_search(this->Points.begin(), this->Points.end(), v); }))
+    {
+      std::transform(f.begin(), f.end(), f.begin(), localOf);
+      arrays.kept.push_back(f);
+    }
+  }
   arrays.inputPoints = localOf(whole.inputPoints());
 }
 
