@@ -293,25 +293,10 @@ void BoundarySetup::placePoints()
 /// The surface tolerance in the coordinates of the mesh; 0: any distance.
 double BoundarySetup::tolerance() const
 {
-  if (!(this->Properties.surfaceTolerance > 0))
-  {
-    return 0.0;
-  }
-  const MeshView& view = this->TheMesh.mesh().view();
-  const double infinity = std::numeric_limits<double>::infinity();
-  Vec3 low = { infinity, infinity, infinity }, high = { -infinity, -infinity, -infinity };
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    pollInterruption(p);
-    const Vec3 x = pointOf(view, p);
-    for (int c = 0; c < 3 && std::isfinite(dot(x, x)); ++c)
-    {
-      low[c] = std::min(low[c], x[c]);
-      high[c] = std::max(high[c], x[c]);
-    }
-  }
-  const double diagonal = norm(high - low);
-  return std::isfinite(diagonal) ? this->Properties.surfaceTolerance * diagonal : 0.0;
+  const double diagonal = diagonalOf(this->TheMesh.mesh().view());
+  return this->Properties.surfaceTolerance > 0 && std::isfinite(diagonal)
+    ? this->Properties.surfaceTolerance * diagonal
+    : 0.0;
 }
 
 //------------------------------------------------------------------------------
@@ -334,8 +319,7 @@ void BoundarySetup::setSurfaceTolerance()
 /// by the user's choice.
 void BoundarySetup::findLeaving()
 {
-  if (!this->Properties.leaving || !(this->Constraints.surfaceTolerance > 0) ||
-    !this->slidesOnModel() || this->HasGeometry)
+  if (!this->Properties.leaving || !this->slidesOnModel() || this->HasGeometry)
   {
     return;
   }

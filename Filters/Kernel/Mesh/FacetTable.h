@@ -11,7 +11,6 @@
 #include "tautline/Core/Interruption.h"
 
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <vector>
 
@@ -67,8 +66,8 @@ public:
     for (Index first = 0; first < nodes;)
     {
       const Index limit = this->Starts[first] + most;
-      const auto after = std::upper_bound(
-        this->Starts.begin() + first + 2, this->Starts.end(), limit, std::less<Index>());
+      const auto after =
+        std::upper_bound(this->Starts.begin() + first + 2, this->Starts.end(), limit);
       const Index last = static_cast<Index>(after - this->Starts.begin()) - 1;
       this->fileUses(first, last);
       this->visitFacets(first, last, visit);

@@ -2,9 +2,11 @@
 #include "Mesh.h"
 
 #include "CellExtent.h"
+#include "tautline/Core/Interruption.h"
 #include "tautline/Core/Parallel.h"
 
 #include <atomic>
+#include <limits>
 #include <numeric>
 #include <sstream>
 
@@ -172,5 +174,23 @@ Vec3 Mesh::center(Index cell, CellType type) const
     sum += pointOf(this->View, node[k]);
   }
   return (1.0 / nodes) * sum;
+}
+
+//------------------------------------------------------------------------------
+double diagonalOf(const MeshView& view)
+{
+  const double infinity = std::numeric_limits<double>::infinity();
+  Vec3 low = { infinity, infinity, infinity }, high = { -infinity, -infinity, -infinity };
+  for (Index p = 0; p < view.numberOfPoints; ++p)
+  {
+    pollInterruption(p);
+    const Vec3 x = pointOf(view, p);
+    for (int c = 0; c < 3 && std::isfinite(dot(x, x)); ++c)
+    {
+      low[c] = std::min(low[c], x[c]);
+      high[c] = std::max(high[c], x[c]);
+    }
+  }
+  return low[0] <= high[0] ? norm(high - low) : 0.0;
 }
 }

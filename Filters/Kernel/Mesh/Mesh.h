@@ -233,5 +233,8 @@ inline Vec3 pointOf(const MeshView& view, Index id)
 {
   return { view.points[3 * id], view.points[3 * id + 1], view.points[3 * id + 2] };
 }
+
+/// The diagonal of the bounding box of the finite points; 0 without one.
+TAUTLINE_KERNEL_EXPORT double diagonalOf(const MeshView& view);
 }
 #endif

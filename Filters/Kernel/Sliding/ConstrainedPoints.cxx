@@ -16,23 +16,6 @@ constexpr double defaultTolerance = 1e-3;
 /// Of the tolerance: a point this near to a flat part is on it.
 constexpr double onFlatPart = 1e-6;
 
-double diagonalOf(const MeshView& view)
-{
-  const double infinity = std::numeric_limits<double>::infinity();
-  Vec3 low = { infinity, infinity, infinity }, high = { -infinity, -infinity, -infinity };
-  for (Index p = 0; p < view.numberOfPoints; ++p)
-  {
-    pollInterruption(p);
-    const Vec3 x = pointOf(view, p);
-    for (int c = 0; c < 3 && std::isfinite(dot(x, x)); ++c)
-    {
-      low[c] = std::min(low[c], x[c]);
-      high[c] = std::max(high[c], x[c]);
-    }
-  }
-  return norm(high - low);
-}
-
 Vec3 entryOf(const double* vectors, Index p)
 {
   return vectors ? Vec3{ vectors[3 * p], vectors[3 * p + 1], vectors[3 * p + 2] } : Vec3{ 0, 0, 0 };

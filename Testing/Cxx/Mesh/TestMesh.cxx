@@ -248,6 +248,25 @@ TAUTLINE_PART(testMixed)
   TAUTLINE_CHECK_EQUAL(boundary.facets, faces - shared);
 }
 
+/// The facets of a mesh large enough to be filed in parts: none is lost, none is there twice.
+TAUTLINE_PART(testLargeBoundary)
+{
+  constexpr int n = 45;
+  const MeshData data = blockMesh(CellType::Tetrahedron, n, n, n);
+  constexpr Index filedAtOnce = Index(1) << 20;
+  TAUTLINE_CHECK(4 * data.numberOfCells() > filedAtOnce);
+  const Mesh mesh(data.view());
+  Index wrong = 0;
+  const auto& boundary = mesh.boundary().isBoundaryPoint;
+  for (Index p = 0; p < data.numberOfPoints(); ++p)
+  {
+    const Vec3& x = data.point(p);
+    const bool outer = std::any_of(&x[0], &x[0] + 3, [](double c) { return c == 0 || c == n; });
+    wrong += outer != (boundary[p] != 0);
+  }
+  TAUTLINE_CHECK_EQUAL(wrong, 0);
+}
+
 TAUTLINE_PART(testNonManifold)
 {
   MeshData fans; // three triangles at an edge, as the pages of a book
