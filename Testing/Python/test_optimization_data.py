@@ -15,7 +15,7 @@ for file in files:
 # The worst scaled Jacobian of the input; what it must be at least with the boundary fixed, where the facets bound it,
 # with points that leave it by so many diagonals, and with points that slide on it without a limit. HexOpt reaches 0.12
 # and 0.60, and 0.32 on lower_arm with another surface mesh (arXiv 2410.11656).
-HEXAHEDRA = {"CAD4": (0.069, {"fixed": 0.09, 0.001: 0.60, "unlimited": 0.12}),
+HEXAHEDRA = {"CAD4": (0.069, {"fixed": 0.09, 0.001: 0.60, "unlimited": 0.60}),
              "rkm012": (0.467, {"fixed": 0.57, 0.001: 0.60}), "lower_arm": (0.103, {0.001: 0.28})}
 folder = test_data("hex")
 for name, (before, least) in HEXAHEDRA.items():
@@ -33,4 +33,4 @@ for name, (before, least) in HEXAHEDRA.items():
         error = result.surface_error / mesh.GetLength()
         print(name, run, worst, error)
         assert worst > aim, (name, run, worst)
-        assert error <= tolerance or (run == "unlimited" and error > 0.001), (name, run, error)
+        assert error <= tolerance or run == "unlimited", (name, run, error)

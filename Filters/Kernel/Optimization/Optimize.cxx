@@ -180,7 +180,7 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
     };
     // Where the points of cells with several corners are at an end one by one, all of them together
     // may go on; those on a model then leave it somewhat.
-    const bool mayLeave = !options.model || leaves || options.onGeometry;
+    const bool mayLeave = !options.model || options.leaving || options.onGeometry;
     const bool together = wanted && mayLeave && steps.hasManyCorners() && first.inverted == 0 &&
       canSlideWorst(problem, guard.judged());
     bool outOfTime = false;
