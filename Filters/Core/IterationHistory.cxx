@@ -114,7 +114,7 @@ std::string summarize(
   const bool larger =
     !result.history.empty() && result.history.back().objective > result.history.front().objective;
   text << (result.worstFirst && larger
-      ? "\nThe worst element came first: the objective is larger than that of the input."
+      ? "\nThe worst element came first: the objective is larger than in the input."
       : "");
   text << surfaceErrorSentence(result.surfaceError, diagonal);
   if (result.leftSurface > 0)

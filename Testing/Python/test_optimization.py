@@ -381,6 +381,8 @@ def test_untangle():
     stopped = tl.optimize(TANGLED, time_limit=1e-6)  # one limit for untangling and optimization
     assert stopped.inverted > 0 and wording("untangling-came-first-and-left-some") in stopped.summary, stopped.summary
     refused(wording("untangle-first"), tl.optimize, TANGLED, untangle_first=False)
+    shown = tl.untangle(TANGLED, show_features=True).mesh.GetPointData().GetArray("FeatureKind")
+    assert result.mesh.GetPointData().GetArray("FeatureKind") is None and shown.GetRange() == (0, 2)
     every = tl.untangle(TANGLED, method="simultaneous")  # moves all, and smooths
     assert every.inverted == 0 and tl.quality(every, "imr").values["imr"].mean() < tl.quality(
         result, "imr").values["imr"].mean()

@@ -55,7 +55,7 @@ struct OptimizeResult
   /// there was worse in one of the three numbers.
   bool unchanged = false;
   /// All points moved together for the worst element, see OptimizeOptions::improveWorst: the
-  /// objective may be larger than that of the input.
+  /// objective may be larger than in the input.
   bool worstFirst = false;
   VerifiedElements elements; ///< at `points`
 

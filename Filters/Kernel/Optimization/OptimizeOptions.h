@@ -142,7 +142,7 @@ struct OptimizeOptions : BoundaryConstraints
    * together first, from the input on if its elements are valid, and sweeps that hold what was
    * reached follow. This is the result if its worst element is better, and if the mean is worse
    * than in the input by at most that fraction and the fraction of the way to the ideal that the
-   * worst element has gone; the objective may then be larger than that of the input, see
+   * worst element has gone; the objective may then be larger than in the input, see
    * OptimizeResult::worstFirst. Points of the boundary stay within half of surfaceTolerance of what
    * they slide on; at places on facets and surface the distances are at most what they were about
    * there, and surfaceTolerance (0: a thousandth of the diagonal).

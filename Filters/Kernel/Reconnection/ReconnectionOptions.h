@@ -120,7 +120,7 @@ struct ReconnectionOptions
    * bounds. Boundaries closer to each other than the tolerance may come to overlap. Free: an error.
    */
   BoundaryMotion boundary = BoundaryMotion::Fixed;
-  /// With FlatParts: facets whose normals differ by at most so many degrees are coplanar; 0 to 1.
+  /// With FlatParts: facets whose normals differ by at most so much, 0 to 1 degree, are coplanar.
   /// The default allows for coordinates in single precision, or with six decimals in a file.
   double flatAngle = 0.01;
   ///@{ With OnSurface, and of triangles of surfaces in space.

@@ -319,5 +319,7 @@ TAUTLINE_PART(testOptions)
   TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("surface-tolerance-must-be-0-to-1"));
   options = TAUTLINE_CHANGED(surfaceOptions(), featureAngle = 181.0);
   TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("feature-angle-must-be-0-to-180"));
+  options = TAUTLINE_CHANGED(surfaceOptions(), boundary = BoundaryMotion::Free);
+  TAUTLINE_CHECK_THROWS(reconnect(ball, options), wording("cannot-move-freely"));
 }
 }
