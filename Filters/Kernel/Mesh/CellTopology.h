@@ -65,6 +65,10 @@ enum class CellType : unsigned char
   Pyramid = 14
 };
 
+/// VTK's codes of cells with any number of edges or faces, which only metrics of finite volumes
+/// measure.
+constexpr int PolygonType = 7, PolyhedronType = 42;
+
 constexpr int MaxNodes = 8;
 constexpr int MaxEdges = 12;
 constexpr int MaxFaces = 6;

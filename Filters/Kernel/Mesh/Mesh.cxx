@@ -19,8 +19,10 @@ std::string cellMessage(Index cell, const std::string& what)
   return "Cell " + std::to_string(cell) + " " + what;
 }
 
-/// The cells sorted by type; adds to the numbers of those of higher order and of unsupported ones.
-std::vector<CellBlock> sortByType(const MeshView& view, Index& higherOrder, Index& unsupported)
+/// The cells sorted by type; adds to the numbers of those of higher order, of unsupported ones and,
+/// among these, of polyhedra.
+std::vector<CellBlock> sortByType(
+  const MeshView& view, Index& higherOrder, Index& unsupported, Index& polyhedra)
 {
   // One pass finds which of the 256 types occur, so that a mesh of one type needs no id lists.
   std::array<Index, 256> histogram{};
@@ -47,6 +49,7 @@ std::vector<CellBlock> sortByType(const MeshView& view, Index& higherOrder, Inde
       unsupported += histogram[type];
     }
   }
+  polyhedra = histogram[PolyhedronType];
   std::vector<CellBlock> blocks;
   for (int b = 0; b < NumberOfCellTypes; ++b)
   {
@@ -123,7 +126,7 @@ Mesh::Mesh(const MeshView& view, int threads)
                 "all needed.");
   }
 
-  this->Blocks = sortByType(view, this->HigherOrder, this->Unsupported);
+  this->Blocks = sortByType(view, this->HigherOrder, this->Unsupported, this->Polyhedra);
   checkConnectivity(view, this->Blocks, threads);
   this->findDimension();
 }
@@ -151,7 +154,7 @@ void Mesh::findDimension()
 
   this->Normal = { 0, 0, 0 };
   this->Frame = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 } };
-  bool flat = false, solid = false;
+  bool flat = false, solid = this->Polyhedra > 0;
   for (const CellBlock& block : this->Blocks)
   {
     (topology(block.type).dimension == 2 ? flat : solid) = true;
@@ -166,14 +169,15 @@ void Mesh::findDimension()
 //------------------------------------------------------------------------------
 Vec3 Mesh::center(Index cell, CellType type) const
 {
-  const int nodes = topology(type).nodes;
-  const Index* node = this->View.connectivity + this->View.offsets[cell];
+  const Index first = this->View.offsets[cell];
+  const Index nodes =
+    type == CellType::Unsupported ? this->View.offsets[cell + 1] - first : topology(type).nodes;
   Vec3 sum = { 0, 0, 0 };
-  for (int k = 0; k < nodes; ++k)
+  for (Index k = first; k < first + nodes; ++k)
   {
-    sum += pointOf(this->View, node[k]);
+    sum += pointOf(this->View, this->View.connectivity[k]);
   }
-  return (1.0 / nodes) * sum;
+  return nodes > 0 ? (1.0 / static_cast<double>(nodes)) * sum : sum;
 }
 
 //------------------------------------------------------------------------------

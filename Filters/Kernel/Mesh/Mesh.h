@@ -150,6 +150,8 @@ public:
 
   /// Cells no block holds (vertices, lines, polygons, polyhedra, ...).
   Index unsupportedCells() const { return this->Unsupported; }
+  /// Polyhedra, which no block holds but which make the dimension Volume.
+  Index polyhedra() const { return this->Polyhedra; }
   /// Cells of a quadratic or higher type, reduced to their corners.
   Index higherOrderCells() const { return this->HigherOrder; }
   /// Points with a NaN or infinite coordinate.
@@ -205,7 +207,7 @@ public:
   VertexCells vertexCells() const;
   Boundary boundary() const;
 
-  /// Mean of the vertices of a cell of a block.
+  /// Mean of the vertices of a cell; of one of CellType::Unsupported, of the points it lists.
   Vec3 center(Index cell, CellType type) const;
 
 private:
@@ -218,6 +220,7 @@ private:
   Vec3 Normal = { 0, 0, 0 };
   std::array<Vec3, 2> Frame = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 } };
   Index Unsupported = 0;
+  Index Polyhedra = 0;
   Index HigherOrder = 0;
   Index NonFinitePoints = 0;
   bool Mirrored = false;

@@ -258,6 +258,7 @@ MeshSpace spaceOf(RankGroup& group, const std::vector<RankPiece>& pieces)
     {
       dimension = std::max(dimension, topology(block.type).dimension);
     }
+    dimension = piece.mesh->polyhedra() > 0 ? 3 : dimension;
   }
   dimension = static_cast<int>(group.maximum(static_cast<Index>(dimension)));
   MeshSpace space;
