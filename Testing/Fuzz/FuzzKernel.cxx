@@ -37,7 +37,7 @@ void fuzzQuality(std::string_view bytes)
 {
   ByteReader input(bytes);
   const CellType type = Types[input.choice(6)];
-  const auto& registry = metricRegistry();
+  const std::vector<MetricInfo> registry = elementMetrics();
   const MetricInfo& info = registry[input.next<unsigned char>() % registry.size()];
   EvaluationOptions options;
   const bool combines = info.family == MetricFamily::Target && topology(type).samples > 1;

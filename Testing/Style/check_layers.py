@@ -20,7 +20,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 PARAVIEW = r"(vtkSM(?!P(Tools|Thread|Range))|vtkSI[A-Z]|vtkPV|vtkClientServer|vtkProcessModule|vtkRemoting|pq|Q[A-Z])"
 FORBIDDEN = {"kernel": re.compile(r"(vtk|pq|Q[A-Z])"), "filter": re.compile(PARAVIEW)}
 # Parsers and calls of mesh generators are plain C++, too.
-PLAIN = re.compile(r"Readers/(?!vtk|(Mesh|Image)FileAdapter)|Filters/Meshing/Generators/")
+PLAIN = re.compile(r"Readers/(?!vtk|(Foam|Gzip|Image|Mesh)FileAdapter)|Filters/Meshing/Generators/")
 SOURCES = (".h", ".cxx")
 
 #: The rooms of the kernel, from the lowest floor up.
@@ -29,12 +29,12 @@ FLOORS = (
     ("Elements",),
     ("Geometry", "Mesh"),
     ("Quality", "Shapes", "Domains", "Perturbation", "Ranks"),
-    ("Objectives", "Patches", "Solvers"),
+    ("FiniteVolume", "Objectives", "Patches", "Solvers"),
     ("Boundary", "Elliptic", "Peridynamics"),
     ("Sliding",),
     ("Untangling",),
     ("Optimization",),
-    ("Curved", "Curving", "Deformation", "Reconnection"),
+    ("Curved", "Curving", "Deformation", "Polyhedral", "Reconnection"),
 )
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS, 1) for room in rooms}
 #: The rooms of TautlineSolvers; those of the other libraries need no PETSc and no MPI.

@@ -119,16 +119,23 @@ QualityLimits parseLimits(const Json& json, const MetricInfo& info, const std::s
   return { values[0], values[1], values[2], values[3], values[4] };
 }
 
-const CellTopology* findType(const std::string& name)
+/// The names of the graded types, by gradedTypeIndex().
+std::array<std::string, NumberOfGradedTypes> gradedTypes()
 {
+  std::array<std::string, NumberOfGradedTypes> names;
   for (const CellTopology& topology : topologies())
   {
-    if (name == topology.name)
-    {
-      return &topology;
-    }
+    names[topologyIndex(topology.type)] = topology.name;
   }
-  return nullptr;
+  names[NumberOfCellTypes] = "polygon";
+  names[NumberOfCellTypes + 1] = "polyhedron";
+  return names;
+}
+
+bool isDefinedOn(const MetricInfo& info, int type)
+{
+  return type < NumberOfCellTypes ? info.definedOn(topologies()[type].type)
+                                  : info.family == MetricFamily::Faces;
 }
 
 void parseTypes(
@@ -138,6 +145,7 @@ void parseTypes(
   {
     refuse(place, "limits by cell type, or for \"all\", are expected");
   }
+  const auto types = gradedTypes();
   std::optional<QualityLimits> all;
   for (const auto& item : json.items())
   {
@@ -148,23 +156,26 @@ void parseTypes(
       all = limits;
       continue;
     }
-    const CellTopology* topology = findType(item.key());
-    if (!topology)
+    const auto found = std::find(types.begin(), types.end(), item.key());
+    if (found == types.end())
     {
       refuse(at,
         "there is no such cell type; there are all, triangle, quadrilateral, tetrahedron, "
-        "hexahedron, wedge and pyramid");
+        "hexahedron, wedge, pyramid, polygon and polyhedron");
     }
-    if (!info.definedOn(topology->type))
+    const int type = static_cast<int>(found - types.begin());
+    if (!isDefinedOn(info, type))
     {
-      refuse(at, std::string(info.name) + " is not defined on " + topology->plural);
+      refuse(at,
+        std::string(info.name) + " is not defined on " +
+          (type < NumberOfCellTypes ? topologies()[type].plural : item.key().c_str()));
     }
-    criterion.limits[topologyIndex(topology->type)] = limits;
+    criterion.limits[type] = limits;
   }
-  for (const CellTopology& topology : topologies())
+  for (int type = 0; type < NumberOfGradedTypes; ++type)
   {
-    auto& limits = criterion.limits[topologyIndex(topology.type)];
-    if (!limits && info.definedOn(topology.type))
+    auto& limits = criterion.limits[type];
+    if (!limits && isDefinedOn(info, type))
     {
       limits = all;
     }
@@ -184,6 +195,7 @@ bool findCheck(const std::string& name, int& number, MetricInfo& info)
   number = static_cast<int>(found - checks.begin());
   info.name = found->name;
   info.direction = found->direction;
+  info.family = MetricFamily::Cell;
   info.cellTypes = ~0u;
   return true;
 }
@@ -225,10 +237,18 @@ QualityCriterion parseCriterion(const Json& json, const std::string& place)
 
 QualityCriteria parse(const Json& json)
 {
-  checkObject(json, "at the top", { "name", "source", "criteria" });
+  checkObject(json, "at the top", { "name", "source", "convention", "criteria" });
   QualityCriteria result;
   result.name = json.contains("name") ? text(json["name"], "name") : "criteria";
   result.source = json.contains("source") ? lines(json["source"], "source") : "";
+  if (json.contains("convention"))
+  {
+    result.convention = text(json["convention"], "convention");
+    if (result.convention != "esi" && result.convention != "foundation")
+    {
+      refuse("convention", "\"esi\" or \"foundation\" is expected");
+    }
+  }
   if (!json.contains("criteria") || !json["criteria"].is_array() || json["criteria"].empty())
   {
     refuse("at the top", "\"criteria\" must be a list of at least one criterion");
@@ -266,6 +286,27 @@ const char* QualityCriterion::label() const
   return this->check >= 0 ? elementChecks()[this->check].label : metricInfo(this->metric).label;
 }
 
+namespace
+{
+/// Whether all criteria are metrics of finite volumes.
+bool isOfFaces(const QualityCriteria& criteria)
+{
+  return std::all_of(criteria.criteria.begin(), criteria.criteria.end(),
+    [](const QualityCriterion& c)
+    { return c.check < 0 && metricInfo(c.metric).family == MetricFamily::Faces; });
+}
+}
+
+//------------------------------------------------------------------------------
+int gradedTypeIndex(int vtkCellType)
+{
+  const int index = topologyIndex(cornerType(vtkCellType));
+  return index >= 0                 ? index
+    : vtkCellType == PolygonType    ? NumberOfCellTypes
+    : vtkCellType == PolyhedronType ? NumberOfCellTypes + 1
+                                    : -1;
+}
+
 //------------------------------------------------------------------------------
 const char* gradeName(Grade grade)
 {
@@ -298,13 +339,16 @@ QualityCriteria parseCriteria(const std::string& json)
 //------------------------------------------------------------------------------
 std::string gradedCells(const QualityCriteria& criteria)
 {
-  bool shells = false, solids = false;
-  for (const CellTopology& topology : topologies())
+  if (isOfFaces(criteria))
   {
-    for (const QualityCriterion& criterion : criteria.criteria)
+    return "finite volumes";
+  }
+  bool shells = false, solids = false;
+  for (const QualityCriterion& criterion : criteria.criteria)
+  {
+    for (int type = 0; type < NumberOfCellTypes; ++type)
     {
-      const bool limited = criterion.limits[topologyIndex(topology.type)].has_value();
-      (topology.dimension == 2 ? shells : solids) |= limited;
+      (topologies()[type].dimension == 2 ? shells : solids) |= criterion.limits[type].has_value();
     }
   }
   return shells && solids ? "shells and solids" : shells ? "shells" : "solids";
@@ -387,19 +431,19 @@ void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed 
 {
   const std::size_t count = criteria.criteria.size();
   totals.criteria.resize(count);
+  const bool ofFaces = isOfFaces(criteria);
   const MeshView& view = mesh.view();
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     grades[cell] = static_cast<signed char>(Grade::None);
     indices[cell] = 0;
-    const CellType type = cornerType(view.cellTypes[cell]);
-    if ((skip && skip[cell]) || type == CellType::Unsupported || validity[cell] == NotMeasured)
+    const int typeIndex = gradedTypeIndex(view.cellTypes[cell]);
+    if ((skip && skip[cell]) || typeIndex < 0 || validity[cell] == NotMeasured)
     {
       continue;
     }
     const bool valid = validity[cell] == Valid;
     const bool counts = !uncounted || !uncounted[cell];
-    const int typeIndex = topologyIndex(type);
     Grade grade = Grade::None;
     double penalty = 0, weights = 0;
     for (std::size_t c = 0; c < count; ++c)
@@ -409,7 +453,7 @@ void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed 
       {
         continue;
       }
-      if (!valid)
+      if (!valid && !ofFaces)
       {
         grade = Grade::Failed;
         break;
@@ -435,7 +479,7 @@ void gradeCells(const QualityCriteria& criteria, const Mesh& mesh, const signed 
       continue;
     }
     grades[cell] = static_cast<signed char>(grade);
-    indices[cell] = !valid ? 1.0 : weights > 0 ? penalty / weights : 0.0;
+    indices[cell] = !valid && !ofFaces ? 1.0 : weights > 0 ? penalty / weights : 0.0;
     if (!counts)
     {
       continue;

@@ -7,7 +7,8 @@
  * A criterion has five limits for a cell type, from the value of an ideal element to one that is as
  * bad as any: ideal, good, warn, fail, worst. An element whose value is beyond `warn` gets a
  * warning, one beyond `fail` fails; a value at a limit is still on its better side. Inverted and
- * degenerate elements fail.
+ * degenerate elements fail, unless all criteria are metrics of finite volumes: these have measures
+ * of their own for them.
  *
  * The penalty of a value is 0 at ideal, 1/4 at good, 1/2 at warn, 3/4 at fail and 1 at worst,
  * linear between and constant beyond. The quality index of an element is the mean of the penalties
@@ -25,8 +26,10 @@
  *
  * `metric` is also the name of a check of solvers (see ElementChecks.h): these are defined on all
  * types. `limits` is by cell type (triangle, quadrilateral, tetrahedron, hexahedron, wedge,
- * pyramid) or "all" for those that are not named and that the metric is defined on. `name`,
- * `source`, a text or a list of its lines, and `weight` (1) may be left out.
+ * pyramid; of metrics of finite volumes also polygon and polyhedron) or "all" for those that are
+ * not named and that the metric is defined on. `name`, `source`, a text or a list of its lines,
+ * `weight` (1) and, at the top, `convention` ("esi" or "foundation": of face centers, see
+ * FaceGeometry.h) may be left out.
  */
 #ifndef tautline_Criteria_h
 #define tautline_Criteria_h
@@ -55,13 +58,19 @@ enum class Grade : signed char
 /// "passed", "warning", "failed" or "none".
 TAUTLINE_KERNEL_EXPORT const char* gradeName(Grade grade);
 
+/// The cell types that limits are for: those of topologies(), then polygons and polyhedra.
+constexpr int NumberOfGradedTypes = NumberOfCellTypes + 2;
+
+/// The position of a VTK type among them, or -1.
+TAUTLINE_KERNEL_EXPORT int gradedTypeIndex(int vtkCellType);
+
 /// The limits of one metric, or of a check of solvers.
 struct QualityCriterion
 {
   Metric metric = Metric::InverseMeanRatio;
   int check = -1; ///< a position in elementChecks(), see ElementChecks.h; negative: the metric
   double weight = 1;
-  std::array<std::optional<QualityLimits>, NumberOfCellTypes> limits; ///< by topologyIndex()
+  std::array<std::optional<QualityLimits>, NumberOfGradedTypes> limits; ///< by gradedTypeIndex()
 
   /// Of the metric or the check.
   TAUTLINE_KERNEL_EXPORT const char* name() const;
@@ -72,6 +81,7 @@ struct QualityCriterion
 struct QualityCriteria
 {
   std::string name, source;
+  std::string convention;                 ///< "esi", "foundation" or "": not stated
   std::vector<QualityCriterion> criteria; ///< at least one, each of another metric
 };
 
@@ -86,7 +96,7 @@ struct QualityCriteria
 TAUTLINE_KERNEL_EXPORT QualityCriteria parseCriteria(const std::string& json);
 
 /// The cells that criteria have limits for: "shells" (triangles, quadrilaterals), "solids" (the
-/// others) or "shells and solids".
+/// others) or "shells and solids"; "finite volumes" of criteria that are all metrics of these.
 TAUTLINE_KERNEL_EXPORT std::string gradedCells(const QualityCriteria& criteria);
 
 /// The names of the presets.

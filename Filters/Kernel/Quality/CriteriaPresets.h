@@ -20,7 +20,7 @@ struct CriteriaPreset
   const char* json;
 };
 
-constexpr std::array<CriteriaPreset, 10> CriteriaPresetTexts = { {
+constexpr std::array<CriteriaPreset, 14> CriteriaPresetTexts = { {
   { "fem", R"json({
   "name": "FEM default, shells and solids",
   "source": [
@@ -214,6 +214,108 @@ constexpr std::array<CriteriaPreset, 10> CriteriaPresetTexts = { {
       "limits": {
         "tetrahedron": { "ideal": 1, "good": 0.6, "warn": 0.1357208808297453,
           "fail": 0.1357208808297453, "worst": 0 } } }
+  ]
+}
+)json" },
+  { "openfoam", R"json({
+  "name": "OpenFOAM checkMesh (openfoam.com)",
+  "source": [
+    "OpenFOAM v1912, checkMesh without options: limits of primitiveMeshCheck; warnings of the",
+    "non-orthogonality from 70 degrees. Volumes and areas are in the unit of the mesh" ],
+  "convention": "esi",
+  "criteria": [
+    { "metric": "non_orthogonality", "weight": 1,
+      "limits": { "all": { "ideal": 0, "good": 40, "warn": 70, "fail": 90, "worst": 180 } } },
+    { "metric": "face_skewness", "weight": 1,
+      "limits": { "all": { "ideal": 0, "good": 1, "warn": 4, "fail": 4, "worst": 20 } } },
+    { "metric": "cell_aspect_ratio", "weight": 1,
+      "limits": { "all": { "ideal": 1, "good": 100, "warn": 1000, "fail": 1000,
+        "worst": 1e6 } } },
+    { "metric": "openness", "weight": 0,
+      "limits": { "all": { "ideal": 0, "good": 1e-9, "warn": 1e-6, "fail": 1e-6, "worst": 1 } } },
+    { "metric": "pyramid_volume", "weight": 0,
+      "limits": { "all": { "ideal": 1, "good": 0, "warn": -1e-15, "fail": -1e-15,
+        "worst": -1 } } },
+    { "metric": "cell_volume", "weight": 0,
+      "limits": { "all": { "ideal": 1, "good": 1e-300, "warn": 1e-300, "fail": 1e-300,
+        "worst": 0 } } },
+    { "metric": "face_area", "weight": 0,
+      "limits": { "all": { "ideal": 1, "good": 1e-300, "warn": 1e-300, "fail": 1e-300,
+        "worst": 0 } } }
+  ]
+}
+)json" },
+  { "openfoam.org", R"json({
+  "name": "OpenFOAM checkMesh (openfoam.org)",
+  "source": [
+    "OpenFOAM v1912, checkMesh without options: limits of primitiveMeshCheck; warnings of the",
+    "non-orthogonality from 70 degrees. Volumes and areas are in the unit of the mesh" ],
+  "convention": "foundation",
+  "criteria": [
+    { "metric": "non_orthogonality", "weight": 1,
+      "limits": { "all": { "ideal": 0, "good": 40, "warn": 70, "fail": 90, "worst": 180 } } },
+    { "metric": "face_skewness", "weight": 1,
+      "limits": { "all": { "ideal": 0, "good": 1, "warn": 4, "fail": 4, "worst": 20 } } },
+    { "metric": "cell_aspect_ratio", "weight": 1,
+      "limits": { "all": { "ideal": 1, "good": 100, "warn": 1000, "fail": 1000,
+        "worst": 1e6 } } },
+    { "metric": "openness", "weight": 0,
+      "limits": { "all": { "ideal": 0, "good": 1e-9, "warn": 1e-6, "fail": 1e-6, "worst": 1 } } },
+    { "metric": "pyramid_volume", "weight": 0,
+      "limits": { "all": { "ideal": 1, "good": 0, "warn": -1e-15, "fail": -1e-15,
+        "worst": -1 } } },
+    { "metric": "cell_volume", "weight": 0,
+      "limits": { "all": { "ideal": 1, "good": 1e-300, "warn": 1e-300, "fail": 1e-300,
+        "worst": 0 } } },
+    { "metric": "face_area", "weight": 0,
+      "limits": { "all": { "ideal": 1, "good": 1e-300, "warn": 1e-300, "fail": 1e-300,
+        "worst": 0 } } }
+  ]
+}
+)json" },
+  { "snappy", R"json({
+  "name": "snappyHexMesh, default mesh quality controls",
+  "source": [
+    "OpenFOAM v1912, etc/caseDicts/meshQualityDict: maxNonOrtho 65, maxBoundarySkewness 20,",
+    "maxInternalSkewness 4, maxConcave 80, minVol 1e-13, minTetQuality 1e-15, minTwist 0.02,",
+    "minDeterminant 0.001, minFaceWeight 0.05, minVolRatio 0.01. Volumes are in the unit of the",
+    "mesh" ],
+  "convention": "esi",
+  "criteria": [
+    { "metric": "non_orthogonality", "weight": 1,
+      "limits": { "all": { "ideal": 0, "good": 40, "warn": 65, "fail": 65, "worst": 180 } } },
+    { "metric": "internal_skewness", "weight": 1,
+      "limits": { "all": { "ideal": 0, "good": 1, "warn": 4, "fail": 4, "worst": 20 } } },
+    { "metric": "boundary_skewness", "weight": 1,
+      "limits": { "all": { "ideal": 0, "good": 1, "warn": 20, "fail": 20, "worst": 100 } } },
+    { "metric": "face_concavity", "weight": 1,
+      "limits": { "all": { "ideal": 0, "good": 10, "warn": 80, "fail": 80, "worst": 90 } } },
+    { "metric": "pyramid_volume", "weight": 0,
+      "limits": { "all": { "ideal": 1, "good": 1e-13, "warn": 1e-13, "fail": 1e-13,
+        "worst": -1 } } },
+    { "metric": "center_tet_quality", "weight": 1,
+      "limits": { "all": { "ideal": 1, "good": 0.1, "warn": 1e-15, "fail": 1e-15, "worst": -1 } } },
+    { "metric": "fan_tet_quality", "weight": 1,
+      "limits": { "all": { "ideal": 1, "good": 0.1, "warn": 1e-15, "fail": 1e-15, "worst": -1 } } },
+    { "metric": "face_twist", "weight": 1,
+      "limits": { "all": { "ideal": 1, "good": 0.5, "warn": 0.02, "fail": 0.02, "worst": -1 } } },
+    { "metric": "area_determinant", "weight": 1,
+      "limits": { "all": { "ideal": 1, "good": 0.1, "warn": 0.001, "fail": 0.001, "worst": 0 } } },
+    { "metric": "face_weight", "weight": 1,
+      "limits": { "all": { "ideal": 0.5, "good": 0.25, "warn": 0.05, "fail": 0.05, "worst": 0 } } },
+    { "metric": "volume_ratio", "weight": 1,
+      "limits": { "all": { "ideal": 1, "good": 0.25, "warn": 0.01, "fail": 0.01, "worst": 0 } } }
+  ]
+}
+)json" },
+  { "fluent", R"json({
+  "name": "ANSYS Fluent, orthogonal quality",
+  "source": [
+    "ANSYS Fluent user's guide, Mesh Quality: the orthogonal quality of all cells should be above",
+    "0.01, of most above 0.1" ],
+  "criteria": [
+    { "metric": "orthogonal_quality", "weight": 1,
+      "limits": { "all": { "ideal": 1, "good": 0.5, "warn": 0.1, "fail": 0.01, "worst": 0 } } }
   ]
 }
 )json" },

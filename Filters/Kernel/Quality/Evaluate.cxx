@@ -38,6 +38,11 @@ MetricCode metricCode(Metric metric)
 //------------------------------------------------------------------------------
 void checkEvaluation(const Mesh& mesh, const MetricInfo& info, const EvaluationOptions& options)
 {
+  if (info.family == MetricFamily::Faces)
+  {
+    throw Error(std::string(info.label) +
+      " compares the cells on both sides of the faces: measure it with Element Quality.");
+  }
   if (!info.rotationInvariant && mesh.dimension() == Dimension::Surface)
   {
     throw Error(std::string(info.label) +
@@ -93,6 +98,12 @@ BatchContext contextFor(
 std::string objectiveProblem(Metric metric)
 {
   const MetricInfo& info = metricInfo(metric);
+  if (info.family == MetricFamily::Faces)
+  {
+    return std::string(info.label) +
+      " compares the cells on both sides of faces and is no function of one element. Choose "
+      "another metric.";
+  }
   return !info.user || info.user->hasDerivatives() ? ""
                                                    : std::string(info.label) +
       " has no derivatives: it measures elements and cannot be optimized. Register it in C++ "

@@ -33,8 +33,10 @@ constexpr Range atLeast(double low)
 constexpr auto Target = MetricFamily::Target;
 constexpr auto Simplex = MetricFamily::Simplex;
 constexpr auto Cell = MetricFamily::Cell;
+constexpr auto Faces = MetricFamily::Faces;
 constexpr auto Smaller = Direction::SmallerIsBetter;
 constexpr auto Larger = Direction::LargerIsBetter;
+constexpr auto Neutral = Direction::Neutral;
 constexpr auto Negative = InvertedValue::Negative;
 constexpr auto Growing = InvertedValue::Larger;
 constexpr auto Unsigned = InvertedValue::Unsigned;
@@ -52,6 +54,9 @@ constexpr const char* shewchuk =
 constexpr const char* verdict = "Knupp et al., The Verdict library reference manual, Sandia (2006)";
 constexpr const char* johnen = "Johnen, Weill, Remacle, Robust and efficient validation of the "
                                "linear hexahedral element, Procedia Eng. 203 (2017)";
+
+constexpr const char* checkMesh = "OpenFOAM v1912 checkMesh: primitiveMeshTools, polyMeshTools";
+constexpr const char* snappy = "OpenFOAM v1912 snappyHexMesh, meshQualityControls";
 
 std::vector<MetricInfo> makeRegistry()
 {
@@ -220,6 +225,89 @@ std::vector<MetricInfo> makeRegistry()
       "height 1 over the unit square: V of a parallelepiped, n! V of a simplex",
       johnen, Cell, true, true, all, any, any, any, any, sizeDecides, sizeDecides, Larger, Negative,
       noBarrier, kinked, sized, rotates, "length^n" },
+    { Metric::NonOrthogonality, "non_orthogonality", "Non-orthogonality", "theta_f",
+      "nonorthoangle,non_ortho", "angle between S and d; 0 on uncoupled boundaries", checkMesh,
+      Faces, true, true, all, { 0, 180 }, { 0, 180 }, { 0, 70 }, { 0, 70 }, 0, 0, Smaller, Unsigned,
+      noBarrier, kinked, scaleFree, rotates, "degrees" },
+    { Metric::FaceSkewness, "face_skewness", "Face skewness", "psi_f", "max_skewness",
+      "|v| / w, v from where d meets the plane of the face to f (on the boundary: from the foot of "
+      "C), w the largest component of p - f along v, at least 0.2 |d| (0.4 of the distance of C)",
+      checkMesh, Faces, true, true, all, any, any, { 0, 4 }, { 0, 4 }, 0, 0, Smaller, Unsigned,
+      noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::InternalSkewness, "internal_skewness", "Face skewness, internal", "psi_i", "",
+      "face_skewness of the faces with two cells; 0 on others", snappy, Faces, true, true, all, any,
+      any, { 0, 4 }, { 0, 4 }, 0, 0, Smaller, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::BoundarySkewness, "boundary_skewness", "Face skewness, boundary", "psi_b", "",
+      "face_skewness of the faces with one cell; 0 on others", snappy, Faces, true, true, all, any,
+      any, { 0, 20 }, { 0, 20 }, 0, 0, Smaller, Unsigned, noBarrier, kinked, scaleFree, rotates,
+      "" },
+    { Metric::OrthogonalQuality, "orthogonal_quality", "Orthogonal quality", "OQ", "",
+      "min of S.(f - C) / |S||f - C| and S.d / |S||d|, S out of the cell",
+      "ANSYS Fluent user's guide, 6.2.2 Mesh Quality", Faces, true, true, all, { -1, 1 }, { -1, 1 },
+      { 0.1, 1 }, { 0.1, 1 }, 1, 1, Larger, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::FaceWeight, "face_weight", "Face interpolation weight", "w_f", "faceweight",
+      "min(a, b) / (a + b), a = |S.(f - C)|, b = |S.(C' - f)|; 1/2 on uncoupled boundaries",
+      checkMesh, Faces, true, true, all, { 0, 0.5 }, { 0, 0.5 }, { 0.05, 0.5 }, { 0.05, 0.5 }, 0.5,
+      0.5, Larger, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::VolumeRatio, "volume_ratio", "Volume ratio of neighbors", "V/V'", "cellvolumeratio",
+      "smaller / larger volume of the two cells; 1 on uncoupled boundaries", checkMesh, Faces, true,
+      true, all, unit, unit, { 0.01, 1 }, { 0.01, 1 }, 1, 1, Larger, Unsigned, noBarrier, kinked,
+      scaleFree, rotates, "" },
+    { Metric::PyramidVolume, "pyramid_volume", "Face pyramid volume", "V_f", "minpyrvolume",
+      "S.(f - C) / 3, S out of the cell", checkMesh, Faces, true, true, all, any, any, any, any,
+      sizeDecides, sizeDecides, Larger, Unsigned, noBarrier, smooth, sized, rotates, "length^3" },
+    { Metric::FaceArea, "face_area", "Smallest face area", "|S|", "minarea", "|S|", checkMesh,
+      Faces, true, true, all, any, any, any, any, sizeDecides, sizeDecides, Larger, Unsigned,
+      noBarrier, smooth, sized, rotates, "length^2" },
+    { Metric::FaceFlatness, "face_flatness", "Face flatness", "|S|/A", "flatness",
+      "|S| / sum of the areas of the triangles of the edges and f; 1 of triangles", checkMesh,
+      Faces, true, true, all, unit, unit, { 0.8, 1 }, { 0.8, 1 }, 1, 1, Larger, Unsigned, noBarrier,
+      kinked, scaleFree, rotates, "" },
+    { Metric::FaceConcavity, "face_concavity", "Face concavity", "beta_f", "concavity",
+      "asin of the largest |e x e'| of edges that turn inward, from sin 10 degrees on", checkMesh,
+      Faces, true, true, all, { 0, 90 }, { 0, 90 }, { 0, 0 }, { 0, 0 }, 0, 0, Smaller, Unsigned,
+      noBarrier, kinked, scaleFree, rotates, "degrees" },
+    { Metric::FaceTwist, "face_twist", "Face twist", "t_f", "twist",
+      "least cosine between a triangle of an edge and f, and d (on the boundary f - C); 1 of "
+      "triangles",
+      snappy, Faces, true, true, all, { -1, 1 }, { -1, 1 }, { 0.02, 1 }, { 0.02, 1 }, 1, 1, Larger,
+      Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::CenterTetQuality, "center_tet_quality", "Tetrahedron quality, centers", "q_c",
+      "mintetvolume",
+      "least volume over that of the regular tetrahedron in the same sphere, of tetrahedra of an "
+      "edge, f and C",
+      checkMesh, Faces, true, true, all, { -1, 1 }, { -1, 1 }, { 1e-30, 1 }, { 1e-30, 1 },
+      sizeDecides, sizeDecides, Larger, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::FanTetQuality, "fan_tet_quality", "Tetrahedron quality, fans", "q_b", "tet_quality",
+      "the same of C and a fan of triangles of the face, with its best base point", checkMesh,
+      Faces, true, true, all, { -1, 1 }, { -1, 1 }, { 1e-30, 1 }, { 1e-30, 1 }, sizeDecides,
+      sizeDecides, Larger, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::CellVolume, "cell_volume", "Cell volume, of pyramids", "V_c", "cellvolume",
+      "sum of S.(f - a) / 3 over the faces, a the mean of their centers", checkMesh, Faces, true,
+      true, all, any, any, any, any, sizeDecides, sizeDecides, Neutral, Negative, noBarrier, smooth,
+      sized, rotates, "length^3" },
+    { Metric::Openness, "openness", "Cell openness", "o", "cell_openness",
+      "max over x, y, z of |sum S_i| / sum |S_i|", checkMesh, Faces, true, true, all, unit, unit,
+      { 0, 1e-6 }, { 0, 1e-6 }, 0, 0, Smaller, Unsigned, noBarrier, kinked, scaleFree, rotates,
+      "" },
+    { Metric::CellAspectRatio, "cell_aspect_ratio", "Cell aspect ratio, of areas", "AR_c", "",
+      "max of s_i / s_j and (s_x + s_y + s_z) / (6 V^(2/3)), s_i = sum |S_i|; of one layer the "
+      "first",
+      checkMesh, Faces, true, true, all, one, one, { 1, 1000 }, { 1, 1000 }, 1, 1, Smaller,
+      Unsigned, noBarrier, kinked, scaleFree, oriented, "" },
+    { Metric::CellDeterminant, "cell_determinant", "Cell determinant", "D_c", "celldeterminant",
+      "|det sum (S/A) (S/A)^t| / 8 over the faces with two cells, A the mean of |S|; 1 in an empty "
+      "direction",
+      checkMesh, Faces, true, true, all, any, any, atLeast(0.001), atLeast(0.001), sizeDecides,
+      sizeDecides, Larger, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
+    { Metric::AreaDeterminant, "area_determinant", "Cell determinant, of all faces", "D_a",
+      "mindeterminant", "27 det (sum S S^t / |S|) / (sum |S|)^3", snappy, Faces, true, true, all,
+      unit, unit, { 0.001, 1 }, { 0.001, 1 }, sizeDecides, sizeDecides, Larger, Unsigned, noBarrier,
+      smooth, scaleFree, rotates, "" },
+    { Metric::CellConcavity, "cell_concavity", "Cell concavity", "k_c", "",
+      "largest sine of the angle by which the center of a face is outside the plane of another",
+      checkMesh, Faces, true, true, all, { -1, 1 }, { -1, 1 }, { -1, -1e-6 }, { -1, -1e-6 },
+      sizeDecides, sizeDecides, Smaller, Unsigned, noBarrier, kinked, scaleFree, rotates, "" },
   };
 }
 
@@ -248,6 +336,19 @@ int numberOfBuiltInMetrics()
   return static_cast<int>(builtInMetrics().size());
 }
 
+std::vector<MetricInfo> elementMetrics()
+{
+  std::vector<MetricInfo> metrics;
+  for (const MetricInfo& info : metricRegistry())
+  {
+    if (info.family != MetricFamily::Faces)
+    {
+      metrics.push_back(info);
+    }
+  }
+  return metrics;
+}
+
 const MetricInfo& metricInfo(Metric metric)
 {
   const auto& builtIn = builtInMetrics();
@@ -268,9 +369,12 @@ const MetricInfo& metricInfo(Metric metric)
 
 int MetricInfo::lengthPower(int dimension) const
 {
-  return std::string(this->unit) == "length^n" ? dimension
-    : std::string(this->unit) == "1/length"    ? -1
-                                               : 0;
+  const std::string unit = this->unit;
+  return unit == "length^n" ? dimension
+    : unit == "length^3"    ? 3
+    : unit == "length^2"    ? 2
+    : unit == "1/length"    ? -1
+                            : 0;
 }
 
 const MetricInfo* findMetric(const std::string& name)
@@ -315,7 +419,7 @@ std::string metricFields()
 {
   return "number\tname\tlabel\tsymbol\taliases\tformula\tsource\tdimensions\tcell types\tfull 2D\t"
          "full 3D\tacceptable 2D\tacceptable 3D\tideal 2D\tideal 3D\tdirection\tinverted\tbarrier\t"
-         "differentiable\tscale invariant\trotation invariant\tunit";
+         "differentiable\tscale invariant\trotation invariant\tunit\tfamily";
 }
 
 std::string describeMetric(const MetricInfo& info)
@@ -325,7 +429,9 @@ std::string describeMetric(const MetricInfo& info)
   {
     types += info.definedOn(t.type) ? (types.empty() ? "" : ", ") + std::string(t.name) : "";
   }
+  types += info.family == MetricFamily::Faces ? ", polygon, polyhedron" : "";
   const char* yes[] = { "no", "yes" };
+  const char* families[] = { "target", "simplex", "cell", "faces" };
   const std::string none = "-";
   const std::string fields[] = { std::to_string(static_cast<int>(info.metric)), info.name,
     info.label, info.symbol, info.aliases, info.formula, info.source,
@@ -338,7 +444,7 @@ std::string describeMetric(const MetricInfo& info)
                               : (info.direction == Larger ? "larger is better" : "neutral"),
     info.inverted == Negative ? "negative" : (info.inverted == Growing ? "larger" : "unsigned"),
     yes[info.barrier], yes[info.differentiable], yes[info.scaleInvariant],
-    yes[info.rotationInvariant], info.unit };
+    yes[info.rotationInvariant], info.unit, families[static_cast<int>(info.family)] };
   std::string line;
   for (const std::string& field : fields)
   {

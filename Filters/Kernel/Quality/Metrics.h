@@ -66,7 +66,27 @@ enum class Metric : int
   ShapeOrientationBarrier = 35,
   ShapeSizeOrientation = 36,
   ShapeSizeOrientationBarrier = 37,
-  MinimumJacobian = 38
+  MinimumJacobian = 38,
+  NonOrthogonality = 39,
+  FaceSkewness = 40,
+  InternalSkewness = 41,
+  BoundarySkewness = 42,
+  OrthogonalQuality = 43,
+  FaceWeight = 44,
+  VolumeRatio = 45,
+  PyramidVolume = 46,
+  FaceArea = 47,
+  FaceFlatness = 48,
+  FaceConcavity = 49,
+  FaceTwist = 50,
+  CenterTetQuality = 51,
+  FanTetQuality = 52,
+  CellVolume = 53,
+  Openness = 54,
+  CellAspectRatio = 55,
+  CellDeterminant = 56,
+  AreaDeterminant = 57,
+  CellConcavity = 58
 };
 
 /// Which way a metric points.
@@ -90,7 +110,8 @@ enum class MetricFamily
 {
   Target,  ///< a function of T = A W^-1 at each corner; takes targets and a combination
   Simplex, ///< a function of the edges and faces of a triangle or tetrahedron
-  Cell     ///< a function of the whole cell: its angles and lengths, its corners
+  Cell,    ///< a function of the whole cell: its angles and lengths, its corners
+  Faces    ///< of finite volumes: of the faces of a cell and the cells across; see FaceMeasures.h
 };
 
 class UserMetric;
@@ -157,6 +178,10 @@ struct MetricInfo
  * the order of registration. What is returned stays as it is when another one is registered.
  */
 TAUTLINE_KERNEL_EXPORT const std::vector<MetricInfo>& metricRegistry();
+
+/// Those that are functions of one element, which are what this header evaluates: all but
+/// MetricFamily::Faces.
+TAUTLINE_KERNEL_EXPORT std::vector<MetricInfo> elementMetrics();
 
 /// How many metrics are built in; their numbers are those below it.
 TAUTLINE_KERNEL_EXPORT int numberOfBuiltInMetrics();
@@ -243,7 +268,7 @@ struct EvaluationOptions
 
 /**
  * @brief Writes one value per cell of the mesh. Cells of unsupported types, or on which the metric
- * is not defined, get 0.
+ * is not defined, get 0. Throws Error for a metric of MetricFamily::Faces, here and below.
  * @return how many valid or inverted cells have a value beyond the range of double precision (a
  * volume of 1e-450, a size of 1e-150 against a target of 1 cubed); they get 0
  */

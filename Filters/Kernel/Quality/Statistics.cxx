@@ -28,7 +28,9 @@ std::array<bool, 256> definedTypes(const MetricInfo& info)
   for (int type = 0; type < 256; ++type)
   {
     const CellType corners = cornerType(type);
-    table[type] = corners != CellType::Unsupported && info.definedOn(corners);
+    const bool general = type == PolygonType || type == PolyhedronType;
+    table[type] = corners != CellType::Unsupported ? info.definedOn(corners)
+                                                   : general && info.family == MetricFamily::Faces;
   }
   return table;
 }

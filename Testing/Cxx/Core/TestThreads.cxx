@@ -83,7 +83,7 @@ void testEvaluation(const Mesh& mesh)
 {
   std::vector<signed char> validity(mesh.view().numberOfCells), again = validity;
   mesh.classifyCells(validity.data(), 1);
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     if (!applies(info, mesh))
     {

@@ -84,7 +84,7 @@ void testDerivatives(
 
 void testMetrics(const MeshData& data, int dimension)
 {
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     const bool defined = dimension == 2 ? info.in2D : info.in3D;
     if (!defined || info.family != MetricFamily::Target || info.user ||

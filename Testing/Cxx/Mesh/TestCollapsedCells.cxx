@@ -109,7 +109,7 @@ TAUTLINE_PART(testMetrics)
     TAUTLINE_CHECK_EQUAL(
       adapter.notice(), "12 hexahedra that list points twice are measured as wedges.");
     TAUTLINE_CHECK(validityOf(adapter.mesh()) == validityOf(expected));
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       const std::vector<double> is = valuesOf(adapter.mesh(), info.metric),
                                 was = valuesOf(expected, info.metric);

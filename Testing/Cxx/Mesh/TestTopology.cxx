@@ -126,7 +126,7 @@ void testIdealValues(const CellTopology& t, const IdealFacts& facts)
 {
   TAUTLINE_CHECK_NEAR(t.sizePerDeterminant, facts.sizePerDeterminant, 0);
   const std::vector<Vec3> ideal = idealCell(t.type);
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     const Context context(info.name);
     const double value = valueOf(t.type, ideal, info.metric);

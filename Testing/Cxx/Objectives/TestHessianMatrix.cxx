@@ -199,7 +199,7 @@ TAUTLINE_PART(testTangled)
     const bool flat = topology(type).dimension == 2;
     const MeshData data = movedBlock(type, flat ? 4 : 2, 0.7);
     const Mesh mesh(data.view());
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       if (!info.definedOn(type))
       {

@@ -206,7 +206,7 @@ double largestSize(const std::vector<double>& values)
 template <class Work>
 void forEachObjective(const Mesh& mesh, const Work& work)
 {
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     for (ObjectiveTemplate objectiveTemplate : templates)
     {
@@ -397,7 +397,7 @@ TAUTLINE_PART(testFaults)
 
   // An objective that can untangle is finite, and larger the more an element is inverted.
   int untangling = 0;
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     for (T objectiveTemplate : templates)
     {

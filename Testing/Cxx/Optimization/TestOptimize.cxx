@@ -262,7 +262,7 @@ TAUTLINE_PART(testMetrics)
   for (CellType type : { CellType::Triangle, CellType::Tetrahedron })
   {
     const MeshData data = perturbedBlock(type, 4, 0.1);
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       const bool defined =
         info.definedOn(type) && (type == CellType::Triangle ? info.in2D : info.in3D);

@@ -305,7 +305,7 @@ TAUTLINE_PART(testStraightCells)
     points.resize(pair.corners);
     const auto linear = gridOf(pair.linear, { points });
     std::vector<const char*> metrics;
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       const bool here = topology(cornerType(static_cast<unsigned char>(pair.linear))).dimension == 2
         ? info.in2D

@@ -31,7 +31,7 @@ bool isSingular(const MetricInfo& info)
 void checkFinite(const MeshData& data, bool degenerate)
 {
   const Mesh mesh(data.view());
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     if (!info.rotationInvariant && mesh.dimension() == Dimension::Surface)
     {
@@ -134,7 +134,7 @@ void testMagnitudes(CellType type)
     const MeshData data = singleCell(type, scaled);
     checkFinite(data, false);
     TAUTLINE_CHECK_EQUAL(int(validityOf(data)[0]), int(Valid));
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       if (info.scaleInvariant && info.definedOn(type))
       {
@@ -186,7 +186,7 @@ TAUTLINE_PART(testStraightAndInverted)
   for (Combination combination : combinations)
   {
     TAUTLINE_LET(EvaluationOptions, options, combination = combination);
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       if (info.family == MetricFamily::Target && info.definedOn(CellType::Quadrilateral) &&
         info.inverted == InvertedValue::Negative)
@@ -226,7 +226,7 @@ void testSigns(CellType type)
   const std::vector<signed char> validity = validityOf(mesh);
   TAUTLINE_CHECK(std::equal(validity.begin(), validity.end(), expected.begin(),
     [](signed char a, Validity b) { return a == b; }));
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     const bool size = info.metric == Metric::Size;
     if (!info.definedOn(type) || info.inverted != InvertedValue::Negative || size)

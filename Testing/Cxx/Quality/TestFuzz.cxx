@@ -131,7 +131,7 @@ void fuzzMetrics(CellType type, Kind kind, int round, Random& random)
   const Mesh mesh(data.view());
   const std::vector<signed char> validity = validityOf(mesh);
   checkValidity(data, validity);
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     if (!info.definedOn(type) ||
       (!info.rotationInvariant && mesh.dimension() == Dimension::Surface))

@@ -73,7 +73,7 @@ TAUTLINE_PART(testIdealApex)
   {
     const bool flat = cell == vtkMetricField::TRIANGLE;
     TAUTLINE_SET(field, SetCell(cell), ClearMetrics());
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       if (info.definedOn(flat ? CellType::Triangle : CellType::Tetrahedron))
       {
@@ -90,7 +90,7 @@ TAUTLINE_PART(testIdealApex)
     vtkPointData* apex = values(flat ? height : height / 3, flat ? 0 : std::sqrt(2.0 / 3));
     TAUTLINE_CHECK(field->GetNumberOfMetrics() > 25);
     TAUTLINE_CHECK_EQUAL(apex->GetNumberOfArrays(), field->GetNumberOfMetrics() + 1);
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       const Context context(info.name);
       const double ideal = info.ideal(flat ? 2 : 3);

@@ -324,7 +324,7 @@ TAUTLINE_TEST(TestMetricGradients)
   for (const Cloud& cloud : makeClouds())
   {
     const Context context(cloud.name);
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       TAUTLINE_RUN(testMetric(info, cloud, total));
     }

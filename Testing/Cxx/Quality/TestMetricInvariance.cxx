@@ -72,7 +72,7 @@ void testMotion(const Cloud& cloud)
   const MeshData moved = transformed(cloud.data, [&](const Vec3& p) { return p + shift; });
   const MeshData spun = transformed(cloud.data, [&](const Vec3& p) { return spin * p + shift; });
   const MeshData turned = transformed(cloud.data, [&](const Vec3& p) { return turn * (spin * p); });
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     if (!applies(info, cloud))
     {
@@ -149,7 +149,7 @@ void testRenumbering(const Cloud& cloud)
     {
       renumbered.connectivity[i] = cloud.data.connectivity[i - i % nodes + image[i % nodes]];
     }
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       if (!applies(info, cloud) || !info.rotationInvariant)
       {
@@ -218,7 +218,7 @@ void testScale(const Cloud& cloud)
     TAUTLINE_CHECK_EQUAL(std::count(validity.begin(), validity.end(), Valid), cellsPerCloud);
     const Targets targets = referenceTargets(mesh, Mesh(reference.view()));
     const Targets scaledTargets = referenceTargets(scaledMesh, Mesh(scaledReference.view()));
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       if (!applies(info, cloud))
       {
@@ -293,7 +293,7 @@ void testMirror(const Cloud& cloud)
     std::count(reversed.begin(), reversed.end(), hasSign ? Inverted : Valid), cellsPerCloud);
   mirror.setMirrored(true);
   TAUTLINE_CHECK(validityOf(mirror) == validityOf(original));
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     if (!applies(info, cloud))
     {

@@ -284,7 +284,7 @@ void testType(CellType type, bool surface)
   std::vector<Corners> cells;
   const MeshData data = scatteredCells(type, surface, cellsPerType, random, cells);
   const Mesh mesh(data.view());
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     const bool inside = type == CellType::Hexahedron || type == CellType::Wedge;
     if (!info.definedOn(type) || info.family == MetricFamily::Target ||

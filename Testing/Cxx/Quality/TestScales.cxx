@@ -94,7 +94,7 @@ void testInvariance(CellType type, bool surface)
     TAUTLINE_CHECK(validityOf(farMesh) == validity);
     TAUTLINE_CHECK(angleDistribution(farMesh, validity.data(), nullptr) == angles);
   }
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     // UntangleBeta is a size of T, and not a power of two times what it is in the cell.
     const bool unit =
@@ -133,7 +133,7 @@ void testTargets(CellType type)
     Targets scaledBack = farTargets;
     scaleTargets(scaledBack, std::ldexp(1.0, exponent));
     TAUTLINE_CHECK(!scaledBack.extreme && scaledBack.inverse[0] == targets.inverse[0]);
-    for (const MetricInfo& info : metricRegistry())
+    for (const MetricInfo& info : elementMetrics())
     {
       if (info.family != MetricFamily::Target || !info.definedOn(type) || info.lengthPower(1) != 0)
       {

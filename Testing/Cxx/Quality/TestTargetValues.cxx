@@ -173,7 +173,7 @@ void testType(CellType type, bool surface)
   const MeshData data = scatteredCells(type, surface, cellsPerType, random, cells);
   const Targets targets = randomTargets(data, t.samples, t.dimension, random);
   const Mesh mesh(data.view());
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     if (!info.definedOn(type) || info.family != MetricFamily::Target ||
       (surface && !info.rotationInvariant))

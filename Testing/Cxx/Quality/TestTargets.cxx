@@ -45,7 +45,7 @@ template <class Choice>
 void checkIdeal(const Mesh& mesh, CellType type, const Targets& targets, const Choice& concerned)
 {
   TAUTLINE_LET(EvaluationOptions, options, targets = &targets);
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     if (!info.definedOn(type) || !takesTargets(info) || !concerned(info))
     {
@@ -135,7 +135,7 @@ void testSize(CellType type, bool surface)
   // Sizes do not change shape metrics, and tau of a simplex is its size over the target size.
   const Targets targets = sizeTargets(mesh, sizes.data());
   options.targets = &targets;
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     if (info.definedOn(type) && takesTargets(info) && info.scaleInvariant)
     {
@@ -295,7 +295,7 @@ TAUTLINE_PART(testGivenIdeal)
   TAUTLINE_CHECK(std::count(validity.begin(), validity.end(), Inverted) > cellsPerMesh);
   const Targets targets = referenceTargets(mesh, Mesh(reference.view()));
   const std::size_t cells = validity.size(), numbers = 3 * data.connectivity.size();
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     if (!info.definedOn(CellType::Tetrahedron) || info.family != MetricFamily::Target)
     {

@@ -28,7 +28,7 @@ TAUTLINE_PART(testEveryMetric)
 {
   const MeshData data = sliverBlock(3, 7, 0.9);
   int improved = 0;
-  for (const MetricInfo& info : metricRegistry())
+  for (const MetricInfo& info : elementMetrics())
   {
     const Context context(info.name);
     if (!info.in3D || !info.definedOn(CellType::Tetrahedron))

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file FaceGeometry.h
+ * @brief Areas, centers and volumes as finite-volume programs compute them.
+ *
+ * A face is a fan of triangles about the mean of its points. Its area vector S is the sum of
+ * theirs. Its center is the mean of their centers with weights by the convention. A cell is made of
+ * pyramids over its faces with a common apex, the mean of the centers of the faces; its volume is
+ * their sum, its center their mean by volume.
+ *
+ * Source: OpenFOAM v1912 and v8, primitiveMesh; stated in the notes of its Programmer's Guide.
+ */
+#ifndef tautline_FaceGeometry_h
+#define tautline_FaceGeometry_h
+
+#include "FaceConvention.h"
+#include "FaceMesh.h"
+
+namespace tautline
+{
+/// The geometry of a FaceMesh.
+struct FaceGeometry
+{
+  std::vector<Vec3> area;       ///< per face: area vector, out of the owner
+  std::vector<Vec3> center;     ///< per face
+  std::vector<Vec3> cellCenter; ///< per cell
+  std::vector<double> volume;   ///< per cell
+};
+
+/// @param points 3 coordinates per point of the mesh
+TAUTLINE_KERNEL_EXPORT FaceGeometry faceGeometry(
+  const FaceMesh& mesh, const double* points, FaceConvention convention, int threads = 0);
+
+/// A place at the coupled face of a face, moved as the one face is to the other: without a rotation
+/// where both are parallel, else with the least one.
+TAUTLINE_KERNEL_EXPORT Vec3 acrossPatch(
+  const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& place);
+
+/// A vector at the coupled face of a face, turned in the opposite sense: from `face` to the other.
+TAUTLINE_KERNEL_EXPORT Vec3 alongPatch(
+  const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& vector);
+
+/// The mean of the centers of the faces of a cell, the apex of its pyramids.
+TAUTLINE_KERNEL_EXPORT Vec3 apexOf(const FaceMesh& mesh, const FaceGeometry& geometry, Index cell);
+
+/// Finds center and volume of a cell from its faces anew.
+TAUTLINE_KERNEL_EXPORT void measureCell(const FaceMesh& mesh, FaceGeometry& geometry, Index cell);
+
+/// The center of the cell across a face with two cells, as seen from its owner; see acrossPatch().
+TAUTLINE_KERNEL_EXPORT Vec3 centerAcross(
+  const FaceMesh& mesh, const FaceGeometry& geometry, Index face);
+}
+#endif

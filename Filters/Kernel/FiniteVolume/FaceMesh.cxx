@@ -1,0 +1,372 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "FaceMesh.h"
+
+#include "tautline/Core/Interruption.h"
+#include "tautline/Core/Parallel.h"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace tautline
+{
+namespace
+{
+/// A list of points, in `nodes` from `first` on.
+struct NodeList
+{
+  const Index* nodes;
+  Index size;
+};
+
+NodeList listOf(const std::vector<Index>& offsets, const std::vector<Index>& nodes, Index i)
+{
+  return { nodes.data() + offsets[i], offsets[i + 1] - offsets[i] };
+}
+
+/// The same for all orders of the points, and rarely the same for other points.
+std::uint64_t keyOf(const NodeList& list)
+{
+  std::uint64_t key = 0;
+  for (Index i = 0; i < list.size; ++i)
+  {
+    // The finalizer of the generator SplitMix64 (Steele, Lea, Flood 2014).
+    std::uint64_t x = static_cast<std::uint64_t>(list.nodes[i]) + 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    key += x ^ (x >> 31);
+  }
+  return key;
+}
+
+bool samePoints(const NodeList& a, const NodeList& b)
+{
+  return a.size == b.size && std::is_permutation(a.nodes, a.nodes + a.size, b.nodes);
+}
+
+/// Whether two lists of the same points run around the face in the same sense.
+bool sameSense(const NodeList& a, const NodeList& b)
+{
+  const Index* at = std::find(b.nodes, b.nodes + b.size, a.nodes[0]);
+  const Index next = (at - b.nodes + 1) % b.size;
+  return b.nodes[next] == a.nodes[1];
+}
+
+/// Finds which listed faces and facets have the same points.
+class FaceMatch
+{
+public:
+  FaceMatch(Index points, const ListedFaces& cells, const ListedFacets& facets, int threads)
+    : Cells(cells)
+    , Facets(facets)
+    , Listed(static_cast<Index>(cells.faceOffsets.size()) - 1)
+    , Mate(this->Listed, -1)
+    , Facet(this->Listed, -1)
+    , FacetUsed(facets.patch.size(), 0)
+    , CellOf(this->Listed)
+  {
+    for (Index cell = 0; cell + 1 < static_cast<Index>(cells.cellOffsets.size()); ++cell)
+    {
+      pollInterruption(cell);
+      std::fill(this->CellOf.begin() + cells.cellOffsets[cell],
+        this->CellOf.begin() + cells.cellOffsets[cell + 1], cell);
+    }
+    this->file(points, threads);
+    constexpr Index grain = 4096;
+    parallelFor(points, grain, threads, [&](Index point) { this->matchAt(point); });
+  }
+
+  const std::vector<Index>& mates() const { return this->Mate; }
+  const std::vector<Index>& facets() const { return this->Facet; }
+  const std::vector<Index>& cells() const { return this->CellOf; }
+
+  /// The facets that are not faces of a cell.
+  Index strayFacets() const
+  {
+    return std::count(this->FacetUsed.begin(), this->FacetUsed.end(), 0);
+  }
+
+  /// Throws Error where three cells share a face.
+  void check() const
+  {
+    for (Index i = 0; i < this->Listed; ++i)
+    {
+      if (this->Mate[i] <= TooMany)
+      {
+        throw Error("A face of cell " + std::to_string(this->CellOf[i]) + " is one of cell " +
+          std::to_string(this->CellOf[TooMany - this->Mate[i]]) +
+          " and of others, too: remove duplicate and overlapping cells.");
+      }
+    }
+  }
+
+private:
+  /// In place of a mate, less the number of another one: there are three or more.
+  static constexpr Index TooMany = -2;
+
+  struct Use
+  {
+    std::uint64_t key;
+    Index number; ///< of a listed face, or of a facet after these
+  };
+
+  NodeList list(Index number) const
+  {
+    return number < this->Listed
+      ? listOf(this->Cells.faceOffsets, this->Cells.nodes, number)
+      : listOf(this->Facets.offsets, this->Facets.nodes, number - this->Listed);
+  }
+
+  /// Files all lists under their smallest points.
+  void file(Index points, int threads)
+  {
+    const Index all = this->Listed + static_cast<Index>(this->Facets.patch.size());
+    std::vector<Index> smallest(all);
+    parallelFor(all, ChunkSize, threads,
+      [&](Index i)
+      {
+        const NodeList nodes = this->list(i);
+        smallest[i] = *std::min_element(nodes.nodes, nodes.nodes + nodes.size);
+      });
+    this->Starts.assign(points + 1, 0);
+    for (Index i = 0; i < all; ++i)
+    {
+      pollInterruption(i);
+      ++this->Starts[smallest[i] + 1];
+    }
+    std::partial_sum(this->Starts.begin(), this->Starts.end(), this->Starts.begin());
+    std::vector<Index> next(this->Starts.begin(), this->Starts.end() - 1);
+    this->Uses.resize(all);
+    for (Index i = 0; i < all; ++i)
+    {
+      pollInterruption(i);
+      this->Uses[next[smallest[i]]++] = { 0, i };
+    }
+  }
+
+  void matchAt(Index point)
+  {
+    const auto begin = this->Uses.begin() + this->Starts[point];
+    const auto end = this->Uses.begin() + this->Starts[point + 1];
+    for (auto use = begin; use != end; ++use)
+    {
+      use->key = keyOf(this->list(use->number));
+    }
+    std::sort(begin, end,
+      [](const Use& a, const Use& b)
+      { return std::tie(a.key, a.number) < std::tie(b.key, b.number); });
+    std::vector<Index> same;
+    for (auto use = begin; use != end; ++use)
+    {
+      if (use->number < 0)
+      {
+        continue; // taken
+      }
+      same.assign(1, use->number);
+      for (auto other = use + 1; other != end && other->key == use->key; ++other)
+      {
+        if (other->number >= 0 && samePoints(this->list(use->number), this->list(other->number)))
+        {
+          same.push_back(other->number);
+          other->number = -1;
+        }
+      }
+      this->join(same);
+    }
+  }
+
+  /// Listed faces and, after them, facets that have the same points.
+  void join(const std::vector<Index>& same)
+  {
+    const auto isListed = [this](Index number) { return number < this->Listed; };
+    const Index listed = std::count_if(same.begin(), same.end(), isListed);
+    const Index facets = static_cast<Index>(same.size()) - listed;
+    if (listed == 0)
+    {
+      return;
+    }
+    for (Index i = 0; i < facets; ++i)
+    {
+      this->FacetUsed[same[listed + i] - this->Listed] = 1;
+    }
+    if (listed > 2)
+    {
+      for (Index i = 0; i < listed; ++i)
+      {
+        this->Mate[same[i]] = TooMany - same[i == 0 ? 1 : 0];
+      }
+    }
+    else if (listed == 2 && facets < 2)
+    {
+      this->Mate[same[0]] = same[1];
+      this->Mate[same[1]] = same[0];
+    }
+    else if (listed == 1)
+    {
+      this->Facet[same[0]] = facets > 0 ? same[1] - this->Listed : -1;
+    }
+    else
+    {
+      // A baffle: each cell has the facet that points out of it.
+      const bool swapped = !sameSense(this->list(same[0]), this->list(same[2]));
+      this->Facet[same[0]] = same[swapped ? 3 : 2] - this->Listed;
+      this->Facet[same[1]] = same[swapped ? 2 : 3] - this->Listed;
+    }
+  }
+
+  const ListedFaces& Cells;
+  const ListedFacets& Facets;
+  Index Listed;
+  std::vector<Index> Mate, Facet;       ///< per listed face
+  std::vector<unsigned char> FacetUsed; ///< per facet
+  std::vector<Index> CellOf;            ///< per listed face
+  std::vector<Index> Starts;            ///< of each point in Uses
+  std::vector<Use> Uses;
+};
+
+void append(FaceMesh& mesh, const NodeList& list, Index owner)
+{
+  mesh.nodes.insert(mesh.nodes.end(), list.nodes, list.nodes + list.size);
+  mesh.offsets.push_back(static_cast<Index>(mesh.nodes.size()));
+  mesh.owner.push_back(owner);
+}
+
+/// The listed faces that are of the boundary: those of each patch, in the order of the facets,
+/// those without a facet last.
+std::vector<std::vector<Index>> boundaryOf(
+  const FaceMatch& match, const ListedFacets& facets, std::size_t patches)
+{
+  std::vector<std::vector<Index>> lists(patches + 1);
+  std::vector<Index> listedAt(facets.patch.size(), -1);
+  for (std::size_t i = 0; i < match.mates().size(); ++i)
+  {
+    const Index facet = match.facets()[i];
+    if (match.mates()[i] >= 0)
+    {
+      continue;
+    }
+    if (facet >= 0 && facets.patch[facet] >= 0)
+    {
+      listedAt[facet] = static_cast<Index>(i);
+    }
+    else
+    {
+      lists.back().push_back(static_cast<Index>(i));
+    }
+  }
+  for (std::size_t facet = 0; facet < listedAt.size(); ++facet)
+  {
+    if (listedAt[facet] >= 0)
+    {
+      lists[facets.patch[facet]].push_back(listedAt[facet]);
+    }
+  }
+  return lists;
+}
+
+void coupleCyclic(FaceMesh& mesh)
+{
+  mesh.partner.assign(mesh.faces() - mesh.internalFaces, -1);
+  const int patches = static_cast<int>(mesh.patches.size());
+  for (FacePatch& patch : mesh.patches)
+  {
+    if (patch.partner < 0 || patch.partner >= patches ||
+      mesh.patches[patch.partner].count != patch.count)
+    {
+      patch.partner = -1;
+      continue;
+    }
+    for (Index i = 0; i < patch.count; ++i)
+    {
+      mesh.partner[patch.first + i - mesh.internalFaces] = mesh.patches[patch.partner].first + i;
+    }
+  }
+}
+
+void listCellFaces(FaceMesh& mesh)
+{
+  mesh.cellOffsets.assign(mesh.cells + 1, 0);
+  const auto forEachUse = [&](const auto& use)
+  {
+    for (Index face = 0; face < mesh.faces(); ++face)
+    {
+      pollInterruption(face);
+      use(mesh.owner[face], face);
+      if (mesh.internal(face))
+      {
+        use(mesh.neighbor[face], face);
+      }
+    }
+  };
+  forEachUse([&](Index cell, Index) { ++mesh.cellOffsets[cell + 1]; });
+  std::partial_sum(mesh.cellOffsets.begin(), mesh.cellOffsets.end(), mesh.cellOffsets.begin());
+  mesh.cellFaces.resize(mesh.cellOffsets.back());
+  std::vector<Index> next(mesh.cellOffsets.begin(), mesh.cellOffsets.end() - 1);
+  forEachUse([&](Index cell, Index face) { mesh.cellFaces[next[cell]++] = face; });
+}
+}
+
+//------------------------------------------------------------------------------
+FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& facets,
+  std::vector<FacePatch> patches, int threads)
+{
+  const FaceMatch match(points, cells, facets, threads);
+  match.check();
+  FaceMesh mesh;
+  mesh.points = points;
+  mesh.cells = static_cast<Index>(cells.cellOffsets.size()) - 1;
+  mesh.strayFacets = match.strayFacets();
+
+  // By owner, of one owner by neighbor, of one pair in the order of the owner's list.
+  std::vector<std::pair<Index, Index>> ofCell;
+  for (Index cell = 0; cell < mesh.cells; ++cell)
+  {
+    pollInterruption(cell);
+    ofCell.clear();
+    for (Index i = cells.cellOffsets[cell]; i < cells.cellOffsets[cell + 1]; ++i)
+    {
+      const Index mate = match.mates()[i];
+      if (mate >= 0 && match.cells()[mate] > cell)
+      {
+        ofCell.emplace_back(match.cells()[mate], i);
+      }
+      else if (mate >= 0 && match.cells()[mate] == cell)
+      {
+        throw Error("Cell " + std::to_string(cell) + " lists a face twice: remove the cell.");
+      }
+    }
+    std::sort(ofCell.begin(), ofCell.end());
+    for (const auto& [neighbor, listed] : ofCell)
+    {
+      append(mesh, listOf(cells.faceOffsets, cells.nodes, listed), cell);
+      mesh.neighbor.push_back(neighbor);
+    }
+  }
+  mesh.internalFaces = mesh.faces();
+
+  const auto lists = boundaryOf(match, facets, patches.size());
+  if (!lists.back().empty())
+  {
+    patches.emplace_back();
+    patches.back().name = "boundary";
+  }
+  mesh.patches = std::move(patches);
+  for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+  {
+    mesh.patches[p].first = mesh.faces();
+    mesh.patches[p].count = static_cast<Index>(lists[p].size());
+    for (Index listed : lists[p])
+    {
+      // A facet begins with the point that corresponds to one of a coupled face.
+      const NodeList ofCell = listOf(cells.faceOffsets, cells.nodes, listed);
+      const Index facet = match.facets()[listed];
+      const NodeList given = facet >= 0 ? listOf(facets.offsets, facets.nodes, facet) : ofCell;
+      append(mesh, sameSense(ofCell, given) ? given : ofCell, match.cells()[listed]);
+      mesh.facet.push_back(facet);
+    }
+  }
+  coupleCyclic(mesh);
+  listCellFaces(mesh);
+  return mesh;
+}
+}

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file FaceMesh.h
+ * @brief A mesh of polyhedral cells as finite-volume programs keep it: faces with an owner and a
+ * neighbor.
+ *
+ * Internal faces come first, by owner and then by neighbor, which have greater numbers; then those
+ * of the boundary, patch by patch. The points of a face run counter-clockwise seen from its
+ * neighbor, so that its area vector points out of its owner.
+ */
+#ifndef tautline_FaceMesh_h
+#define tautline_FaceMesh_h
+
+#include "tautline/Mesh/Mesh.h"
+
+#include <string>
+#include <vector>
+
+namespace tautline
+{
+/// A part of the boundary.
+struct FacePatch
+{
+  std::string name;
+  /// By OpenFOAM's names: patch, wall, symmetry, empty, wedge, cyclic, processor, ...
+  std::string type = "patch";
+  Index first = 0; ///< its first face
+  Index count = 0;
+  int partner = -1; ///< of "cyclic": the patch that it is coupled with, face by face
+
+  bool isEmpty() const { return this->type == "empty"; }
+  /// Whether its faces correspond one by one with those of another patch.
+  bool isCyclic() const { return this->type == "cyclic" || this->type == "cyclicSlip"; }
+  /// Whether its points belong to those of another patch, mesh or process.
+  bool isCoupled() const
+  {
+    return this->type.rfind("cyclic", 0) == 0 || this->type.rfind("mapped", 0) == 0 ||
+      this->type.rfind("processor", 0) == 0 || this->type == "overset";
+  }
+  bool isWedge() const { return this->type == "wedge"; }
+};
+
+/// Faces, and the cells on their sides.
+struct FaceMesh
+{
+  Index points = 0, cells = 0;
+  Index internalFaces = 0;
+  Index strayFacets = 0;              ///< given facets that are not faces of a cell
+  std::vector<Index> offsets = { 0 }; ///< of each face in `nodes`; one more than faces
+  std::vector<Index> nodes;           ///< points of the faces
+  std::vector<Index> owner;           ///< cell of each face
+  std::vector<Index> neighbor;        ///< cell of each internal face
+  std::vector<FacePatch> patches;     ///< they cover the boundary faces, in order
+  std::vector<Index> partner;         ///< per boundary face: the coupled face, or -1
+  std::vector<Index> cellOffsets;     ///< of each cell in `cellFaces`; one more than cells
+  std::vector<Index> cellFaces;       ///< faces of the cells, in increasing order
+  std::vector<Index> facet;           ///< per boundary face: the number of the given facet, or -1
+  Index faces() const { return static_cast<Index>(this->owner.size()); }
+  Index size(Index face) const { return this->offsets[face + 1] - this->offsets[face]; }
+  bool internal(Index face) const { return face < this->internalFaces; }
+  /// The coupled face of a boundary face, or -1.
+  Index coupled(Index face) const { return this->partner[face - this->internalFaces]; }
+  /// Whether there is a cell on both sides, perhaps beyond a coupled patch.
+  bool hasTwoCells(Index face) const { return this->internal(face) || this->coupled(face) >= 0; }
+};
+
+/// The faces of cells, each as a list of points that runs counter-clockwise seen from outside.
+struct ListedFaces
+{
+  std::vector<Index> cellOffsets = { 0 }; ///< of each cell in `faceOffsets`
+  std::vector<Index> faceOffsets = { 0 }; ///< of each listed face in `nodes`
+  std::vector<Index> nodes;
+};
+
+/// Faces that are given beside the cells, such as those of patches.
+struct ListedFacets
+{
+  std::vector<Index> offsets = { 0 };
+  std::vector<Index> nodes;
+  std::vector<int> patch; ///< the patch of each; negative: none
+};
+
+/**
+ * @brief Finds the faces of cells: two cells that list the same points share a face, unless two
+ * facets are given there, which are then faces of the boundary (a baffle).
+ *
+ * The boundary has the given facets, patch by patch, in their order, each from its first point on
+ * if it points out of its cell; faces without a facet are the
+ * last patch, "boundary", if there are any. Facets that lie between two cells, of which there is
+ * one only, are not faces of the boundary.
+ *
+ * @param patches their names and types; `first` and `count` are set. "cyclic" patches whose partner
+ * has another number of faces become uncoupled.
+ *
+ * Throws Error where three or more cells share a face, or a cell lists one twice.
+ */
+TAUTLINE_KERNEL_EXPORT FaceMesh findFaces(Index points, const ListedFaces& cells,
+  const ListedFacets& facets, std::vector<FacePatch> patches, int threads = 0);
+}
+#endif
