@@ -577,15 +577,21 @@ std::string describe(const MeshRemarks& remarks)
   }
   if (!remarks.notMeasured.empty())
   {
-    text += "Not measured:";
+    text += "Not measured as elements:";
     for (const auto& entry : remarks.notMeasured)
     {
       text += " " + std::to_string(entry.second) + " " + cellClassName(entry.first) + ",";
     }
     text.back() = '.';
+    const auto is = [&remarks](int type) { return remarks.notMeasured.count(type) > 0; };
+    if (is(PolyhedronType) || is(PolygonType))
+    {
+      text += " Metrics of finite volumes, such as non_orthogonality, measure polyhedra and, in "
+              "plane meshes, polygons.";
+    }
     // ParaView's Triangulate takes poly data only; Tetrahedralize takes all data sets.
-    text += " Run Tetrahedralize first to measure them: it cuts all cells into triangles or "
-            "tetrahedra. ";
+    text += " Run Tetrahedralize first to measure them as elements: it cuts all cells into "
+            "triangles or tetrahedra. ";
   }
   if (remarks.nonFinitePoints > 0)
   {

@@ -5,6 +5,7 @@
 
 #include "vtkAppendFilter.h"
 #include "vtkCellData.h"
+#include "vtkCellType.h"
 #include "vtkDataSet.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
@@ -78,19 +79,39 @@ vtkSmartPointer<vtkUnstructuredGrid> extract(vtkDataSet* input, const std::vecto
   vtkNew<vtkIdList> ids;
   for (const vtkIdType cell : cells)
   {
-    input->GetCellPoints(cell, ids);
-    for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+    const auto renumber = [&](vtkIdType i)
     {
       const vtkIdType old = ids->GetId(i);
-      const auto made = newIds.emplace(old, points->GetNumberOfPoints());
-      if (made.second)
+      const auto entry = newIds.emplace(old, points->GetNumberOfPoints());
+      if (entry.second)
       {
         points->InsertNextPoint(input->GetPoint(old));
-        grid->GetPointData()->CopyData(input->GetPointData(), old, made.first->second);
+        grid->GetPointData()->CopyData(input->GetPointData(), old, entry.first->second);
       }
-      ids->SetId(i, made.first->second);
+      ids->SetId(i, entry.first->second);
+    };
+    const int type = input->GetCellType(cell);
+    if (type == VTK_POLYHEDRON)
+    {
+      // The number of faces, and for each face its size and points.
+      vtkUnstructuredGrid::SafeDownCast(input)->GetFaceStream(cell, ids);
+      for (vtkIdType i = 1; i < ids->GetNumberOfIds(); i += ids->GetId(i) + 1)
+      {
+        for (vtkIdType k = 1; k <= ids->GetId(i); ++k)
+        {
+          renumber(i + k);
+        }
+      }
     }
-    const vtkIdType made = grid->InsertNextCell(input->GetCellType(cell), ids);
+    else
+    {
+      input->GetCellPoints(cell, ids);
+      for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+      {
+        renumber(i);
+      }
+    }
+    const vtkIdType made = grid->InsertNextCell(type, ids);
     grid->GetCellData()->CopyData(input->GetCellData(), cell, made);
   }
   grid->SetPoints(points);

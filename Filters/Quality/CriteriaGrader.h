@@ -29,6 +29,9 @@ public:
 
   bool active() const { return !this->Criteria.criteria.empty(); }
 
+  /// The convention of face centers that the criteria state, or "".
+  const std::string& convention() const { return this->Criteria.convention; }
+
   /// These metrics, then those of the criteria that are not among them.
   std::vector<Metric> withMetrics(std::vector<Metric> metrics) const;
 

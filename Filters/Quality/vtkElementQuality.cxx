@@ -7,6 +7,8 @@
 #include "CurvedFacts.h"
 #include "ColorMaps.h"
 #include "CriteriaGrader.h"
+#include "FaceQuality.h"
+#include "FaceTotals.h"
 #include "MeshAdapter.h"
 #include "MeshGroups.h"
 #include "MetricSelection.h"
@@ -55,6 +57,8 @@ enum Ports
   HistogramPort,
   CriteriaPort,
   BadPort,
+  FacesPort,
+  MeshChecksPort,
   NumberOfPorts
 };
 
@@ -191,6 +195,18 @@ vtkUnstructuredGrid* vtkElementQuality::GetBad()
 }
 
 //------------------------------------------------------------------------------
+vtkPolyData* vtkElementQuality::GetFaces()
+{
+  return vtkPolyData::SafeDownCast(this->GetOutputDataObject(FacesPort));
+}
+
+//------------------------------------------------------------------------------
+vtkTable* vtkElementQuality::GetMeshChecks()
+{
+  return this->GetOutputTable(MeshChecksPort);
+}
+
+//------------------------------------------------------------------------------
 int vtkElementQuality::GetNumberOfKnownMetrics()
 {
   return static_cast<int>(tautline::metricRegistry().size());
@@ -226,7 +242,7 @@ std::string vtkElementQuality::GetColorMapSettings()
 int vtkElementQuality::FillOutputPortInformation(int port, vtkInformation* info)
 {
   this->Superclass::FillOutputPortInformation(port, info);
-  if (port == WorstPort)
+  if (port == WorstPort || port == FacesPort)
   {
     info->Set(vtkDataObject::DATA_TYPE_NAME(), "vtkPolyData");
   }
@@ -292,16 +308,19 @@ void vtkElementQuality::MeasureAll(
   tautline::QualityTotals totals(grader.withMetrics(this->GetSelection().metrics()));
   totals.setChecks(checks);
   tautline::BadElements bad;
+  tautline::FaceTotals faces;
   this->Together("choose fewer metrics or measure the mesh in parts",
     [&]
     {
       tautline::forEachBlock(input, vtkDataObject::GetData(inputVector[1]), nullptr,
         vtkDataObject::GetData(outputVector, MeshPort),
         [&](const tautline::InputBlock& block)
-        { this->Measure(block, orientations, totals, grader, bad); });
+        { this->Measure(block, orientations, totals, grader, bad, faces); });
     });
   totals.gather(this->Controller);
   grader.gather(this->Controller);
+  faces.gather(this->Controller);
+  faces.copyTo(vtkPolyData::GetData(outputVector, FacesPort));
   // Unlike the tables, each process has its own.
   bad.copyTo(vtkUnstructuredGrid::GetData(outputVector, BadPort));
   if (!this->Controller || this->Controller->GetLocalProcessId() == 0)
@@ -311,13 +330,20 @@ void vtkElementQuality::MeasureAll(
       vtkTable::GetData(outputVector, AnglesPort), vtkPolyData::GetData(outputVector, WorstPort),
       vtkTable::GetData(outputVector, HistogramPort));
     grader.tabulate(vtkTable::GetData(outputVector, CriteriaPort));
+    faces.tabulate(vtkTable::GetData(outputVector, MeshChecksPort));
     this->Summary = grader.summary();
+    this->AddToSummary(faces.summary());
     this->AddToSummary(totals.summary());
   }
   if (grader.active())
   {
     this->Verdict = tautline::gradeName(grader.totals().verdict());
     this->QualityIndex = grader.totals().meanIndex();
+  }
+  if (!faces.empty())
+  {
+    this->FailedChecks = faces.report().failed(false);
+    this->FailedChecksOfAll = faces.report().failed(true);
   }
   this->Warn(this->Notice);
 }
@@ -337,12 +363,13 @@ void vtkElementQuality::ClearResult()
   this->Notice.clear();
   this->Verdict.clear();
   this->WorkingBytes = this->QualityIndex = 0;
+  this->FailedChecks = this->FailedChecksOfAll = -1;
 }
 
 //------------------------------------------------------------------------------
 void vtkElementQuality::Measure(const tautline::InputBlock& block,
   const tautline::PieceOrientations& pieces, tautline::QualityTotals& totals,
-  tautline::CriteriaGrader& grader, tautline::BadElements& bad)
+  tautline::CriteriaGrader& grader, tautline::BadElements& bad, tautline::FaceTotals& faceTotals)
 {
   using namespace tautline;
   vtkDataSet *input = block.input, *output = block.output;
@@ -371,6 +398,7 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   validity->SetNumberOfValues(cells);
   this->SettleOrientation(adapter, piece, validity->GetPointer(0), output);
   const auto curved = this->CertifyCurved(input, adapter, validity->GetPointer(0));
+  const auto faces = this->FindFaces(input, adapter, metrics, grader, validity->GetPointer(0));
   if (this->JacobianBounds)
   {
     this->AddBounds(input, adapter, output);
@@ -406,14 +434,25 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
     vtkNew<vtkDoubleArray> values;
     values->SetName(info.name);
     values->SetNumberOfValues(cells);
-    requireInRange(info, evaluateMetric(mesh, info.metric, options, values->GetPointer(0)));
-    curved->measure(info.metric, options, validity->GetPointer(0), values->GetPointer(0));
+    if (info.family == MetricFamily::Faces)
+    {
+      faces->measure(info.metric, values->GetPointer(0));
+    }
+    else
+    {
+      requireInRange(info, evaluateMetric(mesh, info.metric, options, values->GetPointer(0)));
+      curved->measure(info.metric, options, validity->GetPointer(0), values->GetPointer(0));
+    }
     output->GetCellData()->AddArray(values);
     totals.addValues(m, mesh,
       { cells, values->GetPointer(0), validity->GetPointer(0), mesh.view().cellTypes, skipped },
       input->GetCellData()->GetGlobalIds());
   }
   progress.emplace(this, stepAt(metrics.size() + 1), stepAt(metrics.size() + 2));
+  if (faces && !this->GetAbortExecute())
+  {
+    this->CheckFaces(*faces, faceTotals);
+  }
   this->MeasureChecks(input, adapter, validity->GetPointer(0), skipped, totals, output);
   // Ghosts have the grades of the cells that they are copies of, but do not count.
   const std::vector<unsigned char> beside = facesBesideVolumes(mesh);
@@ -430,6 +469,35 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   this->WorkingBytes = std::max(this->WorkingBytes,
     static_cast<double>(adapter.copiedBytes() + skip.size() + totals.bytes() +
       targets.inverse.size() * sizeof(double) + targets.offsets.size() * sizeof(Index)));
+}
+
+//------------------------------------------------------------------------------
+/// The faces of a mesh, where metrics or cells need them, which then are classified; else null.
+std::unique_ptr<tautline::FaceQuality> vtkElementQuality::FindFaces(vtkDataSet* input,
+  tautline::MeshAdapter& adapter, const std::vector<tautline::Metric>& metrics,
+  const tautline::CriteriaGrader& grader, signed char* validity)
+{
+  const bool foundation = this->FaceConvention == FOUNDATION ||
+    (this->FaceConvention == BY_CRITERIA && grader.convention() == "foundation");
+  auto faces = tautline::makeFaceQuality(input, adapter, metrics,
+    foundation ? tautline::FaceConvention::Foundation : tautline::FaceConvention::Esi,
+    this->Threads);
+  if (faces)
+  {
+    faces->classify(validity);
+    this->AddToNotice(faces->notice());
+  }
+  return faces;
+}
+
+//------------------------------------------------------------------------------
+void vtkElementQuality::CheckFaces(tautline::FaceQuality& faces, tautline::FaceTotals& totals)
+{
+  totals.add(faces.check(), faces.measures().mesh());
+  if (this->FaceOutput != NO_FACES)
+  {
+    totals.add(faces.faces(this->FaceOutput == ALL_FACES));
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -565,6 +633,10 @@ void vtkElementQuality::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "ExtractBad: " << this->ExtractBad << "\n";
   os << indent << "HistogramBins: " << this->HistogramBins << "\n";
   os << indent << "Criteria: " << this->Criteria << "\n";
+  os << indent << "FaceConvention: " << this->FaceConvention << "\n";
+  os << indent << "FaceOutput: " << this->FaceOutput << "\n";
+  os << indent << "FailedChecks: " << this->FailedChecks << "\n";
+  os << indent << "FailedChecksOfAll: " << this->FailedChecksOfAll << "\n";
   os << indent << "Checks: " << this->Checks << "\n";
   os << indent << "Verdict: " << this->Verdict << "\n";
   os << indent << "QualityIndex: " << this->QualityIndex << "\n";

@@ -4,9 +4,10 @@
  * @brief Measures every element of a mesh by any number of quality metrics.
  *
  * Takes triangles, quadrilaterals, tetrahedra, hexahedra, wedges and pyramids, also mixed, from any
- * vtkDataSet or composite data set. Of cells of higher order, up to order 6, `Validity`, sizes and
- * the metrics of T = A W^-1 with the ideal target hold for the whole curved cell; lengths, angles
- * and metrics with another target are measured on the corners (see
+ * vtkDataSet or composite data set. Metrics of finite volumes are measured on polyhedra, too, and
+ * on polygons of plane meshes, which count as one layer of prisms. Of cells of higher order, up to
+ * order 6, `Validity`, sizes and the metrics of T = A W^-1 with the ideal target hold for the whole
+ * curved cell; lengths, angles and metrics with another target are measured on the corners (see
  * tautline/Quality/CurvedQuality.h). Whether the mesh is planar, a surface or a volume is detected,
  * and so is its orientation: a mesh that is reversed throughout is reported and, by default,
  * measured as if it were not; one of mixed orientation is reported.
@@ -77,6 +78,18 @@
  * of a metric, with their arrays. Of several processes, each has its own. Elements of other meshes
  * are visible without it.
  *
+ * @par Output port 8 `Faces`:
+ * A vtkPolyData with the faces of a mesh of which metrics of finite volumes are measured, by
+ * default those that fail a check: cell arrays `Face` (number in the order of OpenFOAM), `Owner`
+ * and `Neighbour` (cells; -1: none), `Patch` (-1: internal), `Failed` (bits of the checks, see
+ * port 9), `OwnerWeight` (OpenFOAM's `weights`), and one per metric of faces.
+ *
+ * @par Output port 9 `MeshChecks`:
+ * A vtkTable with a row for each check of OpenFOAM's checkMesh, if metrics of finite volumes are
+ * measured: `Check`, `Label`, `Minimum`, `Maximum`, `Mean`, `Limit`, `Offending`, `Severe` (faces
+ * above 70 degrees), `OnRequest` (1: only with -allTopology or -allGeometry), `Failed`, `Bit`. See
+ * tautline/FiniteVolume/MeshChecks.h.
+ *
  * @par Targets:
  * Metrics that are functions of T = A W^-1 take the target element W from TargetType: the ideal
  * one, the same element of a reference mesh (input port 1), the ideal shape in a size given per
@@ -118,6 +131,8 @@ namespace tautline
 class BadElements;
 class CriteriaGrader;
 class CurvedQuality;
+class FaceQuality;
+class FaceTotals;
 class Mesh;
 class MeshAdapter;
 struct CurvedCellFacts;
@@ -281,6 +296,47 @@ public:
   double GetQualityIndex() const { return this->QualityIndex; }
   ///@}
 
+  enum FaceConventions
+  {
+    BY_CRITERIA = 0,
+    ESI = 1,
+    FOUNDATION = 2
+  };
+  ///@{
+  /**
+   * Which OpenFOAM computes the centers of faces for metrics of finite volumes: ESI
+   * (openfoam.com) or FOUNDATION (openfoam.org); they differ for warped faces only, see
+   * tautline/FiniteVolume/FaceGeometry.h. BY_CRITERIA: that of the criteria, or ESI. The default is
+   * BY_CRITERIA.
+   */
+  vtkTautlineSetRangeMacro(FaceConvention, int, BY_CRITERIA, FOUNDATION);
+  vtkGetMacro(FaceConvention, int);
+  ///@}
+
+  enum FaceOutputs
+  {
+    NO_FACES = 0,
+    FAILED_FACES = 1,
+    ALL_FACES = 2
+  };
+  ///@{
+  /**
+   * Which faces the output Faces has, where metrics of finite volumes are measured: none, those
+   * that fail a check and those of cells that do, or all. The default is FAILED_FACES.
+   */
+  vtkTautlineSetRangeMacro(FaceOutput, int, NO_FACES, ALL_FACES);
+  vtkGetMacro(FaceOutput, int);
+  ///@}
+
+  ///@{
+  /**
+   * How many checks of OpenFOAM's checkMesh the mesh of the last execution fails: without options,
+   * and with -allTopology and -allGeometry. -1: no metric of finite volumes was measured.
+   */
+  vtkGetMacro(FailedChecks, int);
+  vtkGetMacro(FailedChecksOfAll, int);
+  ///@}
+
   ///@{
   /// The processes that share the mesh. The default is the global controller.
   virtual void SetController(vtkMultiProcessController* controller);
@@ -296,6 +352,8 @@ public:
   vtkTable* GetCriteriaTable();
   vtkPolyData* GetWorst();
   vtkUnstructuredGrid* GetBad();
+  vtkPolyData* GetFaces();
+  vtkTable* GetMeshChecks();
   ///@}
 
   ///@{
@@ -336,7 +394,12 @@ private:
   void Together(const char* memoryRemedy, const std::function<void()>& work);
   void MeasureAll(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   void Measure(const tautline::InputBlock& block, const tautline::PieceOrientations& pieces,
-    tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad);
+    tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad,
+    tautline::FaceTotals& faces);
+  std::unique_ptr<tautline::FaceQuality> FindFaces(vtkDataSet* input,
+    tautline::MeshAdapter& adapter, const std::vector<tautline::Metric>& metrics,
+    const tautline::CriteriaGrader& grader, signed char* validity);
+  void CheckFaces(tautline::FaceQuality& faces, tautline::FaceTotals& totals);
   /// @param piece what was found of the whole mesh; null: that of this data set is
   void SettleOrientation(tautline::MeshAdapter& adapter, const tautline::OrientedPiece* piece,
     signed char* validity, vtkDataSet* output);
@@ -363,6 +426,8 @@ private:
   int ReversedMesh = MEASURE_FLIPPED;
   int HistogramBins = 32;
   bool JacobianBounds = false;
+  int FaceConvention = BY_CRITERIA, FaceOutput = FAILED_FACES;
+  int FailedChecks = -1, FailedChecksOfAll = -1;
   bool ExtractBad = false;
   vtkMultiProcessController* Controller = nullptr;
   std::string Notice;

@@ -115,6 +115,8 @@ def field(metric: dict):
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     columns, rows = (round((end - start) * PIXELS) for start, end in (X, Y))
+    if metric["family"] == "faces":
+        return field_of_faces(metric, columns, rows)
     source = vtkMetricField()
     source.AddMetricByName(metric["name"])
     if "2" in metric["dimensions"]:
@@ -128,6 +130,41 @@ def field(metric: dict):
     source.Update()
     data = source.GetOutput().GetPointData()
     return [vtk_to_numpy(data.GetArray(name)).reshape(rows, columns) for name in (metric["name"], "Validity")]
+
+
+def field_of_faces(metric: dict, columns: int, rows: int):
+    """The same of a triangle between three others, whose outer points are those about the regular one."""
+    import numpy as np
+    from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE, vtkCellArray, vtkUnstructuredGrid
+
+    height = 3**0.5 / 2
+    corners = np.array([(0, 0), (1, 0), (0.5, height), (0.5, -height), (1.5, height), (-0.5, height)])
+    triangles = np.array([(0, 1, 2), (1, 0, 3), (2, 1, 4), (0, 2, 5)])
+    x, y = np.meshgrid(np.linspace(*X, columns), np.linspace(*Y, rows))
+    points = np.zeros((x.size, len(corners), 3))
+    points[:, :, :2] = corners
+    points[:, 2, 0], points[:, 2, 1] = x.ravel(), y.ravel()
+    points[:, :, :2] += 10 * np.stack([x.ravel() - X[0], y.ravel() - Y[0]], axis=1)[:, None, :] * PIXELS  # side by side
+    cells = triangles + len(corners) * np.arange(x.size)[:, None, None]
+    grid, places, polygons = vtkUnstructuredGrid(), vtkPoints(), vtkCellArray()
+    places.SetData(numpy_to_vtk(points.reshape(-1, 3), deep=True))
+    polygons.SetData(3, numpy_to_vtkIdTypeArray(cells.reshape(-1), deep=True))
+    grid.SetPoints(places)
+    grid.SetCells(VTK_TRIANGLE, polygons)
+    quality = vtkElementQuality()
+    quality.SetInputData(grid)
+    quality.AddMetricByName(metric["name"])
+    quality.SetReversedMesh(quality.MEASURE_AS_GIVEN)
+    quality.SetFaceOutput(quality.NO_FACES)
+    quality.Update()
+    data = quality.GetOutputDataObject(0).GetCellData()
+    # What differs by rounding is of one band.
+    return [
+        vtk_to_numpy(data.GetArray(name))[:: len(triangles)].reshape(rows, columns).round(9)
+        for name in (metric["name"], "Validity")
+    ]
 
 
 def picture(metric: dict):

@@ -44,7 +44,8 @@ def metrics() -> list[dict[str, Any]]:
         cell_types (list of str); full_2d, full_3d (range on valid elements, a tuple of two floats); acceptable_2d,
         acceptable_3d (range that most solvers accept); ideal_2d, ideal_3d (float); direction ("smaller is better",
         "larger is better", "neutral"); inverted (value on an inverted element: "negative", "larger", "unsigned");
-        barrier, differentiable, scale_invariant, rotation_invariant (bool).
+        barrier, differentiable, scale_invariant, rotation_invariant (bool); family ("target", "simplex" and "cell":
+        functions of one element; "faces": of finite volumes, of the faces of a cell and the cells across).
 
     Examples
     --------

@@ -84,6 +84,14 @@ class QualityResult(Result):
         Per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
     checks : dict[str, Array]
         Per check of solvers, if any were chosen, its value on each cell, m.
+    faces : vtkPolyData
+        Where metrics of finite volumes are measured, the faces that fail a check of OpenFOAM's checkMesh (or all, see
+        face_output), with the cell arrays Face, Owner, Neighbour, Patch, Failed, OwnerWeight and one per metric.
+    mesh_checks : dict[str, dict[str, Any]]
+        Per check of checkMesh: label, minimum, maximum, mean, limit, offending, severe, on_request (only with
+        -allTopology and -allGeometry), failed, bit (in Failed of the faces). Empty without metrics of finite volumes.
+    failed_checks, failed_checks_of_all : int | None
+        How many checks fail, as checkMesh counts them without options and with both; None without such metrics.
     notice : str
         A note on the mesh (reversed orientation, cells left out), or "".
     summary : str
@@ -108,6 +116,10 @@ class QualityResult(Result):
     bounds: Array | None
     criteria: dict[str, dict[str, Any]]
     checks: dict[str, Array]
+    faces: vtkPolyData
+    mesh_checks: dict[str, dict[str, Any]]
+    failed_checks: int | None
+    failed_checks_of_all: int | None
     notice: str
     summary: str
 
@@ -197,7 +209,8 @@ def criteria(name: str) -> dict[str, Any]:
     ----------
     name : str
         For shells and solids: "fem", "skewness". For shells: "optistruct", "hypermesh", "nastran", "ansys". For solids:
-        "optistruct_solids", "hypermesh_solids", "nastran_solids", "ansys_solids".
+        "optistruct_solids", "hypermesh_solids", "nastran_solids", "ansys_solids". For finite volumes: "openfoam",
+        "openfoam.org", "snappy", "fluent".
 
     Returns
     -------
@@ -271,6 +284,10 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
         bounds=cell_array(mesh, "JacobianBound") if filter_.GetJacobianBounds() else None,
         criteria=by_metric(_by_metric(columns(filter_.GetCriteriaTable())) if graded else {}),
         checks={name: cell_array(mesh, name) for name in _chosen_checks(filter_)},
+        faces=filter_.GetFaces(),
+        mesh_checks=_mesh_checks(columns(filter_.GetMeshChecks())),
+        failed_checks=_count(filter_.GetFailedChecks()),
+        failed_checks_of_all=_count(filter_.GetFailedChecksOfAll()),
         notice=filter_.GetNotice(),
         summary=filter_.GetSummary(),
     )
@@ -307,6 +324,21 @@ def _by_metric(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
         str(name): {snake(key): int(table[key][row]) if key in counts else _plain(table[key][row]) for key in keys}
         for row, name in enumerate(table["Metric"])
     }
+
+
+def _mesh_checks(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    numbers = ("Minimum", "Maximum", "Mean", "Limit")
+    rows: dict[str, dict[str, Any]] = {}
+    for row, name in enumerate(table.get("Check", ())):
+        rows[str(name)] = {"label": str(table["Label"][row])}
+        rows[str(name)] |= {snake(key): float(table[key][row]) for key in numbers}
+        rows[str(name)] |= {snake(key): int(table[key][row]) for key in ("Offending", "Severe", "Bit")}
+        rows[str(name)] |= {snake(key): bool(table[key][row]) for key in ("OnRequest", "Failed")}
+    return rows
+
+
+def _count(number: int) -> int | None:
+    return number if number >= 0 else None
 
 
 def _plain(value: Any) -> Any:
@@ -417,7 +449,8 @@ def add_own_commands(commands: Any) -> None:
         example="fem",
         details="The file can be changed and given to quality --criteria.",
     )  # fmt: skip
-    names = "fem, skewness; for shells optistruct, hypermesh, nastran, ansys; for solids the same with _solids"
+    names = ("fem, skewness; for shells optistruct, hypermesh, nastran, ansys; for solids the same with _solids; for "
+             "finite volumes openfoam, openfoam.org, snappy, fluent")  # fmt: skip
     preset.add_argument("name", metavar="NAME", help=names)
 
 
