@@ -64,6 +64,7 @@ enum FileCell : unsigned char
   FileQuadrilateral9 = 28,
   FileHexahedron27 = 29,
   FileWedge18 = 32,
+  FilePolyhedron = 42,   ///< of FoamMesh only
   FileLagrangeLine = 68, ///< of any order, as all below
   FileLagrangeTriangle = 69,
   FileLagrangeQuadrilateral = 70,

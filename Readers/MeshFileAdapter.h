@@ -8,6 +8,13 @@
 
 #include "MeshFile.h"
 
+#include "vtkSmartPointer.h"
+#include "vtkType.h"
+
+#include <new>
+#include <utility>
+#include <vector>
+
 class vtkDataSet;
 class vtkPointSet;
 class vtkPolyData;
@@ -30,5 +37,26 @@ TAUTLINEREADERS_EXPORT void toSurface(MeshFile mesh, vtkPolyData* surface);
  * polyhedra, ...).
  */
 TAUTLINEREADERS_EXPORT MeshFile fromDataSet(vtkDataSet* input);
+
+/// A VTK array that takes over the memory of a vector.
+template <class ArrayT, class Value>
+vtkSmartPointer<ArrayT> takeValues(std::vector<Value> values, int components)
+{
+  static_assert(sizeof(Value) == sizeof(typename ArrayT::ValueType));
+  using Vector = std::vector<Value>;
+  auto array = vtkSmartPointer<ArrayT>::New();
+  array->SetNumberOfComponents(components);
+  const auto size = static_cast<vtkIdType>(values.size());
+  if (size > 0)
+  {
+    // a vector whose destructor never runs: VTK gives the memory back
+    alignas(Vector) unsigned char kept[sizeof(Vector)];
+    Value* memory = (new (kept) Vector(std::move(values)))->data();
+    array->SetArray(reinterpret_cast<typename ArrayT::ValueType*>(memory), size, 0,
+      ArrayT::VTK_DATA_ARRAY_USER_DEFINED);
+    array->SetArrayFreeFunction([](void* p) { ::operator delete(p); });
+  }
+  return array;
+}
 }
 #endif

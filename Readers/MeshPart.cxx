@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "MeshPart.h"
 
+#include "ArrayIndex.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -14,11 +16,6 @@ constexpr unsigned char Duplicate = 1; // vtkDataSetAttributes::DUPLICATECELL an
 /// A cell and its centre along an axis; cells at the same place are ordered by their numbers.
 using PlacedCell = std::pair<double, Index>;
 
-std::size_t at(Index i)
-{
-  return static_cast<std::size_t>(i);
-}
-
 /// The mean of a cell's nodes along an axis.
 double centre(const MeshFile& mesh, Index cell, int axis)
 {
@@ -31,17 +28,19 @@ double centre(const MeshFile& mesh, Index cell, int axis)
   return sum / static_cast<double>(std::max<Index>(end - begin, 1));
 }
 
+using PlacedCells = std::vector<PlacedCell>::iterator;
+
 /// The axis along which the centres of the cells are spread farthest.
-int longestAxis(const MeshFile& mesh, const std::vector<PlacedCell>& cells)
+int longestAxis(const MeshFile& mesh, PlacedCells begin, PlacedCells end)
 {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   std::array<double, 3> low{ infinity, infinity, infinity };
   std::array<double, 3> high{ -infinity, -infinity, -infinity };
-  for (const PlacedCell& cell : cells)
+  for (auto cell = begin; cell != end; ++cell)
   {
     for (std::size_t axis = 0; axis < 3; ++axis)
     {
-      const double place = centre(mesh, cell.second, static_cast<int>(axis));
+      const double place = centre(mesh, cell->second, static_cast<int>(axis));
       low[axis] = std::min(low[axis], place);
       high[axis] = std::max(high[axis], place);
     }
@@ -55,43 +54,66 @@ int longestAxis(const MeshFile& mesh, const std::vector<PlacedCell>& cells)
   return longest;
 }
 
-/// The cells of a part, in the order of the file. Only the halves that contain the part are divided
-/// further.
-std::vector<Index> ownCells(const MeshFile& mesh, int part, int parts)
+/// Divides the cells of `parts` parts into those of the first parts / 2 and the others, which begin
+/// at the result.
+PlacedCells halve(const MeshFile& mesh, PlacedCells begin, PlacedCells end, int parts)
+{
+  const int axis = longestAxis(mesh, begin, end);
+  for (auto cell = begin; cell != end; ++cell)
+  {
+    cell->first = centre(mesh, cell->second, axis);
+  }
+  const auto cells = static_cast<std::size_t>(end - begin);
+  const auto cut = begin +
+    static_cast<std::ptrdiff_t>(
+      cells * static_cast<std::size_t>(parts / 2) / static_cast<std::size_t>(parts));
+  std::nth_element(begin, cut, end);
+  return cut;
+}
+
+std::vector<PlacedCell> allCells(const MeshFile& mesh)
 {
   std::vector<PlacedCell> cells(mesh.cellTypes.size());
   for (std::size_t i = 0; i < cells.size(); ++i)
   {
     cells[i].second = static_cast<Index>(i);
   }
+  return cells;
+}
+
+/// The cells of a part, in the order of the file. Only the halves that contain the part are divided
+/// further.
+std::vector<Index> ownCells(const MeshFile& mesh, int part, int parts)
+{
+  std::vector<PlacedCell> cells = allCells(mesh);
+  auto begin = cells.begin(), end = cells.end();
   while (parts > 1)
   {
-    const int axis = longestAxis(mesh, cells);
-    for (PlacedCell& cell : cells)
-    {
-      cell.first = centre(mesh, cell.second, axis);
-    }
+    const auto cut = halve(mesh, begin, end, parts);
     const int lowParts = parts / 2;
-    const auto cut = static_cast<std::ptrdiff_t>(
-      cells.size() * static_cast<std::size_t>(lowParts) / static_cast<std::size_t>(parts));
-    std::nth_element(cells.begin(), cells.begin() + cut, cells.end());
-    if (part < lowParts)
-    {
-      cells.erase(cells.begin() + cut, cells.end());
-      parts = lowParts;
-    }
-    else
-    {
-      cells.erase(cells.begin(), cells.begin() + cut);
-      part -= lowParts;
-      parts -= lowParts;
-    }
+    const bool low = part < lowParts;
+    (low ? end : begin) = cut;
+    part -= low ? 0 : lowParts;
+    parts = low ? lowParts : parts - lowParts;
   }
-  std::vector<Index> result(cells.size());
-  std::transform(
-    cells.begin(), cells.end(), result.begin(), [](const PlacedCell& cell) { return cell.second; });
+  std::vector<Index> result(static_cast<std::size_t>(end - begin));
+  std::transform(begin, end, result.begin(), [](const PlacedCell& cell) { return cell.second; });
   std::sort(result.begin(), result.end());
   return result;
+}
+
+/// Gives the cells their parts, from `first` on.
+void divide(const MeshFile& mesh, PlacedCells begin, PlacedCells end, int first, int parts,
+  std::vector<int>& partOfCell)
+{
+  if (parts == 1)
+  {
+    std::for_each(begin, end, [&](const PlacedCell& cell) { partOfCell[at(cell.second)] = first; });
+    return;
+  }
+  const auto cut = halve(mesh, begin, end, parts);
+  divide(mesh, begin, cut, first, parts / 2, partOfCell);
+  divide(mesh, cut, end, first + parts / 2, parts - parts / 2, partOfCell);
 }
 
 /// Sets the flag of each node of some cells.
@@ -187,6 +209,15 @@ std::vector<MeshArray> partArrays(const std::vector<MeshArray>& arrays,
   }
   return result;
 }
+}
+
+//------------------------------------------------------------------------------
+std::vector<int> partsOfCells(const MeshFile& mesh, int parts)
+{
+  std::vector<int> result(mesh.cellTypes.size());
+  std::vector<PlacedCell> cells = allCells(mesh);
+  divide(mesh, cells.begin(), cells.end(), 0, parts, result);
+  return result;
 }
 
 //------------------------------------------------------------------------------

@@ -38,5 +38,8 @@ struct PartRequest
  * of the file. Takes O(cells log parts) time and 16 bytes per cell beside the mesh.
  */
 TAUTLINEREADERS_EXPORT MeshFile partOf(const MeshFile& mesh, const PartRequest& request);
+
+/// The part of each cell, from 0, in the same division.
+std::vector<int> partsOfCells(const MeshFile& mesh, int parts);
 }
 #endif

@@ -85,36 +85,48 @@ vtkTypeBool vtkMeshFileReader::ProcessRequest(
 }
 
 //------------------------------------------------------------------------------
+tautline::MeshFile vtkMeshFileReader::ReadMesh()
+{
+  return {};
+}
+
+//------------------------------------------------------------------------------
 void vtkMeshFileReader::ReadPart(const tautline::PartRequest& request, vtkDataObject* output)
 {
   constexpr double readingShare = 0.8;
+  tautline::MeshFile mesh = [&]
+  {
+    const tautline::ProgressStep progress(this, 0.0, readingShare);
+    return this->ReadMesh();
+  }();
+  if (request.parts > 1)
+  {
+    mesh = tautline::partOf(mesh, request);
+  }
+  for (const std::string& warning : mesh.warnings)
+  {
+    vtkWarningMacro(<< this->FileName << ": " << warning);
+  }
+  if (auto* surface = vtkPolyData::SafeDownCast(output))
+  {
+    tautline::toSurface(std::move(mesh), surface);
+  }
+  else
+  {
+    tautline::toGrid(std::move(mesh), vtkUnstructuredGrid::SafeDownCast(output));
+  }
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshFileReader::ReadFile(const tautline::PartRequest& request, vtkDataObject* output)
+{
   if (!this->FileName || !this->FileName[0])
   {
     throw tautline::Error("no file name");
   }
   try
   {
-    tautline::MeshFile mesh = [&]
-    {
-      const tautline::ProgressStep progress(this, 0.0, readingShare);
-      return this->ReadMesh();
-    }();
-    if (request.parts > 1)
-    {
-      mesh = tautline::partOf(mesh, request);
-    }
-    for (const std::string& warning : mesh.warnings)
-    {
-      vtkWarningMacro(<< this->FileName << ": " << warning);
-    }
-    if (auto* surface = vtkPolyData::SafeDownCast(output))
-    {
-      tautline::toSurface(std::move(mesh), surface);
-    }
-    else
-    {
-      tautline::toGrid(std::move(mesh), vtkUnstructuredGrid::SafeDownCast(output));
-    }
+    this->ReadPart(request, output);
   }
   catch (const std::bad_alloc& error)
   {
@@ -137,7 +149,7 @@ int vtkMeshFileReader::RequestData(vtkInformationVector* outputs)
       request.parts > 1 ? tautline::tryProcessGroup() : nullptr;
     tautline::SingleRank alone;
     tautline::RankGroup& group = ranks && ranks->size() == request.parts ? *ranks : alone;
-    group.together([&] { this->ReadPart(request, output); });
+    group.together([&] { this->ReadFile(request, output); });
   }
   catch (const tautline::Error& error)
   {

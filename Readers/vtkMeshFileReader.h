@@ -16,7 +16,8 @@
  * must execute the reader. If one of them fails (a missing file, too little memory), all report an
  * error, so that no filter downstream works on an incomplete mesh.
  *
- * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkMfemReader vtkOffReader vtkMeshFileWriter
+ * @sa vtkTetGenReader vtkMeditReader vtkGmshReader vtkMfemReader vtkOffReader vtkFoamMeshReader
+ * vtkMeshFileWriter
  */
 #ifndef vtkMeshFileReader_h
 #define vtkMeshFileReader_h
@@ -82,8 +83,10 @@ protected:
   vtkMeshFileReader();
   ~vtkMeshFileReader() override;
 
-  /// Reads this->FileName; throws tautline::Error.
-  virtual tautline::MeshFile ReadMesh() = 0;
+  /// Reads this->FileName; throws tautline::Error. A subclass overrides this or ReadPart().
+  virtual tautline::MeshFile ReadMesh();
+  /// Fills the output with a part of the mesh of this->FileName; throws tautline::Error.
+  virtual void ReadPart(const tautline::PartRequest& request, vtkDataObject* output);
 
   int FillOutputPortInformation(int port, vtkInformation* info) override;
   virtual int RequestData(vtkInformationVector* outputs);
@@ -92,7 +95,7 @@ protected:
   bool LowerCells = false;
 
 private:
-  void ReadPart(const tautline::PartRequest& request, vtkDataObject* output);
+  void ReadFile(const tautline::PartRequest& request, vtkDataObject* output);
 
   std::string ErrorText;
 

@@ -36,19 +36,39 @@ int vtkMeshFileWriter::Write()
 }
 
 //------------------------------------------------------------------------------
+std::string vtkMeshFileWriter::TargetName()
+{
+  if (!this->FileName || !this->FileName[0])
+  {
+    throw tautline::Error("no file name");
+  }
+  return this->FileName;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkMeshFileWriter::WriteMesh(const tautline::MeshFile&, const std::string&)
+{
+  return {};
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::string> vtkMeshFileWriter::WriteDataSet(vtkDataSet* mesh, const std::string& name)
+{
+  return this->WriteMesh(tautline::fromDataSet(mesh), name);
+}
+
+//------------------------------------------------------------------------------
 void vtkMeshFileWriter::WriteData()
 {
   this->FilesWritten.clear();
+  std::string name;
   try
   {
-    if (!this->FileName || !this->FileName[0])
-    {
-      throw tautline::Error("no file name");
-    }
+    name = this->TargetName();
     auto* input = vtkDataSet::SafeDownCast(this->GetInput());
     if (!input)
     {
-      throw tautline::Error(std::string(this->FileName) + ": the input is a " +
+      throw tautline::Error(name + ": the input is a " +
         (this->GetInput() ? this->GetInput()->GetClassName() : "null") +
         ", and a file holds one mesh: extract a block (Extract Block), or merge the blocks first "
         "(Merge Blocks)");
@@ -56,18 +76,17 @@ void vtkMeshFileWriter::WriteData()
     const std::string problem = tautline::inputProblem(input, { true });
     if (!problem.empty())
     {
-      throw tautline::Error(std::string(this->FileName) + ": " + problem);
+      throw tautline::Error(name + ": " + problem);
     }
-    this->FilesWritten = this->WriteMesh(tautline::fromDataSet(input), this->FileName);
+    this->FilesWritten = this->WriteDataSet(input, name);
   }
   catch (const std::exception& error)
   {
-    this->ErrorText =
-      tautline::errorText(error, std::string(this->FileName) + " cannot be written");
+    this->ErrorText = tautline::errorText(error, name + " cannot be written");
   }
   catch (const tautline::Interrupted&)
   {
-    this->ErrorText = std::string(this->FileName) + ": writing was interrupted";
+    this->ErrorText = name + ": writing was interrupted";
   }
   if (!this->ErrorText.empty())
   {

@@ -8,7 +8,8 @@
  * number back. Discretization what was written gives the same mesh with the same arrays, apart from
  * arrays that are not numeric and integers other than 64-bit ones, which come back as 64-bit.
  *
- * @sa vtkTetGenWriter vtkMeditWriter vtkGmshWriter vtkOffWriter vtkMeshFileReader
+ * @sa vtkTetGenWriter vtkMeditWriter vtkGmshWriter vtkOffWriter vtkFoamPointsWriter
+ * vtkMeshFileReader
  */
 #ifndef vtkMeshFileWriter_h
 #define vtkMeshFileWriter_h
@@ -18,6 +19,8 @@
 
 #include <string> // for the names of files
 #include <vector> // for the names of files
+
+class vtkDataSet;
 
 namespace tautline
 {
@@ -60,9 +63,14 @@ protected:
   vtkMeshFileWriter() = default;
   ~vtkMeshFileWriter() override;
 
-  /// Writes the mesh and returns the names of the files; throws tautline::Error.
+  /// Writes the mesh and returns the names of the files; throws tautline::Error. A subclass
+  /// overrides this or WriteDataSet().
   virtual std::vector<std::string> WriteMesh(
-    const tautline::MeshFile& mesh, const std::string& name) = 0;
+    const tautline::MeshFile& mesh, const std::string& name);
+  /// The same for a data set that is valid.
+  virtual std::vector<std::string> WriteDataSet(vtkDataSet* mesh, const std::string& name);
+  /// The file to write, for messages too; throws tautline::Error without one.
+  virtual std::string TargetName();
 
   int FillInputPortInformation(int port, vtkInformation* info) override;
   void WriteData() override;

@@ -10,6 +10,7 @@
 #include "vtkCellArray.h"
 #include "vtkDataSet.h"
 #include "vtkIdList.h"
+#include "vtkIdTypeArray.h"
 #include "vtkSmartPointer.h"
 #include "vtkStructuredData.h"
 #include "vtkTypeInt64Array.h"
@@ -96,6 +97,33 @@ inline void removeStrayFaces(vtkUnstructuredGrid* grid)
   }
 #else
   static_cast<void>(grid);
+#endif
+}
+
+/// Gives a mesh cells with polyhedra. `starts` has the place in `streams` of each polyhedron, -1
+/// for other cells; there are the number of its faces, and the number of points and the points of
+/// each, as VTK kept them before 9.4.
+inline void setPolyhedralCells(vtkUnstructuredGrid* grid, vtkUnsignedCharArray* types,
+  vtkCellArray* cells, vtkIdTypeArray* starts, vtkIdTypeArray* streams)
+{
+#if VTK_VERSION_NUMBER >= VTK_VERSION_CHECK(9, 4, 0)
+  auto faces = vtkSmartPointer<vtkCellArray>::New();
+  auto facesOfCells = vtkSmartPointer<vtkCellArray>::New();
+  for (vtkIdType cell = 0; cell < starts->GetNumberOfValues(); ++cell)
+  {
+    vtkIdType at = starts->GetValue(cell);
+    const vtkIdType count = at < 0 ? 0 : streams->GetValue(at++);
+    facesOfCells->InsertNextCell(static_cast<int>(count));
+    for (vtkIdType i = 0; i < count; ++i)
+    {
+      const vtkIdType points = streams->GetValue(at++);
+      facesOfCells->InsertCellPoint(faces->InsertNextCell(points, streams->GetPointer(at)));
+      at += points;
+    }
+  }
+  grid->SetPolyhedralCells(types, cells, facesOfCells, faces);
+#else
+  grid->SetCells(types, cells, starts, streams);
 #endif
 }
 

@@ -532,6 +532,16 @@ def off_files():
     return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
 
 
+def openfoam_files():
+    view = new_view(OBLIQUE)
+    case = simple.OpenFOAMMeshReader(FileName=str(DATA / "elbow" / "elbow.foam"))
+    patches = simple.Threshold(Input=case, Scalars=["CELLS", "Patch"], LowerThreshold=0, UpperThreshold=2)
+    patches.UpdatePipeline()
+    draw(patches, view, "Patch", light=LIT).SetRepresentationType("Surface With Edges")
+    values("Patch", *patches.CellData["Patch"].GetRange())
+    return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
+
+
 def tetgen_files():
     view = new_view(OBLIQUE)
     draw(simple.Shrink(Input=sample("cube.1.node"), ShrinkFactor=0.8), view, light=LIT)
@@ -543,7 +553,7 @@ PICTURES = (
     curve_mesh, compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde,
     condition_estimator, solver_study, peridynamic_condition, interaction_layer, horizon_neighbors,
     silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files,
-    medit_files, mfem_files, off_files, tetgen_files, nonpositive_jacobian_1, nonpositive_jacobian_2,
+    medit_files, mfem_files, off_files, openfoam_files, tetgen_files, nonpositive_jacobian_1, nonpositive_jacobian_2,
     nonpositive_jacobian_3,
 )  # fmt: skip
 

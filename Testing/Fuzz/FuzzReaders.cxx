@@ -6,6 +6,9 @@
 #include "FuzzTargets.h"
 
 #include "AbaqusFile.h"
+#include "FoamCase.h"
+#include "FoamFileAdapter.h"
+#include "FoamPoints.h"
 #include "MeshFileAdapter.h"
 #include "MfemFile.h"
 #include "NastranFile.h"
@@ -16,6 +19,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 namespace tautline
 {
@@ -173,6 +177,48 @@ std::vector<std::string> writeMfemOnly(const MeshFile& mesh, const std::string& 
   throw FileError(name + ": is not compared");
 }
 
+void expectConsistent(const FoamMesh& mesh)
+{
+  const Index points = mesh.numberOfPoints(), faces = mesh.numberOfFaces();
+  expectThat(static_cast<Index>(mesh.faceOffsets.size()) == faces + 1 &&
+      mesh.faceOffsets.back() == static_cast<Index>(mesh.facePoints.size()),
+    "the starts of the faces enclose their points");
+  const auto within = [](const std::vector<Index>& values, Index count)
+  {
+    return std::all_of(
+      values.begin(), values.end(), [count](Index value) { return value >= 0 && value < count; });
+  };
+  expectThat(within(mesh.facePoints, points) && within(mesh.owner, mesh.cells) &&
+      within(mesh.neighbor, mesh.cells),
+    "points and cells of faces exist");
+  Index next = mesh.numberOfInternalFaces();
+  for (const FoamPatch& patch : mesh.patches)
+  {
+    expectThat(patch.start == next, "patches follow each other");
+    next += patch.size;
+  }
+  expectThat(next == faces, "patches cover the boundary");
+  expectThat(std::all_of(mesh.points.begin(), mesh.points.end(),
+               [](double value) { return std::isfinite(value); }),
+    "coordinates are finite");
+}
+
+/// What is written back is the file, and with another point reads back with it.
+void expectPointsWritten(const FoamPiece& piece)
+{
+  const std::string points = piece.folders[0] + "/points";
+  if (piece.folders.size() > 1 || !std::filesystem::exists(points))
+  {
+    return; // decomposed or compressed
+  }
+  std::vector<double> moved = piece.mesh.points;
+  expectThat(withFoamPoints(piece.folders[0], moved).bytes == readText(points),
+    "points that did not move are the file");
+  moved.back() = 0.25;
+  writeFoamPoints(piece.folders, piece.pointNumbers, moved, false);
+  expectThat(same(readFoamFolders(piece.folders).mesh.points, moved), "points are written");
+}
+
 std::vector<std::string> writeGmshText(const MeshFile& mesh, const std::string& name)
 {
   return writeGmsh(mesh, name, false);
@@ -189,6 +235,55 @@ void fuzzTetGen(std::string_view bytes)
 void fuzzMedit(std::string_view bytes)
 {
   fuzzSet(bytes, { "mesh", "meshb", "sol" }, readMedit, writeMedit);
+}
+
+//------------------------------------------------------------------------------
+void fuzzFoam(std::string_view bytes)
+{
+  std::vector<std::string> names;
+  for (const std::string prefix : { "", "processor0/", "processor1/" })
+  {
+    for (const char* name : { "points", "faces", "owner", "neighbour", "boundary", "cellZones",
+           "faceZones", "points.gz", "pointProcAddressing", "cellProcAddressing",
+           "faceProcAddressing", "boundaryProcAddressing" })
+    {
+      names.push_back(prefix + name);
+    }
+  }
+  namespace fs = std::filesystem;
+  const fs::path folder = fuzzFolder() + "/foam-case";
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  for (const auto& [name, content] : splitSet(bytes, names))
+  {
+    const fs::path file =
+      folder / fs::path(name).parent_path() / "constant/polyMesh" / fs::path(name).filename();
+    fs::create_directories(file.parent_path());
+    writeText(file.string(), std::string(content));
+  }
+  for (const int pieces : { 1, 2 })
+  {
+    FoamRequest request;
+    request.name = folder.string();
+    request.piece = pieces - 1;
+    request.pieces = pieces;
+    try
+    {
+      FoamPiece piece = readFoamCase(request);
+      expectConsistent(piece.mesh);
+      vtkNew<vtkUnstructuredGrid> grid;
+      toGrid(FoamPiece(piece), true, grid);
+      if (pieces == 1)
+      {
+        expectPointsWritten(piece);
+      }
+    }
+    catch (const FileError& error)
+    {
+      expectThat(std::string(error.what()).compare(0, fuzzFolder().size(), fuzzFolder()) == 0,
+        "the message begins with the name of the file: " + std::string(error.what()));
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -16,6 +16,7 @@ const std::vector<FuzzTarget>& fuzzTargets()
     { "abaqus", fuzzAbaqus },
     { "nastran", fuzzNastran },
     { "mfem", fuzzMfem },
+    { "foam", fuzzFoam },
     { "quality", fuzzQuality },
     { "mesh", fuzzMesh },
     { "move", fuzzMove },

@@ -73,6 +73,7 @@ void fuzzOff(std::string_view bytes);
 void fuzzAbaqus(std::string_view bytes);
 void fuzzNastran(std::string_view bytes);
 void fuzzMfem(std::string_view bytes);
+void fuzzFoam(std::string_view bytes);
 // FuzzImages.cxx:
 void fuzzImage(std::string_view bytes);
 void fuzzImageList(std::string_view bytes);

@@ -6,6 +6,7 @@ Inputs that failed once are added beside them by hand. usage: make_corpus.py
 
 from __future__ import annotations
 
+import gzip
 import struct
 from pathlib import Path
 
@@ -214,8 +215,99 @@ def write_images(folder: Path) -> None:
     (folder / "short.tga").write_bytes(targa + b"\xff\x01\x02\x03")
 
 
+class Foam:
+    """The files of a mesh of OpenFOAM: as text, or as bytes with labels of 32 and scalars of 64 bits."""
+
+    def __init__(self, binary: bool = False) -> None:
+        self.binary = binary
+
+    def file(self, kind: str, content: bytes) -> bytes:
+        form = "binary" if self.binary else "ascii"
+        head = f'FoamFile\n{{\n version 2.0;\n format {form};\n arch "LSB;label=32;scalar=64";\n class {kind};\n}}\n'
+        return head.encode() + content
+
+    def rows(self, values: np.ndarray) -> bytes:
+        count = f"{len(values)}\n(".encode()
+        if self.binary:
+            return count + values.astype("<f8" if values.dtype.kind == "f" else "<i4").tobytes() + b")\n"
+        lines = (f"({' '.join(map(str, row))})" if values.ndim > 1 else str(row) for row in values.tolist())
+        return count + "\n".join(lines).encode() + b"\n)\n"
+
+    def labels(self, values: list[int]) -> bytes:
+        return self.file("labelList", self.rows(np.array(values, int)) if values else b"0\n()\n")
+
+    def files(
+        self, points: list[tuple[float, ...]], faces: list[list[int]], owner: list[int], neighbour: list[int],
+        boundary: str, prefix: str = "",
+    ) -> bytes:  # fmt: skip
+        if self.binary:
+            starts = np.cumsum([0] + [len(face) for face in faces])
+            lists = self.rows(starts) + self.rows(np.concatenate(faces))
+            listed = self.file("faceCompactList", lists)
+        else:
+            rows = "\n".join(f"{len(face)}({' '.join(map(str, face))})" for face in faces)
+            listed = self.file("faceList", f"{len(faces)}\n(\n{rows}\n)\n".encode())
+        contents = {
+            "points": self.file("vectorField", self.rows(np.array(points, float))), "faces": listed,
+            "owner": self.labels(owner), "neighbour": self.labels(neighbour),
+            "boundary": self.file("polyBoundaryMesh", boundary.encode()),
+        }  # fmt: skip
+        return self.set({prefix + name: content for name, content in contents.items()})
+
+    @staticmethod
+    def set(contents: dict[str, bytes]) -> bytes:
+        return b"".join(f"@{name}\n".encode() + content for name, content in contents.items())
+
+
+CUBES = [(float(x), float(y), float(z)) for z in range(3) for y in range(2) for x in range(2)]
+SIDES = [[0, 1, 5, 4], [1, 3, 7, 5], [3, 2, 6, 7], [2, 0, 4, 6]]
+BOTTOM, MIDDLE, TOP = [0, 2, 3, 1], [4, 5, 7, 6], [8, 9, 11, 10]
+
+
+def foam_cases() -> dict[str, bytes]:
+    """Two cubes one above the other, as one mesh and on two processors; a cube one of whose faces is two triangles."""
+    text, binary = Foam(), Foam(binary=True)
+    faces = [MIDDLE, BOTTOM, TOP, *SIDES, *([point + 4 for point in side] for side in SIDES)]
+    owner = [0, 0, 1, 0, 0, 0, 0, 1, 1, 1, 1]
+    patches = (
+        "3 (\nlow { type cyclic; neighbourPatch high; nFaces 1; startFace 1; }\n"
+        "high { type cyclic; neighbourPatch low; nFaces 1; startFace 2; } // opposite\n"
+        "sides { type wall; inGroups 1(wall); nFaces 8; startFace 3; }\n)\n"
+    )
+    mesh = text.files(CUBES, faces, owner, [1], patches)
+    cell_zones = "2 ( a { type cellZone; cellLabels List<label> 1(1); } b { type cellZone; cellLabels 0(); } )"
+    face_zones = "1 ( f { type faceZone; faceLabels List<label> 2 (0 3); flipMap List<bool> 2{0}; } )"
+    zones = {name: text.file("regIOobject", content.encode())
+             for name, content in (("cellZones", cell_zones), ("faceZones", face_zones))}  # fmt: skip
+    joined = addressed = b""
+    for part, own in enumerate(([BOTTOM, *SIDES, MIDDLE], [MIDDLE, *SIDES, BOTTOM])):
+        other, prefix = 1 - part, f"processor{part}/"
+        cover = (
+            f"2 ( outside {{ type patch; nFaces 5; startFace 0; }} procBoundary{part}to{other} {{ type processor; "
+            f"nFaces 1; startFace 5; myProcNo {part}; neighbProcNo {other}; }} )\n"
+        )
+        joined += text.files(CUBES[4 * part : 4 * part + 8], own, [0] * 6, [], cover, prefix)
+        lists = {
+            "pointProcAddressing": list(range(4 * part, 4 * part + 8)), "cellProcAddressing": [part],
+            "faceProcAddressing": [*range(2 + 5 * part, 7 + 5 * part), 1 - 2 * part],
+            "boundaryProcAddressing": [0, -1],
+        }  # fmt: skip
+        addressed += text.set({prefix + name: text.labels(values) for name, values in lists.items()})
+    packed = gzip.compress(mesh[mesh.index(b"FoamFile") : mesh.index(b"@faces")], mtime=0)
+    all_faces = "1(all { type patch; nFaces 7; startFace 0; })"
+    split = [BOTTOM, *SIDES, [4, 5, 7], [4, 7, 6]]
+    return {
+        "text": mesh + text.set(zones),
+        "binary": binary.files(CUBES, faces, owner, [1], patches),
+        "compressed": mesh[mesh.index(b"@faces") :] + b"@points.gz\n" + packed,
+        "joined": joined,
+        "addressed": joined + addressed,
+        "polyhedron": text.files(CUBES[:8], split, [0] * 7, [], all_faces),
+    }
+
+
 def main() -> None:
-    texts = {"tetgen": TETGEN, "medit": MEDIT, "gmsh": GMSH, "off": OFF, "imagelist": LIST}
+    texts = {"foam": foam_cases(), "tetgen": TETGEN, "medit": MEDIT, "gmsh": GMSH, "off": OFF, "imagelist": LIST}
     for target, inputs in texts.items():
         (CORPUS / target).mkdir(parents=True, exist_ok=True)
         for name, content in inputs.items():

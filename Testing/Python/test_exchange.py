@@ -15,7 +15,9 @@ from pathlib import Path
 import numpy as np
 import tautline as tl
 from checks import DATA, OUT, points, refused, run_tests, shell, square, wording
+from tautline import _io
 from tautline._meshio import MESHIO_FORMATS
+from tautline._vtk_readers import SOLVER_FORMATS
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkUnstructuredGrid
 
@@ -161,8 +163,8 @@ def test_adf():
         refused("cut.cgns: ", tl.read, FOLDER / "cut.cgns")
 
 
-def foam(folder, field: str):
-    """A case of OpenFOAM of two cubes, with a field p of the first time step."""
+def foam(folder):
+    """A case of OpenFOAM of two cubes, with a field p that cannot be read."""
 
     def write(name: str, kind: str, text: str) -> None:
         file = folder / name
@@ -184,51 +186,101 @@ def foam(folder, field: str):
     write("constant/polyMesh/neighbour", "labelList", listed(["1"]))
     walls = f"walls\n{{\n type wall;\n nFaces {len(faces) - 1};\n startFace 1;\n}}"
     write("constant/polyMesh/boundary", "polyBoundaryMesh", f"1\n(\n{walls}\n)\n")
-    write("system/controlDict", "dictionary", "startTime 0;\nendTime 1;\ndeltaT 1;\nwriteControl timeStep;\n"
-          "writeInterval 1;\n")  # fmt: skip
-    write("0/p", "volScalarField", "dimensions [0 2 -2 0 0 0 0];\ninternalField nonuniform List<scalar>\n" + field
-          + ";\nboundaryField\n{\n walls { type zeroGradient; }\n}\n")  # fmt: skip
+    write("system/controlDict", "dictionary", "startTime 0;\n")
+    write("0/p", "volScalarField", "internalField nonuniform List<scalar>\n3\n(\n1\nabc\n)\n;\n")
     (folder / "case.foam").touch()
     return folder / "case.foam"
 
 
 def test_foam():
-    """A case is taken without results, with a warning, if only these cannot be read; without faces it is not."""
-    mesh = tl.read(foam(FOLDER / "foam", "2\n(\n1\n2\n)\n"))
-    assert mesh.GetNumberOfCells() == 2 and mesh.cell_data["p"].tolist() == [1, 2]
-    # a copy of the case with other points, of numbers as text and as bytes
-    case = FOLDER / "foam" / "case.foam"
+    """The mesh of a case with its patches; its points written back, into the case or a copy of it."""
+    shutil.rmtree(FOLDER / "foam", ignore_errors=True)
+    case = foam(FOLDER / "foam")
+    mesh = tl.read(case)
+    assert mesh.GetNumberOfCells() == 2 + 10 and set(mesh.cell_data) == {"Patch", "Face"}
+    assert mesh.cell_data["Patch"].tolist() == [-1] * 2 + [0] * 10
+    assert tl.read(case, lower_cells=False).GetNumberOfCells() == 2 and not tl.times(case)
+    refused(".foam", tl.read, case, binary=True)
+    refused("foam/constant/air", tl.read, case, region="air")
+    refused("processor0", tl.read, case, decomposed=True)
+    refused(wording("has-no-time-steps"), tl.read, case, time=1)
+
     mesh.GetPoints().SetPoint(4, 0.25, 0.125, 1.5)
     original = FOLDER / "foam" / "constant" / "polyMesh" / "points"
     text = original.read_text()
     rows = np.array(re.findall(r"^\((\d) (\d) (\d)\)$", text, re.MULTILINE), float)
-    content = text[: text.index("12\n(")].replace("ascii", "binary").encode() + b"12\n(" + rows.tobytes() + b")\n"
-    for i, form in enumerate((text.encode(), content)):
+    binary = text[: text.index("12\n(")].replace("ascii", "binary").encode() + b"12\n(" + rows.tobytes() + b")\n"
+    for i, form in enumerate((text.encode(), binary)):
         original.write_bytes(form)
         copy = FOLDER / f"copy{i}" / "new.foam"
         shutil.rmtree(copy.parent, ignore_errors=True)
         copy.parent.mkdir()
-        tl.write(mesh, copy, template=case)
+        assert tl.write(mesh, copy) == [str(copy)]
         assert np.array_equal(points(tl.read(copy)), points(mesh)), form
         for name in ("constant/polyMesh/boundary", "0/p", "system/controlDict"):
             assert (copy.parent / name).read_bytes() == (FOLDER / "foam" / name).read_bytes()
         assert original.read_bytes() == form and sorted(file.name for file in copy.parent.iterdir()) == [
             "0", "constant", "new.foam", "system"]  # fmt: skip
+        # the template is known, or named
+        refused(wording("name-a-foam-in-another"), tl.write, mesh, copy)
         refused(wording("name-a-foam-in-another"), tl.write, mesh, copy, template=case)
-    refused(wording("name-a-foam-in-another"), tl.write, mesh, FOLDER / "foam" / "new.foam", template=case)
-    original.write_bytes(content[:-20])
-    refused("case.foam", tl.write, mesh, FOLDER / "new.foam", template=case)
-    original.write_text(text)
+    refused(".foam", tl.write, mesh, FOLDER / "new.foam", template=False)
+    original.write_bytes(binary[:-20])
+    refused("foam", tl.write, mesh, case)
+    assert original.read_bytes() == binary[:-20]
 
-    for field in ("2\n(\n1\n)\n", "2\n(\n1\nabc\n)\n", "3\n(\n1\n2\n3\n)\n"):
-        file = foam(FOLDER / "foam", field)
+    original.write_text(text)
+    before = {file: file.read_bytes() for file in case.parent.rglob("*") if file.is_file() and file != original}
+    assert tl.write(mesh, case, keep_original=True) == [str(original)]
+    assert np.array_equal(points(tl.read(case)), points(mesh))
+    kept = original.with_name("points.orig")
+    assert kept.read_text() == text and all(file.read_bytes() == content for file, content in before.items())
+    assert {file for file in case.parent.rglob("*") if file.is_file()} == {*before, original, kept}
+    refused("keep_original", tl.write, mesh, case, binary=True)
+    mesh.GetPoints().InsertNextPoint(0, 0, 0)
+    refused(wording("foam-mesh-has-13-points"), tl.write, mesh, case)
+
+    (case.parent / "constant" / "polyMesh" / "faces").write_text("4(0 1")
+    refused("polyMesh/faces:1: ", tl.read, case)
+
+
+def test_optional_results():
+    """A mesh is read without its results, with a warning, if only these cannot be read."""
+    known = SOLVER_FORMATS[".cas"]
+    strictly = _io._read_strictly
+
+    def read_strictly(name, form, time, results=True):
+        if results:
+            raise tl.Error(f"{name}: damaged")
+        return square(1)
+
+    try:
+        _io._read_strictly = read_strictly
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
-            mesh = tl.read(file)
-        assert mesh.GetNumberOfCells() == 2 and "p" not in mesh.cell_data, field
+            assert _io._read_with("x.cas", known, None).GetNumberOfCells() == 2
         assert len(told) == 1 and wording("read-without-its-results") in str(told[0].message), told
-    (FOLDER / "foam" / "constant" / "polyMesh" / "faces").write_text("4(0 1")
-    refused("case.foam: ", tl.read, file)
+        refused("x.neu: ", _io._read_with, "x.neu", SOLVER_FORMATS[".neu"], None)
+    finally:
+        _io._read_strictly = strictly
+
+
+def test_foam_in_place():
+    """The commands that move points write into the file that they read."""
+    shutil.rmtree(FOLDER / "foam", ignore_errors=True)
+    case = foam(FOLDER / "foam")
+    file = case.parent / "constant" / "polyMesh" / "points"
+    before = file.read_text()
+    output = shell("untangle", case, "--in-place", "--keep-original")
+    assert str(file) in output and file.read_text() == before
+    assert file.with_name("points.orig").read_text() == before
+    for arguments in ((case, "-o", FOLDER / "x.foam"), ("-",)):
+        assert "--in-place" in shell("perturb", *arguments, "--in-place", code=2)
+    deck = FOLDER / "in-place.msh"
+    tl.write(square(3), deck)
+    content = deck.read_bytes()
+    shell("perturb", deck, "--in-place")
+    assert deck.read_bytes() != content and tl.read(deck).GetNumberOfCells() == 18
 
 
 def test_ucd():

@@ -5,6 +5,7 @@ import os
 import sys
 from pathlib import Path
 
+import numpy as np
 from paraview import servermanager, simple
 from vtkmodules.vtkImagingSources import vtkImageEllipsoidSource
 from vtkmodules.vtkIOImage import vtkPNGWriter
@@ -105,6 +106,39 @@ def straight_mesh(mesh):
     return str(file)
 
 
+def foam_case(n):
+    """A case of OpenFOAM of n^3 cubes on one patch."""
+    side = n + 1
+    cell, point = np.indices((n, n, n)).reshape(3, -1).T, np.indices((side,) * 3).reshape(3, -1).T
+    steps, cell_steps = np.array([side * side, side, 1]), np.array([n * n, n, 1])
+    first, number = cell @ steps, cell @ cell_steps
+    inner, outer = [], []
+    for axis in range(3):
+        a, b = steps[(axis + 1) % 3], steps[(axis + 2) % 3]
+        low = np.stack([first, first + b, first + a + b, first + a], 1)
+        high = np.stack([first, first + a, first + a + b, first + b], 1) + steps[axis]
+        between = cell[:, axis] < n - 1
+        inner += zip(number[between], number[between] + cell_steps[axis], high[between].tolist())
+        outer += zip(number[cell[:, axis] == 0], low[cell[:, axis] == 0].tolist())
+        outer += zip(number[~between], high[~between].tolist())
+    inner.sort(key=lambda face: face[:2])
+    faces = [f"4({' '.join(map(str, face[-1]))})" for face in (*inner, *outer)]
+    patch = f"all {{ type patch; nFaces {len(outer)}; startFace {len(inner)}; }}"
+    lists = {
+        "points": [f"({x} {y} {z})" for x, y, z in point.tolist()], "faces": faces,
+        "owner": [str(face[0]) for face in (*inner, *outer)], "neighbour": [str(face[1]) for face in inner],
+        "boundary": [patch],
+    }  # fmt: skip
+    folder = OUT / "progress" / "constant" / "polyMesh"
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, rows in lists.items():
+        kind = "faceList" if name == "faces" else name
+        head = f"FoamFile {{ version 2.0; format ascii; class {kind}; }}\n"
+        (folder / name).write_text(head + "\n".join([str(len(rows)), "(", *rows, ")"]) + "\n")
+    (OUT / "progress" / "case.foam").touch()
+    return str(OUT / "progress" / "case.foam")
+
+
 def cases():
     """Inputs that take long enough: group, name, inputs, settings."""
     cube = grid(15)
@@ -123,6 +157,7 @@ def cases():
     yield "sources", "ABAQUSReader", {}, {"FileNames": [deck(".inp", cube, ABAQUS)]}
     yield "sources", "AnyNastranReader", {}, {"FileNames": [deck(".bdf", cube, NASTRAN)]}
     yield "sources", "TautlineMfemReader", {}, {"FileNames": [straight_mesh(cube)]}
+    yield "sources", "TautlineFoamReader", {}, {"FileName": foam_case(30)}
     yield "sources", "SilhouetteSetReader", {}, {"FileName": str(DATA / "silhouettes.csv")}
     yield "filters", "ElementQuality", {"Input": cube}, {}
     yield "filters", "MeshComparison", {"Input": cube, "Other": cube}, {}

@@ -51,6 +51,25 @@ assert len(series.TimestepValues) == 2
 series.UpdatePipeline(series.TimestepValues[1])
 assert series.GetDataInformation().GetNumberOfCells() == 4
 
+# the mesh of a case, beside ParaView's reader of its fields; its points written back
+case = OUTPUT / "elbow"
+shutil.rmtree(case, ignore_errors=True)
+shutil.copytree(DATA / "elbow", case)
+assert type(simple.OpenDataFile(str(case / "elbow.foam"))).__name__ == "OpenFOAMReader"
+elbow = OpenFOAMMeshReader(FileName=str(case / "elbow.foam"))  # noqa: F821
+assert cells(elbow) == 506
+elbow.UpdatePropertyInformation()
+assert elbow.Patches.splitlines()[2] == "2 walls (wall, 232 faces)", elbow.Patches
+assert tuple(elbow.CellData["Patch"].GetRange()) == (-1, 2)
+points = case / "constant" / "polyMesh" / "points"
+before = points.read_bytes()
+higher = simple.Transform(Input=elbow)
+higher.Transform.Scale = [1, 1, 2]
+simple.SaveData(str(case / "elbow.foam"), proxy=higher, KeepOriginal=1)
+assert points.with_name("points.orig").read_bytes() == before != points.read_bytes()
+again = OpenFOAMMeshReader(FileName=str(case / "elbow.foam"), PatchFaces=0)  # noqa: F821
+assert cells(again) == 200 and again.GetDataInformation().GetBounds() == (0, 2, 0, 2, 0, 2)
+
 # an error leaves an empty output
 (OUTPUT / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n")
 broken = simple.OpenDataFile(str(OUTPUT / "broken.off"))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Where coordinates stand in binary files of Gmsh, Medit and OpenFOAM, and files with other ones in their place."""
+"""Where coordinates stand in binary files of Gmsh and Medit, and files with other ones in their place."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ._errors import Error
 _DOUBLE = struct.calcsize("d")
 _INT = struct.calcsize("i")
 _SIZE = struct.calcsize("Q")
-_GMSH, _MEDIT, FOAM = (".msh", ".msh2", ".msh4"), ".meshb", ".foam"
+_GMSH, _MEDIT = (".msh", ".msh2", ".msh4"), ".meshb"
 #: Gmsh's versions with blocks of points, and with all numbers of a block first.
 BLOCKS, NUMBERS_FIRST = 4.0, 4.1
 _PARAMETRIC = "binary .msh with parametric nodes are not handled: save it without them, or as text"
@@ -59,8 +59,6 @@ def coordinates_in(source: str, ending: str, content: bytes) -> Runs | None:
     """The points of a binary file; None for text. Raises Error for binary files that cannot be handled."""
     if ending in _GMSH:
         return _of_msh(source, content)
-    if ending == FOAM:
-        return _of_foam(source, content)
     return _of_meshb(source, content) if ending == _MEDIT else None
 
 
@@ -143,29 +141,3 @@ def _of_meshb(source: str, content: bytes) -> Runs:
             break
         at = following
     raise changed(source, "it has no vertices")
-
-
-def foam_list(content: bytes) -> tuple[int, int]:
-    """The number of points in OpenFOAM's file of points, and the byte after the parenthesis that begins the list.
-
-    Raises ValueError if there is none.
-    """
-    head = content.index(b"}", content.index(b"FoamFile"))
-    found = re.compile(rb"^\s*(\d+)\s*\(", re.MULTILINE).search(content, head)
-    if not found:
-        raise ValueError("no list of points")
-    return int(found[1]), found.end()
-
-
-def _of_foam(source: str, content: bytes) -> Runs | None:
-    try:
-        head = content[content.index(b"FoamFile") : content.index(b"}")]
-        if not re.search(rb"\bformat\s+binary\b", head):
-            return None
-        count, begin = foam_list(content)
-    except ValueError:
-        raise changed(source, "it has no list of points") from None
-    size = 4 if b"scalar=32" in head else _DOUBLE
-    if b"MSB" in head or content[begin + 3 * size * count :][:1] != b")":
-        raise changed(source, "its binary list of points is not of this machine's order of bytes, or damaged")
-    return Runs([(begin, count)], 3 * size, f"<f{size}")

@@ -65,6 +65,7 @@ BASIC = {
 _ALWAYS = ("help", "help_all", "time_limit", "threads", "json", "quiet")
 #: The destinations of the file that a command writes.
 _OUTPUTS = ("output", "report")
+_IN_PLACE = "in_place"
 
 
 class Parser(argparse.ArgumentParser):
@@ -99,6 +100,10 @@ class Parser(argparse.ArgumentParser):
             extra = []
         if extra:
             self.error(f"unrecognized arguments: {' '.join(extra)}")
+        if any(action.dest == _IN_PLACE for action in self._actions) and found.in_place:
+            if found.output is not None or found.mesh == STREAM:
+                self.error("--in-place writes into the file that was read: leave out --output, and name a file")
+            found.output = found.mesh
         if output is not None and self._needs_output and getattr(found, output.dest) is None:
             self.error(f"the following arguments are required: {'/'.join(output.option_strings)}")
         return found, extra
@@ -244,6 +249,10 @@ def add_output(parser: argparse.ArgumentParser, text: str = "mesh to write", req
     """Add the option of the mesh to write, which may also be the last argument; see Parser."""
     parser.add_argument("-o", "--output", metavar="FILE", required=required,
                         help=f"{text}; its ending decides on the format, - is the standard output")  # fmt: skip
+    if required and any(action.dest == "mesh" for action in parser._actions):
+        parser.add_argument("--in-place", action="store_true", dest=_IN_PLACE, help="write into the file that was read")
+        parser.add_argument("--keep-original", action="store_true",
+                            help="with OpenFOAM: keep the points that are replaced as points.orig")  # fmt: skip
 
 
 def add_metrics(parser: argparse.ArgumentParser) -> None:
@@ -391,6 +400,8 @@ def _write(arguments: argparse.Namespace, result: Any, options: dict[str, Any]) 
         lost = losses(source)
         if lost:
             warnings.warn(f"{output}: points and cells changed, so it lacks {lost} of {source}", stacklevel=2)
+    if getattr(arguments, "keep_original", False):
+        options = {**options, "keep_original": True}
     return write(result, output, **options)
 
 

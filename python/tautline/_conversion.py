@@ -21,7 +21,7 @@ _OWN = {
     ".sol": "Medit", ".msh": "Gmsh, FreeFem++",
     ".pos": "Gmsh's views", ".msh2": "Gmsh", ".msh4": "Gmsh",
     ".off": "OFF", ".coff": "OFF", ".noff": "OFF", ".cnoff": "OFF", ".ply": "PLY", ".stl": "STL",
-    ".obj": "Wavefront OBJ",
+    ".obj": "Wavefront OBJ", ".foam": "OpenFOAM",
 }  # fmt: skip
 
 

@@ -1,53 +1,44 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""A copy of a case of OpenFOAM with other points."""
+"""Cases of OpenFOAM with other points: the case itself, or a copy of it."""
 
 from __future__ import annotations
 
-import gzip
 import os
 import shutil
-import zlib
 from pathlib import Path
 from typing import Callable
 
-from ._binary_coordinates import changed
 from ._errors import Error
 from ._files import replace_bytes, sync_folder, temporary_name
 
-#: What is copied: the mesh and its properties, the settings, the first time step.
+FOAM = ".foam"
+#: What is copied: the mesh and its properties, the settings, the first time step, the processors.
 _PARTS = ("constant", "system", "0", "0.orig")
-_MESH = "polyMesh"
-_POINTS = Path("constant", _MESH, "points")
+_PROCESSORS = "processor[0-9]*"
 
 
-def copy_case(source: str, target: str, rewritten: Callable[[str, bytes], tuple[bytes, float]]) -> float:
-    """Copy the case of a .foam file to the directory of another one, with other points.
+def write_case(target: str, source: str, write_points: Callable[[str], list[str]]) -> list[str]:
+    """Write other points into the case of a .foam file: the one the mesh was read from, or a copy of it.
 
-    rewritten: the new content of the file of points, for its name and content, and the largest rounding, which is
-    returned. Raises Error, before anything is written, if there is a case already, or if the mesh of the case moves.
+    source: the .foam file that the mesh was read from, "" if it is not known. A target in another directory, where
+    there must be no case, gets a copy. write_points: writes the points into the case in the directory of a file.
+    Returns the names of the files. Raises Error; then no file is written.
     """
-    old, new = (Path(os.path.abspath(file)).parent for file in (source, target))
-    taken = [name for name in _PARTS if (new / name).exists()]
+    old, new = (Path(os.path.abspath(file)).parent for file in (source or target, target))
+    if old == new or (new.is_dir() and old.is_dir() and os.path.samefile(old, new)):
+        return write_points(target)
+    parts = [*_PARTS, *sorted(folder.name for folder in old.glob(_PROCESSORS))]
+    taken = [name for name in parts if (new / name).exists()]
     if taken:
         raise Error(f"{target}: {new / taken[0]} exists: name a .foam in another, empty directory")
-    moving = sorted(str(folder) for folder in old.glob(f"[0-9]*/{_MESH}"))
-    if moving:
-        raise changed(source, f"the mesh of the case moves: it has {moving[0]}")
-    points, packed = old / _POINTS, old / f"{_POINTS}.gz"
-    try:
-        content = points.read_bytes() if points.exists() else gzip.decompress(packed.read_bytes())
-    except (OSError, EOFError, zlib.error) as error:
-        raise changed(source, f"{points}: {error}") from None
-    made, rounding = rewritten(str(points), content)
     folder = new / temporary_name()
     try:
         folder.mkdir()
-        for name in _PARTS:
+        for name in parts:
             if (old / name).is_dir():
                 shutil.copytree(old / name, folder / name)
-        (folder / f"{_POINTS}.gz").unlink(missing_ok=True)
-        replace_bytes(folder / _POINTS, made)
-        for name in reversed(_PARTS):  # the mesh is the last
+        write_points(str(folder / Path(target).name))
+        for name in reversed(parts):  # the mesh is the last
             if (folder / name).exists():
                 os.rename(folder / name, new / name)
         sync_folder(str(new))
@@ -56,4 +47,4 @@ def copy_case(source: str, target: str, rewritten: Callable[[str, bytes], tuple[
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     replace_bytes(target, b"")
-    return rounding
+    return [target]

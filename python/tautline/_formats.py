@@ -64,6 +64,7 @@ _OWN_FORMATS = {
     **dict.fromkeys((".msh2", ".msh4"), Format("vtkGmshReader", None, "vtkDataSet")),
     ".inp": Format("vtkAbaqusReader", None, "vtkDataSet"),
     **dict.fromkeys((".bdf", ".nas", ".fem"), Format("vtkNastranReader", None, "vtkDataSet")),
+    ".foam": Format("vtkFoamMeshReader", None, "vtkDataSet"),  # write() has a writer of points
     ".pos": Format(None, "vtkGmshWriter", "vtkDataSet"),
     ".off": Format(_OFF, "vtkOffWriter", "vtkDataSet"),
     **dict.fromkeys((".coff", ".noff", ".cnoff"), Format(_OFF, None, "vtkDataSet")),

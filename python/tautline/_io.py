@@ -24,6 +24,7 @@ from ._arrays import Array, keep_source, leaves, source_of
 from ._arguments import number, picked
 from ._errors import Error, checked, interruptible, plain, run, watch
 from ._files import check_input, check_target, file_name, require_memory
+from ._foam_case import FOAM, write_case
 from ._formats import FORMATS, Format
 from ._groups import Groups, with_groups
 from ._interrupts import Progress, updating
@@ -87,6 +88,8 @@ _OF_ONE_FILE = (
 )  # fmt: skip
 _ALWAYS_BINARY = ".meshb"
 _MFEM, _MFEM_SPACES = ".mesh", ("H1", "L2")
+# Options of read() for OpenFOAM, and of write().
+_FOAM_OPTIONS, _KEEP_ORIGINAL = ("lower_cells", "region", "decomposed"), "keep_original"
 # Formats whose readers in VTK crash on damaged files.
 _UNSAFE = (".ply", ".obj")
 # Formats of VTK that are templates by their data.
@@ -136,15 +139,18 @@ def read(
     file : str or path
         VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was built,
         TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .meshb .sol), Gmsh and FreeFem++ (.msh),
-        OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem). Of solvers: SU2, universal
-        files (.unv), Exodus (.e .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case),
-        OpenFOAM (.foam), Gambit (.neu), Fluent (.cas), Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen
-        (.vol) and others, see formats().
+        OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem), the mesh of an OpenFOAM
+        case (.foam, a file in its directory, which may be empty). Of solvers: SU2, universal files (.unv), Exodus (.e
+        .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), Gambit (.neu), Fluent (.cas),
+        Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen (.vol) and others, see formats().
         Formats of one file also with .gz behind their ending.
     **options
         lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the formats
-        of mesh generators, Abaqus, Nastran, SU2 and .unv. time: the time step to read, the nearest to this number, see
-        times(); the default is the first. Of the formats of solvers and .pvd.
+        of mesh generators, Abaqus, Nastran, SU2 and .unv; of OpenFOAM the faces of the patches, by default True. region
+        (""), of OpenFOAM: the mesh in constant/region. decomposed, of OpenFOAM: True reads the meshes of the
+        processors, put together, False the one in constant; the default is the latter if it is there. time: the time
+        step to read, the nearest to this number, see times(); the default is the first. Of the formats of solvers and
+        .pvd.
     progress : bool or callable, optional
         True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
         0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
@@ -205,11 +211,17 @@ def _read(name: str, options: dict[str, Any]) -> vtkDataObject:
     if time is not None:
         raise Error(f"{name}: '{ending}' has no time steps; leave out time")
     form = FORMATS[ending]
-    _check_options(name, ending, options, "lower_cells" if form.own else None)
+    _check_options(name, ending, options, *(_FOAM_OPTIONS if ending == FOAM else ["lower_cells"] if form.own else []))
     check_input(name)
     if form.own:
         reader = form.make_reader(name)
-        reader.SetLowerCells(options.get("lower_cells", False))
+        reader.SetLowerCells(options.get("lower_cells", ending == FOAM))
+        if ending == FOAM:
+            reader.SetRegionName(options.get("region", ""))
+            decomposed = options.get("decomposed")
+            reader.SetCaseType(
+                reader.AUTOMATIC if decomposed is None else reader.DECOMPOSED if decomposed else reader.RECONSTRUCTED
+            )
         reader.SetFileName(name)
         for text in dict.fromkeys(run(reader).warnings):
             warnings.warn(text, stacklevel=5)  # the caller of read()
@@ -249,9 +261,9 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
     """Read a file of a solver with a reader of VTK, else with meshio."""
     if ending not in readable():
         raise Error(f"{name}: no reader for '{ending}'{_tool(ending)}; there are {' '.join(readable())}")
-    _check_options(name, ending, options, "lower_cells" if ending in (SU2, UNV) else None)
+    _check_options(name, ending, options, *(["lower_cells"] if ending in (SU2, UNV) else []))
     check_input(name)
-    if os.path.getsize(name) == 0 and ending != ".foam":
+    if os.path.getsize(name) == 0:
         raise Error(f"{name}: the file is empty")
     if ending == SERIES:
         return read_series(name, time, read)
@@ -312,7 +324,7 @@ def _tool(ending: str) -> str:
 
 @checked
 def times(file: str | PathLike[str]) -> list[float]:
-    """The time steps of a file (Exodus, CGNS, XDMF, EnSight, OpenFOAM, .pvd), for the option `time` of read().
+    """The time steps of a file (Exodus, CGNS, XDMF, EnSight, .pvd), for the option `time` of read().
 
     Parameters
     ----------
@@ -369,12 +381,14 @@ def write(
         numbers stay. The mesh must have the cells of that file, in its order, as after untangle(), optimize(), warp()
         and perturb(); its arrays are not written. For .msh, .mesh, .meshb, .su2, .inp, .bdf .nas .fem, .unv, .off, .vtk
         and .vtu; Salome's .med, CGNS, Exodus and MOAB's .h5m, where h5py is installed (Exodus also without it, unless
-        it is in HDF5); .foam, whose case is copied to the directory of the file, which must be empty. The default, for
+        it is in HDF5); .foam: the points of the case, or of a copy of it if the file is in another directory, which
+        must be empty. The default, for
         the results of these functions: the file that the mesh was read from if it is of the same format, except VTK's.
         False: none; the mesh is written with its arrays.
     **options
         binary (False): write .msh as bytes. Not for formats of VTK. mfem: "H1" or "L2" write .mesh for MFEM, with nodes
         that neighbors share, or with nodes of each element; the default is Medit's .mesh, which has no curved cells.
+        keep_original (False), of .foam: keep the file of points that is replaced as points.orig, unless there is one.
     progress : bool or callable, optional
         True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
         0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
@@ -396,6 +410,8 @@ def write(
     """
     name = file_name(file)
     ending = Path(name).suffix.lower()
+    if ending == FOAM and ending in FORMATS and template is not False and groups is None:
+        return _write_foam(mesh, name, template, options)
     if template is not None and not isinstance(template, bool):
         if groups is not None or options:
             raise Error(f"{name}: with a template there are no groups and no other options")
@@ -410,7 +426,7 @@ def write(
             check_output(name)  # which fails where there is only a copy
             warnings.warn(f"{error}; {name} is written anew", stacklevel=4)
     if form is None:
-        _check_options(name, ending, options, None)
+        _check_options(name, ending, options)
         one = as_data_set(mesh)
         check_grid(one)
         if ending in MESHIO_FORMATS:
@@ -419,7 +435,7 @@ def write(
             raise Error(f"{name}: '{ending}' has no groups of cells; write .vtu, .inp or .med")
         return write_su2(one, name) if ending == SU2 else write_nastran(one, name)
     known = {key: value for key, value in options.items() if key != "mfem" or ending != _MFEM}
-    _check_options(name, ending, known, "binary" if form.own else None)
+    _check_options(name, ending, known, *(["binary"] if form.own else []))
     data = as_mesh(mesh) if groups is None else with_groups(as_mesh(mesh), groups)
     for leaf in leaves(data):
         check_grid(leaf)
@@ -429,6 +445,31 @@ def write(
     if form.own:
         return _write_own(data, name, _own_writer(form, name, **options))
     return write_composite(data, name) if ending == ".vtm" else write_data(data, name, form)
+
+
+def _write_foam(
+    mesh: Mesh, name: str, template: str | PathLike[str] | bool | None, options: dict[str, Any]
+) -> list[str]:
+    """Write the points of a mesh into the case that it was read from, or into a copy."""
+    _check_options(name, FOAM, options, _KEEP_ORIGINAL)
+    check_target(name)
+    data = as_data_set(mesh)
+    source = source_of(data) if template is None or isinstance(template, bool) else file_name(template)
+    if Path(source).suffix.lower() not in ("", FOAM):
+        raise Error(f"{name}: the template {source} is of another format")
+    writer = CLASSES["vtkFoamPointsWriter"]()
+    writer.SetKeepOriginal(options.get(_KEEP_ORIGINAL, False))
+    known = source if os.path.isfile(source) else ""
+    files = write_case(name, known, lambda target: _write_own(data, target, writer))
+    _warn_of_rounding(name, writer.GetRounding(), [data])
+    return files
+
+
+def _warn_of_rounding(name: str, rounding: float, meshes: list[vtkDataSet]) -> None:
+    extents = (mesh.GetBounds() for mesh in meshes)
+    extent = max(max(bounds[1::2][axis] - bounds[::2][axis] for axis in range(3)) for bounds in extents)
+    if rounding > _ROUNDING * extent:
+        warnings.warn(f"{name}: the fields of the file round coordinates by up to {rounding:.2g}", stacklevel=6)
 
 
 def _source_for(mesh: Mesh, name: str) -> str:
@@ -443,7 +484,7 @@ def is_template(ending: str) -> bool:
     if ending in ARRAY_TEMPLATES:
         older = ending in EXODUS_ENDINGS  # netCDF, without HDF5
         return ending in readable() and (older or find_spec("h5py") is not None)
-    return ending in LOCATORS or ending in _VTK_TEMPLATES
+    return ending in LOCATORS or ending in _VTK_TEMPLATES or (ending == FOAM and ending in FORMATS)
 
 
 def can_be_template(source: str, target: str) -> bool:
@@ -452,7 +493,7 @@ def can_be_template(source: str, target: str) -> bool:
     Files of VTK have everything in the mesh.
     """
     ending = Path(target).suffix.lower()
-    return (ending in LOCATORS or ending in ARRAY_TEMPLATES) and ending == Path(source).suffix.lower()
+    return ending in (*LOCATORS, *ARRAY_TEMPLATES, FOAM) and ending == Path(source).suffix.lower()
 
 
 def losses(source: str) -> str:
@@ -506,8 +547,7 @@ def _write_like(data: vtkDataObject, name: str, source: str) -> list[str]:
         rounding = rewrite_arrays(source, name, ending, before, after)
     else:
         rounding = rewrite(source, name, before[0], after[0])
-    if rounding > _ROUNDING * max(np.ptp(part, axis=0).max() for part in after):
-        warnings.warn(f"{name}: the fields of the file round coordinates by up to {rounding:.2g}", stacklevel=5)
+    _warn_of_rounding(name, rounding, mine)
     return [name]
 
 
@@ -577,10 +617,11 @@ def as_data_set(mesh: Mesh) -> vtkDataSet:
     raise Error(f"one mesh is expected, not a {data.GetClassName()}; take one of its blocks, or Merge Blocks first")
 
 
-def _check_options(name: str, ending: str, options: dict[str, Any], known: str | None) -> None:
-    unknown = [option for option in options if option != known]
+def _check_options(name: str, ending: str, options: dict[str, Any], *known: str) -> None:
+    unknown = [option for option in options if option not in known]
     if unknown:
-        options_of = f"the option {known}" if known else "no options"
+        plural = "s" if len(known) > 1 else ""
+        options_of = f"the option{plural} {', '.join(known)}" if known else "no options"
         raise Error(f"{name}: '{ending}' has {options_of}, not {', '.join(unknown)}")
 
 

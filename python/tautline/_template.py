@@ -16,20 +16,17 @@ import numpy as np
 from ._arrays import Array
 from ._binary_coordinates import (
     BLOCKS,
-    FOAM,
     NUMBERS_FIRST,
     as_read,
     changed,
     check_equal,
     coordinates_in,
-    foam_list,
     with_coordinates,
 )
 from ._deck_numbers import LARGE_FIELD, SMALL_FIELD, WIDEST, deck_number, nastran_number
 from ._deck_numbers import value_of as _value
 from ._errors import Error
 from ._files import replace_bytes
-from ._foam_case import copy_case
 from ._unv import NODES, NODES_OF_ONE_LINE
 
 #: Where a coordinate stands, from and to; the three of a point one after the other, missing ones (z) left out.
@@ -42,7 +39,6 @@ _PLACED = re.compile(rb"^\*(INSTANCE|SYSTEM)\b", re.MULTILINE | re.IGNORECASE)
 _FEWEST_DIGITS = 8
 _UNV_SHORT, _UNV_HEAD = NODES_OF_ONE_LINE.encode(), 4  # numbers before the coordinates
 _UNV_NODES = (*(number.encode() for number in NODES), _UNV_SHORT)
-_VECTOR = re.compile(rb"\(([^()]*)\)")
 _VOLUME = 3  # dimension of an entity without parametric coordinates
 _GRID_FIELD, _LARGE_GRID_FIELD = 24, 40  # where x begins
 
@@ -55,8 +51,6 @@ def rewrite(source: str, target: str, before: Array, after: Array) -> float:
     `before`, and for a format that cannot be handled so; then no file is written.
     """
     ending = Path(source).suffix.lower()
-    if ending == FOAM:
-        return copy_case(source, target, lambda file, content: rewritten(file, ending, content, before, after))
     content, rounding = rewritten(source, ending, Path(source).read_bytes(), before, after)
     replace_bytes(target, content)
     return rounding
@@ -278,16 +272,6 @@ def _su2(content: bytes) -> Iterator[list[_Span]]:
         at = end + 1
 
 
-def _foam(content: bytes) -> Iterator[list[_Span]]:
-    """The list of vectors in OpenFOAM's file of points: a number, then (x y z) for each."""
-    count, begin = foam_list(content)
-    for match in _VECTOR.finditer(content, begin):
-        if not count:
-            return
-        yield list(_tokens(content, *match.span(1)))
-        count -= 1
-
-
 def _unv(content: bytes) -> Iterator[list[_Span]]:
     """The datasets of nodes of universal files: coordinates are in the second line of a node, or in its only one."""
     at, number, second = 0, b"", False
@@ -388,7 +372,6 @@ LOCATORS: dict[str, Callable[[bytes], Iterator[list[_Span]]]] = {
     ".meshb": _never,
     ".su2": _su2,
     ".unv": _unv,
-    FOAM: _foam,
     ".off": _off,
     _DECK: _abaqus,
     ".bdf": _nastran_grids,

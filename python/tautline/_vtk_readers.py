@@ -55,7 +55,6 @@ SOLVER_FORMATS = {
     **dict.fromkeys((".xmf", ".xdmf"), _XDMF),
     **dict.fromkeys((".avs", ".ucd"), _AVS),
     ".case": SolverFormat("EnSight", "vtkIOEnSight", "vtkGenericEnSightReader", "SetCaseFileName", True),
-    ".foam": SolverFormat("OpenFOAM", "vtkIOGeometry", "vtkOpenFOAMReader", times=True, optional_results=True),
     ".neu": SolverFormat("Gambit neutral", "vtkIOGeometry", "vtkGAMBITReader"),
     ".cas": SolverFormat("Fluent", "vtkIOGeometry", "vtkFLUENTReader", optional_results=True),
     **dict.fromkeys((".tec", ".tp"), _TECPLOT),

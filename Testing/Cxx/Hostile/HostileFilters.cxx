@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "HostileFilters.h"
+#include "Readers/FoamSamples.h"
 #include "VtkMeshes.h"
 #include "vtkConditionEstimator.h"
 #include "vtkElementQuality.h"
 #include "vtkEllipticSolver.h"
+#include "vtkFoamMeshReader.h"
+#include "vtkFoamPointsWriter.h"
 #include "vtkGmshWriter.h"
 #include "vtkHorizonNeighbors.h"
 #include "vtkInteractionLayer.h"
@@ -316,6 +319,15 @@ std::vector<HostileFilter> hostileFilters(const std::string& directory)
   addWriter<vtkMfemWriter>(list, "vtkMfemWriter", name + "-mfem.mesh", triangles);
   addWriter<vtkOffWriter>(list, "vtkOffWriter", name + ".off", triangles);
   addWriter<vtkTetGenWriter>(list, "vtkTetGenWriter", name + ".node", tetrahedra);
+  addWriter<vtkFoamPointsWriter>(list, "vtkFoamPointsWriter", name + "-case/hostile.foam",
+    [folder = name + "-case"]
+    {
+      writeFoam(folder + "/constant/polyMesh", oneTetrahedron());
+      vtkNew<vtkFoamMeshReader> reader;
+      reader->SetFileName(folder.c_str());
+      reader->Update();
+      return Data(reader->GetOutput());
+    });
   return list;
 }
 
@@ -327,9 +339,9 @@ const std::vector<std::string>& classesWithoutInput()
     "vtkMetricAlgorithm", "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm",
     "vtkBoundaryMesher", "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField",
     "vtkDomainSource", "vtkGmshReader", "vtkAbaqusReader", "vtkNastranReader", "vtkMeditReader",
-    "vtkMfemReader", "vtkOffReader", "vtkTetGenReader", "vtkSilhouetteSetReader", "vtkHtmlReport",
-    "vtkImageFileReader", "vtkInterruption", "vtkMeshDecomposition", "vtkTautlineSetRange",
-    "vtkUpdateGuard", "vtkUserMetric" };
+    "vtkMfemReader", "vtkFoamMeshReader", "vtkOffReader", "vtkTetGenReader",
+    "vtkSilhouetteSetReader", "vtkHtmlReport", "vtkImageFileReader", "vtkInterruption",
+    "vtkMeshDecomposition", "vtkTautlineSetRange", "vtkUpdateGuard", "vtkUserMetric" };
   return names;
 }
 

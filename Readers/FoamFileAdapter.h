@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file FoamFileAdapter.h
+ * @brief From a mesh of OpenFOAM to VTK; the arrays are those of vtkFoamMeshReader.
+ * Internal: not installed.
+ */
+#ifndef tautline_FoamFileAdapter_h
+#define tautline_FoamFileAdapter_h
+
+#include "TautlineReadersModule.h" // for export macro
+
+#include "FoamCase.h"
+
+class vtkUnstructuredGrid;
+
+namespace tautline
+{
+/// The field array (strings) with the directories polyMesh whose points a mesh has.
+constexpr const char* FoamCaseArray = "FoamCase";
+
+/// @param patchFaces whether the faces of the patches are cells behind those of the volume
+TAUTLINEREADERS_EXPORT void toGrid(FoamPiece piece, bool patchFaces, vtkUnstructuredGrid* grid);
+}
+#endif
