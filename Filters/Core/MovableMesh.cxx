@@ -105,9 +105,15 @@ MovableMesh::MovableMesh(vtkDataSet* input, int threads, bool mergePoints, bool 
   {
     this->Adapter.enterFrame();
   }
-  if (this->mesh().dimension() == Dimension::None)
+  const int solid = this->mesh().dimension() == Dimension::Volume ? 3 : 2;
+  const auto isElement = [solid](const CellBlock& block)
+  { return topology(block.type).dimension == solid; };
+  if (std::none_of(this->mesh().blocks().begin(), this->mesh().blocks().end(), isElement))
   {
-    throw Error("There is no element whose points could move. " + this->Adapter.notice());
+    throw Error("There is no element whose points could move. " + this->Adapter.notice() +
+      (this->mesh().polyhedra() > 0
+          ? " The preset Finite volumes of Optimize Mesh moves the points of polyhedra."
+          : ""));
   }
   requireLinear(this->mesh());
   this->Validity.resize(this->mesh().view().numberOfCells);

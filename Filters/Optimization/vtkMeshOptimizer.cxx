@@ -2,6 +2,7 @@
 #include "vtkMeshOptimizer.h"
 
 #include "CurvedRun.h"
+#include "PolyhedralMesh.h"
 #include "BeforeAfter.h"
 #include "ContentStamp.h"
 #include "GatheredExecution.h"
@@ -539,6 +540,11 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
       settings, tautline::choosesFeatures(settings.boundary, block.input), this->Animation)
       .refuse();
   }
+  if (this->Preset == FINITE_VOLUMES)
+  {
+    this->ImproveFaces(settings, block, run, history, statistics);
+    return;
+  }
   const std::unique_ptr<tautline::CurvedMotion> curved = this->MakeCurved(block);
   const std::unique_ptr<tautline::MovableMesh> linear =
     curved ? nullptr : this->MakeMesh(block, true);
@@ -631,6 +637,60 @@ void vtkMeshOptimizer::Optimize(const tautline::OptimizerSettings& settings,
 }
 
 //------------------------------------------------------------------------------
+/// The preset FINITE_VOLUMES.
+void vtkMeshOptimizer::ImproveFaces(const tautline::OptimizerSettings& settings,
+  const tautline::InputBlock& block, tautline::OptimizerRun& run, tautline::TableRows& history,
+  tautline::TableRows& statistics)
+{
+  using namespace tautline;
+  if (this->Animation || this->WorksOnPieces())
+  {
+    throw Error("The preset Finite volumes has no animation and no reproducible order of several "
+                "processes: switch them off.");
+  }
+  PolyhedralMesh mesh(block, this->Threads);
+  ImproveFacesOptions options;
+  options.angle = this->NonOrthogonality;
+  options.skewness = this->Skewness;
+  options.maximumSeconds = this->GetRemainingSeconds();
+  options.proceed = [this, &block](int round, double fraction)
+  {
+    this->ShowIteration(OptimizerName, round, {});
+    return this->ProceedInBlock(block.number, fraction);
+  };
+  const ImproveFacesResult result = mesh.improve(settings.boundary, options);
+  mesh.move(vtkPointSet::SafeDownCast(block.output), result);
+  run.result.reason = result.reason;
+  run.result.iterations = run.iterations = result.iterations;
+  run.result.freeVertices = result.freePoints;
+  run.result.invertedBefore = result.before[MeshCheckKind::PyramidVolume].offending;
+  run.result.invertedAfter = result.after[MeshCheckKind::PyramidVolume].offending;
+  run.summary = (block.name.empty() ? "" : block.name + ": ") + summarize(result) +
+    (mesh.notice().empty() ? "" : "\n" + mesh.notice());
+  const auto addRow = [&](Index wanting, Index inverted)
+  {
+    history.begin(block.name);
+    history.add("Objective", static_cast<double>(wanting));
+    history.add("Inverted", static_cast<double>(inverted));
+  };
+  addRow(result.wantingBefore, run.result.invertedBefore);
+  addRow(result.wantingAfter, run.result.invertedAfter);
+  for (std::size_t i = 0; i < result.after.checks.size(); ++i)
+  {
+    const MeshCheck &before = result.before.checks[i], &after = result.after.checks[i];
+    statistics.begin(block.name);
+    statistics.addText("Metric", after.name);
+    statistics.addText("Label", after.label);
+    statistics.add("OffendingBefore", static_cast<double>(before.offending));
+    statistics.add("OffendingAfter", static_cast<double>(after.offending));
+    statistics.add("MinimumBefore", before.least);
+    statistics.add("MinimumAfter", after.least);
+    statistics.add("MaximumBefore", before.most);
+    statistics.add("MaximumAfter", after.most);
+  }
+}
+
+//------------------------------------------------------------------------------
 tautline::GatheredRules vtkMeshOptimizer::GetGatheredRules()
 {
   tautline::GatheredRules rules = this->Superclass::GetGatheredRules();
@@ -649,7 +709,8 @@ bool vtkMeshOptimizer::TakesPieces(vtkInformationVector** inputs)
   vtkDataObject* input = vtkDataObject::GetData(inputs[MeshPort]);
   const bool features =
     onAny(tautline::choosesFeatures(settings.boundary, vtkDataSet::SafeDownCast(input)));
-  const std::string what = onAny(tautline::hasCurvedCells(input))
+  const std::string what = this->Preset == FINITE_VOLUMES ? "measures of finite volumes"
+    : onAny(tautline::hasCurvedCells(input))
     ? "curved cells"
     : tautline::needOfWholeMesh(settings, features, this->Animation).what;
   return this->TakePiece(input, what.empty() ? "" : what + " need the whole mesh");
@@ -738,6 +799,8 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
   os << indent << "Preset: " << this->Preset << "\n";
+  os << indent << "NonOrthogonality: " << this->NonOrthogonality << "\n";
+  os << indent << "Skewness: " << this->Skewness << "\n";
   for (int i = 0; i < this->Objectives; ++i)
   {
     const tautline::ObjectiveRow& row = this->Rows[i];

@@ -36,6 +36,14 @@
  * points (not 0), 3 limits of the points' displacements, 4 weights of the elements (cells, at least
  * 0), 5 kinds of the points (0 patch, 1 curve, 2 corner, -1 as found), 6 regions (cells).
  *
+ * @par Finite volumes:
+ * With the preset FINITE_VOLUMES the cells are volumes of any kind, also polyhedra, and their faces
+ * count as OpenFOAM has them; see vtkFoamMeshReader for patches. The table Statistics then has a
+ * row for each check of checkMesh: `Metric` (its name), `Label`, and `Before` and `After` of
+ * `Offending`, `Minimum` and `Maximum`; the mesh has non_orthogonality and face_skewness before and
+ * after; the objective of the two rows of the history is the number of faces beyond the targets.
+ * There is no animation, and the mesh is put together on one process.
+ *
  * @par Output port 0 `Mesh`:
  * The input with new points, the point array `Displacement` (new minus old), and cell arrays: for
  * each objective's metric, and that of the worst element (see WorstMetric), its value after, named
@@ -121,17 +129,33 @@ public:
     LOW_INTERPOLATION_ERROR = 4,
     UNTANGLE_THEN_IMPROVE = 5,
     PRESERVE_SHAPE = 6,
-    WORST_ELEMENT = 7
+    WORST_ELEMENT = 7,
+    FINITE_VOLUMES = 8
   };
   ///@{
   /**
    * A ready-made choice. All but CUSTOM determine objectives, scalarization, optimizer and
    * stopping criteria (but for the time limit), see tautline::applyPreset(); those below are for
    * CUSTOM. With a boundary that moves freely, UNIFORM_SIZE compares the sizes with their mean in
-   * the input (metric mu_size), so that the mesh does not shrink. The default is BEST_SHAPE.
+   * the input (metric mu_size), so that the mesh does not shrink. FINITE_VOLUMES takes polyhedra,
+   * too, and moves points near faces that fail OpenFOAM's checkMesh or are beyond the targets
+   * NonOrthogonality and Skewness, see tautline/Polyhedral/ImproveFaces.h. The default is
+   * BEST_SHAPE.
    */
-  vtkTautlineSetRangeMacro(Preset, int, CUSTOM, WORST_ELEMENT);
+  vtkTautlineSetRangeMacro(Preset, int, CUSTOM, FINITE_VOLUMES);
   vtkGetMacro(Preset, int);
+  ///@}
+
+  ///@{
+  /**
+   * Of the preset FINITE_VOLUMES: the largest non-orthogonality, in degrees from 1 to 90, and
+   * skewness of faces that is aimed at. checkMesh warns above 70 degrees, and fails from 90 degrees
+   * on and above a skewness of 4. The defaults are 65 and 3.5.
+   */
+  vtkTautlineSetRangeMacro(NonOrthogonality, double, 1.0, 90.0);
+  vtkGetMacro(NonOrthogonality, double);
+  vtkTautlineSetRangeMacro(Skewness, double, 0.1, 1000.0);
+  vtkGetMacro(Skewness, double);
   ///@}
 
   enum Templates
@@ -550,6 +574,8 @@ private:
   void Optimize(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
     tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
     tautline::TableRows& statistics);
+  void ImproveFaces(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
+    tautline::OptimizerRun& run, tautline::TableRows& history, tautline::TableRows& statistics);
   void Report();
   /// What is wrong with the result, in sentences; the most important one last.
   std::vector<std::string> ResultWarnings() const;
@@ -558,6 +584,7 @@ private:
   int Objectives = 0;
   std::vector<double> Utopia;
   int Preset = BEST_SHAPE;
+  double NonOrthogonality = 65.0, Skewness = 3.5;
   double Power = 8.0;
   int Combination = MEAN;
   double Beta = 0.0;

@@ -52,7 +52,8 @@ class OptimizeResult(Result):
         <metric>_objective; inverted, gradient_norm, moving, seconds; of composite data also block.
     statistics : dict[str, dict[str, Any]]
         Per metric: label, and with the suffixes _before and _after: minimum, mean, maximum, rms, standard_deviation,
-        worst, outside_acceptable, inverted, degenerate. Of composite data the keys are "block n metric".
+        worst, outside_acceptable, inverted, degenerate. Of composite data the keys are "block n metric". With the
+        preset "finite volumes", per check of checkMesh: label, and of both offending, minimum and maximum.
     reason : str
         The stopping criterion that ended the run.
     inverted_before, inverted, iterations : int
@@ -105,8 +106,8 @@ def choose_preset(
     """Set the preset, or the objectives.
 
     preset: "fast clean-up", "best shape", "uniform size", "low interpolation error", "untangle then improve", "preserve
-        shape" (of the reference), "worst element" or "custom". "best shape" is the default if no objectives, no target
-        and no argument that a preset replaces are given. The name of a metric, or a list, is taken as objectives.
+        shape" (of the reference), "worst element", "finite volumes" (which takes polyhedra) or "custom". "best shape" is
+        the default if no objectives, no target and no argument that a preset replaces are given. The name of a metric, or a list, is taken as objectives.
     objectives: what to optimize: names of metrics, or pairs of a name and a dict with any of "template" (how the values
         of the elements are aggregated: "default", "sum of squares", "sum of squared reciprocals", "sum of
         reciprocals", "sum", "power mean", "maximum"), "weight" (above 0; 1) and "target" ("ideal", "reference", "size",

@@ -94,7 +94,9 @@ enum class Preset : int
   UntangleThenImprove = 5, ///< untangle(), then BestShape
   PreserveShape = 6, ///< sum of squared IMR against the elements of a reference mesh (targets)
   WorstElement =
-    7 ///< BestShape, then the worst element; the mean hardly worsens (improveWorst 0.01)
+    7, ///< BestShape, then the worst element; the mean hardly worsens (improveWorst 0.01)
+  /// Not of optimize(): improveFaces() of tautline/Polyhedral/ImproveFaces.h.
+  FiniteVolumes = 8
 };
 
 /// Points that slide on the surface, or on a model, need a local optimizer.
