@@ -220,7 +220,9 @@ bool hasPolyhedra(vtkDataObject* data)
 std::string summarize(const ImproveFacesResult& result)
 {
   std::ostringstream text;
-  text << describe(result.reason) << " checkMesh before: " << result.before.verdict(false)
+  text << (result.reason == StopReason::AllValid ? "All faces reach the targets."
+                                                 : describe(result.reason))
+       << " checkMesh before: " << result.before.verdict(false)
        << " After: " << result.after.verdict(false)
        << " With all checks: " << result.before.verdict(true) << " " << result.after.verdict(true)
        << "\n"

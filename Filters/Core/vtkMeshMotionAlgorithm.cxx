@@ -4,6 +4,7 @@
 #include "Blocks.h"
 #include "BlockSeams.h"
 #include "GatheredExecution.h"
+#include "LayerMesh.h"
 #include "MovableMesh.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
@@ -12,7 +13,10 @@
 
 #include "vtkDataSet.h"
 #include "vtkInformationVector.h"
+#include "vtkNew.h"
+#include "vtkPointSet.h"
 #include "vtkSelection.h"
+#include "vtkUnstructuredGrid.h"
 
 //------------------------------------------------------------------------------
 vtkMeshMotionAlgorithm::vtkMeshMotionAlgorithm() = default;
@@ -61,14 +65,41 @@ void vtkMeshMotionAlgorithm::ForEachBlock(vtkInformationVector** inputVector,
   const auto fixed = tautline::markSelected(input, selection);
   this->NumberOfBlocks = tautline::countBlocks(input);
   tautline::forEachBlock(input, reference, fixed, output,
-    [&visit](const tautline::InputBlock& block)
+    [&](const tautline::InputBlock& block)
     {
       block.output->ShallowCopy(block.input);
       if (block.input->GetNumberOfPoints() > 0 && block.input->GetNumberOfCells() > 0)
       {
-        visit(block);
+        this->VisitBlock(block, visit);
       }
     });
+}
+
+//------------------------------------------------------------------------------
+void vtkMeshMotionAlgorithm::VisitBlock(
+  const tautline::InputBlock& block, const std::function<void(const tautline::InputBlock&)>& visit)
+{
+  const auto layer = this->TreatsLayers() ? tautline::LayerMesh::find(block.input) : nullptr;
+  if (!layer)
+  {
+    visit(block);
+    return;
+  }
+  const auto planar = layer->planar(), selected = layer->side(block.selected),
+             reference = layer->side(block.reference);
+  vtkNew<vtkUnstructuredGrid> made;
+  made->ShallowCopy(planar);
+  tautline::InputBlock side = block;
+  side.input = planar;
+  side.selected = selected;
+  side.reference = reference;
+  side.output = made;
+  visit(side);
+  layer->expand(planar, made, vtkPointSet::SafeDownCast(block.output));
+  this->BlockNotice += std::string(this->BlockNotice.empty() ? "" : " ") +
+    (block.name.empty() ? "The mesh" : block.name) +
+    " is one layer of cells and was treated as planar, at right angles to " + "xyz"[layer->axis()] +
+    ".";
 }
 
 //------------------------------------------------------------------------------
@@ -83,6 +114,12 @@ bool vtkMeshMotionAlgorithm::TakePiece(vtkDataObject* input, const std::string& 
     return false;
   };
   const bool scattered = tautline::isScattered(input);
+  const bool layer =
+    this->TreatsLayers() && tautline::LayerMesh::find(vtkDataSet::SafeDownCast(input));
+  if (tautline::minimumOverProcesses(layer ? 0 : 1) == 0)
+  {
+    return gather(scattered ? "it is one layer of cells, which is treated as planar" : "");
+  }
   if (!why.empty())
   {
     return gather(scattered ? why : "");
@@ -177,6 +214,7 @@ bool vtkMeshMotionAlgorithm::ProceedInBlock(int block, double fraction)
 void vtkMeshMotionAlgorithm::PrintSelf(ostream& os, vtkIndent indent)
 {
   this->Superclass::PrintSelf(os, indent);
+  os << indent << "PlanarLayers: " << this->PlanarLayers << "\n";
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";
   os << indent << "Redistribute: " << this->Redistribute << "\n";
 }

@@ -65,6 +65,17 @@ public:
   vtkBooleanMacro(MergeCoincidentPoints, bool);
   ///@}
 
+  ///@{
+  /**
+   * Whether one layer of hexahedra and wedges between two planes, as 2D cases of OpenFOAM have it,
+   * is treated as the planar mesh that it is: the points of one side move in their plane, those of
+   * the other with them. The default is on. See LayerMesh in Filters/Core.
+   */
+  vtkSetMacro(PlanarLayers, bool);
+  vtkGetMacro(PlanarLayers, bool);
+  vtkBooleanMacro(PlanarLayers, bool);
+  ///@}
+
   enum Redistributions
   {
     NO_REDISTRIBUTION = 0, ///< each process works on the points that its piece has
@@ -141,7 +152,7 @@ protected:
     vtkDataObject* reference, int fixedPort, bool boundaryMoves,
     const std::function<void(const tautline::InputBlock&)>& visit);
 
-  /// Remarks on seams between blocks, or ""; known after ForEachBlock().
+  /// Remarks on layers and on seams between blocks, or ""; known after ForEachBlock().
   const std::string& GetBlockNotice() const { return this->BlockNotice; }
 
   /// The number of data sets of the input, at least 1; known within ForEachBlock().
@@ -150,11 +161,19 @@ protected:
   /// Reports the progress on a block, 0 to 1. @return false if the execution is to be aborted
   bool ProceedInBlock(int block, double fraction);
 
+  /// Whether layers are treated so in the execution to come.
+  virtual bool TreatsLayers() const { return this->PlanarLayers; }
+
   bool MergeCoincidentPoints = true;
+  bool PlanarLayers = true;
   int Redistribute = NO_REDISTRIBUTION;
   bool ReproducibleOrder = false; ///< a property of some filters
 
 private:
+  /// Calls visit for a block, of a layer for its planar mesh.
+  void VisitBlock(const tautline::InputBlock& block,
+    const std::function<void(const tautline::InputBlock&)>& visit);
+
   vtkMeshMotionAlgorithm(const vtkMeshMotionAlgorithm&) = delete;
   void operator=(const vtkMeshMotionAlgorithm&) = delete;
 

@@ -106,8 +106,9 @@ def choose_preset(
     """Set the preset, or the objectives.
 
     preset: "fast clean-up", "best shape", "uniform size", "low interpolation error", "untangle then improve", "preserve
-        shape" (of the reference), "worst element", "finite volumes" (which takes polyhedra) or "custom". "best shape" is
-        the default if no objectives, no target and no argument that a preset replaces are given. The name of a metric, or a list, is taken as objectives.
+        shape" (of the reference), "worst element", "finite volumes" (polyhedra, too) or "custom". "best shape" is the
+        default if no objectives, no target and no argument that a preset replaces are given. The name of a metric, or a
+        list, is taken as objectives.
     objectives: what to optimize: names of metrics, or pairs of a name and a dict with any of "template" (how the values
         of the elements are aggregated: "default", "sum of squares", "sum of squared reciprocals", "sum of
         reciprocals", "sum", "power mean", "maximum"), "weight" (above 0; 1) and "target" ("ideal", "reference", "size",

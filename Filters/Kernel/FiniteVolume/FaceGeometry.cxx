@@ -4,6 +4,11 @@
 #include "FaceShape.h"
 #include "tautline/Core/Parallel.h"
 
+#include <Eigen/LU>
+#include <Eigen/SVD>
+
+#include <algorithm>
+
 namespace tautline
 {
 namespace
@@ -11,14 +16,79 @@ namespace
 /// Cells of smaller volume have their center at the mean of those of their faces.
 constexpr double NoVolume = 1e-300;
 
-/// Moves a point as the least rotation that takes `from` to `to`, both of length 1, moves it about
-/// the origin.
-Vec3 rotated(const Vec3& point, const Vec3& from, const Vec3& to)
+/// Calls visit(p, q) for corresponding points of a coupled patch and the other one.
+template <class Visit>
+void forEachPair(
+  const FaceMesh& mesh, const FacePatch& patch, const double* points, const Visit& visit)
 {
-  // Rodrigues' formula with the axis from x to, whose length is the sine of the angle.
-  const Vec3 axis = cross(from, to);
-  const double cosine = dot(from, to);
-  return cosine * point + cross(axis, point) + (dot(axis, point) / (1 + cosine)) * axis;
+  for (Index face = patch.first; face < patch.first + patch.count; ++face)
+  {
+    const Index other = mesh.coupled(face), size = mesh.size(face);
+    const Index* nodes = mesh.nodes.data() + mesh.offsets[face];
+    const Index* otherNodes = mesh.nodes.data() + mesh.offsets[other];
+    for (Index k = 0; size == mesh.size(other) && k < size; ++k)
+    {
+      visit(pointAt(points, nodes[k]), pointAt(points, otherNodes[(size - k) % size]));
+    }
+  }
+}
+
+/// The rigid motion that takes the points of the other patch nearest to those of a patch (Kabsch,
+/// Acta Cryst. A32 (1976)); a shift if that does, up to the accuracy with which patches match.
+PatchMotion motionOf(const FaceMesh& mesh, const FacePatch& patch, const double* points)
+{
+  PatchMotion motion;
+  Vec3 mean = { 0, 0, 0 }, otherMean = { 0, 0, 0 };
+  double count = 0;
+  forEachPair(mesh, patch, points,
+    [&](const Vec3& p, const Vec3& q)
+    {
+      mean += p;
+      otherMean += q;
+      ++count;
+    });
+  if (count == 0)
+  {
+    return motion;
+  }
+  mean = (1 / count) * mean;
+  otherMean = (1 / count) * otherMean;
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  double farthest = 0, size = 0;
+  forEachPair(mesh, patch, points,
+    [&](const Vec3& p, const Vec3& q)
+    {
+      const Vec3 a = p - mean, b = q - otherMean;
+      farthest = std::max(farthest, norm(a - b));
+      size = std::max(size, norm(a));
+      moments += Eigen::Vector3d(a[0], a[1], a[2]) * Eigen::RowVector3d(b[0], b[1], b[2]);
+    });
+  constexpr double matching = 1e-3;
+  if (farthest > matching * size && moments.allFinite())
+  {
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Matrix3d turn = svd.matrixU() * svd.matrixV().transpose();
+    if (turn.determinant() < 0)
+    {
+      Eigen::Matrix3d u = svd.matrixU();
+      u.col(2) *= -1;
+      turn = u * svd.matrixV().transpose();
+    }
+    for (int i = 0; i < 3; ++i)
+    {
+      motion.rows[i] = { turn(i, 0), turn(i, 1), turn(i, 2) };
+    }
+  }
+  motion.shift = mean - motion.turn(otherMean);
+  return motion;
+}
+
+/// The motion of the patch of a coupled face.
+const PatchMotion& motionAt(const FaceMesh& mesh, const FaceGeometry& geometry, Index face)
+{
+  const auto after = std::upper_bound(mesh.patches.begin(), mesh.patches.end(), face,
+    [](Index f, const FacePatch& patch) { return f < patch.first; });
+  return geometry.motions[after - mesh.patches.begin() - 1];
 }
 }
 
@@ -69,6 +139,10 @@ FaceGeometry faceGeometry(
       geometry.area[face] = shape.area;
       geometry.center[face] = shape.center;
     });
+  for (const FacePatch& patch : mesh.patches)
+  {
+    geometry.motions.push_back(patch.partner >= 0 ? motionOf(mesh, patch, points) : PatchMotion());
+  }
   geometry.cellCenter.resize(mesh.cells);
   geometry.volume.resize(mesh.cells);
   parallelFor(
@@ -76,40 +150,17 @@ FaceGeometry faceGeometry(
   return geometry;
 }
 
-namespace
-{
-/// The unit normals of a face and of its coupled one, the latter into its cell; false if a face has
-/// no area, or if both are parallel up to the accuracy of written points: there is no rotation.
-bool isTurned(
-  const FaceMesh& mesh, const FaceGeometry& geometry, Index face, Vec3& normal, Vec3& back)
-{
-  const Index other = mesh.coupled(face);
-  const double size = norm(geometry.area[face]), otherSize = norm(geometry.area[other]);
-  constexpr double parallel = 1e-8;
-  if (!(size > 0 && otherSize > 0))
-  {
-    return false;
-  }
-  normal = (1 / size) * geometry.area[face];
-  back = (-1 / otherSize) * geometry.area[other];
-  return norm(cross(normal, back)) >= parallel;
-}
-}
-
 //------------------------------------------------------------------------------
 Vec3 acrossPatch(const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& place)
 {
-  const Vec3 from = place - geometry.center[mesh.coupled(face)];
-  Vec3 normal, back;
-  return geometry.center[face] +
-    (isTurned(mesh, geometry, face, normal, back) ? rotated(from, back, normal) : from);
+  const PatchMotion& motion = motionAt(mesh, geometry, face);
+  return motion.turn(place) + motion.shift;
 }
 
 //------------------------------------------------------------------------------
 Vec3 alongPatch(const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& vector)
 {
-  Vec3 normal, back;
-  return isTurned(mesh, geometry, face, normal, back) ? rotated(vector, normal, back) : vector;
+  return motionAt(mesh, geometry, face).turnBack(vector);
 }
 
 //------------------------------------------------------------------------------

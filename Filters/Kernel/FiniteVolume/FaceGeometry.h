@@ -18,6 +18,21 @@
 
 namespace tautline
 {
+/// How the other patch of a coupled pair is moved to a patch: x becomes R x + t.
+struct PatchMotion
+{
+  std::array<Vec3, 3> rows = { Vec3{ 1, 0, 0 }, Vec3{ 0, 1, 0 }, Vec3{ 0, 0, 1 } }; ///< of R
+  Vec3 shift = { 0, 0, 0 };
+  Vec3 turn(const Vec3& v) const
+  {
+    return { dot(this->rows[0], v), dot(this->rows[1], v), dot(this->rows[2], v) };
+  }
+  Vec3 turnBack(const Vec3& v) const
+  {
+    return v[0] * this->rows[0] + v[1] * this->rows[1] + v[2] * this->rows[2];
+  }
+};
+
 /// The geometry of a FaceMesh.
 struct FaceGeometry
 {
@@ -25,18 +40,19 @@ struct FaceGeometry
   std::vector<Vec3> center;     ///< per face
   std::vector<Vec3> cellCenter; ///< per cell
   std::vector<double> volume;   ///< per cell
+  /// Per patch: of coupled ones, by the points of their faces, which correspond in opposite order.
+  std::vector<PatchMotion> motions;
 };
 
 /// @param points 3 coordinates per point of the mesh
 TAUTLINE_KERNEL_EXPORT FaceGeometry faceGeometry(
   const FaceMesh& mesh, const double* points, FaceConvention convention, int threads = 0);
 
-/// A place at the coupled face of a face, moved as the one face is to the other: without a rotation
-/// where both are parallel, else with the least one.
+/// A place at the coupled face of a face, moved as the other patch is to that of the face.
 TAUTLINE_KERNEL_EXPORT Vec3 acrossPatch(
   const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& place);
 
-/// A vector at the coupled face of a face, turned in the opposite sense: from `face` to the other.
+/// A vector at a coupled face, turned in the opposite sense: to the other patch.
 TAUTLINE_KERNEL_EXPORT Vec3 alongPatch(
   const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& vector);
 

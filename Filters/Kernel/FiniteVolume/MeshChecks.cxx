@@ -24,7 +24,7 @@ constexpr double MostOpenness = 1e-6, MostAspectRatio = 1000, LeastSize = 1e-300
                  LeastPyramid = -1e-15, MostSkewness = 4, LeastTetQuality = 1e-30,
                  LeastFlatness = 0.8, LeastDeterminant = 1e-3, MostConcavity = -1e-6,
                  LeastWeight = 0.05, LeastVolumeRatio = 0.01, ShortEdge = 1e-6, MostTurn = 10,
-                 SevereAngle = 70, WrongAngle = 90;
+                 WrongAngle = 90;
 /// Beyond the cosine of a right angle by this, a face is wrong.
 constexpr double WrongCosine = 1e-15;
 

@@ -14,6 +14,9 @@
 
 namespace tautline
 {
+/// Above this, in degrees, checkMesh warns of faces that are severely non-orthogonal.
+constexpr double SevereAngle = 70;
+
 /// What a check examines.
 enum class CheckedItem
 {

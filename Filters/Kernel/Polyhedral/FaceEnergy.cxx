@@ -643,14 +643,6 @@ double FaceEnergy::evaluate(const double* points, double* gradient)
     {
       const Index face = this->Faces[i];
       FaceBar bar = { costs[i].area, costs[i].center };
-      if (!this->Mesh.internal(face) && this->Mesh.coupled(face) >= 0)
-      {
-        // The center across is f + R (C' - f') with f' of the coupled face.
-        const Index other = this->Mesh.coupled(face);
-        bar.center += costs[i].other;
-        bar.center -=
-          alongPatch(this->Mesh, this->Geometry, other, costs[this->Places[other]].other);
-      }
       this->addFromCell(this->Mesh.owner[face], face, bar);
       if (this->Mesh.internal(face))
       {

@@ -84,11 +84,17 @@ bool isNoWorse(const MeshCheckReport& after, const MeshCheckReport& before)
     {
       return false;
     }
+    const double slack = rounding * (std::abs(b.most) + std::abs(b.least));
+    const bool steeper = a.kind == MeshCheckKind::NonOrthogonality && a.warned > 0 &&
+      a.most > std::max(b.most, SevereAngle) + slack;
+    if (steeper)
+    {
+      return false;
+    }
     if (a.offending == 0)
     {
       continue;
     }
-    const double slack = rounding * (std::abs(b.most) + std::abs(b.least));
     const bool above = b.most > b.limit && a.most > std::max(b.most, b.limit) + slack;
     const bool below =
       b.least < b.limit && b.most >= b.limit && a.least < std::min(b.least, b.limit) - slack;
@@ -108,15 +114,23 @@ bool isNoWorse(const MeshCheckReport& after, const MeshCheckReport& before)
 class FreePoints : public SmoothFunction
 {
 public:
+  /// @param axis, mates of one layer, see Improver
   FreePoints(FaceEnergy& energy, const ConstrainedPoints& constrained,
-    const std::vector<Vec3>& normals, const std::vector<double>& lengths,
-    std::vector<double>& points)
+    const std::vector<Vec3>& normals, const std::vector<double>& lengths, int axis,
+    const std::vector<Index>& mates, std::vector<double>& points)
     : Energy(energy)
     , Constrained(constrained)
     , Normals(normals)
     , Lengths(lengths)
+    , Axis(axis)
     , Points(points)
   {
+    const std::vector<Index>& free = energy.freePoints();
+    for (Index point : mates.empty() ? std::vector<Index>() : free)
+    {
+      const auto found = std::lower_bound(free.begin(), free.end(), mates[point]);
+      this->MatePlaces.push_back(found - free.begin());
+    }
   }
 
   std::size_t size() const override { return 3 * this->Energy.freePoints().size(); }
@@ -134,6 +148,17 @@ public:
       const Vec3 g = { gradient[3 * i], gradient[3 * i + 1], gradient[3 * i + 2] };
       const Vec3 slides = this->along(free[i], g);
       std::copy(slides.begin(), slides.end(), gradient + 3 * i);
+    }
+    // Both of a pair have the same mean gradient, in their plane, and so the same motion.
+    for (std::size_t i = 0; std::isfinite(value) && i < this->MatePlaces.size(); ++i)
+    {
+      const auto mate = static_cast<std::size_t>(this->MatePlaces[i]);
+      for (int c = 0; c < 3 && mate > i; ++c)
+      {
+        const double mean =
+          c == this->Axis ? 0 : 0.5 * (gradient[3 * i + c] + gradient[3 * mate + c]);
+        gradient[3 * i + c] = gradient[3 * mate + c] = mean;
+      }
     }
     return value;
   }
@@ -165,6 +190,8 @@ private:
   const ConstrainedPoints& Constrained;
   const std::vector<Vec3>& Normals;
   const std::vector<double>& Lengths;
+  int Axis;
+  std::vector<Index> MatePlaces; ///< per free point that of its mate among them; or empty
   std::vector<double>& Points;
 };
 
@@ -188,6 +215,7 @@ public:
   ImproveFacesResult run();
 
 private:
+  void findMates();
   void findMovable();
   void findLengths();
   std::vector<char> near(const std::vector<Index>& faces, int layers) const;
@@ -201,6 +229,8 @@ private:
   ConstrainedPoints Constrained;
   std::vector<double> Start;
   std::vector<char> Movable;
+  int Axis = -1;               ///< across one layer of cells
+  std::vector<Index> Mates;    ///< of such a layer, per point: that on the other side; else empty
   std::vector<Vec3> Normals;   ///< of points in a band, where they are
   std::vector<double> Lengths; ///< of the shortest edge of each point
 };
@@ -208,6 +238,7 @@ private:
 //------------------------------------------------------------------------------
 void Improver::findMovable()
 {
+  this->findMates();
   std::vector<char> used(this->Mesh.points, 0);
   for (Index node : this->Mesh.nodes)
   {
@@ -215,7 +246,8 @@ void Improver::findMovable()
   }
   for (Index point = 0; point < this->Mesh.points; ++point)
   {
-    this->Movable[point] = used[point] &&
+    const bool layered = this->Axis < 0 || this->Movable[point];
+    this->Movable[point] = used[point] && layered &&
       (this->Constrained.freedom(point) != Freedom::None || this->Constrained.band(point) >= 0);
   }
   // What belongs together would move apart, and a border between patches would move.
@@ -224,6 +256,10 @@ void Improver::findMovable()
   for (int number = 0; number < static_cast<int>(this->Mesh.patches.size()); ++number)
   {
     const FacePatch& patch = this->Mesh.patches[number];
+    if (patch.isEmpty() && this->Axis >= 0)
+    {
+      continue; // the sides of the layer, whose points move in their planes
+    }
     const bool stays = patch.isEmpty() || patch.isWedge() || patch.isCoupled();
     for (Index i = this->Mesh.offsets[patch.first];
          i < this->Mesh.offsets[patch.first + patch.count]; ++i)
@@ -248,6 +284,63 @@ void Improver::findMovable()
 }
 
 //------------------------------------------------------------------------------
+/// Of one layer of cells between "empty" patches: the axis across it, and for each point of the one
+/// side that of the other, which moves with it.
+void Improver::findMates()
+{
+  const FaceMeasures measures(
+    this->Mesh, this->Start.data(), this->Options.convention, this->Options.threads);
+  const FaceDirections& directions = measures.directions();
+  if (directions.geometric != directions.solution || directions.count() != 2)
+  {
+    return;
+  }
+  const int axis = !directions.geometric[0] ? 0 : !directions.geometric[1] ? 1 : 2;
+  std::vector<char> onSide(this->Mesh.points, 0);
+  std::vector<char> isSide(this->Mesh.faces(), 0);
+  for (const FacePatch& patch : this->Mesh.patches)
+  {
+    for (Index face = patch.first; patch.isEmpty() && face < patch.first + patch.count; ++face)
+    {
+      isSide[face] = 1;
+      for (Index i = this->Mesh.offsets[face]; i < this->Mesh.offsets[face + 1]; ++i)
+      {
+        onSide[this->Mesh.nodes[i]] = 1;
+      }
+    }
+  }
+  std::vector<Index> mates(this->Mesh.points, -1);
+  for (Index face = 0; face < this->Mesh.faces(); ++face)
+  {
+    const Index first = this->Mesh.offsets[face], size = this->Mesh.size(face);
+    for (Index k = 0; !isSide[face] && k < size; ++k)
+    {
+      const Index a = this->Mesh.nodes[first + k], b = this->Mesh.nodes[first + (k + 1) % size];
+      const double *p = &this->Start[3 * a], *q = &this->Start[3 * b];
+      const bool across = p[axis] != q[axis] && p[(axis + 1) % 3] == q[(axis + 1) % 3] &&
+        p[(axis + 2) % 3] == q[(axis + 2) % 3];
+      if (!onSide[a] || !onSide[b] ||
+        (across && ((mates[a] >= 0 && mates[a] != b) || (mates[b] >= 0 && mates[b] != a))))
+      {
+        return; // not one layer
+      }
+      if (across)
+      {
+        mates[a] = b;
+        mates[b] = a;
+      }
+    }
+  }
+  this->Axis = axis;
+  for (Index point = 0; point < this->Mesh.points; ++point)
+  {
+    // Points without a counterpart right across stay.
+    this->Movable[point] = mates[point] >= 0;
+  }
+  this->Mates = std::move(mates);
+}
+
+//------------------------------------------------------------------------------
 void Improver::findLengths()
 {
   std::fill(this->Lengths.begin(), this->Lengths.end(), std::numeric_limits<double>::infinity());
@@ -261,8 +354,11 @@ void Improver::findLengths()
       const double* p = &this->Start[3 * a];
       const double* q = &this->Start[3 * b];
       const double length = norm(Vec3{ p[0] - q[0], p[1] - q[1], p[2] - q[2] });
-      this->Lengths[a] = std::min(this->Lengths[a], length);
-      this->Lengths[b] = std::min(this->Lengths[b], length);
+      if (this->Mates.empty() || this->Mates[a] != b)
+      {
+        this->Lengths[a] = std::min(this->Lengths[a], length);
+        this->Lengths[b] = std::min(this->Lengths[b], length);
+      }
     }
   }
 }
@@ -307,6 +403,16 @@ std::vector<char> Improver::near(const std::vector<Index>& faces, int layers) co
   {
     points[point] = points[point] && this->Movable[point];
   }
+  // Of two that move together, both or none.
+  for (Index point = 0; !this->Mates.empty() && point < this->Mesh.points; ++point)
+  {
+    const Index mate = this->Mates[point];
+    if (mate > point)
+    {
+      points[point] = points[mate] =
+        (points[point] || points[mate]) && this->Movable[point] && this->Movable[mate];
+    }
+  }
   return points;
 }
 
@@ -338,6 +444,11 @@ bool Improver::hold(const MeshCheckReport& now, const MeshCheckReport& before)
     {
       holdFace(this->Mesh.cellFaces[i]);
     }
+  }
+  for (Index point = 0; !this->Mates.empty() && point < this->Mesh.points; ++point)
+  {
+    const Index mate = this->Mates[point];
+    this->Movable[point] = this->Movable[point] && mate >= 0 && this->Movable[mate];
   }
   return any;
 }
@@ -396,7 +507,8 @@ std::vector<double> Improver::round(const std::vector<double>& from, const Want&
     }
   }
   std::vector<double> points = from;
-  FreePoints function(energy, this->Constrained, this->Normals, this->Lengths, points);
+  FreePoints function(
+    energy, this->Constrained, this->Normals, this->Lengths, this->Axis, this->Mates, points);
   std::vector<double> x(function.size());
   for (std::size_t i = 0; i < energy.freePoints().size(); ++i)
   {
@@ -417,6 +529,15 @@ std::vector<double> Improver::round(const std::vector<double>& from, const Want&
       points.begin() + 3 * energy.freePoints()[i]);
   }
   this->placeOnParts(from, points);
+  // Not even rounding separates the two sides of a layer.
+  for (Index point = 0; !this->Mates.empty() && point < this->Mesh.points; ++point)
+  {
+    for (int c = 0; c < 3 && this->Mates[point] > point; ++c)
+    {
+      double& of = points[3 * this->Mates[point] + c];
+      of = c == this->Axis ? of : points[3 * point + c];
+    }
+  }
   return points;
 }
 
