@@ -6,6 +6,7 @@
 #include "FoamFileAdapter.h"
 #include "MeshPart.h"
 #include "ProgressStep.h"
+#include "vtkTautlineSetRange.h"
 
 #include "vtkObjectFactory.h"
 #include "vtkUnstructuredGrid.h"
@@ -22,6 +23,22 @@ vtkFoamMeshReader::vtkFoamMeshReader()
 vtkFoamMeshReader::~vtkFoamMeshReader()
 {
   this->SetRegionName(nullptr);
+}
+
+//------------------------------------------------------------------------------
+void vtkFoamMeshReader::SetCaseType(int type)
+{
+  const std::string error =
+    tautline::rangeError<int>("CaseType", type, AUTOMATIC, DECOMPOSED, this->CaseType);
+  if (!error.empty())
+  {
+    vtkErrorMacro(<< error);
+  }
+  else if (this->CaseType != type)
+  {
+    this->CaseType = type;
+    this->Modified();
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -62,9 +62,10 @@ public:
 
   ///@{
   /**
-   * Which mesh of a case is read. The default is AUTOMATIC.
+   * Which mesh of a case is read; another number is an error, and not set. The default is
+   * AUTOMATIC.
    */
-  vtkSetClampMacro(CaseType, int, AUTOMATIC, DECOMPOSED);
+  void SetCaseType(int type);
   vtkGetMacro(CaseType, int);
   ///@}
 

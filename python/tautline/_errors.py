@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
+from difflib import SequenceMatcher, get_close_matches
 from functools import wraps
 from inspect import Signature, signature
 from typing import Any, Callable, Iterable, TypeVar, cast
@@ -65,8 +65,16 @@ Error.__module__ = Aborted.__module__ = MissingKey.__module__ = __package__
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """What to add to the message for an unknown name: the nearest one, or nothing."""
-    found = get_close_matches(name, list(known), 1)
-    return f"; did you mean {found[0]!r}?" if found else ""
+    found = closest(name, known)
+    return f"; did you mean {found!r}?" if found else ""
+
+
+def closest(name: str, known: Iterable[str]) -> str:
+    """The nearest of several names, of equally near ones that of the nearest length; "" if none is near."""
+    names = list(known)
+    found = get_close_matches(name, names, len(names)) if names else []
+    near = {other: (SequenceMatcher(None, other, name).ratio(), -abs(len(other) - len(name))) for other in found}
+    return max(near, key=lambda other: near[other], default="")
 
 
 def wrong_usage(text: str) -> Error:

@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import re
-from difflib import get_close_matches
 from typing import Any, Iterable
 
 from ._choices import LABELS
+from ._errors import closest
 
 # Names by older ones, and by labels of warp()'s solver, which is not one property. As in folded().
 _LABELS = {
@@ -32,8 +32,8 @@ def find_name(value: Any, allowed: Iterable[str]) -> str | None:
 def nearest_name(value: Any, allowed: Iterable[str]) -> str:
     """What to add to the message for an unknown name: the nearest one, or nothing."""
     names = {folded(name): name for name in allowed}
-    found = get_close_matches(folded(str(value)), names, 1)
-    return f" (did you mean {names[found[0]]!r}?)" if found else ""
+    best = closest(folded(str(value)), names)
+    return f" (did you mean {names[best]!r}?)" if best else ""
 
 
 def folded(name: str) -> str:

@@ -84,9 +84,9 @@ class QualityResult(Result):
         Per metric of the criteria: label, weight, graded, passed, warning, failed (elements), mean_penalty.
     checks : dict[str, Array]
         Per check of solvers, if any were chosen, its value on each cell, m.
-    faces : vtkPolyData
-        Where metrics of finite volumes are measured, the faces that fail a check of OpenFOAM's checkMesh (or all, see
-        face_output), with the cell arrays Face, Owner, Neighbour, Patch, Failed, OwnerWeight and one per metric.
+    faces : vtkPolyData | None
+        The faces that fail a check of OpenFOAM's checkMesh (or all, see face_output), with the cell arrays Face, Owner,
+        Neighbour, Patch, Failed, OwnerWeight and one per metric; None without metrics of finite volumes.
     mesh_checks : dict[str, dict[str, Any]]
         Per check of checkMesh: label, minimum, maximum, mean, limit, offending, severe, on_request (only with
         -allTopology and -allGeometry), failed, bit (in Failed of the faces). Empty without metrics of finite volumes.
@@ -116,7 +116,7 @@ class QualityResult(Result):
     bounds: Array | None
     criteria: dict[str, dict[str, Any]]
     checks: dict[str, Array]
-    faces: vtkPolyData
+    faces: vtkPolyData | None
     mesh_checks: dict[str, dict[str, Any]]
     failed_checks: int | None
     failed_checks_of_all: int | None
@@ -284,7 +284,7 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
         bounds=cell_array(mesh, "JacobianBound") if filter_.GetJacobianBounds() else None,
         criteria=by_metric(_by_metric(columns(filter_.GetCriteriaTable())) if graded else {}),
         checks={name: cell_array(mesh, name) for name in _chosen_checks(filter_)},
-        faces=filter_.GetFaces(),
+        faces=filter_.GetFaces() if filter_.GetFailedChecks() >= 0 else None,
         mesh_checks=_mesh_checks(columns(filter_.GetMeshChecks())),
         failed_checks=_count(filter_.GetFailedChecks()),
         failed_checks_of_all=_count(filter_.GetFailedChecksOfAll()),

@@ -149,7 +149,7 @@ TAUTLINE_PART(testPresets)
   TAUTLINE_CHECK((limits("nastran", "midnode_angle", quad) == Limits{ 30, 180 }));
   const double quality = std::pow(0.05, 2.0 / 3);
   TAUTLINE_CHECK_NEAR(limits("ansys_solids", "mean_ratio", tet)[1], quality, 1e-15);
-  TAUTLINE_CHECK_EQUAL(criteriaPresets().size(), std::size_t{ 10 });
+  TAUTLINE_CHECK_EQUAL(criteriaPresets().size(), std::size_t{ 14 });
 }
 
 /// Each solver has a preset for shells and one for solids, and the labels tell them apart.
