@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import re
-from difflib import SequenceMatcher, get_close_matches
 from functools import wraps
 from inspect import Signature, signature
 from typing import Any, Callable, Iterable, TypeVar, cast
@@ -12,6 +11,7 @@ from typing import Any, Callable, Iterable, TypeVar, cast
 from vtkmodules.vtkCommonCore import vtkCommand
 
 from ._interrupts import Cancelled, reporting, updating
+from ._names import closest
 from ._vtk import CLASSES
 
 # VTK puts file, line, class and address before the text of a message.
@@ -67,14 +67,6 @@ def nearest(name: str, known: Iterable[str]) -> str:
     """What to add to the message for an unknown name: the nearest one, or nothing."""
     found = closest(name, known)
     return f"; did you mean {found!r}?" if found else ""
-
-
-def closest(name: str, known: Iterable[str]) -> str:
-    """The nearest of several names, of equally near ones that of the nearest length; "" if none is near."""
-    names = list(known)
-    found = get_close_matches(name, names, len(names)) if names else []
-    near = {other: (SequenceMatcher(None, other, name).ratio(), -abs(len(other) - len(name))) for other in found}
-    return max(near, key=lambda other: near[other], default="")
 
 
 def wrong_usage(text: str) -> Error:

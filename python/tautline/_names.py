@@ -4,10 +4,10 @@
 from __future__ import annotations
 
 import re
+from difflib import SequenceMatcher, get_close_matches
 from typing import Any, Iterable
 
 from ._choices import LABELS
-from ._errors import closest
 
 # Names by older ones, and by labels of warp()'s solver, which is not one property. As in folded().
 _LABELS = {
@@ -34,6 +34,14 @@ def nearest_name(value: Any, allowed: Iterable[str]) -> str:
     names = {folded(name): name for name in allowed}
     best = closest(folded(str(value)), names)
     return f" (did you mean {names[best]!r}?)" if best else ""
+
+
+def closest(name: str, known: Iterable[str]) -> str:
+    """The nearest of several names, of equally near ones that of the nearest length; "" if none is near."""
+    names = list(known)
+    found = get_close_matches(name, names, len(names)) if names else []
+    near = {other: (SequenceMatcher(None, other, name).ratio(), -abs(len(other) - len(name))) for other in found}
+    return max(near, key=lambda other: near[other], default="")
 
 
 def folded(name: str) -> str:
