@@ -15,7 +15,6 @@
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace tautline
 {
@@ -88,9 +87,12 @@ FaceMeshAdapter::FaceMeshAdapter(vtkDataSet* input, const MeshAdapter& adapter, 
   const Index points = this->extruded() ? 2 * this->View.numberOfPoints : this->View.numberOfPoints;
   const bool known = !patches.empty();
   this->Faces = findFaces(points, this->List, this->Facets, std::move(patches), threads);
-  if (!known)
+  const int axis = known ? -1 : markLayer(this->Faces, this->points());
+  if (axis >= 0)
   {
-    this->markLayer(threads);
+    this->Notice += std::string(this->Notice.empty() ? "" : " ") +
+      "The mesh is one layer of cells and is measured as planar, at right angles to " +
+      "xyz"[axis] + ".";
   }
 }
 
@@ -100,7 +102,7 @@ void FaceMeshAdapter::listVolumes(vtkDataSet* input, const MeshAdapter& adapter,
   const MeshView& view = adapter.mesh().view();
   auto* grid = vtkUnstructuredGrid::SafeDownCast(input);
   vtkNew<vtkIdList> stream;
-  bool linear = false, polyhedra = false;
+  bool polyhedra = false;
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     pollInterruption(cell);
@@ -118,7 +120,7 @@ void FaceMeshAdapter::listVolumes(vtkDataSet* input, const MeshAdapter& adapter,
     {
       continue;
     }
-    (polyhedron ? polyhedra : linear) = true;
+    polyhedra = polyhedra || polyhedron;
     this->Cells.push_back(cell);
   }
   if (adapter.mesh().mirrored())
@@ -177,6 +179,10 @@ void FaceMeshAdapter::listPolygons(const Mesh& mesh)
       at[2] = static_cast<double>(layer) * height;
     }
   }
+  if (mesh.blocks().empty())
+  {
+    turnPolygons(cells, this->Points.data()); // of which no orientation was found
+  }
   this->List = extrude(view.numberOfPoints, cells, this->Facets);
 }
 
@@ -216,64 +222,6 @@ void FaceMeshAdapter::listFacets(vtkDataSet* input, int patches)
     const Index first = this->View.offsets[cell];
     appendFacet(this->Facets, this->View.connectivity + first, this->View.offsets[cell + 1] - first,
       number < patches ? number : -1);
-  }
-}
-
-//------------------------------------------------------------------------------
-/// Makes the sides of one layer of cells "empty" patches.
-void FaceMeshAdapter::markLayer(int threads)
-{
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (Index node : this->Faces.nodes)
-    {
-      low = std::min(low, this->View.points[3 * node + axis]);
-      high = std::max(high, this->View.points[3 * node + axis]);
-    }
-    const double tolerance = 1e-9 * diagonalOf(this->View);
-    const auto isLow = [&](Index node)
-    { return this->View.points[3 * node + axis] <= low + tolerance; };
-    const auto isHigh = [&](Index node)
-    { return this->View.points[3 * node + axis] >= high - tolerance; };
-    const bool layer = high - low > tolerance &&
-      std::all_of(this->Faces.nodes.begin(), this->Faces.nodes.end(),
-        [&](Index node) { return isLow(node) || isHigh(node); });
-    if (!layer)
-    {
-      continue;
-    }
-    // Each cell has one face in each plane.
-    FaceMesh& mesh = this->Faces;
-    std::vector<char> side(mesh.faces(), 0);
-    std::vector<int> sides(mesh.cells, 0);
-    for (Index face = mesh.internalFaces; face < mesh.faces(); ++face)
-    {
-      const auto begin = mesh.nodes.begin() + mesh.offsets[face];
-      const auto end = mesh.nodes.begin() + mesh.offsets[face + 1];
-      side[face] = std::all_of(begin, end, isLow) || std::all_of(begin, end, isHigh);
-      sides[mesh.owner[face]] += side[face];
-    }
-    if (std::any_of(sides.begin(), sides.end(), [](int n) { return n != 2; }))
-    {
-      continue;
-    }
-    ListedFacets facets;
-    for (Index face = mesh.internalFaces; face < mesh.faces(); ++face)
-    {
-      if (side[face])
-      {
-        appendFacet(facets, mesh.nodes.data() + mesh.offsets[face], mesh.size(face), 0);
-      }
-    }
-    FacePatch empty;
-    empty.name = "sides of the layer";
-    empty.type = "empty";
-    this->Faces = findFaces(mesh.points, this->List, facets, { empty }, threads);
-    this->Notice += std::string(this->Notice.empty() ? "" : " ") +
-      "The mesh is one layer of cells and is measured as planar, at right angles to " +
-      "xyz"[axis] + ".";
-    return;
   }
 }
 

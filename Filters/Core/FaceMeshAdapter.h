@@ -9,8 +9,8 @@
  * them at one face make a baffle of it.
  *
  * A plane mesh of triangles, quadrilaterals and polygons becomes one layer of prisms between two
- * "empty" patches. A mesh of one layer of hexahedra and wedges between two planes at right angles
- * to an axis, of which no patches are known, gets such patches, too.
+ * "empty" patches. A mesh of one layer of cells, of which no patches are known, gets such a patch,
+ * see markLayer().
  *
  * The data set and the adapter must outlive it.
  */
@@ -44,7 +44,8 @@ public:
   FaceMeshAdapter(vtkDataSet* input, const MeshAdapter& adapter, int threads = 0);
 
   const FaceMesh& mesh() const { return this->Faces; }
-  /// Of the points of mesh(): those of the data set, of a plane mesh with those above.
+  /// Coordinates of the points of mesh(): the points of the data set, for a plane mesh followed by
+  /// the points above them.
   const double* points() const
   {
     return this->Points.empty() ? this->View.points : this->Points.data();
@@ -62,7 +63,6 @@ private:
   void listPolygons(const Mesh& mesh);
   std::vector<FacePatch> listPatches(vtkDataSet* input);
   void listFacets(vtkDataSet* input, int patches);
-  void markLayer(int threads);
 
   MeshView View;
   FaceMesh Faces;

@@ -2,7 +2,7 @@
 /**
  * @class tautline::LayerMesh
  * @brief One layer of hexahedra and wedges between two planes, as 2D cases of OpenFOAM have it,
- * seen as the planar mesh of one side, whose points take those of the other side with them.
+ * seen as the planar mesh of one side; the points of the other side move with it.
  *
  * The planes are at right angles to an axis, each cell has one face in each, and each point of the
  * lower one has one counterpart above. Where this holds for several axes, as for a row of cells,

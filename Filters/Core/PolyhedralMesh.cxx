@@ -201,22 +201,6 @@ std::vector<signed char> PolyhedralMesh::addMeasures(
 }
 
 //------------------------------------------------------------------------------
-bool hasPolyhedra(vtkDataObject* data)
-{
-  bool found = false;
-  forEachLeaf(data,
-    [&found](unsigned int, vtkDataSet* leaf)
-    {
-      for (vtkIdType i = 0;
-           !found && vtkUnstructuredGrid::SafeDownCast(leaf) && i < leaf->GetNumberOfCells(); ++i)
-      {
-        found = leaf->GetCellType(i) == VTK_POLYHEDRON;
-      }
-    });
-  return found;
-}
-
-//------------------------------------------------------------------------------
 std::string summarize(const ImproveFacesResult& result)
 {
   std::ostringstream text;

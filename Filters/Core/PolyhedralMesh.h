@@ -21,7 +21,6 @@
 #include <string>
 
 class vtkPointSet;
-class vtkTable;
 class vtkUnstructuredGrid;
 
 namespace tautline
@@ -58,9 +57,6 @@ private:
   vtkSmartPointer<vtkUnstructuredGrid> Solid, Selected;
   std::string Notice;
 };
-
-/// Whether a data set has polyhedra.
-TAUTLINECORE_EXPORT bool hasPolyhedra(vtkDataObject* data);
 
 /// What a result is, in sentences for the user.
 TAUTLINECORE_EXPORT std::string summarize(const ImproveFacesResult& result);

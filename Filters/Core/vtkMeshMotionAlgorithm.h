@@ -162,7 +162,7 @@ protected:
   bool ProceedInBlock(int block, double fraction);
 
   /// Whether layers are treated so in the execution to come.
-  virtual bool TreatsLayers() const { return this->PlanarLayers; }
+  virtual bool TreatsLayers() { return this->PlanarLayers; }
 
   bool MergeCoincidentPoints = true;
   bool PlanarLayers = true;

@@ -458,6 +458,9 @@ protected:
   vtkMeshWarp();
   ~vtkMeshWarp() override;
 
+  /// A target is not reduced to a side: with one, a layer is a mesh of volumes.
+  bool TreatsLayers() override { return this->PlanarLayers && this->Motion != TARGET; }
+
   int RequestInformation(vtkInformation*, vtkInformationVector** inputVector,
     vtkInformationVector* outputVector) override;
   int RequestUpdateExtent(vtkInformation*, vtkInformationVector** inputVector,

@@ -575,10 +575,7 @@ private:
     tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
     tautline::TableRows& statistics);
   /// The measures of finite volumes are those of the layer.
-  bool TreatsLayers() const override
-  {
-    return this->PlanarLayers && this->Preset != FINITE_VOLUMES;
-  }
+  bool TreatsLayers() override { return this->PlanarLayers && this->Preset != FINITE_VOLUMES; }
   void ImproveFaces(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
     tautline::OptimizerRun& run, tautline::TableRows& history, tautline::TableRows& statistics);
   void Report();

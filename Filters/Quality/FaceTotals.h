@@ -22,7 +22,7 @@ namespace tautline
 class FaceTotals
 {
 public:
-  /// Adds the checks of a block. @param measures of the block, for the means
+  /// Adds the checks of a block.
   void add(const MeshCheckReport& report, const FaceMesh& mesh);
   /// Adds faces to the output.
   void add(vtkSmartPointer<vtkPolyData> faces) { this->Faces.push_back(std::move(faces)); }

@@ -48,7 +48,8 @@ struct FaceGeometry
 TAUTLINE_KERNEL_EXPORT FaceGeometry faceGeometry(
   const FaceMesh& mesh, const double* points, FaceConvention convention, int threads = 0);
 
-/// A place at the coupled face of a face, moved as the other patch is to that of the face.
+/// A place at the coupled face of a face, moved by the motion that takes the other patch to the patch
+/// of the face.
 TAUTLINE_KERNEL_EXPORT Vec3 acrossPatch(
   const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& place);
 
@@ -59,7 +60,7 @@ TAUTLINE_KERNEL_EXPORT Vec3 alongPatch(
 /// The mean of the centers of the faces of a cell, the apex of its pyramids.
 TAUTLINE_KERNEL_EXPORT Vec3 apexOf(const FaceMesh& mesh, const FaceGeometry& geometry, Index cell);
 
-/// Finds center and volume of a cell from its faces anew.
+/// Computes center and volume of a cell from its faces.
 TAUTLINE_KERNEL_EXPORT void measureCell(const FaceMesh& mesh, FaceGeometry& geometry, Index cell);
 
 /// The center of the cell across a face with two cells, as seen from its owner; see acrossPatch().

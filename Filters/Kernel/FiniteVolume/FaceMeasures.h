@@ -23,7 +23,7 @@ namespace tautline
 /// The axes along which a mesh has more than one cell.
 struct FaceDirections
 {
-  /// By "empty" patches: those of the solution.
+  /// By "empty" patches: the directions that the solution depends on.
   std::array<bool, 3> solution = { true, true, true };
   /// By these and "wedge" patches.
   std::array<bool, 3> geometric = { true, true, true };

@@ -5,6 +5,8 @@
 #include "tautline/Core/Parallel.h"
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -368,5 +370,107 @@ FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& f
   coupleCyclic(mesh);
   listCellFaces(mesh);
   return mesh;
+}
+
+namespace
+{
+/// Flags the boundary faces that are in one of the two planes across an axis; false if these do not
+/// hold all points, or if a cell does not have one face in each.
+bool findSides(const FaceMesh& mesh, const double* points, int axis, std::vector<char>& side)
+{
+  constexpr double tolerance = 1e-9; // of the largest extent
+  Vec3 low, high;
+  low.fill(std::numeric_limits<double>::infinity());
+  high.fill(-std::numeric_limits<double>::infinity());
+  for (Index node : mesh.nodes)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      low[c] = std::min(low[c], points[3 * node + c]);
+      high[c] = std::max(high[c], points[3 * node + c]);
+    }
+  }
+  const Vec3 extent = high - low;
+  const double slack = tolerance * std::max({ extent[0], extent[1], extent[2] });
+  const auto isLow = [&](Index node) { return points[3 * node + axis] <= low[axis] + slack; };
+  const auto isHigh = [&](Index node) { return points[3 * node + axis] >= high[axis] - slack; };
+  const bool flat = extent[axis] > 2 * slack &&
+    std::all_of(mesh.nodes.begin(), mesh.nodes.end(),
+      [&](Index node) { return isLow(node) || isHigh(node); });
+  if (!flat)
+  {
+    return false;
+  }
+  side.assign(mesh.faces(), 0);
+  std::vector<std::array<int, 2>> counts(mesh.cells, { 0, 0 });
+  for (Index face = mesh.internalFaces; face < mesh.faces(); ++face)
+  {
+    const auto begin = mesh.nodes.begin() + mesh.offsets[face];
+    const auto end = mesh.nodes.begin() + mesh.offsets[face + 1];
+    const bool below = std::all_of(begin, end, isLow), above = std::all_of(begin, end, isHigh);
+    counts[mesh.owner[face]][0] += below;
+    counts[mesh.owner[face]][1] += above;
+    side[face] = below || above;
+  }
+  return std::all_of(counts.begin(), counts.end(),
+    [](const std::array<int, 2>& count) { return count[0] == 1 && count[1] == 1; });
+}
+}
+
+//------------------------------------------------------------------------------
+int markLayer(FaceMesh& mesh, const double* points)
+{
+  int found = -1;
+  std::array<std::vector<char>, 3> sides;
+  for (int axis = 0; axis < 3; ++axis)
+  {
+    if (findSides(mesh, points, axis, sides[axis]))
+    {
+      if (found >= 0)
+      {
+        return -1; // a row of cells
+      }
+      found = axis;
+    }
+  }
+  if (found < 0)
+  {
+    return -1;
+  }
+  const std::vector<char>& side = sides[found];
+  // The sides first, each part in its order.
+  std::vector<Index> order;
+  for (const bool ofSides : { true, false })
+  {
+    for (Index face = mesh.internalFaces; face < mesh.faces(); ++face)
+    {
+      if ((side[face] != 0) == ofSides)
+      {
+        order.push_back(face);
+      }
+    }
+  }
+  const FaceMesh before = mesh;
+  mesh.nodes.resize(mesh.offsets[mesh.internalFaces]);
+  mesh.offsets.resize(mesh.internalFaces + 1);
+  mesh.owner.resize(mesh.internalFaces);
+  mesh.facet.clear();
+  for (Index face : order)
+  {
+    append(mesh, listOf(before.offsets, before.nodes, face), before.owner[face]);
+    mesh.facet.push_back(before.facet[face - before.internalFaces]);
+  }
+  FacePatch empty, rest;
+  empty.name = "sides of the layer";
+  empty.type = "empty";
+  empty.first = mesh.internalFaces;
+  empty.count = std::count(side.begin(), side.end(), 1);
+  rest.name = "boundary";
+  rest.first = empty.first + empty.count;
+  rest.count = mesh.faces() - rest.first;
+  mesh.patches = { empty, rest };
+  coupleCyclic(mesh);
+  listCellFaces(mesh);
+  return found;
 }
 }

@@ -31,7 +31,7 @@ struct FacePatch
   bool isEmpty() const { return this->type == "empty"; }
   /// Whether its faces correspond one by one with those of another patch.
   bool isCyclic() const { return this->type == "cyclic" || this->type == "cyclicSlip"; }
-  /// Whether its points belong to those of another patch, mesh or process.
+  /// Whether its points have counterparts in another patch, mesh or process.
   bool isCoupled() const
   {
     return this->type.rfind("cyclic", 0) == 0 || this->type.rfind("mapped", 0) == 0 ||
@@ -96,5 +96,13 @@ struct ListedFacets
  */
 TAUTLINE_KERNEL_EXPORT FaceMesh findFaces(Index points, const ListedFaces& cells,
   const ListedFacets& facets, std::vector<FacePatch> patches, int threads = 0);
+
+/**
+ * @brief Makes the faces in the two planes of one layer of cells an "empty" patch, the first one: all
+ * points are in two planes at right angles to one axis only, and each cell has one face in each.
+ * @param mesh without coupled patches
+ * @return the axis, or -1: the mesh is no such layer, and stays
+ */
+TAUTLINE_KERNEL_EXPORT int markLayer(FaceMesh& mesh, const double* points);
 }
 #endif

@@ -177,6 +177,24 @@ void reverseFaces(ListedFaces& list)
 }
 
 //------------------------------------------------------------------------------
+void turnPolygons(std::vector<std::vector<Index>>& cells, const double* points)
+{
+  double twice = 0;
+  for (const std::vector<Index>& cell : cells)
+  {
+    for (std::size_t i = 0; i < cell.size(); ++i)
+    {
+      const double *a = points + 3 * cell[i], *b = points + 3 * cell[(i + 1) % cell.size()];
+      twice += a[0] * b[1] - a[1] * b[0];
+    }
+  }
+  for (std::size_t i = 0; twice < 0 && i < cells.size(); ++i)
+  {
+    std::reverse(cells[i].begin(), cells[i].end());
+  }
+}
+
+//------------------------------------------------------------------------------
 ListedFaces extrude(
   Index points, const std::vector<std::vector<Index>>& cells, ListedFacets& facets)
 {

@@ -27,9 +27,14 @@ TAUTLINE_KERNEL_EXPORT Index turnFaces(
 /// Lists all faces in the opposite sense: those of a mesh that is reversed throughout.
 TAUTLINE_KERNEL_EXPORT void reverseFaces(ListedFaces& list);
 
+/// Lists all polygons in the opposite sense where the sum of their areas is negative. @param points
+/// 3 coordinates per point, of which the first two count
+TAUTLINE_KERNEL_EXPORT void turnPolygons(
+  std::vector<std::vector<Index>>& cells, const double* points);
+
 /**
- * @brief A plane mesh as one layer of prisms. The points above those of the mesh have the next
- * numbers, in the same order.
+ * @brief A plane mesh as one layer of prisms. The points above the mesh have the next numbers, in
+ * the same order.
  * @param cells of each cell its corners, counter-clockwise
  * @param facets the lower and the upper faces, of patches 0 and 1
  */

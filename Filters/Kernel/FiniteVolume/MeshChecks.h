@@ -96,7 +96,7 @@ struct MeshCheckReport
 /// The checks before they are made, with their limits.
 TAUTLINE_KERNEL_EXPORT std::vector<MeshCheck> emptyMeshChecks();
 
-/// Makes the checks. @param points those of the measures
+/// Makes the checks. @param points as given to the measures
 TAUTLINE_KERNEL_EXPORT MeshCheckReport checkMesh(
   const FaceMeasures& measures, const double* points, const MeshCheckFacts& facts = {});
 }

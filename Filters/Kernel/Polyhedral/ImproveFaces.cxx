@@ -288,6 +288,11 @@ void Improver::findMovable()
 /// side that of the other, which moves with it.
 void Improver::findMates()
 {
+  if (std::none_of(this->Mesh.patches.begin(), this->Mesh.patches.end(),
+        [](const FacePatch& patch) { return patch.isEmpty(); }))
+  {
+    return;
+  }
   const FaceMeasures measures(
     this->Mesh, this->Start.data(), this->Options.convention, this->Options.threads);
   const FaceDirections& directions = measures.directions();
@@ -474,8 +479,7 @@ void Improver::placeOnParts(const std::vector<double>& from, std::vector<double>
 std::vector<double> Improver::round(const std::vector<double>& from, const Want& want, int layers,
   double tightness, ImproveFacesResult& result)
 {
-  const std::vector<char> free =
-    this->Options.everywhere ? this->Movable : this->near(want.list, layers);
+  const std::vector<char> free = this->near(want.list, layers);
   FaceEnergyOptions energyOptions;
   energyOptions.angle = tightness * this->Options.angle;
   energyOptions.skewness = tightness * this->Options.skewness;
@@ -573,7 +577,7 @@ ImproveFacesResult Improver::run()
   result.reason = StopReason::IterationLimit;
   while (result.rounds < this->Options.rounds)
   {
-    if (want.faces == 0 && !(this->Options.everywhere && result.rounds == 0))
+    if (want.faces == 0)
     {
       result.reason = StopReason::AllValid;
       break;
@@ -611,7 +615,7 @@ ImproveFacesResult Improver::run()
       }
       const FaceMeasures measures = measure(tried);
       Want found = wantOf(this->Mesh, measures, this->Options);
-      if (!isBetter(found, want) && !(this->Options.everywhere && found.faces == 0))
+      if (!isBetter(found, want))
       {
         continue;
       }

@@ -3,14 +3,15 @@
  * @file ImproveFaces.h
  * @brief Moves points so that a mesh of finite volumes passes the checks of OpenFOAM's checkMesh.
  *
- * Only points near faces that are beyond the targets move, unless `everywhere` is set. They
- * minimize the energy of FaceEnergy.h by L-BFGS, in rounds. What the boundary may do is that of
- * BoundaryConstraints. Points of coupled and "empty" patches, and where three patches meet or two
- * in one plane, stay.
+ * Only points near faces that are beyond the targets move. They minimize the energy of FaceEnergy.h
+ * by L-BFGS, in rounds. What the boundary may do is that of BoundaryConstraints. Points of coupled
+ * patches, and where three patches meet or two in one plane, stay; so do those of "empty" patches,
+ * unless these are the sides of one layer of cells, whose points move together.
  *
- * The result is never worse: no check has more offending faces or cells than in the input, and no
- * worst value beyond a limit is worse. Of the concavity of cells this does not hold where some are
- * concave in the input: of faces in one plane it is a matter of rounding.
+ * The result is never worse: no check that can fail has more offending faces or cells than in the
+ * input, nor a worse value beyond its limit. The concavity of cells and the checks that only warn
+ * (short edges, concave and warped faces) count like this where nothing offends in the input: of
+ * faces in one plane, concavity is a matter of rounding.
  */
 #ifndef tautline_ImproveFaces_h
 #define tautline_ImproveFaces_h
@@ -30,8 +31,6 @@ struct ImproveFacesOptions
   int rounds = 40;           ///< at most
   int iterations = 40;       ///< of L-BFGS in a round, at most
   double maximumSeconds = 0; ///< of wall time; 0: no limit
-  /// Move all points, also where all faces reach the targets.
-  bool everywhere = false;
   FaceConvention convention = FaceConvention::Esi;
   MeshCheckFacts facts;
   int threads = 0;

@@ -8,7 +8,10 @@
 
 #include "vtkMeshOptimizer.h"
 
+#include "tautline/Core/Iteration.h"
+
 #include "vtkCellData.h"
+#include "vtkIntArray.h"
 #include "vtkPointData.h"
 
 using namespace tautline;
@@ -93,4 +96,40 @@ TAUTLINE_PART(testOptimize)
     TAUTLINE_NEW(vtkMeshOptimizer, ofVolume, SetInputData(grid), PlanarLayersOff(), Update());
     TAUTLINE_CHECK_EQUAL(ofVolume->GetFreePoints(), 0);
   }
+}
+
+/// The preset Finite volumes in the filter: fixed points stay, checks and arrays are those of the
+/// output.
+TAUTLINE_PART(testFiniteVolumes)
+{
+  MeshData data = blockMesh(CellType::Hexahedron, 4, 4, 4);
+  const Index middle = 2 + 5 * (2 + 5 * 2);
+  data.setPoint(middle, { 3.3, 3.2, 2.9 });
+  const auto grid = toGrid(data);
+  TAUTLINE_NEW(vtkMeshOptimizer, filter, SetInputData(grid),
+    SetPreset(vtkMeshOptimizer::FINITE_VOLUMES), Update());
+  TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), static_cast<int>(StopReason::AllValid));
+  TAUTLINE_CHECK_EQUAL(filter->GetInvertedAfter(), 0);
+  TAUTLINE_CHECK(filter->GetInvertedBefore() > 0);
+  vtkPointSet* output = meshOf(filter);
+  TAUTLINE_CHECK(component(output->GetPointData(), "Displacement", middle) < 0);
+  for (Index corner : { Index(0), data.view().numberOfPoints - 1 })
+  {
+    TAUTLINE_CHECK_EQUAL(component(output->GetPointData(), "Displacement", corner), 0.0);
+  }
+  for (vtkIdType cell = 0; cell < output->GetNumberOfCells(); ++cell)
+  {
+    TAUTLINE_CHECK_EQUAL(component(output->GetCellData(), "Validity", cell), double(Valid));
+    TAUTLINE_CHECK(component(output->GetCellData(), "non_orthogonality", cell) <= 65);
+  }
+  // All points given as fixed.
+  vtkNew<vtkIntArray> fixed;
+  fixed->SetName("stays");
+  fixed->SetNumberOfValues(grid->GetNumberOfPoints());
+  fixed->FillValue(1);
+  grid->GetPointData()->AddArray(fixed);
+  filter->SetInputArrayToProcess(2, 0, 0, vtkDataObject::FIELD_ASSOCIATION_POINTS, "stays");
+  filter->Update();
+  TAUTLINE_CHECK_EQUAL(filter->GetStopReason(), static_cast<int>(StopReason::NoFreeVertices));
+  TAUTLINE_CHECK_EQUAL(component(meshOf(filter)->GetPointData(), "Displacement", middle), 0.0);
 }

@@ -257,3 +257,45 @@ TAUTLINE_PART(testExtrusion)
   TAUTLINE_CHECK_EQUAL(
     checkMesh(measures, points.data())[MeshCheckKind::EdgeAlignment].offending, 0);
 }
+
+/// One layer of cells has two sides; a cube and a row of cells have several pairs, and so none.
+TAUTLINE_PART(testMarkLayer)
+{
+  MeshData data = blockMesh(CellType::Hexahedron, 3, 2, 1);
+  FaceMesh mesh = faceMeshOf(data);
+  const FaceMesh before = mesh;
+  TAUTLINE_CHECK_EQUAL(markLayer(mesh, data.points.data()), 2);
+  TAUTLINE_CHECK_EQUAL(mesh.patches.size(), 2u);
+  TAUTLINE_CHECK(mesh.patches[0].isEmpty());
+  TAUTLINE_CHECK_EQUAL(mesh.patches[0].count, 12);
+  TAUTLINE_CHECK_EQUAL(mesh.faces(), before.faces());
+  for (Index face = mesh.patches[0].first; face < mesh.faces(); ++face)
+  {
+    const FaceGeometry g = faceGeometry(mesh, data.points.data(), FaceConvention::Esi);
+    const bool side = face < mesh.patches[1].first;
+    TAUTLINE_CHECK_NEAR(std::abs(g.area[face][2]), side ? 1 : 0, rounding);
+  }
+  const FaceMeasures measures(mesh, data.points.data(), FaceConvention::Esi);
+  TAUTLINE_CHECK(largestOf(measures.evaluate(Metric::Openness).cells) < rounding);
+  TAUTLINE_CHECK_EQUAL(measures.directions().count(), 2);
+  for (const auto& size : { std::array<Index, 3>{ 1, 1, 1 }, { 3, 1, 1 }, { 2, 2, 2 } })
+  {
+    const MeshData other = blockMesh(CellType::Hexahedron, size[0], size[1], size[2]);
+    FaceMesh none = faceMeshOf(other);
+    TAUTLINE_CHECK_EQUAL(markLayer(none, other.points.data()), -1);
+    TAUTLINE_CHECK_EQUAL(none.patches.size(), 1u);
+  }
+}
+
+/// Polygons that all run clockwise are turned, others stay.
+TAUTLINE_PART(testTurnPolygons)
+{
+  const std::vector<double> points = { 0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0 };
+  const std::vector<std::vector<Index>> right = { { 0, 1, 2, 3 } };
+  std::vector<std::vector<Index>> cells = right;
+  turnPolygons(cells, points.data());
+  TAUTLINE_CHECK(cells == right);
+  cells = { { 3, 2, 1, 0 } };
+  turnPolygons(cells, points.data());
+  TAUTLINE_CHECK(cells == right);
+}

@@ -91,6 +91,7 @@ TAUTLINE_PART(testNonOrthogonality)
   MeshData data = blockMesh(CellType::Hexahedron, 2, 2, 2);
   data.transform([](const Vec3& p) { return Vec3{ p[0] + 3 * p[1], p[1], p[2] }; });
   const MeshCheckReport severe = reportOf(data);
+  // Four inner faces across x and four across y, all by the same angle.
   TAUTLINE_CHECK_EQUAL(severe[MeshCheckKind::NonOrthogonality].warned, 8);
   TAUTLINE_CHECK_NEAR(
     severe[MeshCheckKind::NonOrthogonality].most, std::atan(3) * DegreesPerRadian, 1e-9);
