@@ -48,8 +48,7 @@ struct FaceGeometry
 TAUTLINE_KERNEL_EXPORT FaceGeometry faceGeometry(
   const FaceMesh& mesh, const double* points, FaceConvention convention, int threads = 0);
 
-/// A place at the coupled face of a face, moved by the motion that takes the other patch to the patch
-/// of the face.
+/// A place at the coupled face of a face, moved as the other patch must move to meet its own.
 TAUTLINE_KERNEL_EXPORT Vec3 acrossPatch(
   const FaceMesh& mesh, const FaceGeometry& geometry, Index face, const Vec3& place);
 

@@ -98,8 +98,8 @@ TAUTLINE_KERNEL_EXPORT FaceMesh findFaces(Index points, const ListedFaces& cells
   const ListedFacets& facets, std::vector<FacePatch> patches, int threads = 0);
 
 /**
- * @brief Makes the faces in the two planes of one layer of cells an "empty" patch, the first one: all
- * points are in two planes at right angles to one axis only, and each cell has one face in each.
+ * @brief Makes the faces in the two planes of one layer of cells an "empty" patch, the first one:
+ * all points are in two planes across one axis only, and each cell has one face in each.
  * @param mesh without coupled patches
  * @return the axis, or -1: the mesh is no such layer, and stays
  */
