@@ -218,12 +218,17 @@ void vtkMeshUntangler::Untangle(
   const std::unique_ptr<tautline::MovableMesh> made = this->MakeMesh(block, true);
   tautline::MovableMesh& mesh = *made;
   tautline::BoundaryProperties properties = this->GetBoundaryProperties(geometry);
-  // What is chosen without being asked for must not refuse pieces and blocks that touch.
+  // What is chosen without being asked for must not refuse surfaces, pieces and blocks that touch.
+  const bool onSurface = mesh.mesh().dimension() == tautline::Dimension::Surface;
   const bool stays = this->Boundary == ON_SURFACE && !geometry &&
-    (mesh.inPieces() || !this->GetBlockNotice().empty());
+    (onSurface || mesh.inPieces() || !this->GetBlockNotice().empty());
   if (stays)
   {
     properties.motion = tautline::BoundaryMotion::Fixed;
+  }
+  if (onSurface && !geometry)
+  {
+    properties.keepFeatures = false; // points stay on the facets that are given
   }
   if (mesh.inPieces())
   {
@@ -262,8 +267,10 @@ void vtkMeshUntangler::Untangle(
   if (stays && result.invertedAfter > 0)
   {
     more += std::string(more.empty() ? "" : " ") +
-      "The boundary stayed, as it must on several processes and where blocks touch: merge the "
-      "blocks, or aggregate the mesh with Reproducible Order off, to let it slide.";
+      (onSurface ? "The boundary stayed, as it must on a surface in space."
+                 : "The boundary stayed, as it must on several processes and where blocks touch: "
+                   "merge the blocks, or aggregate the mesh with Reproducible Order off, to let it "
+                   "slide.");
   }
   this->Show(block, mesh, result, more, history);
   this->AddToSummary(result.exceededMemory

@@ -387,6 +387,12 @@ def test_untangle():
     assert every.inverted == 0 and tl.quality(every, "imr").values["imr"].mean() < tl.quality(
         result, "imr").values["imr"].mean()
     refused(wording("method-is-x"), tl.untangle, TANGLED, method="x")
+    ball = vtkSphereSource()
+    ball.SetThetaResolution(20)
+    ball.SetPhiResolution(20)
+    ball.Update()
+    surface = tl.perturb(ball.GetOutput(), tangle=0.1)
+    assert surface.inverted > 0 and tl.untangle(surface).inverted == 0  # the boundary's default is for others
     stuck = tl.untangle(TANGLED, fixed=np.ones(2343))
     assert stuck.inverted == stuck.impossible == 41 and (np.unique(stuck.obstacle) == [0, 2]).all()
     assert wording("all-its-points-are-fixed") in stuck.summary and "Element " in stuck.summary
