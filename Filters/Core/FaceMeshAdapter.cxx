@@ -3,6 +3,7 @@
 
 #include "tautline/Core/Interruption.h"
 #include "tautline/FiniteVolume/ListFaces.h"
+#include "tautline/Mesh/RankPieces.h"
 
 #include "vtkCellData.h"
 #include "vtkCellType.h"
@@ -11,6 +12,7 @@
 #include "vtkFieldData.h"
 #include "vtkIdList.h"
 #include "vtkNew.h"
+#include "vtkPointData.h"
 #include "vtkStringArray.h"
 #include "vtkUnstructuredGrid.h"
 
@@ -59,8 +61,103 @@ std::string textAt(vtkFieldData* fields, const char* name, int i, const std::str
 
 //------------------------------------------------------------------------------
 FaceMeshAdapter::FaceMeshAdapter(vtkDataSet* input, const MeshAdapter& adapter, int threads)
-  : View(adapter.inputView())
 {
+  SingleRank alone;
+  find(alone, { { input, const_cast<MeshAdapter*>(&adapter) } }, { this }, threads);
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::unique_ptr<FaceMeshAdapter>> FaceMeshAdapter::ofPieces(
+  RankGroup& group, const std::vector<FaceInput>& pieces, int threads)
+{
+  std::vector<std::unique_ptr<FaceMeshAdapter>> made;
+  std::vector<FaceMeshAdapter*> adapters;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    made.push_back(std::unique_ptr<FaceMeshAdapter>(new FaceMeshAdapter));
+    adapters.push_back(made.back().get());
+  }
+  find(group, pieces, adapters, threads);
+  std::vector<std::vector<Index>> ids;
+  bool lacking = false;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    FaceMesh& mesh = adapters[i]->Faces;
+    if (const unsigned char* ghosts = pieces[i].adapter->ghostCells())
+    {
+      for (const Index cell : adapters[i]->Cells)
+      {
+        mesh.foreignCells.push_back(ghosts[cell] != 0);
+      }
+    }
+    ids.push_back(idsOf(pieces[i].data->GetPointData()->GetGlobalIds()));
+    lacking = lacking || ids.back().empty() || adapters[i]->extruded();
+  }
+  lacking = group.any(lacking);
+  std::vector<FacePiece> faces;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    faces.push_back(
+      { &adapters[i]->Faces, adapters[i]->points(), lacking ? nullptr : ids[i].data() });
+  }
+  const std::vector<std::vector<double>> added = joinPieces(group, faces);
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    std::vector<double>& points = adapters[i]->Points;
+    if (!added[i].empty() && points.empty())
+    {
+      const double* own = adapters[i]->View.points;
+      points.assign(own, own + 3 * adapters[i]->View.numberOfPoints);
+    }
+    points.insert(points.end(), added[i].begin(), added[i].end());
+  }
+  return made;
+}
+
+//------------------------------------------------------------------------------
+void FaceMeshAdapter::find(RankGroup& group, const std::vector<FaceInput>& pieces,
+  const std::vector<FaceMeshAdapter*>& adapters, int threads)
+{
+  // A plane mesh becomes a layer that is as high as a cell is wide.
+  FaceExtent extent;
+  Index cells = 0;
+  for (const FaceInput& piece : pieces)
+  {
+    const MeshView& view = piece.adapter->mesh().view();
+    const unsigned char* ghosts = piece.adapter->ghostCells();
+    cells += view.numberOfCells -
+      (ghosts ? view.numberOfCells - std::count(ghosts, ghosts + view.numberOfCells, 0) : 0);
+    for (Index point = 0; point < view.numberOfPoints; ++point)
+    {
+      extent.add(pointOf(view, point));
+    }
+  }
+  extent = unite(group, extent);
+  const double height = norm(extent.high - extent.low) /
+    std::sqrt(std::max(1.0, static_cast<double>(group.sum(cells))));
+  std::vector<FacePiece> faces;
+  bool known = false;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    adapters[i]->list(pieces[i].data, *pieces[i].adapter, height, threads);
+    known = known || !adapters[i]->Faces.patches.empty();
+    faces.push_back({ &adapters[i]->Faces, adapters[i]->points() });
+  }
+  const int axis = group.any(known) ? -1 : markLayer(group, faces);
+  if (axis >= 0 && !adapters.empty())
+  {
+    std::string& notice = adapters.front()->Notice;
+    notice += std::string(notice.empty() ? "" : " ") +
+      "The mesh is one layer of cells and is measured as planar, at right angles to " +
+      "xyz"[axis] + ".";
+  }
+}
+
+//------------------------------------------------------------------------------
+void FaceMeshAdapter::list(
+  vtkDataSet* input, const MeshAdapter& adapter, double height, int threads)
+{
+  this->View = adapter.inputView();
   const Mesh& mesh = adapter.mesh();
   std::vector<FacePatch> patches;
   if (mesh.dimension() == Dimension::Volume)
@@ -71,7 +168,8 @@ FaceMeshAdapter::FaceMeshAdapter(vtkDataSet* input, const MeshAdapter& adapter, 
   }
   else if (mesh.dimension() == Dimension::Planar)
   {
-    this->listPolygons(mesh);
+    this->Extruded = true;
+    this->listPolygons(mesh, height);
     patches.resize(2);
     for (std::size_t i = 0; i < patches.size(); ++i)
     {
@@ -85,15 +183,9 @@ FaceMeshAdapter::FaceMeshAdapter(vtkDataSet* input, const MeshAdapter& adapter, 
                 "not for surfaces in space. Choose metrics of elements.");
   }
   const Index points = this->extruded() ? 2 * this->View.numberOfPoints : this->View.numberOfPoints;
-  const bool known = !patches.empty();
   this->Faces = findFaces(points, this->List, this->Facets, std::move(patches), threads);
-  const int axis = known ? -1 : markLayer(this->Faces, this->points());
-  if (axis >= 0)
-  {
-    this->Notice += std::string(this->Notice.empty() ? "" : " ") +
-      "The mesh is one layer of cells and is measured as planar, at right angles to " +
-      "xyz"[axis] + ".";
-  }
+  this->List = ListedFaces();
+  this->Facets = ListedFacets();
 }
 
 //------------------------------------------------------------------------------
@@ -141,8 +233,8 @@ void FaceMeshAdapter::listVolumes(vtkDataSet* input, const MeshAdapter& adapter,
 }
 
 //------------------------------------------------------------------------------
-/// A plane mesh as one layer, in the frame of its plane, as high as a cell is wide.
-void FaceMeshAdapter::listPolygons(const Mesh& mesh)
+/// A plane mesh as one layer, in the frame of its plane.
+void FaceMeshAdapter::listPolygons(const Mesh& mesh, double height)
 {
   const MeshView& view = mesh.view();
   std::vector<std::vector<Index>> cells;
@@ -164,8 +256,6 @@ void FaceMeshAdapter::listPolygons(const Mesh& mesh)
     }
     this->Cells.push_back(cell);
   }
-  const double height =
-    diagonalOf(view) / std::sqrt(std::max(1.0, static_cast<double>(cells.size())));
   this->Points.resize(6 * view.numberOfPoints);
   for (Index i = 0; i < view.numberOfPoints; ++i)
   {
@@ -225,30 +315,61 @@ void FaceMeshAdapter::listFacets(vtkDataSet* input, int patches)
   }
 }
 
-//------------------------------------------------------------------------------
-MeshSpace spaceWithPolygons(const Mesh& mesh)
+namespace
 {
-  const MeshView& view = mesh.view();
+/// The polygons of a mesh, divided into triangles.
+struct PolygonTriangles
+{
   std::vector<Index> offsets = { 0 }, connectivity;
-  for (Index cell = 0; cell < view.numberOfCells; ++cell)
+  std::vector<unsigned char> types;
+  std::unique_ptr<Mesh> mesh;
+
+  explicit PolygonTriangles(const MeshView& view)
   {
-    pollInterruption(cell);
-    const Index first = view.offsets[cell];
-    for (Index i = first + 1; isFacet(view.cellTypes[cell]) && i + 1 < view.offsets[cell + 1]; ++i)
+    for (Index cell = 0; cell < view.numberOfCells; ++cell)
     {
-      for (Index at : { first, i, i + 1 })
+      pollInterruption(cell);
+      const Index first = view.offsets[cell];
+      for (Index i = first + 1; isFacet(view.cellTypes[cell]) && i + 1 < view.offsets[cell + 1];
+           ++i)
       {
-        connectivity.push_back(view.connectivity[at]);
+        for (Index at : { first, i, i + 1 })
+        {
+          this->connectivity.push_back(view.connectivity[at]);
+        }
+        this->offsets.push_back(static_cast<Index>(this->connectivity.size()));
       }
-      offsets.push_back(static_cast<Index>(connectivity.size()));
+    }
+    MeshView triangles = view;
+    triangles.numberOfCells = static_cast<Index>(this->offsets.size()) - 1;
+    this->types.assign(triangles.numberOfCells, VTK_TRIANGLE);
+    triangles.cellTypes = this->types.data();
+    triangles.offsets = this->offsets.data();
+    triangles.connectivity = this->connectivity.data();
+    this->mesh = std::make_unique<Mesh>(triangles);
+  }
+};
+}
+
+//------------------------------------------------------------------------------
+void setSpaceWithPolygons(RankGroup& group, const std::vector<FaceInput>& pieces)
+{
+  std::vector<std::unique_ptr<PolygonTriangles>> triangles;
+  std::vector<RankPiece> list;
+  Index number = 0;
+  for (const FaceInput& piece : pieces)
+  {
+    triangles.push_back(std::make_unique<PolygonTriangles>(piece.adapter->mesh().view()));
+    list.push_back({ triangles.back()->mesh.get() });
+    number += triangles.back()->mesh->view().numberOfCells;
+  }
+  if (group.sum(number) > 0)
+  {
+    const MeshSpace space = spaceOf(group, list);
+    for (const FaceInput& piece : pieces)
+    {
+      piece.adapter->mesh().setSpace(space);
     }
   }
-  MeshView triangles = view;
-  triangles.numberOfCells = static_cast<Index>(offsets.size()) - 1;
-  const std::vector<unsigned char> types(triangles.numberOfCells, VTK_TRIANGLE);
-  triangles.cellTypes = types.data();
-  triangles.offsets = offsets.data();
-  triangles.connectivity = connectivity.data();
-  return triangles.numberOfCells > 0 ? Mesh(triangles).space() : mesh.space();
 }
 }

@@ -12,6 +12,8 @@
  * "empty" patches. A mesh of one layer of cells, of which no patches are known, gets such a patch,
  * see markLayer().
  *
+ * The pieces of one mesh are measured as one by ofPieces(): each gets the cells across its border.
+ *
  * The data set and the adapter must outlive it.
  */
 #ifndef tautline_FaceMeshAdapter_h
@@ -20,10 +22,19 @@
 #include "TautlineCoreModule.h" // for export macro
 
 #include "MeshAdapter.h"
-#include "tautline/FiniteVolume/MeshChecks.h"
+#include "tautline/FiniteVolume/FacePieces.h"
+
+#include <memory>
 
 namespace tautline
 {
+/// A mesh or a piece of one; both are borrowed.
+struct FaceInput
+{
+  vtkDataSet* data;
+  MeshAdapter* adapter; ///< of the data set, oriented
+};
+
 class TAUTLINECORE_EXPORT FaceMeshAdapter
 {
 public:
@@ -43,24 +54,34 @@ public:
    */
   FaceMeshAdapter(vtkDataSet* input, const MeshAdapter& adapter, int threads = 0);
 
+  /// Finds the faces of the pieces of one mesh, and couples them, see joinPieces(). Ghost cells do
+  /// not count. Collective. Throws as the constructor does.
+  static std::vector<std::unique_ptr<FaceMeshAdapter>> ofPieces(
+    RankGroup& group, const std::vector<FaceInput>& pieces, int threads = 0);
+
   const FaceMesh& mesh() const { return this->Faces; }
   /// Coordinates of the points of mesh(): the points of the data set, for a plane mesh followed by
-  /// the points above them.
+  /// the points above them, for a piece by the points of cells across its border.
   const double* points() const
   {
     return this->Points.empty() ? this->View.points : this->Points.data();
   }
-  /// The cell of the data set that each cell of mesh() is.
+  /// The cell of the data set that each cell of mesh() is, but for those across the border of a
+  /// piece, which follow.
   const std::vector<Index>& cells() const { return this->Cells; }
   const MeshCheckFacts& facts() const { return this->Facts; }
   /// Whether a plane mesh was made one layer of prisms.
-  bool extruded() const { return !this->Points.empty(); }
+  bool extruded() const { return this->Extruded; }
   /// What was assumed, in sentences for the user, or "".
   const std::string& notice() const { return this->Notice; }
 
 private:
+  FaceMeshAdapter() = default;
+  static void find(RankGroup& group, const std::vector<FaceInput>& pieces,
+    const std::vector<FaceMeshAdapter*>& adapters, int threads);
+  void list(vtkDataSet* input, const MeshAdapter& adapter, double height, int threads);
   void listVolumes(vtkDataSet* input, const MeshAdapter& adapter, int threads);
-  void listPolygons(const Mesh& mesh);
+  void listPolygons(const Mesh& mesh, double height);
   std::vector<FacePatch> listPatches(vtkDataSet* input);
   void listFacets(vtkDataSet* input, int patches);
 
@@ -70,11 +91,14 @@ private:
   ListedFacets Facets;
   std::vector<Index> Cells;
   std::vector<double> Points;
+  bool Extruded = false;
   MeshCheckFacts Facts;
   std::string Notice;
 };
 
-/// The space of a mesh of 2D cells with its polygons, which Mesh leaves out of account.
-TAUTLINECORE_EXPORT MeshSpace spaceWithPolygons(const Mesh& mesh);
+/// Gives the pieces of a mesh of 2D cells the space that they fill with their polygons, which Mesh
+/// leaves out of account. Collective.
+TAUTLINECORE_EXPORT void setSpaceWithPolygons(
+  RankGroup& group, const std::vector<FaceInput>& pieces);
 }
 #endif

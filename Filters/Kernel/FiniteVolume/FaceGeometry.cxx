@@ -24,6 +24,10 @@ void forEachPair(
   for (Index face = patch.first; face < patch.first + patch.count; ++face)
   {
     const Index other = mesh.coupled(face), size = mesh.size(face);
+    if (other < 0)
+    {
+      continue;
+    }
     const Index* nodes = mesh.nodes.data() + mesh.offsets[face];
     const Index* otherNodes = mesh.nodes.data() + mesh.offsets[other];
     for (Index k = 0; size == mesh.size(other) && k < size; ++k)

@@ -70,28 +70,17 @@ Vec3 centerNormal(const Vec3& normal)
   return unit(axis);
 }
 
-FaceDirections findDirections(const FaceMesh& mesh, const FaceGeometry& geometry)
+FaceDirections directionsOf(const DirectionSums& sums)
 {
-  Vec3 empty = { 0, 0, 0 }, wedge = { 0, 0, 0 };
-  for (const FacePatch& patch : mesh.patches)
-  {
-    Vec3 sum = { 0, 0, 0 };
-    for (Index face = patch.first; face < patch.first + patch.count; ++face)
-    {
-      sum += geometry.area[face];
-      empty += patch.isEmpty() ? magnitudes(geometry.area[face]) : Vec3{ 0, 0, 0 };
-    }
-    wedge += patch.isWedge() ? magnitudes(centerNormal(unit(sum))) : Vec3{ 0, 0, 0 };
-  }
   FaceDirections directions;
-  if (norm(empty) > 0)
+  if (norm(sums.empty) > 0)
   {
-    removeDirections(directions.solution, empty, false);
+    removeDirections(directions.solution, sums.empty, false);
   }
   directions.geometric = directions.solution;
-  if (norm(wedge) > 0)
+  if (norm(sums.wedge) > 0)
   {
-    removeDirections(directions.geometric, wedge, true);
+    removeDirections(directions.geometric, sums.wedge, true);
   }
   return directions;
 }
@@ -133,9 +122,40 @@ FaceMeasures::FaceMeasures(
   : Mesh(mesh)
   , Points(points)
   , Geometry(faceGeometry(mesh, points, convention, threads))
-  , Directions(findDirections(mesh, this->Geometry))
   , Threads(threads)
 {
+  FaceExtent extent;
+  for (Index point = 0; point < mesh.points; ++point)
+  {
+    extent.add(pointAt(points, point));
+  }
+  this->setWhole(extent, this->directionSums());
+}
+
+//------------------------------------------------------------------------------
+DirectionSums FaceMeasures::directionSums() const
+{
+  DirectionSums sums;
+  for (const FacePatch& patch : this->Mesh.patches)
+  {
+    Vec3 sum = { 0, 0, 0 };
+    for (Index face = patch.first; face < patch.first + patch.count; ++face)
+    {
+      const Vec3& area = this->Geometry.area[face];
+      const bool own = this->Mesh.ownsFace(face);
+      sum += own ? area : Vec3{ 0, 0, 0 };
+      sums.empty += own && patch.isEmpty() ? magnitudes(area) : Vec3{ 0, 0, 0 };
+    }
+    sums.wedge += patch.isWedge() ? magnitudes(centerNormal(unit(sum))) : Vec3{ 0, 0, 0 };
+  }
+  return sums;
+}
+
+//------------------------------------------------------------------------------
+void FaceMeasures::setWhole(const FaceExtent& extent, const DirectionSums& sums)
+{
+  this->Extent = extent;
+  this->Directions = directionsOf(sums);
 }
 
 //------------------------------------------------------------------------------
@@ -613,11 +633,5 @@ std::vector<signed char> FaceMeasures::validity() const
                                            : Degenerate;
   }
   return validity;
-}
-
-//------------------------------------------------------------------------------
-bool FaceMeasures::countsOnce(Index face) const
-{
-  return this->Mesh.internal(face) || this->Mesh.coupled(face) > face;
 }
 }

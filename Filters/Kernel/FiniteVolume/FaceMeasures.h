@@ -30,6 +30,13 @@ struct FaceDirections
   int count() const { return this->geometric[0] + this->geometric[1] + this->geometric[2]; }
 };
 
+/// What decides the directions of a mesh: of "empty" and of "wedge" patches, the sums of the
+/// magnitudes of their normals.
+struct DirectionSums
+{
+  Vec3 empty = { 0, 0, 0 }, wedge = { 0, 0, 0 };
+};
+
 /// A metric on a mesh.
 struct FaceValues
 {
@@ -58,6 +65,10 @@ public:
   const FaceMesh& mesh() const { return this->Mesh; }
   const FaceGeometry& geometry() const { return this->Geometry; }
   const FaceDirections& directions() const { return this->Directions; }
+  const FaceExtent& extent() const { return this->Extent; } ///< of all points
+  DirectionSums directionSums() const;
+  /// For a piece of a mesh: extent and directions of the whole, see joinMeasures().
+  void setWhole(const FaceExtent& extent, const DirectionSums& sums);
 
   /// Throws Error for a metric of another family.
   FaceValues evaluate(Metric metric) const;
@@ -77,10 +88,6 @@ public:
    * faces is negative, degenerate where one is 0, not finite where a point is.
    */
   std::vector<signed char> validity() const;
-
-  /// Whether the value of a face counts in the mean of a metric that compares two cells: internal
-  /// faces and, of coupled ones, the first of each pair.
-  bool countsOnce(Index face) const;
 
 private:
   std::vector<std::array<double, 2>> allSides(Metric metric) const;
@@ -112,6 +119,7 @@ private:
   const double* Points;
   FaceGeometry Geometry;
   FaceDirections Directions;
+  FaceExtent Extent;
   int Threads;
 };
 }

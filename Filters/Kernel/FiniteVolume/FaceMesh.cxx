@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
@@ -272,13 +271,9 @@ void coupleCyclic(FaceMesh& mesh)
   const int patches = static_cast<int>(mesh.patches.size());
   for (FacePatch& patch : mesh.patches)
   {
-    if (patch.partner < 0 || patch.partner >= patches ||
-      mesh.patches[patch.partner].count != patch.count)
-    {
-      patch.partner = -1;
-      continue;
-    }
-    for (Index i = 0; i < patch.count; ++i)
+    patch.partner = patch.partner < patches ? patch.partner : -1;
+    const bool coupled = patch.partner >= 0 && mesh.patches[patch.partner].count == patch.count;
+    for (Index i = 0; i < patch.count && coupled; ++i)
     {
       mesh.partner[patch.first + i - mesh.internalFaces] = mesh.patches[patch.partner].first + i;
     }
@@ -374,34 +369,24 @@ FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& f
 
 namespace
 {
-/// Flags the boundary faces that are in one of the two planes across an axis; false if these do not
+/// Flags the boundary faces that are in one of the two planes across an axis; empty if these do not
 /// hold all points, or if a cell does not have one face in each.
-bool findSides(const FaceMesh& mesh, const double* points, int axis, std::vector<char>& side)
+std::vector<char> findSides(
+  const FaceMesh& mesh, const double* points, const FaceExtent& box, int axis)
 {
   constexpr double tolerance = 1e-9; // of the largest extent
-  Vec3 low, high;
-  low.fill(std::numeric_limits<double>::infinity());
-  high.fill(-std::numeric_limits<double>::infinity());
-  for (Index node : mesh.nodes)
-  {
-    for (int c = 0; c < 3; ++c)
-    {
-      low[c] = std::min(low[c], points[3 * node + c]);
-      high[c] = std::max(high[c], points[3 * node + c]);
-    }
-  }
-  const Vec3 extent = high - low;
+  const Vec3 extent = box.high - box.low;
   const double slack = tolerance * std::max({ extent[0], extent[1], extent[2] });
-  const auto isLow = [&](Index node) { return points[3 * node + axis] <= low[axis] + slack; };
-  const auto isHigh = [&](Index node) { return points[3 * node + axis] >= high[axis] - slack; };
+  const auto isLow = [&](Index node) { return points[3 * node + axis] <= box.low[axis] + slack; };
+  const auto isHigh = [&](Index node) { return points[3 * node + axis] >= box.high[axis] - slack; };
   const bool flat = extent[axis] > 2 * slack &&
     std::all_of(mesh.nodes.begin(), mesh.nodes.end(),
       [&](Index node) { return isLow(node) || isHigh(node); });
   if (!flat)
   {
-    return false;
+    return {};
   }
-  side.assign(mesh.faces(), 0);
+  std::vector<char> side(mesh.faces(), 0);
   std::vector<std::array<int, 2>> counts(mesh.cells, { 0, 0 });
   for (Index face = mesh.internalFaces; face < mesh.faces(); ++face)
   {
@@ -412,32 +397,23 @@ bool findSides(const FaceMesh& mesh, const double* points, int axis, std::vector
     counts[mesh.owner[face]][1] += above;
     side[face] = below || above;
   }
-  return std::all_of(counts.begin(), counts.end(),
+  const bool all = std::all_of(counts.begin(), counts.end(),
     [](const std::array<int, 2>& count) { return count[0] == 1 && count[1] == 1; });
+  return all ? side : std::vector<char>();
 }
 }
 
 //------------------------------------------------------------------------------
-int markLayer(FaceMesh& mesh, const double* points)
+bool isLayer(const FaceMesh& mesh, const double* points, const FaceExtent& extent, int axis)
 {
-  int found = -1;
-  std::array<std::vector<char>, 3> sides;
-  for (int axis = 0; axis < 3; ++axis)
-  {
-    if (findSides(mesh, points, axis, sides[axis]))
-    {
-      if (found >= 0)
-      {
-        return -1; // a row of cells
-      }
-      found = axis;
-    }
-  }
-  if (found < 0)
-  {
-    return -1;
-  }
-  const std::vector<char>& side = sides[found];
+  return mesh.cells == 0 || !findSides(mesh, points, extent, axis).empty();
+}
+
+//------------------------------------------------------------------------------
+void markLayer(FaceMesh& mesh, const double* points, const FaceExtent& extent, int axis)
+{
+  std::vector<char> side = findSides(mesh, points, extent, axis);
+  side.resize(mesh.faces(), 0); // of a piece without cells
   // The sides first, each part in its order.
   std::vector<Index> order;
   for (const bool ofSides : { true, false })
@@ -471,6 +447,5 @@ int markLayer(FaceMesh& mesh, const double* points)
   mesh.patches = { empty, rest };
   coupleCyclic(mesh);
   listCellFaces(mesh);
-  return found;
 }
 }

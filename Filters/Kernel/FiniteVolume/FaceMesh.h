@@ -13,6 +13,8 @@
 
 #include "tautline/Mesh/Mesh.h"
 
+#include <algorithm>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -26,7 +28,8 @@ struct FacePatch
   std::string type = "patch";
   Index first = 0; ///< its first face
   Index count = 0;
-  int partner = -1; ///< of "cyclic": the patch that it is coupled with, face by face
+  /// Of "cyclic": the patch that it is coupled with, face by face if it has as many.
+  int partner = -1;
 
   bool isEmpty() const { return this->type == "empty"; }
   /// Whether its faces correspond one by one with those of another patch.
@@ -38,6 +41,14 @@ struct FacePatch
       this->type.rfind("processor", 0) == 0 || this->type == "overset";
   }
   bool isWedge() const { return this->type == "wedge"; }
+};
+
+/// What a face is in a piece of a mesh, see joinPieces(). The values are bits.
+enum FaceRole : unsigned char
+{
+  CountsElsewhere = 1,    ///< in another piece, as one between two pieces or of a cell there
+  PairComesElsewhere = 2, ///< of a cyclic pair of which the first face is in another piece
+  OnBorder = 4            ///< between two pieces, inside of the whole mesh
 };
 
 /// Faces, and the cells on their sides.
@@ -55,6 +66,10 @@ struct FaceMesh
   std::vector<Index> cellOffsets;     ///< of each cell in `cellFaces`; one more than cells
   std::vector<Index> cellFaces;       ///< faces of the cells, in increasing order
   std::vector<Index> facet;           ///< per boundary face: the number of the given facet, or -1
+  /// Per cell: nonzero if it is of another piece, here for comparison only. Empty: none is.
+  std::vector<unsigned char> foreignCells;
+  std::vector<unsigned char> roles; ///< per face: bits of FaceRole. Empty: none.
+
   Index faces() const { return static_cast<Index>(this->owner.size()); }
   Index size(Index face) const { return this->offsets[face + 1] - this->offsets[face]; }
   bool internal(Index face) const { return face < this->internalFaces; }
@@ -62,6 +77,49 @@ struct FaceMesh
   Index coupled(Index face) const { return this->partner[face - this->internalFaces]; }
   /// Whether there is a cell on both sides, perhaps beyond a coupled patch.
   bool hasTwoCells(Index face) const { return this->internal(face) || this->coupled(face) >= 0; }
+  bool has(Index face, FaceRole role) const
+  {
+    return !this->roles.empty() && (this->roles[face] & role) != 0;
+  }
+  /// Whether a cell is of this piece.
+  bool ownsCell(Index cell) const
+  {
+    return this->foreignCells.empty() || !this->foreignCells[cell];
+  }
+  /// Whether a face counts in this piece. Each face of a mesh counts in one of its pieces.
+  bool ownsFace(Index face) const { return !this->has(face, CountsElsewhere); }
+  /// Whether a cell of this piece is on one side of a face.
+  bool touches(Index face) const
+  {
+    return this->ownsCell(this->owner[face]) ||
+      (this->internal(face) && this->ownsCell(this->neighbor[face]));
+  }
+  /// Whether the value of a face counts in the mean of a metric that compares two cells: internal
+  /// faces and, of coupled ones, the first of each pair.
+  bool countsOnce(Index face) const
+  {
+    return this->ownsFace(face) && this->hasTwoCells(face) &&
+      (this->internal(face) || this->coupled(face) > face) && !this->has(face, PairComesElsewhere);
+  }
+};
+
+/// The smallest box around points.
+struct FaceExtent
+{
+  Vec3 low, high;
+  FaceExtent()
+  {
+    this->low.fill(std::numeric_limits<double>::infinity());
+    this->high.fill(-std::numeric_limits<double>::infinity());
+  }
+  void add(const Vec3& p)
+  {
+    for (int c = 0; c < 3; ++c)
+    {
+      this->low[c] = std::min(this->low[c], p[c]);
+      this->high[c] = std::max(this->high[c], p[c]);
+    }
+  }
 };
 
 /// The faces of cells, each as a list of points that runs counter-clockwise seen from outside.
@@ -89,20 +147,22 @@ struct ListedFacets
  * last patch, "boundary", if there are any. Facets that lie between two cells, of which there is
  * one only, are not faces of the boundary.
  *
- * @param patches their names and types; `first` and `count` are set. "cyclic" patches whose partner
- * has another number of faces become uncoupled.
+ * @param patches their names and types; `first` and `count` are set. The faces of "cyclic" patches
+ * whose partner has another number of faces are not coupled.
  *
  * Throws Error where three or more cells share a face, or a cell lists one twice.
  */
 TAUTLINE_KERNEL_EXPORT FaceMesh findFaces(Index points, const ListedFaces& cells,
   const ListedFacets& facets, std::vector<FacePatch> patches, int threads = 0);
 
-/**
- * @brief Makes the faces in the two planes of one layer of cells an "empty" patch, the first one:
- * all points are in two planes across one axis only, and each cell has one face in each.
- * @param mesh without coupled patches
- * @return the axis, or -1: the mesh is no such layer, and stays
- */
-TAUTLINE_KERNEL_EXPORT int markLayer(FaceMesh& mesh, const double* points);
+/// Whether a mesh is one layer of cells across an axis: all points are in the two planes that bound
+/// the extent, and each cell has one face in each. @param extent of the whole mesh
+TAUTLINE_KERNEL_EXPORT bool isLayer(
+  const FaceMesh& mesh, const double* points, const FaceExtent& extent, int axis);
+
+/// Makes the faces in the two planes of a layer an "empty" patch, the first one.
+/// @param mesh without coupled patches, for which isLayer() is true
+TAUTLINE_KERNEL_EXPORT void markLayer(
+  FaceMesh& mesh, const double* points, const FaceExtent& extent, int axis);
 }
 #endif

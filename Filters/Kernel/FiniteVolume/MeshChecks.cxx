@@ -36,11 +36,8 @@ std::vector<MeshCheck> emptyMeshChecks()
   using Kind = MeshCheckKind;
   using Item = CheckedItem;
   const auto check = [](Kind kind, const char* name, const char* label, Item item, bool onRequest,
-                       bool onlyWarns, double limit)
-  {
-    MeshCheck made{ kind, name, label, item, onRequest, onlyWarns };
-    made.limit = limit;
-    return made;
+                       bool onlyWarns, double limit) {
+    return MeshCheck{ { 0, 0, 0, limit }, kind, name, label, item, onRequest, onlyWarns };
   };
   return {
     check(Kind::IllegalCells, "illegal_cells", "Cells with fewer than four faces", Item::Cells,
@@ -127,7 +124,7 @@ private:
     this->Report.faces[face] |= bit(kind);
   }
 
-  /// The faces that count in statistics of pairs of cells.
+  /// Sets extremes and mean of the values that count.
   template <class Counts>
   void summarize(Kind kind, const std::vector<double>& values, const Counts& countsIn)
   {
@@ -148,7 +145,8 @@ private:
     {
       check.least = least;
       check.most = most;
-      check.mean = sum / static_cast<double>(number);
+      check.weight = static_cast<double>(number);
+      check.mean = sum / check.weight;
     }
   }
 
@@ -156,10 +154,10 @@ private:
   void ofCells(Kind kind, Metric metric, const Offends& offends)
   {
     const std::vector<double> values = this->Measures.evaluate(metric).cells;
-    this->summarize(kind, values, [](Index) { return true; });
+    this->summarize(kind, values, [this](Index cell) { return this->Mesh.ownsCell(cell); });
     for (Index cell = 0; cell < this->Mesh.cells; ++cell)
     {
-      if (offends(values[cell]))
+      if (this->Mesh.ownsCell(cell) && offends(values[cell]))
       {
         ++this->at(kind).offending;
         this->Report.cells[cell] |= bit(kind);
@@ -174,11 +172,43 @@ private:
     this->summarize(kind, values, countsIn);
     for (Index face = 0; face < this->Mesh.faces(); ++face)
     {
-      if (offends(face, values[face]))
+      if (this->Mesh.ownsFace(face) && offends(face, values[face]))
       {
         this->offend(kind, face);
       }
     }
+  }
+
+  /// Calls visit(face, cell, sign) for the faces of the cells of this piece.
+  template <class Visit>
+  void forEachSide(const Visit& visit) const
+  {
+    for (Index face = 0; face < this->Mesh.faces(); ++face)
+    {
+      if (this->Mesh.ownsCell(this->Mesh.owner[face]))
+      {
+        visit(face, this->Mesh.owner[face], 1.0);
+      }
+      if (this->Mesh.internal(face) && this->Mesh.ownsCell(this->Mesh.neighbor[face]))
+      {
+        visit(face, this->Mesh.neighbor[face], -1.0);
+      }
+    }
+  }
+
+  /// One flag per point: other pieces may have it, too.
+  std::vector<char> borderPoints() const
+  {
+    std::vector<char> border(this->Mesh.points, 0);
+    for (Index face = 0; face < this->Mesh.faces(); ++face)
+    {
+      for (Index i = this->Mesh.offsets[face];
+           this->Mesh.has(face, OnBorder) && i < this->Mesh.offsets[face + 1]; ++i)
+      {
+        border[this->Mesh.nodes[i]] = 1;
+      }
+    }
+    return border;
   }
 
   Vec3 point(Index i) const { return pointAt(this->Points, this->Mesh.nodes[i]); }
@@ -215,6 +245,10 @@ void Checker::checkTopology(const MeshCheckFacts& facts)
   for (Index cell = 0; cell < this->Mesh.cells; ++cell)
   {
     pollInterruption(cell);
+    if (!this->Mesh.ownsCell(cell))
+    {
+      continue;
+    }
     const Index begin = this->Mesh.cellOffsets[cell], end = this->Mesh.cellOffsets[cell + 1];
     if (end - begin < leastFaces)
     {
@@ -302,19 +336,9 @@ void Checker::checkEdges()
   using Edge = std::pair<Index, Index>;
   std::vector<Edge> edges, ofWedges, askew;
   std::vector<char> isShort(this->Mesh.points, 0);
-  Vec3 low, high;
-  low.fill(std::numeric_limits<double>::infinity());
-  high.fill(-std::numeric_limits<double>::infinity());
-  for (Index i = 0; i < this->Mesh.points; ++i)
-  {
-    const Vec3 p = pointAt(this->Points, i);
-    for (int c = 0; c < 3; ++c)
-    {
-      low[c] = std::min(low[c], p[c]);
-      high[c] = std::max(high[c], p[c]);
-    }
-  }
-  const double shortest = this->Mesh.points > 0 ? ShortEdge * norm(high - low) : 0;
+  const std::vector<char> onBorder = this->borderPoints();
+  const FaceExtent& extent = this->Measures.extent();
+  const double shortest = this->Mesh.points > 0 ? ShortEdge * norm(extent.high - extent.low) : 0;
   double least = std::numeric_limits<double>::infinity(), most = 0;
   std::vector<char> isWedgeFace(this->Mesh.faces(), 0);
   for (const FacePatch& patch : this->Mesh.patches)
@@ -325,7 +349,7 @@ void Checker::checkEdges()
   {
     pollInterruption(face);
     const Index first = this->Mesh.offsets[face], size = this->Mesh.size(face);
-    for (Index k = 0; k < size; ++k)
+    for (Index k = 0; k < size && this->Mesh.touches(face); ++k)
     {
       const Index a = this->Mesh.nodes[first + k], b = this->Mesh.nodes[first + (k + 1) % size];
       const Vec3 edge = pointAt(this->Points, b) - pointAt(this->Points, a);
@@ -356,34 +380,54 @@ void Checker::checkEdges()
   std::vector<Edge> counted;
   std::set_difference(
     askew.begin(), askew.end(), ofWedges.begin(), ofWedges.end(), std::back_inserter(counted));
-  this->at(Kind::EdgeAlignment).offending = static_cast<Index>(counted.size());
+  const auto place = [this](Index point) { return pointAt(this->Points, point); };
+  for (const auto& [a, b] : counted)
+  {
+    if (onBorder[a] && onBorder[b])
+    {
+      const Vec3 p = place(a), q = place(b);
+      this->Report.border.askewEdges.push_back({ std::min(p, q), std::max(p, q) });
+    }
+    else
+    {
+      ++this->at(Kind::EdgeAlignment).offending;
+    }
+  }
   if (wedge && !this->wedgesArePlane())
   {
     ++this->at(Kind::EdgeAlignment).offending;
   }
   MeshCheck& lengths = this->at(Kind::EdgeLength);
+  lengths.weight = this->Mesh.faces() > 0 ? 1 : 0;
   lengths.least = this->Mesh.faces() > 0 ? least : 0;
   lengths.most = most;
   lengths.limit = shortest;
-  lengths.offending = std::count(isShort.begin(), isShort.end(), 1);
+  for (Index point = 0; point < this->Mesh.points; ++point)
+  {
+    if (isShort[point] && onBorder[point])
+    {
+      this->Report.border.shortEdgePoints.push_back(place(point));
+    }
+    else
+    {
+      lengths.offending += isShort[point];
+    }
+  }
 }
 
 //------------------------------------------------------------------------------
 void Checker::checkBoundary()
 {
-  Vec3 sum = { 0, 0, 0 };
-  double size = LeastSize;
+  BoundarySum& boundary = this->Report.boundary;
   for (Index face = this->Mesh.internalFaces; face < this->Mesh.faces(); ++face)
   {
-    sum += this->Measures.geometry().area[face];
-    size += norm(this->Measures.geometry().area[face]);
+    if (this->Mesh.ownsFace(face) && !this->Mesh.has(face, OnBorder))
+    {
+      boundary.area += this->Measures.geometry().area[face];
+      boundary.size += norm(this->Measures.geometry().area[face]);
+    }
   }
-  MeshCheck& check = this->at(Kind::BoundaryOpenness);
-  for (int c = 0; c < 3; ++c)
-  {
-    check.most = std::max(check.most, std::abs(sum[c]) / size);
-  }
-  check.offending = check.most > MostOpenness;
+  setBoundaryOpenness(this->at(Kind::BoundaryOpenness), boundary);
 }
 
 //------------------------------------------------------------------------------
@@ -404,14 +448,13 @@ void Checker::checkCells()
 //------------------------------------------------------------------------------
 void Checker::checkFaces()
 {
-  const auto all = [](Index) { return true; };
+  const auto all = [this](Index face) { return this->Mesh.ownsFace(face); };
   this->ofFaces(
     Kind::FaceArea, Metric::FaceArea, all, [](Index, double value) { return value < LeastSize; });
   this->ofFaces(Kind::FaceSkewness, Metric::FaceSkewness, all,
     [this](Index face, double value)
     {
-      const bool second = !this->Mesh.internal(face) && this->Mesh.coupled(face) >= 0 &&
-        this->Mesh.coupled(face) < face;
+      const bool second = this->Mesh.hasTwoCells(face) && !this->Mesh.countsOnce(face);
       return value > MostSkewness && !second;
     });
   const double straight = 0;
@@ -419,37 +462,32 @@ void Checker::checkFaces()
     [=](Index, double value) { return value > straight; });
   this->ofFaces(
     Kind::FaceFlatness, Metric::FaceFlatness,
-    [this](Index face) { return this->Mesh.size(face) > 3; },
+    [this](Index face) { return this->Mesh.ownsFace(face) && this->Mesh.size(face) > 3; },
     [](Index, double value) { return value < LeastFlatness; });
 
   // Each side of a face counts.
   const FaceGeometry& g = this->Measures.geometry();
   MeshCheck& pyramids = this->at(Kind::PyramidVolume);
   pyramids.least = std::numeric_limits<double>::infinity();
-  for (Index face = 0; face < this->Mesh.faces(); ++face)
-  {
-    const double own = dot(g.area[face], g.center[face] - g.cellCenter[this->Mesh.owner[face]]) / 3;
-    const double other = this->Mesh.internal(face)
-      ? dot(g.area[face], g.cellCenter[this->Mesh.neighbor[face]] - g.center[face]) / 3
-      : own;
-    pyramids.least = std::min({ pyramids.least, own, other });
-    if (own < LeastPyramid)
+  this->forEachSide(
+    [&](Index face, Index cell, double sign)
     {
-      this->offend(Kind::PyramidVolume, face);
-    }
-    if (this->Mesh.internal(face) && other < LeastPyramid)
-    {
-      this->offend(Kind::PyramidVolume, face);
-    }
-  }
-  pyramids.least = this->Mesh.faces() > 0 ? pyramids.least : 0;
+      const double volume = sign * dot(g.area[face], g.center[face] - g.cellCenter[cell]) / 3;
+      pyramids.least = std::min(pyramids.least, volume);
+      pyramids.weight = 1;
+      if (volume < LeastPyramid)
+      {
+        this->offend(Kind::PyramidVolume, face);
+      }
+    });
+  pyramids.least = pyramids.weight > 0 ? pyramids.least : 0;
 }
 
 //------------------------------------------------------------------------------
 /// What compares the cells on both sides of a face.
 void Checker::checkPairs()
 {
-  const auto once = [this](Index face) { return this->Measures.countsOnce(face); };
+  const auto once = [this](Index face) { return this->Mesh.countsOnce(face); };
   MeshCheck& angles = this->at(Kind::NonOrthogonality);
   const double severe = std::cos(SevereAngle / DegreesPerRadian);
   std::vector<double> cosines = this->Measures.evaluate(Metric::NonOrthogonality).faces;
@@ -457,6 +495,10 @@ void Checker::checkPairs()
   {
     double& value = cosines[face];
     value = std::cos(value / DegreesPerRadian);
+    if (!this->Mesh.ownsFace(face))
+    {
+      continue;
+    }
     if (value <= WrongCosine)
     {
       this->offend(Kind::NonOrthogonality, face);
@@ -494,7 +536,7 @@ void Checker::checkCoupledPoints()
   for (Index face = this->Mesh.internalFaces; face < this->Mesh.faces(); ++face)
   {
     const Index other = this->Mesh.coupled(face);
-    if (other < face)
+    if (!this->Mesh.countsOnce(face) || this->Mesh.has(face, OnBorder))
     {
       continue;
     }
@@ -523,7 +565,8 @@ void Checker::checkCoupledPoints()
       this->offend(Kind::CoupledPoints, face);
     }
   }
-  check.mean = compared > 0 ? sum / static_cast<double>(compared) : 0;
+  check.weight = static_cast<double>(compared);
+  check.mean = compared > 0 ? sum / check.weight : 0;
 }
 
 //------------------------------------------------------------------------------
@@ -534,21 +577,74 @@ void Checker::checkTets()
   const std::vector<double> fans = this->Measures.evaluate(Metric::FanTetQuality).faces;
   const auto centers = this->Measures.centerTetQualities();
   double least = std::numeric_limits<double>::infinity();
+  const auto add = [&](Index face, double quality, bool offends)
+  {
+    least = std::min(least, quality);
+    this->at(kind).weight = 1;
+    if (offends)
+    {
+      this->offend(kind, face);
+    }
+  };
+  this->forEachSide(
+    [&](Index face, Index, double sign)
+    {
+      const double quality = centers[face][sign > 0 ? 0 : 1];
+      add(face, quality, quality < LeastTetQuality);
+    });
   for (Index face = 0; face < this->Mesh.faces(); ++face)
   {
-    least = std::min({ least, fans[face], centers[face][0], centers[face][1] });
-    const bool inner = this->Mesh.internal(face);
-    for (const bool offends : { centers[face][0] < LeastTetQuality,
-           inner && centers[face][1] < LeastTetQuality, !(fans[face] > LeastTetQuality) })
+    if (this->Mesh.ownsFace(face))
     {
-      if (offends)
-      {
-        this->offend(kind, face);
-      }
+      add(face, fans[face], !(fans[face] > LeastTetQuality));
     }
   }
-  this->at(kind).least = this->Mesh.faces() > 0 ? least : 0;
+  this->at(kind).least = this->at(kind).weight > 0 ? least : 0;
 }
+}
+
+//------------------------------------------------------------------------------
+void setBoundaryOpenness(MeshCheck& check, const BoundarySum& boundary)
+{
+  check.weight = 1;
+  check.most = 0;
+  for (int c = 0; c < 3; ++c)
+  {
+    check.most = std::max(check.most, std::abs(boundary.area[c]) / (boundary.size + LeastSize));
+  }
+  check.offending = check.most > MostOpenness;
+}
+
+//------------------------------------------------------------------------------
+std::vector<MeshCheck> joinChecks(const std::vector<std::vector<MeshCheck>>& meshes)
+{
+  std::vector<MeshCheck> all = emptyMeshChecks();
+  for (MeshCheck& check : all)
+  {
+    // The mean angle is the angle of the mean cosine.
+    const bool angle = check.kind == MeshCheckKind::NonOrthogonality;
+    double sum = 0;
+    for (const std::vector<MeshCheck>& mesh : meshes)
+    {
+      const MeshCheck& more = mesh[static_cast<std::size_t>(check.kind)];
+      check.offending += more.offending;
+      check.warned += more.warned;
+      if (more.weight > 0)
+      {
+        check.least = check.weight > 0 ? std::min(check.least, more.least) : more.least;
+        check.most = check.weight > 0 ? std::max(check.most, more.most) : more.most;
+        check.limit = more.limit;
+        check.weight += more.weight;
+        sum += more.weight * (angle ? std::cos(more.mean / DegreesPerRadian) : more.mean);
+      }
+    }
+    if (check.weight > 0)
+    {
+      const double mean = sum / check.weight;
+      check.mean = angle ? std::acos(std::clamp(mean, -1.0, 1.0)) * DegreesPerRadian : mean;
+    }
+  }
+  return all;
 }
 
 //------------------------------------------------------------------------------

@@ -55,19 +55,25 @@ enum class MeshCheckKind : int
   Number = 22
 };
 
-/// The result of one check.
-struct MeshCheck
+/// What a check finds.
+struct MeshCheckValues
+{
+  double least = 0, most = 0, mean = 0; ///< as checkMesh prints them; 0 of counts
+  double limit = 0;
+  Index offending = 0; ///< as checkMesh counts them
+  Index warned = 0;    ///< severely non-orthogonal faces
+  double weight = 0;   ///< of the mean: how many items have a value
+};
+
+/// A check and its result.
+struct MeshCheck : MeshCheckValues
 {
   MeshCheckKind kind;
   const char* name;  ///< as "non_orthogonality"
   const char* label; ///< as "Non-orthogonality"
   CheckedItem item = CheckedItem::Faces;
-  bool thorough = false;                ///< only with all checks
-  bool onlyWarns = false;               ///< does not count as failed
-  double least = 0, most = 0, mean = 0; ///< as checkMesh prints them; 0 of counts
-  double limit = 0;
-  Index offending = 0; ///< as checkMesh counts them
-  Index warned = 0;    ///< severely non-orthogonal faces
+  bool thorough = false;  ///< only with all checks
+  bool onlyWarns = false; ///< does not count as failed
   bool failed() const { return this->offending > 0 && !this->onlyWarns; }
 };
 
@@ -77,11 +83,27 @@ struct MeshCheckFacts
   Index facesOutOfOrder = 0; ///< internal faces that a file does not have in the order of FaceMesh
 };
 
+/// The area vectors of the boundary: of a closed one, their sum is 0.
+struct BoundarySum
+{
+  Vec3 area = { 0, 0, 0 };
+  double size = 0; ///< the sum of the areas
+};
+
+/// On the border of a piece, where other pieces have them, too: what offends, and is counted once.
+struct BorderItems
+{
+  std::vector<Vec3> shortEdgePoints;
+  std::vector<std::array<Vec3, 2>> askewEdges;
+};
+
 /// The results of all checks.
 struct MeshCheckReport
 {
   std::vector<MeshCheck> checks;           ///< in the order of MeshCheckKind
   std::vector<std::uint32_t> faces, cells; ///< per face and cell: 1 << kind of those that offend
+  BoundarySum boundary;
+  BorderItems border; ///< not in `checks`; see joinReports()
 
   const MeshCheck& operator[](MeshCheckKind kind) const
   {
@@ -96,7 +118,15 @@ struct MeshCheckReport
 /// The checks before they are made, with their limits.
 TAUTLINE_KERNEL_EXPORT std::vector<MeshCheck> emptyMeshChecks();
 
-/// Makes the checks. @param points as given to the measures
+/// The checks of several meshes as one: sums of counts, extremes and means of values.
+TAUTLINE_KERNEL_EXPORT std::vector<MeshCheck> joinChecks(
+  const std::vector<std::vector<MeshCheck>>& meshes);
+
+/// Sets the check of the openness of the boundary.
+TAUTLINE_KERNEL_EXPORT void setBoundaryOpenness(MeshCheck& check, const BoundarySum& boundary);
+
+/// Makes the checks. Of a piece of a mesh they count what is of the piece. @param points as given
+/// to the measures
 TAUTLINE_KERNEL_EXPORT MeshCheckReport checkMesh(
   const FaceMeasures& measures, const double* points, const MeshCheckFacts& facts = {});
 }

@@ -8,8 +8,8 @@
 
 #include "Meshes.h"
 
+#include "tautline/FiniteVolume/FacePieces.h"
 #include "tautline/FiniteVolume/ListFaces.h"
-#include "tautline/FiniteVolume/MeshChecks.h"
 
 namespace tautline
 {
@@ -32,6 +32,13 @@ inline ListedFaces facesOf(const MeshData& data)
 inline FaceMesh faceMeshOf(const MeshData& data)
 {
   return findFaces(data.view().numberOfPoints, facesOf(data), {}, {});
+}
+
+/// Marks the layer of a mesh in one piece, if it is one.
+inline int markLayerAlone(FaceMesh& mesh, const MeshData& data)
+{
+  SingleRank alone;
+  return markLayer(alone, { { &mesh, data.points.data() } });
 }
 
 /// A metric on the cells of a mesh.

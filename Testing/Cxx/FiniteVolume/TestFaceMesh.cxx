@@ -264,7 +264,7 @@ TAUTLINE_PART(testMarkLayer)
   MeshData data = blockMesh(CellType::Hexahedron, 3, 2, 1);
   FaceMesh mesh = faceMeshOf(data);
   const FaceMesh before = mesh;
-  TAUTLINE_CHECK_EQUAL(markLayer(mesh, data.points.data()), 2);
+  TAUTLINE_CHECK_EQUAL(markLayerAlone(mesh, data), 2);
   TAUTLINE_CHECK_EQUAL(mesh.patches.size(), 2u);
   TAUTLINE_CHECK(mesh.patches[0].isEmpty());
   TAUTLINE_CHECK_EQUAL(mesh.patches[0].count, 12);
@@ -282,7 +282,7 @@ TAUTLINE_PART(testMarkLayer)
   {
     const MeshData other = blockMesh(CellType::Hexahedron, size[0], size[1], size[2]);
     FaceMesh none = faceMeshOf(other);
-    TAUTLINE_CHECK_EQUAL(markLayer(none, other.points.data()), -1);
+    TAUTLINE_CHECK_EQUAL(markLayerAlone(none, other), -1);
     TAUTLINE_CHECK_EQUAL(none.patches.size(), 1u);
   }
 }
