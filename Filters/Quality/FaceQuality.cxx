@@ -31,23 +31,24 @@ vtkSmartPointer<Array> faceArray(vtkPolyData* output, const std::string& name, s
 }
 
 //------------------------------------------------------------------------------
-FaceQuality::FaceQuality(
-  vtkDataSet* input, const MeshAdapter& adapter, FaceConvention convention, int threads)
+FaceQuality::FaceQuality(vtkDataSet* input, std::unique_ptr<FaceMeshAdapter> adapter,
+  FaceConvention convention, int threads)
   : Input(input)
-  , Adapter(input, adapter, threads)
-  , Measures(this->Adapter.mesh(), this->Adapter.points(), convention, threads)
+  , Adapter(std::move(adapter))
+  , Measures(this->Adapter->mesh(), this->Adapter->points(), convention, threads)
 {
 }
 
 //------------------------------------------------------------------------------
-void FaceQuality::classify(signed char* validity) const
+const std::string& FaceQuality::classify(signed char* validity) const
 {
   const std::vector<signed char> found = this->Measures.validity();
-  for (std::size_t i = 0; i < found.size(); ++i)
+  for (std::size_t i = 0; i < this->Adapter->cells().size(); ++i)
   {
-    signed char& value = validity[this->Adapter.cells()[i]];
+    signed char& value = validity[this->Adapter->cells()[i]];
     value = value == NotMeasured ? found[i] : value;
   }
+  return this->Adapter->notice();
 }
 
 //------------------------------------------------------------------------------
@@ -55,10 +56,10 @@ void FaceQuality::measure(Metric metric, double* values)
 {
   FaceValues found = this->Measures.evaluate(metric);
   std::fill_n(values, this->Input->GetNumberOfCells(), 0.0);
-  for (std::size_t i = 0; i < found.cells.size(); ++i)
+  for (std::size_t i = 0; i < this->Adapter->cells().size(); ++i)
   {
     // Of cells without faces, and where points are not finite.
-    values[this->Adapter.cells()[i]] = std::isfinite(found.cells[i]) ? found.cells[i] : 0.0;
+    values[this->Adapter->cells()[i]] = std::isfinite(found.cells[i]) ? found.cells[i] : 0.0;
   }
   if (!found.faces.empty())
   {
@@ -67,11 +68,11 @@ void FaceQuality::measure(Metric metric, double* values)
 }
 
 //------------------------------------------------------------------------------
-const MeshCheckReport& FaceQuality::check()
+MeshCheckReport& FaceQuality::check()
 {
   if (!this->Checked)
   {
-    this->Report = checkMesh(this->Measures, this->Adapter.points(), this->Adapter.facts());
+    this->Report = checkMesh(this->Measures, this->Adapter->points(), this->Adapter->facts());
     this->Checked = true;
   }
   return this->Report;
@@ -81,7 +82,7 @@ const MeshCheckReport& FaceQuality::check()
 /// Per face the checks that it or one of its cells fails.
 std::vector<std::uint32_t> FaceQuality::failures() const
 {
-  const FaceMesh& mesh = this->Adapter.mesh();
+  const FaceMesh& mesh = this->Adapter->mesh();
   std::vector<std::uint32_t> failed = this->Report.faces;
   for (Index face = 0; face < mesh.faces(); ++face)
   {
@@ -94,12 +95,12 @@ std::vector<std::uint32_t> FaceQuality::failures() const
 //------------------------------------------------------------------------------
 vtkSmartPointer<vtkPolyData> FaceQuality::faces(bool all) const
 {
-  const FaceMesh& mesh = this->Adapter.mesh();
+  const FaceMesh& mesh = this->Adapter->mesh();
   const std::vector<std::uint32_t> failed = this->failures();
   std::vector<Index> chosen;
   for (Index face = 0; face < mesh.faces(); ++face)
   {
-    if (all || failed[face])
+    if (mesh.ownsFace(face) && (all || failed[face]))
     {
       chosen.push_back(face);
     }
@@ -117,7 +118,7 @@ vtkSmartPointer<vtkPolyData> FaceQuality::faces(bool all) const
       const auto entry = made.emplace(mesh.nodes[i], points->GetNumberOfPoints());
       if (entry.second)
       {
-        points->InsertNextPoint(this->Adapter.points() + 3 * mesh.nodes[i]);
+        points->InsertNextPoint(this->Adapter->points() + 3 * mesh.nodes[i]);
       }
       polygons->InsertCellPoint(entry.first->second);
     }
@@ -142,9 +143,10 @@ vtkSmartPointer<vtkPolyData> FaceQuality::faces(bool all) const
     const auto row = static_cast<vtkIdType>(i);
     const Index face = chosen[i];
     numbers->SetValue(row, face);
-    owners->SetValue(row, this->Adapter.cells()[mesh.owner[face]]);
-    neighbors->SetValue(row, mesh.internal(face) ? this->Adapter.cells()[mesh.neighbor[face]] : -1);
-    patches->SetValue(row, patchOf[face]);
+    owners->SetValue(row, this->Adapter->cells()[mesh.owner[face]]);
+    neighbors->SetValue(
+      row, mesh.internal(face) ? this->Adapter->cells()[mesh.neighbor[face]] : -1);
+    patches->SetValue(row, mesh.has(face, OnBorder) ? -1 : patchOf[face]);
     failures->SetValue(row, failed[face]);
     ownerWeights->SetValue(row, weights[face]);
   }
@@ -163,23 +165,10 @@ vtkSmartPointer<vtkPolyData> FaceQuality::faces(bool all) const
   return output;
 }
 
-//------------------------------------------------------------------------------
-std::unique_ptr<FaceQuality> makeFaceQuality(vtkDataSet* input, MeshAdapter& adapter,
-  const std::vector<Metric>& metrics, FaceConvention convention, int threads)
+namespace
 {
-  const bool wanted = std::any_of(metrics.begin(), metrics.end(),
-    [](Metric metric) { return metricInfo(metric).family == MetricFamily::Faces; });
-  Mesh& mesh = adapter.mesh();
-  if (wanted && mesh.unsupportedCells() > 0 && mesh.dimension() != Dimension::Volume)
-  {
-    mesh.setSpace(spaceWithPolygons(mesh));
-  }
-  return wanted || hasPolyhedra(mesh)
-    ? std::make_unique<FaceQuality>(input, adapter, convention, threads)
-    : nullptr;
-}
-
-//------------------------------------------------------------------------------
+/// Whether a mesh has cells that only metrics of finite volumes measure: polyhedra, and polygons
+/// of a plane mesh.
 bool hasPolyhedra(const Mesh& mesh)
 {
   const MeshView& view = mesh.view();
@@ -187,5 +176,58 @@ bool hasPolyhedra(const Mesh& mesh)
     (mesh.unsupportedCells() > 0 && mesh.dimension() == Dimension::Planar &&
       std::find(view.cellTypes, view.cellTypes + view.numberOfCells, VTK_POLYGON) !=
         view.cellTypes + view.numberOfCells);
+}
+}
+
+//------------------------------------------------------------------------------
+bool measuresElements(const std::vector<Metric>& metrics)
+{
+  return std::any_of(metrics.begin(), metrics.end(),
+    [](Metric metric) { return metricInfo(metric).family != MetricFamily::Faces; });
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::unique_ptr<FaceQuality>> makeFaceQuality(RankGroup& group,
+  const std::vector<FaceInput>& pieces, const std::vector<Metric>& metrics,
+  FaceConvention convention, int threads)
+{
+  const auto anyPiece = [&](const auto& condition)
+  {
+    return group.any(std::any_of(pieces.begin(), pieces.end(),
+      [&](const FaceInput& piece) { return condition(piece.adapter->mesh()); }));
+  };
+  const bool wanted = std::any_of(metrics.begin(), metrics.end(),
+    [](Metric metric) { return metricInfo(metric).family == MetricFamily::Faces; });
+  const bool polygons = wanted &&
+    anyPiece([](const Mesh& mesh)
+      { return mesh.unsupportedCells() > 0 && mesh.dimension() != Dimension::Volume; });
+  if (polygons)
+  {
+    setSpaceWithPolygons(group, pieces);
+  }
+  std::vector<std::unique_ptr<FaceQuality>> made;
+  if (!wanted && !anyPiece(hasPolyhedra))
+  {
+    return made;
+  }
+  auto adapters = FaceMeshAdapter::ofPieces(group, pieces, threads);
+  std::vector<FaceMeasures*> measures;
+  for (std::size_t i = 0; i < pieces.size(); ++i)
+  {
+    made.push_back(
+      std::make_unique<FaceQuality>(pieces[i].data, std::move(adapters[i]), convention, threads));
+    measures.push_back(&made.back()->measures());
+  }
+  joinMeasures(group, measures);
+  return made;
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<FaceQuality> makeFaceQuality(
+  const FaceInput& mesh, const std::vector<Metric>& metrics, FaceConvention convention, int threads)
+{
+  SingleRank alone;
+  auto made = makeFaceQuality(alone, { mesh }, metrics, convention, threads);
+  return made.empty() ? nullptr : std::move(made.front());
 }
 }

@@ -56,12 +56,18 @@ PieceFindings joined(const std::vector<PieceFindings>& pieces)
 
 //------------------------------------------------------------------------------
 PieceFindings findingsOf(const MeshAdapter& adapter, const unsigned char* reversed,
-  const unsigned char* skip, Index curved)
+  const unsigned char* skip, Index curved, bool elements)
 {
   const Mesh& mesh = adapter.mesh();
   PieceFindings found;
   found.dimension = mesh.dimension();
   found.remarks = adapter.remarks(false);
+  MeshRemarks remarks = adapter.remarks();
+  if (!elements)
+  {
+    found.remarks.notMeasured.clear();
+    remarks.notMeasured.clear();
+  }
   const MeshSkin skin = findSkin(mesh);
   Index first = 0;
   found.near = countNearPoints(mesh, skin.boundaryPoints, &first);
@@ -70,7 +76,6 @@ PieceFindings findingsOf(const MeshAdapter& adapter, const unsigned char* revers
   found.seams.representative.clear();
   found.firstApart = found.seams.apart() > 0 ? placeOf(mesh.view(), found.seams.firstApart) : "";
   found.duplicates = countDuplicates(skin.duplicates, skip);
-  MeshRemarks remarks = adapter.remarks();
   remarks.higherOrderCells = std::max<Index>(0, remarks.higherOrderCells - curved);
   found.text = describe(remarks);
   add(found.text, describeSeams(found.seams, mesh));

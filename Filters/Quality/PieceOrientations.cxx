@@ -30,7 +30,8 @@ std::string describeOrder(const RankOrder& found, Dimension dimension, int mode)
 }
 
 //------------------------------------------------------------------------------
-void PieceOrientations::find(vtkDataObject* input, int threads, RankGroup& group, int mode)
+void PieceOrientations::find(
+  vtkDataObject* input, int threads, RankGroup& group, int mode, bool elements)
 {
   std::map<int, std::vector<vtkDataSet*>> meshes;
   const auto add = [&meshes](int number, vtkDataSet* data)
@@ -56,14 +57,15 @@ void PieceOrientations::find(vtkDataObject* input, int threads, RankGroup& group
   const Index size = group.maximum(meshes.empty() ? Index(0) : Index(meshes.rbegin()->first) + 1);
   for (Index index = 0; index < size; ++index)
   {
-    this->findMesh(meshes[static_cast<int>(index)], threads, group, mode);
+    this->Meshes.push_back(meshes[static_cast<int>(index)]);
+    this->findMesh(this->Meshes.back(), threads, group, mode, elements);
   }
 }
 
 //------------------------------------------------------------------------------
 /// @param data the pieces of this process, with cells
 void PieceOrientations::findMesh(
-  const std::vector<vtkDataSet*>& data, int threads, RankGroup& group, int mode)
+  const std::vector<vtkDataSet*>& data, int threads, RankGroup& group, int mode, bool elements)
 {
   const std::size_t count = data.size();
   std::vector<std::unique_ptr<MeshAdapter>> adapters(count);
@@ -102,7 +104,7 @@ void PieceOrientations::findMesh(
   for (std::size_t i = 0; i < count; ++i)
   {
     findings.push_back(findingsOf(*adapters[i], reversed ? whole.order.reverse[i].data() : nullptr,
-      skips[i].empty() ? nullptr : skips[i].data()));
+      skips[i].empty() ? nullptr : skips[i].data(), 0, elements));
   }
   const std::string remarks = describeFindings(group, findings);
   if (group.rank() == 0)

@@ -52,18 +52,22 @@ public:
   /**
    * @brief Finds that of the meshes of all processes. Throws Error, on all, for a mesh that is
    * malformed. Collective.
-   * @param mode as for describeOrder()
+   * @param mode as for describeOrder() @param elements as for findingsOf()
    */
-  void find(vtkDataObject* input, int threads, RankGroup& group, int mode);
+  void find(vtkDataObject* input, int threads, RankGroup& group, int mode, bool elements);
+  /// The data sets of this process of each mesh; as many meshes on all processes.
+  const std::vector<std::vector<vtkDataSet*>>& meshes() const { return this->Meshes; }
   /// Of a data set of the input; null before find(), and of one without cells.
   const OrientedPiece* piece(vtkDataSet* data) const;
   /// On the first process the remarks on all meshes, in sentences; "" on the others.
   const std::string& notice() const { return this->Notice; }
 
 private:
-  void findMesh(const std::vector<vtkDataSet*>& data, int threads, RankGroup& group, int mode);
+  void findMesh(
+    const std::vector<vtkDataSet*>& data, int threads, RankGroup& group, int mode, bool elements);
 
   std::vector<std::unique_ptr<WholeOrientation>> Found;
+  std::vector<std::vector<vtkDataSet*>> Meshes;
   std::map<vtkDataSet*, OrientedPiece> Pieces;
   std::string Notice;
 };

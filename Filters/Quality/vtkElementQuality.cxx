@@ -12,6 +12,7 @@
 #include "MeshAdapter.h"
 #include "MeshGroups.h"
 #include "MetricSelection.h"
+#include "PieceFaces.h"
 #include "PieceFindings.h"
 #include "PieceOrientations.h"
 #include "ProcessGroup.h"
@@ -69,6 +70,18 @@ vtkSmartPointer<vtkDoubleArray> tripleArray(const char* name, vtkIdType tuples)
   array->SetNumberOfComponents(3);
   array->SetNumberOfTuples(tuples);
   return array;
+}
+
+/// The cell arrays of where curved cells have their smallest Jacobian determinant.
+void addPlaces(const tautline::CurvedQuality& curved, const signed char* validity,
+  const unsigned char* skip, tautline::QualityTotals& totals, vtkDataSet* output)
+{
+  const auto places = tripleArray("MinimumCoordinates", output->GetNumberOfCells());
+  const auto points = tripleArray("MinimumPoint", output->GetNumberOfCells());
+  curved.places(places->GetPointer(0), points->GetPointer(0));
+  output->GetCellData()->AddArray(places);
+  output->GetCellData()->AddArray(points);
+  totals.addCurved(curved.missed(validity, skip), points->GetPointer(0));
 }
 }
 
@@ -287,7 +300,11 @@ void vtkElementQuality::MeasureAll(
       grader = tautline::CriteriaGrader(this->Criteria);
       checks = grader.withChecks(tautline::parseElementChecks(this->Checks));
     });
+  tautline::QualityTotals totals(grader.withMetrics(this->GetSelection().metrics()));
+  totals.setChecks(checks);
+  tautline::FaceTotals faces;
   tautline::PieceOrientations orientations;
+  tautline::PieceFaces pieceFaces;
   const bool several = this->Controller && this->Controller->GetNumberOfProcesses() > 1;
   if (several || tautline::hasPartitions(input))
   {
@@ -300,26 +317,32 @@ void vtkElementQuality::MeasureAll(
         if (const auto group = all ? tautline::tryProcessGroup() : nullptr)
         {
           group->together(
-            [&] { orientations.find(input, this->Threads, *group, this->ReversedMesh); });
+            [&]
+            {
+              orientations.find(input, this->Threads, *group, this->ReversedMesh,
+                tautline::measuresElements(totals.metrics()));
+              pieceFaces.find(orientations, *group, totals.metrics(), this->ConventionOf(grader),
+                this->ReversedMesh != MEASURE_AS_GIVEN, this->Threads);
+            });
         }
       });
     this->Notice = orientations.notice();
   }
-  tautline::QualityTotals totals(grader.withMetrics(this->GetSelection().metrics()));
-  totals.setChecks(checks);
+  for (const std::vector<tautline::MeshCheck>& mesh : pieceFaces.checks())
+  {
+    faces.add(mesh);
+  }
   tautline::BadElements bad;
-  tautline::FaceTotals faces;
   this->Together("choose fewer metrics or measure the mesh in parts",
     [&]
     {
       tautline::forEachBlock(input, vtkDataObject::GetData(inputVector[1]), nullptr,
         vtkDataObject::GetData(outputVector, MeshPort),
         [&](const tautline::InputBlock& block)
-        { this->Measure(block, orientations, totals, grader, bad, faces); });
+        { this->Measure(block, orientations, pieceFaces, totals, grader, bad, faces); });
     });
   totals.gather(this->Controller);
   grader.gather(this->Controller);
-  faces.gather(this->Controller);
   faces.copyTo(vtkPolyData::GetData(outputVector, FacesPort));
   // Unlike the tables, each process has its own.
   bad.copyTo(vtkUnstructuredGrid::GetData(outputVector, BadPort));
@@ -368,8 +391,9 @@ void vtkElementQuality::ClearResult()
 
 //------------------------------------------------------------------------------
 void vtkElementQuality::Measure(const tautline::InputBlock& block,
-  const tautline::PieceOrientations& pieces, tautline::QualityTotals& totals,
-  tautline::CriteriaGrader& grader, tautline::BadElements& bad, tautline::FaceTotals& faceTotals)
+  const tautline::PieceOrientations& pieces, const tautline::PieceFaces& pieceFaces,
+  tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad,
+  tautline::FaceTotals& faceTotals)
 {
   using namespace tautline;
   vtkDataSet *input = block.input, *output = block.output;
@@ -398,7 +422,14 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   validity->SetNumberOfValues(cells);
   this->SettleOrientation(adapter, piece, validity->GetPointer(0), output);
   const auto curved = this->CertifyCurved(input, adapter, validity->GetPointer(0));
-  const auto faces = this->FindFaces(input, adapter, metrics, grader, validity->GetPointer(0));
+  const std::unique_ptr<FaceQuality> alone = whole
+    ? nullptr
+    : makeFaceQuality({ input, &adapter }, metrics, this->ConventionOf(grader), this->Threads);
+  FaceQuality* faces = whole ? pieceFaces.piece(input) : alone.get();
+  if (faces)
+  {
+    this->AddToNotice(faces->classify(validity->GetPointer(0)));
+  }
   if (this->JacobianBounds)
   {
     this->AddBounds(input, adapter, output);
@@ -415,17 +446,13 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   if (!whole && cells > 0)
   {
     this->AddCurvedNotice(*curved, metrics, options);
-    this->AddToNotice(findingsOf(adapter, nullptr, skipped, curved->cells()).text);
+    this->AddToNotice(
+      findingsOf(adapter, nullptr, skipped, curved->cells(), measuresElements(metrics)).text);
   }
   totals.addBlock(mesh, validity->GetPointer(0), skipped, block.place, this->Threads);
   if (curved->cells() > 0)
   {
-    const auto places = tripleArray("MinimumCoordinates", cells);
-    const auto points = tripleArray("MinimumPoint", cells);
-    curved->places(places->GetPointer(0), points->GetPointer(0));
-    output->GetCellData()->AddArray(places);
-    output->GetCellData()->AddArray(points);
-    totals.addCurved(curved->missed(validity->GetPointer(0), skipped), points->GetPointer(0));
+    addPlaces(*curved, validity->GetPointer(0), skipped, totals, output);
   }
   for (std::size_t m = 0; m < metrics.size() && !this->GetAbortExecute(); ++m)
   {
@@ -449,10 +476,7 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
       input->GetCellData()->GetGlobalIds());
   }
   progress.emplace(this, stepAt(metrics.size() + 1), stepAt(metrics.size() + 2));
-  if (faces && !this->GetAbortExecute())
-  {
-    this->CheckFaces(*faces, faceTotals);
-  }
+  this->CheckFaces(faces, alone != nullptr, faceTotals);
   this->MeasureChecks(input, adapter, validity->GetPointer(0), skipped, totals, output);
   // Ghosts have the grades of the cells that they are copies of, but do not count.
   const std::vector<unsigned char> beside = facesBesideVolumes(mesh);
@@ -472,32 +496,30 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
 }
 
 //------------------------------------------------------------------------------
-/// The faces of a mesh, where metrics or cells need them, which then are classified; else null.
-std::unique_ptr<tautline::FaceQuality> vtkElementQuality::FindFaces(vtkDataSet* input,
-  tautline::MeshAdapter& adapter, const std::vector<tautline::Metric>& metrics,
-  const tautline::CriteriaGrader& grader, signed char* validity)
+void vtkElementQuality::CheckFaces(
+  tautline::FaceQuality* faces, bool alone, tautline::FaceTotals& totals)
 {
-  const bool foundation = this->FaceConvention == FOUNDATION ||
-    (this->FaceConvention == BY_CRITERIA && grader.convention() == "foundation");
-  auto faces = tautline::makeFaceQuality(input, adapter, metrics,
-    foundation ? tautline::FaceConvention::Foundation : tautline::FaceConvention::Esi,
-    this->Threads);
-  if (faces)
+  if (!faces || this->GetAbortExecute())
   {
-    faces->classify(validity);
-    this->AddToNotice(faces->notice());
+    return;
   }
-  return faces;
+  if (alone)
+  {
+    totals.add(faces->check().checks);
+  }
+  if (this->FaceOutput != NO_FACES)
+  {
+    totals.add(faces->faces(this->FaceOutput == ALL_FACES));
+  }
 }
 
 //------------------------------------------------------------------------------
-void vtkElementQuality::CheckFaces(tautline::FaceQuality& faces, tautline::FaceTotals& totals)
+tautline::FaceConvention vtkElementQuality::ConventionOf(
+  const tautline::CriteriaGrader& grader) const
 {
-  totals.add(faces.check(), faces.measures().mesh());
-  if (this->FaceOutput != NO_FACES)
-  {
-    totals.add(faces.faces(this->FaceOutput == ALL_FACES));
-  }
+  const bool foundation = this->FaceConvention == FOUNDATION ||
+    (this->FaceConvention == BY_CRITERIA && grader.convention() == "foundation");
+  return foundation ? tautline::FaceConvention::Foundation : tautline::FaceConvention::Esi;
 }
 
 //------------------------------------------------------------------------------

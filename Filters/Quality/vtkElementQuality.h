@@ -133,10 +133,12 @@ class CriteriaGrader;
 class CurvedQuality;
 class FaceQuality;
 class FaceTotals;
+class PieceFaces;
 class Mesh;
 class MeshAdapter;
 struct CurvedCellFacts;
 struct OrientedPiece;
+enum class FaceConvention;
 class PieceOrientations;
 class QualityTotals;
 enum class Metric : int;
@@ -394,12 +396,12 @@ private:
   void Together(const char* memoryRemedy, const std::function<void()>& work);
   void MeasureAll(vtkInformationVector** inputVector, vtkInformationVector* outputVector);
   void Measure(const tautline::InputBlock& block, const tautline::PieceOrientations& pieces,
-    tautline::QualityTotals& totals, tautline::CriteriaGrader& grader, tautline::BadElements& bad,
-    tautline::FaceTotals& faces);
-  std::unique_ptr<tautline::FaceQuality> FindFaces(vtkDataSet* input,
-    tautline::MeshAdapter& adapter, const std::vector<tautline::Metric>& metrics,
-    const tautline::CriteriaGrader& grader, signed char* validity);
-  void CheckFaces(tautline::FaceQuality& faces, tautline::FaceTotals& totals);
+    const tautline::PieceFaces& pieceFaces, tautline::QualityTotals& totals,
+    tautline::CriteriaGrader& grader, tautline::BadElements& bad, tautline::FaceTotals& faces);
+  /// @param faces null: none @param alone whether they are of a whole mesh, whose checks are to be
+  /// added
+  void CheckFaces(tautline::FaceQuality* faces, bool alone, tautline::FaceTotals& totals);
+  tautline::FaceConvention ConventionOf(const tautline::CriteriaGrader& grader) const;
   /// @param piece what was found of the whole mesh; null: that of this data set is
   void SettleOrientation(tautline::MeshAdapter& adapter, const tautline::OrientedPiece* piece,
     signed char* validity, vtkDataSet* output);

@@ -250,7 +250,7 @@ void vtkMeshComparison::Compare(
   const auto facesOf = [&](vtkDataSet* input, MeshAdapter& adapter, signed char* validity)
   {
     auto faces =
-      makeFaceQuality(input, adapter, totals.metrics, FaceConvention::Esi, this->Threads);
+      makeFaceQuality({ input, &adapter }, totals.metrics, FaceConvention::Esi, this->Threads);
     if (faces)
     {
       faces->classify(validity);
