@@ -285,6 +285,32 @@ private:
 
   std::vector<Edge> Edges;
 };
+
+/// The faces of a nonOverlapPatch that a cyclicACMI patch has as well, which a cell has once.
+std::vector<char> repeatedFaces(const FoamMesh& mesh)
+{
+  std::vector<char> repeated;
+  for (const FoamPatch& patch : mesh.patches)
+  {
+    const auto rest = std::find_if(mesh.patches.begin(), mesh.patches.end(),
+      [&patch](const FoamPatch& each)
+      { return !patch.rest.empty() && each.name == patch.rest && each.rest.empty(); });
+    if (rest == mesh.patches.end() || rest->size != patch.size)
+    {
+      continue;
+    }
+    repeated.resize(at(mesh.numberOfFaces()), 0);
+    for (Index i = 0; i < patch.size; ++i)
+    {
+      const Index face = patch.start + i, other = rest->start + i;
+      const Index cell = mesh.owner[at(face)];
+      repeated[at(other)] = mesh.owner[at(other)] == cell &&
+        OutwardFace(mesh, face, cell).sortedPoints() ==
+          OutwardFace(mesh, other, cell).sortedPoints();
+    }
+  }
+  return repeated;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -299,6 +325,7 @@ FoamCells cellsOf(const FoamMesh& mesh)
   std::vector<Index> lastCell(at(mesh.numberOfPoints()), -1);
   OutwardFaces faces;
   PolyhedronCheck polyhedra;
+  const std::vector<char> repeated = repeatedFaces(mesh);
   for (Index cell = 0; cell < mesh.cells; ++cell)
   {
     pollInterruption(cell);
@@ -308,7 +335,11 @@ FoamCells cellsOf(const FoamMesh& mesh)
     const Index end = cells.cellFaces.offsets[at(cell) + 1];
     for (Index i = begin; i < end; ++i)
     {
-      faces.emplace_back(mesh, cells.cellFaces.faces[at(i)], cell);
+      const Index face = cells.cellFaces.faces[at(i)];
+      if (repeated.empty() || !repeated[at(face)])
+      {
+        faces.emplace_back(mesh, face, cell);
+      }
     }
     if (faces.size() < FewestFaces)
     {

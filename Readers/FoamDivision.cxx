@@ -108,7 +108,9 @@ private:
     mesh.facePoints.insert(mesh.facePoints.end(), begin, end);
     if (reversed)
     {
-      std::reverse(mesh.facePoints.end() - (end - begin) + 1, mesh.facePoints.end());
+      // the first point stays, but of a face in the plane, which has two
+      const std::ptrdiff_t kept = end - begin == 2 ? 0 : 1;
+      std::reverse(mesh.facePoints.end() - (end - begin) + kept, mesh.facePoints.end());
     }
     this->FaceNumbers[at(face)] = mesh.numberOfFaces();
     mesh.faceOffsets.push_back(static_cast<Index>(mesh.facePoints.size()));

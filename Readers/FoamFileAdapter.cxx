@@ -37,7 +37,8 @@ void appendPatchFaces(const FoamMesh& mesh, FoamCells& cells)
   for (Index face = first; face < mesh.numberOfFaces(); ++face)
   {
     const Index points = mesh.faceOffsets[at(face) + 1] - mesh.faceOffsets[at(face)];
-    cells.types.push_back(points == 3 ? FileTriangle
+    cells.types.push_back(points == 2 ? FileLine
+        : points == 3                 ? FileTriangle
         : points == 4                 ? FileQuadrilateral
                                       : FilePolygon);
     cells.offsets.push_back(before + mesh.faceOffsets[at(face) + 1]);
@@ -182,6 +183,19 @@ void addGlobalIds(const FoamPiece& piece, vtkUnstructuredGrid* grid)
 }
 
 //------------------------------------------------------------------------------
+std::string patchList(const FoamMesh& mesh)
+{
+  std::string list;
+  for (std::size_t i = 0; i < mesh.patches.size(); ++i)
+  {
+    const FoamPatch& patch = mesh.patches[i];
+    list += (i > 0 ? "\n" : "") + std::to_string(i) + " " + patch.name + " (" + patch.type + ", " +
+      std::to_string(patch.size) + " faces)";
+  }
+  return list;
+}
+
+//------------------------------------------------------------------------------
 void toGrid(FoamPiece piece, bool patchFaces, vtkUnstructuredGrid* grid)
 {
   FoamMesh& mesh = piece.mesh;
@@ -219,7 +233,10 @@ void toGrid(FoamPiece piece, bool patchFaces, vtkUnstructuredGrid* grid)
   addPatchFacts(mesh.patches, fields);
   addZoneFacts(mesh, fields);
   fields->AddArray(outOfOrder);
-  fields->AddArray(
-    stringArray(FoamCaseArray, piece.folders, [](const std::string& folder) { return folder; }));
+  if (!piece.folders.empty())
+  {
+    fields->AddArray(
+      stringArray(FoamCaseArray, piece.folders, [](const std::string& folder) { return folder; }));
+  }
 }
 }

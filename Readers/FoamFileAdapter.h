@@ -18,6 +18,9 @@ namespace tautline
 /// The field array (strings) with the directories polyMesh whose points a mesh has.
 constexpr const char* FoamCaseArray = "FoamCase";
 
+/// Number, name, type and size of each patch, a line each.
+std::string patchList(const FoamMesh& mesh);
+
 /// @param patchFaces whether the faces of the patches are cells behind those of the volume
 TAUTLINEREADERS_EXPORT void toGrid(FoamPiece piece, bool patchFaces, vtkUnstructuredGrid* grid);
 }

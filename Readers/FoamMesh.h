@@ -26,6 +26,7 @@ struct FoamPatch
   std::string whole;          ///< of a processorCyclic patch: the patch that it is a part of
   int processor = -1;         ///< of a processor patch: its processor
   int neighborProcessor = -1; ///< and the one on the other side
+  std::string rest;           ///< of a cyclicACMI patch: the patch of the same faces, or empty
 
   bool ofProcessor() const { return this->neighborProcessor >= 0; }
   /// Whether its faces are internal faces of the whole mesh.
@@ -67,6 +68,8 @@ TAUTLINEREADERS_EXPORT FoamCellFaces cellFacesOf(const FoamMesh& mesh);
 
 /**
  * @brief The cells in VTK's form.
+ *
+ * Where a cyclicACMI patch and its nonOverlapPatch have the same face, the cell has it once.
  *
  * A cell is a tetrahedron, pyramid, wedge or hexahedron where its faces are those of VTK's cell,
  * oriented outwards; else a polyhedron, whose points are listed once each.

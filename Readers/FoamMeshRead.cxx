@@ -125,6 +125,10 @@ FoamPatch readPatch(FoamCursor& cursor, const std::string& name, const FoamMesh&
     {
       patch.neighbor = cursor.value("neighbourPatch");
     }
+    else if (key == "nonOverlapPatch")
+    {
+      patch.rest = cursor.value("nonOverlapPatch");
+    }
     else if (key == "referPatch")
     {
       patch.whole = cursor.value("referPatch");

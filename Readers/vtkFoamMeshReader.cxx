@@ -82,12 +82,7 @@ void vtkFoamMeshReader::ReadPart(const tautline::PartRequest& request, vtkDataOb
   {
     vtkWarningMacro(<< this->FileName << ": " << warning);
   }
-  for (std::size_t i = 0; i < piece.mesh.patches.size(); ++i)
-  {
-    const tautline::FoamPatch& patch = piece.mesh.patches[i];
-    this->PatchList += (i > 0 ? "\n" : "") + std::to_string(i) + " " + patch.name + " (" +
-      patch.type + ", " + std::to_string(patch.size) + " faces)";
-  }
+  this->PatchList = tautline::patchList(piece.mesh);
   tautline::toGrid(std::move(piece), this->LowerCells, vtkUnstructuredGrid::SafeDownCast(output));
 }
 

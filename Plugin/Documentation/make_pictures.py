@@ -532,6 +532,45 @@ def off_files():
     return side_by_side(fit(view, 1.3), size=(360, HEIGHT))
 
 
+def bend(file: Path) -> None:
+    """Writes a quarter of a ring as a mesh of Fluent, with an inlet, an outlet and walls."""
+    along, across = 24, 8
+    nodes = [(i, j) for j in range(across + 1) for i in range(along + 1)]
+    number = {node: k + 1 for k, node in enumerate(nodes)}
+    cell = {(i, j): 1 + i + along * j for i in range(along) for j in range(across)}
+    zones = {"interior": [], "velocity-inlet": [], "pressure-outlet": [], "wall": []}
+    for i, j in nodes:
+        for end, left, right, name in (
+            ((i, j + 1), (i - 1, j), (i, j), "pressure-outlet" if i else "velocity-inlet"),
+            ((i + 1, j), (i, j), (i, j - 1), "wall"),
+        ):
+            if end in number:
+                sides = cell.get(left, 0), cell.get(right, 0)
+                row = " ".join(f"{value:x}" for value in (number[i, j], number[end], *sides))
+                zones["interior" if all(sides) else name].append(row)
+    radius = [(1 + j / across, math.pi / 2 * (1 - i / along)) for i, j in nodes]
+    points = "\n".join(f"{r * math.cos(angle):.9f} {r * math.sin(angle):.9f}" for r, angle in radius)
+    count = f"{len(nodes):x}"
+    text = f"(2 2)\n(10 (0 1 {count} 0 2))\n(12 (0 1 {len(cell):x} 0))\n(10 (1 1 {count} 1 2)(\n{points}))\n"
+    first = 1
+    for zone, (name, rows) in enumerate(zones.items(), 3):
+        head = f"{zone:x} {first:x} {first + len(rows) - 1:x} {2 if name == 'interior' else 3} 2"
+        text += f"(13 ({head})(\n" + "\n".join(rows) + f"))\n(45 ({zone} {name} {name})())\n"
+        first += len(rows)
+    file.write_text(text)
+
+
+def fluent_files():
+    view = new_view()
+    with tempfile.TemporaryDirectory() as folder:
+        bend(Path(folder) / "bend.msh")
+        mesh = simple.OpenDataFile(str(Path(folder) / "bend.msh"))
+        mesh.UpdatePipeline()
+    draw(mesh, view, "Patch").LineWidth = 2
+    values("Patch", -1, 2)
+    return side_by_side(fit(view, 1.1), size=(360, HEIGHT))
+
+
 def openfoam_files():
     view = new_view(OBLIQUE)
     case = simple.OpenFOAMMeshReader(FileName=str(DATA / "elbow" / "elbow.foam"))
@@ -552,9 +591,9 @@ PICTURES = (
     element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, untangle_mesh, warp_mesh, perturb_mesh,
     curve_mesh, compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde,
     condition_estimator, solver_study, peridynamic_condition, interaction_layer, horizon_neighbors,
-    silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list, abaqus_files, nastran_files, gmsh_files,
-    medit_files, mfem_files, off_files, openfoam_files, tetgen_files, nonpositive_jacobian_1, nonpositive_jacobian_2,
-    nonpositive_jacobian_3,
+    silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list, abaqus_files, nastran_files, fluent_files,
+    gmsh_files, medit_files, mfem_files, off_files, openfoam_files, tetgen_files, nonpositive_jacobian_1,
+    nonpositive_jacobian_2, nonpositive_jacobian_3,
 )  # fmt: skip
 
 

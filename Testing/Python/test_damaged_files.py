@@ -313,7 +313,6 @@ def test_readers_without_a_reason() -> None:
         ("silent.xmf", "<Xdmf/>"),
         ("silent.neu", "        CONTROL INFO 2.3.16\n"),
         ("silent.e", "CDF\x01"),
-        ("silent.cas", '(0 "x")'),
         ("silent.case", "FORMAT\ntype: ensight\n"),
     ):
         file = FOLDER / name

@@ -15,11 +15,11 @@ from pathlib import Path
 import numpy as np
 import tautline as tl
 from checks import DATA, OUT, points, refused, run_tests, shell, square, wording
-from tautline import _io
 from tautline._meshio import MESHIO_FORMATS
-from tautline._vtk_readers import SOLVER_FORMATS
+from tautline._polyhedra import Faces, turn_outwards
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkUnstructuredGrid
+from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
+from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON, vtkMultiBlockDataSet, vtkUnstructuredGrid
 
 BRACKET = DATA / "bracket.vtu"
 FOLDER = OUT / "exchange"
@@ -244,25 +244,56 @@ def test_foam():
     refused("polyMesh/faces:1: ", tl.read, case)
 
 
-def test_optional_results():
-    """A mesh is read without its results, with a warning, if only these cannot be read."""
-    known = SOLVER_FORMATS[".cas"]
-    strictly = _io._read_strictly
+def polyhedra(*turned: int):
+    """Cubes in a row as polyhedra; bit k of a number turns face k of its cube."""
+    grid = vtkUnstructuredGrid()
+    corners = vtkPoints()
+    corners.SetDataTypeToDouble()
+    for x in range(len(turned) + 1):
+        for y, z in ((0, 0), (1, 0), (1, 1), (0, 1)):
+            corners.InsertNextPoint(x, y, z)
+    grid.SetPoints(corners)
+    for cube, bits in enumerate(turned):
+        a, b = ([4 * (cube + side) + k for k in range(4)] for side in (0, 1))
+        faces = [a[::-1], b, *([a[k], a[(k + 1) % 4], b[(k + 1) % 4], b[k]] for k in range(4))]
+        stream = vtkIdList()
+        stream.InsertNextId(len(faces))
+        for k, face in enumerate(faces):
+            for number in (len(face), *(face[::-1] if bits >> k & 1 else face)):
+                stream.InsertNextId(number)
+        grid.InsertNextCell(VTK_POLYHEDRON, stream)
+    return grid
 
-    def read_strictly(name, form, time, results=True):
-        if results:
-            raise tl.Error(f"{name}: damaged")
-        return square(1)
 
+def test_polyhedra():
+    """Polyhedra are seen from outside, whatever the sense in which a file lists their faces."""
+    every = 63
+    for turned, volumes in (
+        ((0, 0, 0), [1, 1, 1]),  # as they should be
+        ((every, every, every), [1, 1, 1]),  # as vtkCGNSReader lists them
+        ((0, every, 0), [1, -1, 1]),  # one is inverted, and stays inverted
+        ((every, 0, every), [1, -1, 1]),
+    ):
+        grid = polyhedra(*turned)
+        turn_outwards(grid)
+        assert np.allclose(Faces(grid).volumes(points(grid), len(turned)), volumes), turned
+    grid = polyhedra(1, 2, every)  # without a sense
+    turn_outwards(grid)
+    assert tl.quality(grid, metrics="pyramid_volume").inverted == 0
     try:
-        _io._read_strictly = read_strictly
-        with warnings.catch_warnings(record=True) as told:
-            warnings.simplefilter("always")
-            assert _io._read_with("x.cas", known, None).GetNumberOfCells() == 2
-        assert len(told) == 1 and wording("read-without-its-results") in str(told[0].message), told
-        refused("x.neu: ", _io._read_with, "x.neu", SOLVER_FORMATS[".neu"], None)
-    finally:
-        _io._read_strictly = strictly
+        from paraview.modules.vtkPVVTKExtensionsIOCGNSWriter import vtkCGNSWriter
+    except ImportError:  # VTK without ParaView
+        return
+    file = FOLDER / "polyhedra.cgns"
+    file.unlink(missing_ok=True)
+    writer = vtkCGNSWriter()
+    writer.SetFileName(str(file))
+    writer.SetInputData(polyhedra(0, 0, 0))
+    writer.Write()
+    mesh = tl.read(file)
+    assert [mesh.GetCellType(i) for i in range(mesh.GetNumberOfCells())] == [VTK_POLYHEDRON] * 3
+    result = tl.quality(mesh, metrics="pyramid_volume")
+    assert result.inverted == 0 and np.allclose(result.mesh.cell_data["pyramid_volume"], 1 / 6)
 
 
 def test_foam_in_place():

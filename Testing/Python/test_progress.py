@@ -106,8 +106,8 @@ def straight_mesh(mesh):
     return str(file)
 
 
-def foam_case(n):
-    """A case of OpenFOAM of n^3 cubes on one patch."""
+def cubes(n):
+    """The points of n^3 cubes, and their faces between two cells and on the boundary: the cells, then the points."""
     side = n + 1
     cell, point = np.indices((n, n, n)).reshape(3, -1).T, np.indices((side,) * 3).reshape(3, -1).T
     steps, cell_steps = np.array([side * side, side, 1]), np.array([n * n, n, 1])
@@ -121,6 +121,26 @@ def foam_case(n):
         inner += zip(number[between], number[between] + cell_steps[axis], high[between].tolist())
         outer += zip(number[cell[:, axis] == 0], low[cell[:, axis] == 0].tolist())
         outer += zip(number[~between], high[~between].tolist())
+    return point, inner, outer
+
+
+def fluent_file(n):
+    """A mesh of Fluent of n^3 cubes."""
+    point, inner, outer = cubes(n)
+    text = ["(2 3)", f"(10 (0 1 {len(point):x} 0 3))", f"(12 (0 1 {n**3:x} 0))", f"(10 (1 1 {len(point):x} 1 3)("]
+    text += [f"{x} {y} {z}" for x, y, z in point.tolist()] + ["))"]
+    rows = [(*face[-1][::-1], *face[:-1]) for face in inner] + [(*face[-1][::-1], *face[:-1], -1) for face in outer]
+    for zone, code, first, last in ((2, 2, 1, len(inner)), (3, 3, len(inner) + 1, len(rows))):
+        text.append(f"(13 ({zone} {first:x} {last:x} {code} 4)(")
+        text += [" ".join(f"{number + 1:x}" for number in row) for row in rows[first - 1 : last]] + ["))"]
+    file = OUT / "progress-fluent.msh"
+    file.write_text("\n".join(text) + "\n")
+    return str(file)
+
+
+def foam_case(n):
+    """A case of OpenFOAM of n^3 cubes on one patch."""
+    point, inner, outer = cubes(n)
     inner.sort(key=lambda face: face[:2])
     faces = [f"4({' '.join(map(str, face[-1]))})" for face in (*inner, *outer)]
     patch = f"all {{ type patch; nFaces {len(outer)}; startFace {len(inner)}; }}"
@@ -158,6 +178,7 @@ def cases():
     yield "sources", "AnyNastranReader", {}, {"FileNames": [deck(".bdf", cube, NASTRAN)]}
     yield "sources", "TautlineMfemReader", {}, {"FileNames": [straight_mesh(cube)]}
     yield "sources", "TautlineFoamReader", {}, {"FileName": foam_case(30)}
+    yield "sources", "AnyFluentReader", {}, {"FileName": fluent_file(30)}
     yield "sources", "SilhouetteSetReader", {}, {"FileName": str(DATA / "silhouettes.csv")}
     yield "filters", "ElementQuality", {"Input": cube}, {}
     yield "filters", "MeshComparison", {"Input": cube, "Other": cube}, {}

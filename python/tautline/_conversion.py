@@ -18,10 +18,10 @@ from ._vtk_readers import SERIES, SOLVER_FORMATS
 _OWN = {
     ".node": "TetGen, Triangle", ".ele": "TetGen, Triangle", ".face": "TetGen, Triangle", ".edge": "TetGen, Triangle",
     ".poly": "TetGen, Triangle", ".smesh": "TetGen", ".mesh": "Medit, MFEM", ".meshb": "Medit, binary",
-    ".sol": "Medit", ".msh": "Gmsh, FreeFem++",
+    ".sol": "Medit", ".msh": "Gmsh, FreeFem++, Fluent",
     ".pos": "Gmsh's views", ".msh2": "Gmsh", ".msh4": "Gmsh",
     ".off": "OFF", ".coff": "OFF", ".noff": "OFF", ".cnoff": "OFF", ".ply": "PLY", ".stl": "STL",
-    ".obj": "Wavefront OBJ", ".foam": "OpenFOAM",
+    ".obj": "Wavefront OBJ", ".foam": "OpenFOAM", ".cas": "Fluent",
 }  # fmt: skip
 
 

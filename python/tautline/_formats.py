@@ -55,16 +55,18 @@ def _vtk_pieces(data: str) -> Format:
 
 _TETGEN = Format("vtkTetGenReader", "vtkTetGenWriter", "vtkDataSet")
 _OFF = "vtkOffReader"
+FLUENT_READER = "vtkFluentMeshReader"
 _OWN_FORMATS = {
     **dict.fromkeys((".node", ".ele", ".face", ".edge", ".poly", ".smesh"), _TETGEN),
     ".mesh": Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet", other="vtkMfemReader"),
     ".meshb": Format("vtkMeditReader", "vtkMeditWriter", "vtkDataSet"),
     ".sol": Format("vtkMeditReader", None, "vtkDataSet"),
-    ".msh": Format("vtkGmshReader", "vtkGmshWriter", "vtkDataSet"),
+    ".msh": Format("vtkGmshReader", "vtkGmshWriter", "vtkDataSet", other=FLUENT_READER),
     **dict.fromkeys((".msh2", ".msh4"), Format("vtkGmshReader", None, "vtkDataSet")),
     ".inp": Format("vtkAbaqusReader", None, "vtkDataSet"),
     **dict.fromkeys((".bdf", ".nas", ".fem"), Format("vtkNastranReader", None, "vtkDataSet")),
     ".foam": Format("vtkFoamMeshReader", None, "vtkDataSet"),  # write() has a writer of points
+    ".cas": Format(FLUENT_READER, None, "vtkDataSet"),
     ".pos": Format(None, "vtkGmshWriter", "vtkDataSet"),
     ".off": Format(_OFF, "vtkOffWriter", "vtkDataSet"),
     **dict.fromkeys((".coff", ".noff", ".cnoff"), Format(_OFF, None, "vtkDataSet")),

@@ -25,7 +25,7 @@ from ._arguments import number, picked
 from ._errors import Error, checked, interruptible, plain, run, watch
 from ._files import check_input, check_target, file_name, require_memory
 from ._foam_case import FOAM, write_case
-from ._formats import FORMATS, Format
+from ._formats import FLUENT_READER, FORMATS, Format
 from ._groups import Groups, with_groups
 from ._interrupts import Progress, updating
 from ._grid_checks import check_grid, mark_attributes, same_cells, writable
@@ -70,6 +70,7 @@ _REFERRING = (".vtm", *_IN_PIECES)
 _MEMORY_PER_BYTE = 8
 #: What converts formats that nothing here reads.
 _CONVERTERS = {
+    ".h5": "a .cas.h5 of Fluent is read where it is saved in the legacy format, .cas (file/cff-files? no)",
     ".step": "it is a geometry without a mesh: mesh it with Gmsh",
     ".stp": "it is a geometry without a mesh: mesh it with Gmsh",
     ".iges": "it is a geometry without a mesh: mesh it with Gmsh",
@@ -84,7 +85,7 @@ SU2, UNV = ".su2", ".unv"
 _COMPRESSED = ".gz"
 _OF_ONE_FILE = (
     ".msh", ".msh2", ".msh4", ".mesh", ".meshb", ".inp", ".bdf", ".nas", ".fem", ".su2", ".unv", ".off", ".vtk", ".vtu",
-    ".vtp", ".stl", ".ply", ".obj",
+    ".vtp", ".stl", ".ply", ".obj", ".cas",
 )  # fmt: skip
 _ALWAYS_BINARY = ".meshb"
 _MFEM, _MFEM_SPACES = ".mesh", ("H1", "L2")
@@ -140,17 +141,17 @@ def read(
         VTK (.vtk .vtu .vtp .vti .vtr .vts .vtm .pvtu .pvtp .ply .stl .obj), or, where the module of readers was built,
         TetGen and Triangle (.node .ele .face .edge .poly .smesh), Medit (.mesh .meshb .sol), Gmsh and FreeFem++ (.msh),
         OFF (.off .coff .noff .cnoff), Abaqus and CalculiX (.inp), Nastran (.bdf .nas .fem), the mesh of an OpenFOAM
-        case (.foam, a file in its directory, which may be empty). Of solvers: SU2, universal files (.unv), Exodus (.e
-        .exo .ex2), CGNS, XDMF (.xmf .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), Gambit (.neu), Fluent (.cas),
-        Tecplot (.tec); .pvd; and where meshio is installed MED, Netgen (.vol) and others, see formats().
-        Formats of one file also with .gz behind their ending.
+        case (.foam, a file in its directory, which may be empty), the mesh of Fluent (.cas, and .msh that begin with a
+        parenthesis), without results. Of solvers: SU2, universal files (.unv), Exodus (.e .exo .ex2), CGNS, XDMF (.xmf
+        .xdmf), AVS UCD (.avs .ucd .inp), EnSight (.case), Gambit (.neu), Tecplot (.tec); .pvd; and where meshio is
+        installed MED, Netgen (.vol) and others, see formats(). Formats of one file also with .gz behind their ending.
     **options
         lower_cells (False): also read boundary triangles beside tetrahedra, and edges beside triangles; of the formats
-        of mesh generators, Abaqus, Nastran, SU2 and .unv; of OpenFOAM the faces of the patches, by default True. region
-        (""), of OpenFOAM: the mesh in constant/region. decomposed, of OpenFOAM: True reads the meshes of the
-        processors, put together, False the one in constant; the default is the latter if it is there. time: the time
-        step to read, the nearest to this number, see times(); the default is the first. Of the formats of solvers and
-        .pvd.
+        of mesh generators, Abaqus, Nastran, SU2 and .unv; of OpenFOAM and Fluent the faces of the patches, by default
+        True. region (""), of OpenFOAM: the mesh in constant/region. decomposed, of OpenFOAM: True reads the meshes of
+        the processors, put together, False the one in constant; the default is the latter if it is there. time: the
+        time step to read, the nearest to this number, see times(); the default is the first. Of the formats of solvers
+        and .pvd.
     progress : bool or callable, optional
         True: a bar on the terminal, if there is one. Else a function, called ten times a second with the fraction done,
         0 to 1, and a text; it cancels by returning False, which raises Aborted. Ctrl-C raises KeyboardInterrupt.
@@ -215,7 +216,7 @@ def _read(name: str, options: dict[str, Any]) -> vtkDataObject:
     check_input(name)
     if form.own:
         reader = form.make_reader(name)
-        reader.SetLowerCells(options.get("lower_cells", ending == FOAM))
+        reader.SetLowerCells(options.get("lower_cells", bool(reader.GetLowerCells())))
         if ending == FOAM:
             reader.SetRegionName(options.get("region", ""))
             decomposed = options.get("decomposed")
@@ -231,6 +232,11 @@ def _read(name: str, options: dict[str, Any]) -> vtkDataObject:
             check_surface(name)  # before a process is started for it
         return read_apart(name, {}, lambda: _read_vtk(name, form))
     return _read_vtk(name, form)
+
+
+def _is_fluent(name: str) -> bool:
+    """Whether a file is of Fluent, also a .msh, which is of Gmsh as well."""
+    return bool(CLASSES[FLUENT_READER]().CanReadFile(name)) if FLUENT_READER in CLASSES else False
 
 
 def _may_crash(name: str, ending: str) -> bool:
@@ -283,26 +289,10 @@ def _read_other(name: str, ending: str, options: dict[str, Any], time: float | N
 
 
 def _read_with(name: str, form: SolverFormat, time: float | None) -> vtkDataObject:
-    """Read a file with a reader of VTK; without its results, with a warning, if only these cannot be read."""
-    try:
-        return _read_strictly(name, form, time)
-    except Error as error:
-        if not form.optional_results:
-            raise
-        try:
-            mesh = _read_strictly(name, form, time, results=False)
-        except Error:
-            raise error from None
-        reason = str(error).splitlines()[-1].removeprefix(f"{name}: ")
-        warnings.warn(f"{name}: the mesh is read without its results: {reason}", stacklevel=5)
-        return mesh
-
-
-def _read_strictly(name: str, form: SolverFormat, time: float | None, results: bool = True) -> vtkDataObject:
     """Read a file with a reader of VTK, of which every message is an error."""
     with _CapturedOutput() as captured:
         try:
-            mesh = read_solver(name, form, time, results)
+            mesh = read_solver(name, form, time)
         except Error as error:
             text = str(error).removeprefix(f"{name}: ")
             raise Error("\n".join(dict.fromkeys([f"{name}: {text}", *captured()]))) from None
@@ -476,7 +466,8 @@ def _source_for(mesh: Mesh, name: str) -> str:
     """The file whose points a result has moved, if it can be the template; else ""."""
     inner = getattr(mesh, "mesh", None)
     source = source_of(inner) if inner is not None and hasattr(mesh, "displacement") else ""
-    return source if source and os.path.isfile(source) and can_be_template(source, name) else ""
+    known = source and os.path.isfile(source) and can_be_template(source, name)
+    return source if known and not _is_fluent(source) else ""
 
 
 def is_template(ending: str) -> bool:
@@ -514,6 +505,8 @@ def _write_like(data: vtkDataObject, name: str, source: str) -> list[str]:
     ending = Path(name).suffix.lower()
     if ending != Path(source).suffix.lower():
         raise Error(f"{name}: the template {source} is of another format")
+    if _is_fluent(source):
+        raise Error(f"{name}: the template {source} is of Fluent, whose files do not come back; leave out template")
     if ending not in LOCATORS and ending not in _VTK_TEMPLATES and ending not in ARRAY_TEMPLATES:
         known = " ".join(sorted([*LOCATORS, *_VTK_TEMPLATES, *ARRAY_TEMPLATES]))
         raise Error(f"{name}: files '{ending}' cannot be templates; these can: {known}")

@@ -12,11 +12,18 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Callable, Iterator
 
-from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet, vtkMultiBlockDataSet
+from vtkmodules.vtkCommonDataModel import (
+    vtkCompositeDataSet,
+    vtkDataObject,
+    vtkDataSet,
+    vtkMultiBlockDataSet,
+    vtkUnstructuredGrid,
+)
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from ._arrays import leaves
 from ._errors import Aborted, Error, Messages, run, watch
+from ._polyhedra import turn_outwards
 
 
 @dataclass(frozen=True)
@@ -31,8 +38,6 @@ class SolverFormat:
     setter: str = "SetFileName"
     #: Whether files can have time steps.
     times: bool = False
-    #: Whether the mesh is read without its results where these cannot be read.
-    optional_results: bool = False
 
     def built(self) -> bool:
         """Whether this VTK has the reader."""
@@ -56,13 +61,11 @@ SOLVER_FORMATS = {
     **dict.fromkeys((".avs", ".ucd"), _AVS),
     ".case": SolverFormat("EnSight", "vtkIOEnSight", "vtkGenericEnSightReader", "SetCaseFileName", True),
     ".neu": SolverFormat("Gambit neutral", "vtkIOGeometry", "vtkGAMBITReader"),
-    ".cas": SolverFormat("Fluent", "vtkIOGeometry", "vtkFLUENTReader", optional_results=True),
     **dict.fromkeys((".tec", ".tp"), _TECPLOT),
     ".pvti": SolverFormat("VTK, pieces", "vtkIOXML", "vtkXMLPImageDataReader"),
     ".pvtr": SolverFormat("VTK, pieces", "vtkIOXML", "vtkXMLPRectilinearGridReader"),
     ".pvts": SolverFormat("VTK, pieces", "vtkIOXML", "vtkXMLPStructuredGridReader"),
 }
-_DISABLE = ("DisableAllCellArrays", "DisableAllPointArrays", "DisableAllLagrangianArrays")
 #: The ending of ParaView's lists of files by time.
 SERIES = ".pvd"
 #: How files begin.
@@ -125,23 +128,24 @@ def _check_ucd(name: str) -> None:
         at = end
 
 
-def read_solver(name: str, form: SolverFormat, time: float | None, results: bool = True) -> vtkDataObject:
+def read_solver(name: str, form: SolverFormat, time: float | None) -> vtkDataObject:
     """The mesh of a file at the time step nearest to `time`, the first for None.
 
-    results: False leaves the results of formats with optional_results unread. Raises Error if there is no such reader
-    in this VTK, if it fails, or if the file has no time steps.
+    Raises Error if there is no such reader in this VTK, if it fails, or if the file has no time steps.
     """
     with _named(name):
         reader, messages = _reader(name, form)
-        for disable in () if results else _DISABLE:
-            getattr(reader, disable, lambda: None)()
         steps = _steps(reader)
         if time is not None:
             _request(reader, _nearest(name, steps, time))
         elif steps:
             _request(reader, steps[0])
         run(reader, messages, _damaged(name, form))
-    return _simplified(name, reader.GetOutputDataObject(0))
+    data = reader.GetOutputDataObject(0)
+    for leaf in leaves(data):
+        if isinstance(leaf, vtkUnstructuredGrid):
+            turn_outwards(leaf)
+    return _simplified(name, data)
 
 
 def times_of(name: str, form: SolverFormat) -> list[float]:

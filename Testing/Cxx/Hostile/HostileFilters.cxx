@@ -339,7 +339,7 @@ const std::vector<std::string>& classesWithoutInput()
     "vtkMetricAlgorithm", "vtkEllipticAlgorithm", "vtkKrylovAlgorithm", "vtkShapeAlgorithm",
     "vtkBoundaryMesher", "vtkMeshFileReader", "vtkMeshFileWriter", "vtkMetricField",
     "vtkDomainSource", "vtkGmshReader", "vtkAbaqusReader", "vtkNastranReader", "vtkMeditReader",
-    "vtkMfemReader", "vtkFoamMeshReader", "vtkOffReader", "vtkTetGenReader",
+    "vtkMfemReader", "vtkFluentMeshReader", "vtkFoamMeshReader", "vtkOffReader", "vtkTetGenReader",
     "vtkSilhouetteSetReader", "vtkHtmlReport", "vtkImageFileReader", "vtkInterruption",
     "vtkMeshDecomposition", "vtkTautlineSetRange", "vtkUpdateGuard", "vtkUserMetric" };
   return names;
