@@ -12,6 +12,14 @@ and kept as a case in the folder of the results: constant/polyMesh, the fields o
 digits), and its output in log.checkMesh. A table of all is written as results.json and results.csv. What is in the
 table already is not run again. --synthetic makes meshes of its own as well, with faults that no tutorial has.
 
+A mesh of a region is checked with -region, and its fields are in constant/REGION, its output in log.checkMesh.REGION.
+
+With --decompose N, each case that is kept is also divided into N pieces by decomposePar (hierarchical, with more parts
+where the mesh is long), and checked by checkMesh -parallel on N processes. The pieces, and what each process writes of
+its own, are in processor0, processor1, ... of the case, the output in log.checkPieces, or for a region in
+log.checkPieces.REGION. A mesh with fewer than N cells is not divided. DECOMPOSED lists tutorials of many kinds, which
+--decompose takes if none is named.
+
 The tutorials are looked for in the folder of FOAM_TUTORIALS, the settings of OpenFOAM in that of WM_PROJECT_DIR, and
 its programs in PATH. One program runs at a time.
 """
@@ -158,6 +166,25 @@ writePrecision 17;
 writeCompression off;
 timePrecision 12;
 """
+#: How decomposePar divides a mesh; its own partitioner needs no library that may be missing.
+DECOMPOSITION = """
+numberOfSubdomains {pieces};
+method hierarchical;
+coeffs {{ n ({parts}); }}
+"""
+#: Open MPI starts no processes of root, nor more than there are cores, unless told so.
+PARALLEL = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+#: Planes, a wedge, a line, periodic in three directions and about an axis, with baffles, sliding interfaces,
+#: polyhedra of snappyHexMesh, stitched sides, curved blocks, and regions.
+DECOMPOSED = """
+    incompressible/icoFoam/cavity/cavity combustion/reactingFoam/RAS/SandiaD_LTS financial/financialFoam/europeanCall
+    DNS/dnsFoam/boxTurb16 incompressible/simpleFoam/pipeCyclic multiphase/interIsoFoam/discInConstantFlowCyclicBCs
+    multiphase/interFoam/RAS/damBreakPorousBaffle heatTransfer/buoyantSimpleFoam/circuitBoardCooling
+    incompressible/pimpleFoam/laminar/mixerVesselAMI2D incompressible/pimpleFoam/RAS/oscillatingInletACMI2D
+    mesh/snappyHexMesh/flange mesh/snappyHexMesh/opposite_walls mesh/stitchMesh/simple-cube1 mesh/blockMesh/sphere7
+    IO/fileHandler heatTransfer/chtMultiRegionFoam/snappyMultiRegionHeater
+    heatTransfer/chtMultiRegionFoam/reverseBurner
+""".split()
 CONTROL = """
 application checkMesh;
 startFrom startTime;
@@ -278,6 +305,23 @@ def estimated_cells(dictionary: Path) -> int:
     return sum(math.prod(map(int, block)) for block in blocks)
 
 
+def parts(mesh: Path, pieces: int) -> list[int]:
+    """Numbers whose product is a number of pieces, for the directions of a mesh: the longest part is divided first."""
+    axes = list(zip(*(map(float, point.split()) for point in re.findall(rb"\(([^()]+)\)", foam_list(mesh / "points")))))
+    lengths = [max(axis) - min(axis) for axis in axes]
+    factors, divisor = [], 2
+    while pieces > 1:
+        while pieces % divisor == 0:
+            factors.append(divisor)
+            pieces //= divisor
+        divisor += 1
+    result = [1, 1, 1]
+    for factor in reversed(factors):
+        axis = max(range(3), key=lambda i: lengths[i] / result[i])
+        result[axis] *= factor
+    return result
+
+
 class Tutorials:
     """A copy of the tutorials, and the tools that their scripts may use."""
 
@@ -376,15 +420,31 @@ class Tutorials:
                 commands.append(words if status == "0" else f"{words} [exit {status}]")
         return commands
 
-    def check(self, case: Path, region: str, seconds: float) -> str:
-        """Checks a mesh of a case and writes its fields; what checkMesh says at the end."""
-        log = case / ("log.checkMesh" + (f".{region}" if region else ""))
+    def decompose(self, case: Path, region: str, pieces: int, seconds: float) -> bool:
+        """Divides a mesh of a case, which has no fields yet."""
+        mesh = case / "constant" / region / "polyMesh"
+        text = HEAD.format(kind="dictionary", location="system", name="decomposeParDict")
+        text += DECOMPOSITION.format(pieces=pieces, parts=" ".join(map(str, parts(mesh, pieces))))
+        for folder in {case / "system", case / "system" / region}:
+            folder.mkdir(exist_ok=True)
+            (folder / "decomposeParDict").write_text(text)
         options = ["-region", region] if region else []
-        status = run([*CHECK, "-writeAllFields", *options], case, self.checker, seconds, log)
+        log = case / ("log.decomposePar" + (f".{region}" if region else ""))
+        return run(["decomposePar", "-constant", *options], case, self.checker, seconds, log) == 0
+
+    def check(self, case: Path, region: str, seconds: float, pieces: int = 1) -> str:
+        """Checks a mesh of a case, or its pieces, and writes its fields; what checkMesh says at the end."""
+        log = case / (("log.checkPieces" if pieces > 1 else "log.checkMesh") + (f".{region}" if region else ""))
+        options = ["-region", region] if region else []
+        environment, check = self.checker, CHECK
+        if pieces > 1:
+            environment = {**environment, **PARALLEL}
+            check = ["mpirun", "--oversubscribe", "-np", str(pieces), *CHECK, "-parallel"]
+        status = run([*check, "-writeAllFields", *options], case, environment, seconds, log)
         if status:
             log.rename(log.with_name(log.name + ".allFields"))
             fields = ["-writeFields", f"({' '.join(FIELDS)})"]
-            status = run([*CHECK, *fields, *options], case, self.checker, seconds, log)
+            status = run([*check, *fields, *options], case, environment, seconds, log)
         text = log.read_text(errors="replace")
         verdicts = re.findall(r"^(Mesh OK\.|Failed \d+ mesh checks\.)", text, flags=re.M)
         if status and (found := re.search(r"FOAM FATAL.*?\n(.*?)\n(?:\s*From|\n)", text, flags=re.S)):
@@ -451,7 +511,8 @@ class Results:
         self.done.add(row["tutorial"])
         print(f"{row['tutorial']} {row.get('region') or ''}: {row.get('cells', '')} {row['verdict']}", flush=True)
         self.file.write_text(json.dumps(self.rows, indent=1) + "\n")
-        columns = "tutorial region case cells seconds verdict same_as patches commands hash".split()
+        columns = "tutorial region case cells seconds verdict pieces verdict_of_pieces same_as patches commands hash"
+        columns = columns.split()
         with self.file.with_suffix(".csv").open("w", newline="") as output:
             writer = csv.DictWriter(output, columns)
             writer.writeheader()
@@ -484,6 +545,7 @@ class Results:
                 if not target.exists():
                     copy_case(case, target)
                 try:
+                    self.divide(tutorials, target, region, row)
                     start = time.monotonic()
                     verdict = tutorials.check(target, region, tutorials.arguments.seconds)
                     row["check_seconds"] = round(time.monotonic() - start, 1)
@@ -493,6 +555,16 @@ class Results:
                 self.add(**row, verdict=verdict)
                 tidy(target)
         return len(regions)
+
+    def divide(self, tutorials: Tutorials, case: Path, region: str, row: dict[str, Any]) -> None:
+        """Divides a mesh, and checks the pieces."""
+        pieces, seconds = tutorials.arguments.decompose, tutorials.arguments.seconds
+        if not 1 < pieces <= row["cells"]:
+            return
+        if tutorials.decompose(case, region, pieces, seconds):
+            row["pieces"], row["verdict_of_pieces"] = pieces, tutorials.check(case, region, seconds, pieces)
+        else:
+            row["verdict_of_pieces"] = "decomposePar failed"
 
 
 def copy_case(case: Path, target: Path) -> None:
@@ -563,13 +635,20 @@ def write_mesh(
     case: Path, points: Sequence[Point], mesh: tuple[list[Face], list[int], list[int]],
     boundary: Sequence[Patch] = (("walls", "wall", everywhere),),
 ) -> None:  # fmt: skip
-    """Writes a case with a mesh. Its outer faces go to the first patch that takes them."""
+    """Writes a case with a mesh. Its outer faces go to the first patch that takes them, those of a cyclicACMI patch
+    once more to a wall after it.
+    """
     faces, owners, neighbors = mesh
     outer: list[list[int]] = [[] for _ in boundary]
     for number in range(len(neighbors), len(faces)):
         corners = [points[corner] for corner in faces[number]]
         outer[next(i for i, patch in enumerate(boundary) if patch[2](corners))].append(number)
-    order = [*range(len(neighbors)), *itertools.chain(*outer)]
+    written: list[tuple[str, str, list[int]]] = []
+    for (name, kind, _), numbers in zip(boundary, outer, strict=True):
+        written.append((name, kind, numbers))
+        if kind == "cyclicACMI":
+            written.append((f"rest_of_{name}", "wall", numbers))
+    order = [*range(len(neighbors)), *itertools.chain(*(numbers for _, _, numbers in written))]
     folder = case / "constant/polyMesh"
     folder.mkdir(parents=True)
     (case / "system").mkdir()
@@ -581,12 +660,13 @@ def write_mesh(
     write_list(folder / "owner", "labelList", (str(owners[i]) for i in order))
     write_list(folder / "neighbour", "labelList", map(str, neighbors))
     entries, start = [], len(neighbors)
-    for (name, kind, _), numbers in zip(boundary, outer, strict=True):
+    for name, kind, numbers in written:
         extra = ""
         if kind.startswith("cyclic"):
             other = name[:-1] + {"0": "1", "1": "0"}[name[-1]]
-            extra = f"neighbourPatch {other}; transform translational; separationVector (0 0 0);"
-            extra = extra if kind == "cyclicAMI" else f"neighbourPatch {other};"
+            extra = f"neighbourPatch {other};"
+        if kind == "cyclicACMI":
+            extra += f" transform noOrdering; nonOverlapPatch rest_of_{name};"
         entries.append(f"{name} {{ type {kind}; nFaces {len(numbers)}; startFace {start}; {extra} }}")
         start += len(numbers)
     write_list(folder / "boundary", "polyBoundaryMesh", entries)
@@ -761,6 +841,26 @@ def synthetic(folder: Path) -> Iterator[tuple[str, str]]:
     strong = moved(points, 0.14, 5, inside)
     write_mesh(case("periodic_moved"), strong, ordered_faces(hexes(cells)), periodic)
     yield "periodic_moved", ""
+    # So far that centers of cells are beyond their faces on the periodic sides.
+    write_mesh(case("periodic_moved_far"), moved(points, 0.5, 8, inside), ordered_faces(hexes(cells)), periodic)
+    yield "periodic_moved_far", ""
+
+    # Two blocks that slide along each other, the second one finer, and 0.3 farther in y.
+    lengths: Point = (0.5, 1.0, 1.0)
+    left, right = grid((3, 3, 3), lengths), grid((4, 4, 4), lengths)
+    sliding = moved(left[0], 0.03, 6, lambda point: inside((2 * point[0], *point[1:])))
+    for x, y, z in moved(right[0], 0.02, 7, lambda point: inside((2 * point[0], *point[1:]))):
+        sliding.append((x + 0.5, y + 0.3, z))
+    shifted_cells = [[len(left[0]) + i for i in cell] for cell in right[1]]
+
+    def of_left(face: Sequence[Point]) -> bool:
+        """Takes the faces of the first block at the second one."""
+        return on_plane(0, 0.5)(face) and all(abs(3 * point[1] - round(3 * point[1])) < 1e-9 for point in face)
+
+    write_mesh(case("sliding"), sliding, ordered_faces(hexes([*left[1], *shifted_cells])),
+               [("slide0", "cyclicACMI", of_left), ("slide1", "cyclicACMI", on_plane(0, 0.5)),
+                ("walls", "wall", everywhere)])  # fmt: skip
+    yield "sliding", ""
 
     # Sizes: thin, jumping, tiny.
     thin = [(x, y, z * 1e-4) for x, y, z in points]
@@ -883,6 +983,7 @@ def main() -> int:
     parser.add_argument("--work", type=Path, required=True, help="folder for the copy of the tutorials")
     parser.add_argument("--cases", type=Path, required=True, help="folder for the results")
     parser.add_argument("--synthetic", action="store_true", help="make meshes with faults as well")
+    parser.add_argument("--decompose", type=int, default=1, metavar="N", help="also check each mesh in N pieces")
     parser.add_argument("--seconds", type=float, default=120, help="limit for a script, and for a check")
     parser.add_argument("--cells", type=int, default=400_000, help="largest mesh to check")
     parser.add_argument("--memory", type=int, default=6, help="limit for a program, in GiB")
@@ -906,7 +1007,7 @@ def main() -> int:
                 status = run(command.split(), folder / name, tutorials.checker, arguments.seconds, log)
                 commands.append(command if status == 0 else f"{command} [exit {status}]")
             results.keep(tutorials, f"synthetic/{name}", folder / name, commands, 0.0)
-    for name in arguments.tutorials or tutorials.cases():
+    for name in arguments.tutorials or (DECOMPOSED if arguments.decompose > 1 else tutorials.cases()):
         name = name.rstrip("/")
         if name in results.done:
             continue

@@ -87,6 +87,36 @@ PatchMotion motionOf(const FaceMesh& mesh, const FacePatch& patch, const double*
   return motion;
 }
 
+/// Gives each of two faces at one place, of a patch that is coupled in part and of the patch for
+/// the rest, half of the area. OpenFOAM gives each what overlaps, and what does not; the sum is the
+/// same, and so is all that is measured of cells.
+void shareAreas(const FaceMesh& mesh, std::vector<Vec3>& areas)
+{
+  const auto samePoints = [&mesh](Index a, Index b)
+  {
+    const auto begin = mesh.nodes.begin();
+    return mesh.size(a) == mesh.size(b) &&
+      std::is_permutation(
+        begin + mesh.offsets[a], begin + mesh.offsets[a + 1], begin + mesh.offsets[b]);
+  };
+  for (const FacePatch& patch : mesh.patches)
+  {
+    for (Index face = patch.first; patch.isPartly() && face < patch.first + patch.count; ++face)
+    {
+      const Index cell = mesh.owner[face];
+      for (Index i = mesh.cellOffsets[cell]; i < mesh.cellOffsets[cell + 1]; ++i)
+      {
+        const Index other = mesh.cellFaces[i];
+        if (other != face && !mesh.internal(other) && samePoints(face, other))
+        {
+          areas[face] = 0.5 * areas[face];
+          areas[other] = 0.5 * areas[other];
+        }
+      }
+    }
+  }
+}
+
 /// The motion of the patch of a coupled face.
 const PatchMotion& motionAt(const FaceMesh& mesh, const FaceGeometry& geometry, Index face)
 {
@@ -143,6 +173,7 @@ FaceGeometry faceGeometry(
       geometry.area[face] = shape.area;
       geometry.center[face] = shape.center;
     });
+  shareAreas(mesh, geometry.area);
   for (const FacePatch& patch : mesh.patches)
   {
     geometry.motions.push_back(patch.partner >= 0 ? motionOf(mesh, patch, points) : PatchMotion());

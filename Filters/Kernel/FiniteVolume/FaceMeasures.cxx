@@ -354,8 +354,9 @@ double FaceMeasures::boundarySkewness(Index face) const
 }
 
 //------------------------------------------------------------------------------
-/// Of the owner and of the cell across from the face, times its area.
-std::array<double, 2> FaceMeasures::distances(Index face) const
+/// Of the owner and of the cell across from the face, times its area; negative where the center of
+/// the cell is beyond the face.
+std::array<double, 2> FaceMeasures::signedDistances(Index face) const
 {
   if (!this->Mesh.hasTwoCells(face))
   {
@@ -363,8 +364,15 @@ std::array<double, 2> FaceMeasures::distances(Index face) const
   }
   const FaceGeometry& g = this->Geometry;
   const Vec3& own = g.cellCenter[this->Mesh.owner[face]];
-  return { std::abs(dot(g.area[face], g.center[face] - own)),
-    std::abs(dot(g.area[face], centerAcross(this->Mesh, g, face) - g.center[face])) };
+  return { dot(g.area[face], g.center[face] - own),
+    dot(g.area[face], centerAcross(this->Mesh, g, face) - g.center[face]) };
+}
+
+//------------------------------------------------------------------------------
+std::array<double, 2> FaceMeasures::distances(Index face) const
+{
+  const auto [own, other] = this->signedDistances(face);
+  return { std::abs(own), std::abs(other) };
 }
 
 //------------------------------------------------------------------------------
@@ -374,8 +382,10 @@ std::vector<double> FaceMeasures::ownerWeights() const
   parallelFor(this->Mesh.faces(), ChunkSize, this->Threads,
     [&](Index face)
     {
-      const auto [own, other] = this->distances(face);
-      weights[face] = own + other > 0 ? other / (own + other) : 1.0;
+      // As in OpenFOAM, distances have signs at coupled patches, and none at internal faces.
+      const bool inside = this->Mesh.internal(face) || this->Mesh.has(face, OnBorder);
+      const auto [own, other] = inside ? this->distances(face) : this->signedDistances(face);
+      weights[face] = own + other != 0 ? other / (own + other) : 1.0;
     });
   return weights;
 }

@@ -103,6 +103,7 @@ private:
   double boundarySkewness(Index face) const;
   double width(Index face, const Vec3& direction) const;
   std::array<double, 2> distances(Index face) const;
+  std::array<double, 2> signedDistances(Index face) const;
   double flatness(Index face) const;
   double concavity(Index face) const;
   double twist(Index face) const;

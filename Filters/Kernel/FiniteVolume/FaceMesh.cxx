@@ -63,7 +63,7 @@ public:
     , Listed(static_cast<Index>(cells.faceOffsets.size()) - 1)
     , Mate(this->Listed, -1)
     , Facet(this->Listed, -1)
-    , FacetUsed(facets.patch.size(), 0)
+    , ListedAt(facets.patch.size(), -1)
     , CellOf(this->Listed)
   {
     for (Index cell = 0; cell + 1 < static_cast<Index>(cells.cellOffsets.size()); ++cell)
@@ -78,14 +78,14 @@ public:
   }
 
   const std::vector<Index>& mates() const { return this->Mate; }
+  /// Of each listed face the first facet there, or -1.
   const std::vector<Index>& facets() const { return this->Facet; }
+  /// Of each facet the listed face there, or -1; one is enough of an internal face.
+  const std::vector<Index>& listed() const { return this->ListedAt; }
   const std::vector<Index>& cells() const { return this->CellOf; }
 
   /// The facets that are not faces of a cell.
-  Index strayFacets() const
-  {
-    return std::count(this->FacetUsed.begin(), this->FacetUsed.end(), 0);
-  }
+  Index strayFacets() const { return std::count(this->ListedAt.begin(), this->ListedAt.end(), -1); }
 
   /// Throws Error where three cells share a face.
   void check() const
@@ -188,7 +188,14 @@ private:
     }
     for (Index i = 0; i < facets; ++i)
     {
-      this->FacetUsed[same[listed + i] - this->Listed] = 1;
+      // Of a baffle, each cell has the facets that point out of it.
+      const Index facet = same[listed + i] - this->Listed;
+      const Index side = listed == 2 && facets > 1 && !this->pointsOut(same, i);
+      this->ListedAt[facet] = same[side];
+      if (listed <= 2 && this->Facet[same[side]] < 0 && (listed == 1 || facets > 1))
+      {
+        this->Facet[same[side]] = facet;
+      }
     }
     if (listed > 2)
     {
@@ -202,26 +209,23 @@ private:
       this->Mate[same[0]] = same[1];
       this->Mate[same[1]] = same[0];
     }
-    else if (listed == 1)
-    {
-      this->Facet[same[0]] = facets > 0 ? same[1] - this->Listed : -1;
-    }
-    else
-    {
-      // A baffle: each cell has the facet that points out of it.
-      const bool swapped = !sameSense(this->list(same[0]), this->list(same[2]));
-      this->Facet[same[0]] = same[swapped ? 3 : 2] - this->Listed;
-      this->Facet[same[1]] = same[swapped ? 2 : 3] - this->Listed;
-    }
+  }
+
+  /// Whether a facet of a baffle, whose two cells come first, is of the first cell. One of two is
+  /// of each cell, whatever their senses.
+  bool pointsOut(const std::vector<Index>& same, Index facet) const
+  {
+    const bool second = facet == 1 && same.size() == 4;
+    return sameSense(this->list(same[0]), this->list(same[second ? 2 : 2 + facet])) != second;
   }
 
   const ListedFaces& Cells;
   const ListedFacets& Facets;
   Index Listed;
-  std::vector<Index> Mate, Facet;       ///< per listed face
-  std::vector<unsigned char> FacetUsed; ///< per facet
-  std::vector<Index> CellOf;            ///< per listed face
-  std::vector<Index> Starts;            ///< of each point in Uses
+  std::vector<Index> Mate, Facet; ///< per listed face
+  std::vector<Index> ListedAt;    ///< per facet
+  std::vector<Index> CellOf;      ///< per listed face
+  std::vector<Index> Starts;      ///< of each point in Uses
   std::vector<Use> Uses;
 };
 
@@ -232,34 +236,40 @@ void append(FaceMesh& mesh, const NodeList& list, Index owner)
   mesh.owner.push_back(owner);
 }
 
-/// The listed faces that are of the boundary: those of each patch, in the order of the facets,
-/// those without a facet last.
-std::vector<std::vector<Index>> boundaryOf(
-  const FaceMatch& match, const ListedFacets& facets, std::size_t patches)
+/// A face of the boundary: a listed face, and a facet or -1.
+struct OuterFace
 {
-  std::vector<std::vector<Index>> lists(patches + 1);
-  std::vector<Index> listedAt(facets.patch.size(), -1);
+  Index listed, facet;
+};
+
+/// The faces of the boundary: those of each patch, in the order of the facets, those without a
+/// facet last. Two patches, one of which slides, may both have a facet at a face.
+std::vector<std::vector<OuterFace>> boundaryOf(
+  const FaceMatch& match, const ListedFacets& facets, const std::vector<FacePatch>& patches)
+{
+  std::vector<std::vector<OuterFace>> lists(patches.size() + 1);
   for (std::size_t i = 0; i < match.mates().size(); ++i)
   {
     const Index facet = match.facets()[i];
-    if (match.mates()[i] >= 0)
+    if (match.mates()[i] < 0 && (facet < 0 || facets.patch[facet] < 0))
+    {
+      lists.back().push_back({ static_cast<Index>(i), facet });
+    }
+  }
+  for (std::size_t i = 0; i < facets.patch.size(); ++i)
+  {
+    const auto facet = static_cast<Index>(i);
+    const Index listed = match.listed()[i];
+    if (listed < 0 || match.mates()[listed] >= 0 || facets.patch[i] < 0)
     {
       continue;
     }
-    if (facet >= 0 && facets.patch[facet] >= 0)
+    const Index first = match.facets()[listed];
+    const int patch = facets.patch[i], other = facets.patch[first];
+    if (first == facet ||
+      (other >= 0 && patch != other && patches[patch].isPartly() != patches[other].isPartly()))
     {
-      listedAt[facet] = static_cast<Index>(i);
-    }
-    else
-    {
-      lists.back().push_back(static_cast<Index>(i));
-    }
-  }
-  for (std::size_t facet = 0; facet < listedAt.size(); ++facet)
-  {
-    if (listedAt[facet] >= 0)
-    {
-      lists[facets.patch[facet]].push_back(listedAt[facet]);
+      lists[patch].push_back({ listed, facet });
     }
   }
   return lists;
@@ -341,7 +351,7 @@ FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& f
   }
   mesh.internalFaces = mesh.faces();
 
-  const auto lists = boundaryOf(match, facets, patches.size());
+  const auto lists = boundaryOf(match, facets, patches);
   if (!lists.back().empty())
   {
     patches.emplace_back();
@@ -352,11 +362,10 @@ FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& f
   {
     mesh.patches[p].first = mesh.faces();
     mesh.patches[p].count = static_cast<Index>(lists[p].size());
-    for (Index listed : lists[p])
+    for (const auto& [listed, facet] : lists[p])
     {
       // A facet begins with the point that corresponds to one of a coupled face.
       const NodeList ofCell = listOf(cells.faceOffsets, cells.nodes, listed);
-      const Index facet = match.facets()[listed];
       const NodeList given = facet >= 0 ? listOf(facets.offsets, facets.nodes, facet) : ofCell;
       append(mesh, sameSense(ofCell, given) ? given : ofCell, match.cells()[listed]);
       mesh.facet.push_back(facet);

@@ -41,6 +41,8 @@ struct FacePatch
       this->type.rfind("processor", 0) == 0 || this->type == "overset";
   }
   bool isWedge() const { return this->type == "wedge"; }
+  /// Whether its faces are coupled in part: another patch has the same faces, for the rest.
+  bool isPartly() const { return this->type == "cyclicACMI"; }
 };
 
 /// What a face is in a piece of a mesh, see joinPieces(). The values are bits.
@@ -140,7 +142,8 @@ struct ListedFacets
 
 /**
  * @brief Finds the faces of cells: two cells that list the same points share a face, unless two
- * facets are given there, which are then faces of the boundary (a baffle).
+ * facets are given there, which are then faces of the boundary (a baffle). Where one facet is of
+ * a patch that isPartly() and the other is not, both are faces of the boundary.
  *
  * The boundary has the given facets, patch by patch, in their order, each from its first point on
  * if it points out of its cell; faces without a facet are the

@@ -240,7 +240,7 @@ TAUTLINE_PART(testOverlappingPieces)
     FaceMesh mesh = faceMeshOf(data);
     joinPieces(group, { { &mesh, data.points.data() } });
   };
-  TAUTLINE_CHECK_THROWS(onRanks(3, work), "three or more cells");
+  TAUTLINE_CHECK_THROWS(onRanks(3, work), wording("remove-duplicate-and-overlapping-cells"));
   // Two copies of a cell are neighbors across each face.
   onRanks(2, work);
 }
