@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "PolyhedralMesh.h"
 
+#include "Blocks.h"
 #include "tautline/Core/Interruption.h"
 
 #include "vtkCellArray.h"
@@ -14,6 +15,7 @@
 #include "vtkPointSet.h"
 #include "vtkPoints.h"
 #include "vtkSignedCharArray.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
@@ -141,7 +143,14 @@ ImproveFacesResult PolyhedralMesh::improve(
   block.input = this->Solid;
   block.selected = this->Selected;
   MovableMesh movable(this->Solid, this->Threads, false);
-  const BoundarySetup setup(boundary, block, movable);
+  BoundaryProperties properties = boundary;
+  if (properties.motion == BoundaryMotion::Fixed && !properties.freeInvalid)
+  {
+    // The sides of one layer are no boundary of it.
+    properties.motion = BoundaryMotion::Free;
+    options.patchesStay = true;
+  }
+  const BoundarySetup setup(properties, block, movable);
   const Mesh& start = setup.start();
   options.facts = this->Faces.facts();
   options.threads = this->Threads;
@@ -153,7 +162,8 @@ ImproveFacesResult PolyhedralMesh::improve(
 }
 
 //------------------------------------------------------------------------------
-void PolyhedralMesh::move(vtkPointSet* output, const ImproveFacesResult& result) const
+std::vector<signed char> PolyhedralMesh::move(
+  vtkPointSet* output, const ImproveFacesResult& result) const
 {
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
@@ -164,23 +174,25 @@ void PolyhedralMesh::move(vtkPointSet* output, const ImproveFacesResult& result)
   }
   addDisplacement(output, this->Adapter.inputView().points, result.points);
   output->SetPoints(points);
-  this->addMeasures(output, this->Faces.points(), "_before");
-  const std::vector<signed char> found = this->addMeasures(output, result.points.data(), "");
+  const std::vector<signed char> found = this->validityAt(result.points.data());
   vtkNew<vtkSignedCharArray> validity;
   validity->SetName("Validity");
   validity->SetNumberOfValues(output->GetNumberOfCells());
-  validity->FillValue(NotMeasured);
-  for (std::size_t i = 0; i < found.size(); ++i)
-  {
-    validity->SetValue(this->Faces.cells()[i], found[i]);
-  }
+  std::copy(found.begin(), found.end(), validity->GetPointer(0));
   output->GetCellData()->AddArray(validity);
+  return found;
+}
+
+//------------------------------------------------------------------------------
+void PolyhedralMesh::addMeasures(vtkPointSet* output, const ImproveFacesResult& result) const
+{
+  this->addMeasures(output, this->Faces.points(), "_before");
+  this->addMeasures(output, result.points.data(), "");
   output->GetCellData()->SetActiveScalars(metricInfo(Metric::NonOrthogonality).name);
 }
 
 //------------------------------------------------------------------------------
-/// @return the validity of the cells of the faces
-std::vector<signed char> PolyhedralMesh::addMeasures(
+void PolyhedralMesh::addMeasures(
   vtkPointSet* output, const double* points, const char* ending) const
 {
   const FaceMeasures measures(this->Faces.mesh(), points, FaceConvention::Esi, this->Threads);
@@ -197,7 +209,36 @@ std::vector<signed char> PolyhedralMesh::addMeasures(
     }
     output->GetCellData()->AddArray(array);
   }
-  return measures.validity();
+}
+
+//------------------------------------------------------------------------------
+std::vector<signed char> PolyhedralMesh::validityAt(const double* points) const
+{
+  const FaceMeasures measures(this->Faces.mesh(), points, FaceConvention::Esi, this->Threads);
+  const std::vector<signed char> found = measures.validity();
+  std::vector<signed char> all(this->Given.input->GetNumberOfCells(), NotMeasured);
+  for (std::size_t i = 0; i < found.size(); ++i)
+  {
+    all[this->Faces.cells()[i]] = found[i];
+  }
+  return all;
+}
+
+//------------------------------------------------------------------------------
+bool hasPolyhedra(vtkDataObject* input)
+{
+  bool found = false;
+  forEachLeaf(input,
+    [&found](unsigned int, vtkDataSet* data)
+    {
+      auto* grid = vtkUnstructuredGrid::SafeDownCast(data);
+      const vtkUnsignedCharArray* types = grid ? grid->GetCellTypesArray() : nullptr;
+      for (vtkIdType cell = 0; types && !found && cell < types->GetNumberOfValues(); ++cell)
+      {
+        found = types->GetValue(cell) == VTK_POLYHEDRON;
+      }
+    });
+  return found;
 }
 
 //------------------------------------------------------------------------------

@@ -36,19 +36,22 @@ public:
   /// Moves the points.
   ImproveFacesResult improve(const BoundaryProperties& boundary, ImproveFacesOptions options);
 
-  /// Gives the output the points of a result, in double precision, the array `Displacement`, and
-  /// the cell arrays `Validity` and, with and without the ending `_before`, non_orthogonality and
-  /// face_skewness.
-  void move(vtkPointSet* output, const ImproveFacesResult& result) const;
+  /// Gives the output the points of a result, in double precision, the array `Displacement` and the
+  /// cell array `Validity`, which it returns.
+  std::vector<signed char> move(vtkPointSet* output, const ImproveFacesResult& result) const;
+  /// The cell arrays non_orthogonality and face_skewness, with and without the ending `_before`.
+  void addMeasures(vtkPointSet* output, const ImproveFacesResult& result) const;
 
+  /// The Validity of each cell of the data set at the input's points.
+  std::vector<signed char> validity() const { return this->validityAt(this->Faces.points()); }
   const FaceMesh& faces() const { return this->Faces.mesh(); }
   /// What the boundary has for features, and remarks, as sentences.
   const std::string& notice() const { return this->Notice; }
 
 private:
   void makeSolid();
-  std::vector<signed char> addMeasures(
-    vtkPointSet* output, const double* points, const char* ending) const;
+  std::vector<signed char> validityAt(const double* points) const;
+  void addMeasures(vtkPointSet* output, const double* points, const char* ending) const;
 
   const InputBlock& Given;
   int Threads;
@@ -57,6 +60,9 @@ private:
   vtkSmartPointer<vtkUnstructuredGrid> Solid, Selected;
   std::string Notice;
 };
+
+/// Whether a data object has polyhedra.
+TAUTLINECORE_EXPORT bool hasPolyhedra(vtkDataObject* input);
 
 /// What a result is, in sentences for the user.
 TAUTLINECORE_EXPORT std::string summarize(const ImproveFacesResult& result);

@@ -660,6 +660,7 @@ void vtkMeshOptimizer::ImproveFaces(const tautline::OptimizerSettings& settings,
   };
   const ImproveFacesResult result = mesh.improve(settings.boundary, options);
   mesh.move(vtkPointSet::SafeDownCast(block.output), result);
+  mesh.addMeasures(vtkPointSet::SafeDownCast(block.output), result);
   run.result.reason = result.reason;
   run.result.iterations = run.iterations = result.iterations;
   run.result.freeVertices = result.freePoints;

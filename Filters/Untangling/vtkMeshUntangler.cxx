@@ -7,6 +7,7 @@
 #include "GatheredExecution.h"
 #include "IterationHistory.h"
 #include "MovableMesh.h"
+#include "PolyhedralMesh.h"
 #include "ProgressStep.h"
 #include "Processes.h"
 #include "tautline/Curved/UntangleCurved.h"
@@ -183,8 +184,9 @@ int vtkMeshUntangler::RequestData(
       this->ForEachBlock(inputVector, outputVector, nullptr, SelectionPort, moves,
         [&](const tautline::InputBlock& block)
         {
-          tautline::hasCurvedCells(block.input) ? this->UntangleCurved(block, geometry, history)
-                                                : this->Untangle(block, geometry, history);
+          tautline::hasPolyhedra(block.input) ? this->UntanglePolyhedra(block, geometry, history)
+            : tautline::hasCurvedCells(block.input) ? this->UntangleCurved(block, geometry, history)
+                                                    : this->Untangle(block, geometry, history);
         });
       if (this->NotValid > 0)
       {
@@ -277,6 +279,67 @@ void vtkMeshUntangler::Untangle(
       ? "The whole mesh did not fit into the memory of the first process, where the elements that "
         "are left would have been untangled: take fewer cells, or more memory."
       : "");
+}
+
+//------------------------------------------------------------------------------
+/// A mesh with polyhedra: all its cells, as finite volumes.
+void vtkMeshUntangler::UntanglePolyhedra(
+  const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history)
+{
+  using namespace tautline;
+  if (this->ReproducibleOrder)
+  {
+    throw Error("Polyhedra have no reproducible order of several processes: switch Reproducible "
+                "Order off.");
+  }
+  PolyhedralMesh mesh(block, this->Threads);
+  BoundaryProperties properties = this->GetBoundaryProperties(geometry);
+  if (this->Boundary == ON_SURFACE && !geometry)
+  {
+    properties.motion = BoundaryMotion::Fixed;
+  }
+  ImproveFacesOptions options;
+  options.untangleOnly = true;
+  options.maximumSeconds = this->GetRemainingSeconds();
+  options.proceed = [&](int round, double fraction)
+  {
+    this->ShowIteration(FilterName, round, {});
+    return this->ProceedInBlock(block.number, fraction);
+  };
+  const std::vector<signed char> before = mesh.validity();
+  const ImproveFacesResult found = mesh.improve(properties, options);
+  const std::vector<signed char> after = mesh.move(vtkPointSet::SafeDownCast(block.output), found);
+  UntangleResult result;
+  std::vector<signed char> obstacles(after.size(), static_cast<signed char>(Obstacle::None));
+  std::vector<Remaining> remaining;
+  const auto isInvalid = [](signed char value) { return value != Valid && value != NotMeasured; };
+  for (std::size_t cell = 0; cell < after.size(); ++cell)
+  {
+    result.invertedBefore += isInvalid(before[cell]);
+    if (isInvalid(after[cell]))
+    {
+      result.newlyInvalid += !isInvalid(before[cell]);
+      obstacles[cell] = static_cast<signed char>(Obstacle::Unknown);
+      const double* box = block.output->GetCell(static_cast<vtkIdType>(cell))->GetBounds();
+      remaining.push_back({ "Element " + std::to_string(cell), Obstacle::Unknown,
+        { (box[0] + box[1]) / 2, (box[2] + box[3]) / 2, (box[4] + box[5]) / 2 } });
+    }
+  }
+  addFlags(block.output, "Obstacle", obstacles);
+  block.output->GetPointData()->SetActiveScalars(nullptr);
+  block.output->GetCellData()->SetActiveScalars("Validity");
+  result.history.resize(2);
+  result.history[0].inverted = result.invertedBefore;
+  result.history[1].inverted = static_cast<Index>(remaining.size());
+  result.history[1].iteration = found.rounds;
+  addHistory(history, result.history, {}, block.name);
+  this->Reason = describe(found.reason);
+  this->InvertedBefore += result.invertedBefore;
+  this->InvertedAfter += static_cast<vtkIdType>(remaining.size());
+  this->NotValid += static_cast<vtkIdType>(remaining.size());
+  this->AddToSummary(
+    (block.name.empty() ? "" : "In " + block.name + ": ") + verdict(result, remaining));
+  this->AddToSummary(mesh.notice());
 }
 
 //------------------------------------------------------------------------------
@@ -424,9 +487,9 @@ bool vtkMeshUntangler::TakesPieces(vtkInformationVector** inputs)
   }
   const bool features =
     onAny(tautline::choosesFeatures(properties, vtkDataSet::SafeDownCast(input)));
-  const std::string what = onAny(tautline::hasCurvedCells(input))
-    ? "curved cells"
-    : needOfUntangling(properties, features).what;
+  const std::string what = onAny(tautline::hasPolyhedra(input)) ? "polyhedra"
+    : onAny(tautline::hasCurvedCells(input))                    ? "curved cells"
+                                             : needOfUntangling(properties, features).what;
   return this->TakePiece(input, what.empty() ? "" : what + " need the whole mesh");
 }
 

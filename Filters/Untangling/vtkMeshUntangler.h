@@ -163,6 +163,8 @@ private:
 
   void Untangle(
     const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history);
+  void UntanglePolyhedra(
+    const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history);
   void UntangleCurved(
     const tautline::InputBlock& block, vtkDataObject* geometry, tautline::TableRows& history);
   void Show(const tautline::InputBlock& block, const tautline::MovableMesh& mesh,

@@ -6,6 +6,7 @@
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Optimization/Minimize.h"
 #include "tautline/Sliding/ConstrainedPoints.h"
+#include "tautline/Untangling/Untangle.h"
 
 #include <algorithm>
 #include <limits>
@@ -16,12 +17,22 @@ namespace
 {
 /// Points so many cells away from a wanting face move, at first and at most.
 constexpr int FirstLayers = 2, MostLayers = 8;
+/// Points that are one above the other are so up to this part of the extent of the mesh.
+constexpr double LayerTolerance = 1e-9;
+/// The same, of those that are untangled first.
+constexpr int UntangledLayers = 3;
 /// Rounds without a better result before the search ends.
 constexpr int MostFailures = 4;
 /// After a round without one, targets are closer to the ideal by this factor.
 constexpr double Tightening = 0.9;
 /// Of the displacement of a round: tried in turn.
 constexpr std::array<double, 4> Fractions = { 1.0, 0.5, 0.25, 0.1 };
+/// Near faces that would be worse, points go this part of the way, then its square, then nowhere.
+constexpr double Backtracking = 0.3;
+/// Times that faces may be found worse before a round is given up.
+constexpr int MostBacktracks = 8;
+/// The energy is at least 0: the first step is to promise no more than this part of it.
+constexpr double FirstDecrease = 0.1;
 /// Delta of the energy of inverted cells, over the smallest V / V0, and at least.
 constexpr double DeltaPart = 0.5, LeastDelta = 1e-3;
 /// While cells are inverted, the energy is one of volumes; angles keep it regular.
@@ -51,8 +62,8 @@ Want wantOf(const FaceMesh& mesh, const FaceMeasures& measures, const ImproveFac
   constexpr double ofInverted = 1;
   for (Index face = 0; face < mesh.faces(); ++face)
   {
-    const double angle = angles.faces[face] / options.angle - 1;
-    const double skew = skews.faces[face] / options.skewness - 1;
+    const double angle = options.untangleOnly ? 0 : angles.faces[face] / options.angle - 1;
+    const double skew = options.untangleOnly ? 0 : skews.faces[face] / options.skewness - 1;
     const bool inverted = !(tets.faces[face] > 0 && fans.faces[face] > 0);
     const double excess =
       std::max(angle, 0.0) + std::max(skew, 0.0) + (inverted ? ofInverted : 0.0);
@@ -163,19 +174,38 @@ public:
     return value;
   }
 
-  /// The inverse of a Hessian of size 1 over the square of the lengths.
+  /// The inverse of a Hessian of a size over the square of the lengths.
   bool precondition(const double* r, double* z) override
   {
     const std::vector<Index>& free = this->Energy.freePoints();
     for (std::size_t i = 0; i < free.size(); ++i)
     {
-      const double square = this->Lengths[free[i]] * this->Lengths[free[i]];
+      const double square = this->Scale * this->Lengths[free[i]] * this->Lengths[free[i]];
       for (int c = 0; c < 3; ++c)
       {
         z[3 * i + c] = square * r[3 * i + c];
       }
     }
     return true;
+  }
+
+  /// Chooses the size of that Hessian, 1 or more, so that the first step promises a part of the
+  /// energy. High powers of faces far beyond their targets have larger Hessians.
+  void scaleAt(const std::vector<double>& x)
+  {
+    std::vector<double> gradient(x.size()), step(x.size());
+    const double value = this->valueAndGradient(x.data(), gradient.data());
+    this->Scale = 1;
+    this->precondition(gradient.data(), step.data());
+    double promised = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+    {
+      promised += gradient[i] * step[i];
+    }
+    if (std::isfinite(value) && promised > FirstDecrease * value)
+    {
+      this->Scale = FirstDecrease * value / promised;
+    }
   }
 
 private:
@@ -191,8 +221,63 @@ private:
   const std::vector<Vec3>& Normals;
   const std::vector<double>& Lengths;
   int Axis;
+  double Scale = 1;
   std::vector<Index> MatePlaces; ///< per free point that of its mate among them; or empty
   std::vector<double>& Points;
+};
+
+/// Elements that stand for a part of a mesh, to be untangled.
+class PartToUntangle
+{
+public:
+  /// @return the number of the point
+  Index add(const Vec3& place, bool fixed)
+  {
+    this->Places.insert(this->Places.end(), place.begin(), place.end());
+    this->Fixed.push_back(fixed);
+    return static_cast<Index>(this->Fixed.size()) - 1;
+  }
+  void addCell(CellType type, const std::vector<Index>& points)
+  {
+    this->Types.push_back(static_cast<unsigned char>(type));
+    this->Connectivity.insert(this->Connectivity.end(), points.begin(), points.end());
+    this->Offsets.push_back(static_cast<Index>(this->Connectivity.size()));
+  }
+
+  /// The places of the points afterward. @param options but for the constraints
+  std::vector<double> untangle(UntangleOptions options) const
+  {
+    MeshView view;
+    view.numberOfPoints = static_cast<Index>(this->Fixed.size());
+    view.points = this->Places.data();
+    view.numberOfCells = static_cast<Index>(this->Types.size());
+    view.cellTypes = this->Types.data();
+    view.offsets = this->Offsets.data();
+    view.connectivity = this->Connectivity.data();
+    options.fixed = this->Fixed.data();
+    return tautline::untangle(Mesh(view), options).points;
+  }
+
+  /// Points that are of the mesh: number here, and there.
+  std::vector<std::pair<Index, Index>> original;
+
+private:
+  std::vector<double> Places;
+  std::vector<unsigned char> Fixed, Types;
+  std::vector<Index> Offsets = { 0 }, Connectivity;
+};
+
+Vec3 placeOf(const std::vector<double>& points, Index point)
+{
+  return { points[3 * point], points[3 * point + 1], points[3 * point + 2] };
+}
+
+/// Places of the points, and what was found there.
+struct Placement
+{
+  std::vector<double> points;
+  Want want;
+  MeshCheckReport report;
 };
 
 class Improver
@@ -218,11 +303,24 @@ private:
   void findMates();
   void findMovable();
   void findLengths();
+  std::vector<char> cellsNear(const std::vector<Index>& faces, int layers) const;
   std::vector<char> near(const std::vector<Index>& faces, int layers) const;
   std::vector<double> round(const std::vector<double>& from, const Want& want, int layers,
     double tightness, ImproveFacesResult& result);
-  bool hold(const MeshCheckReport& now, const MeshCheckReport& before);
+  Placement place(std::vector<double> points) const;
+  std::vector<double> between(const std::vector<double>& from, const std::vector<double>& to,
+    const std::vector<double>& fractions) const;
+  bool findBetter(Placement& at, const std::vector<double>& to) const;
+  bool findNoWorse(
+    Placement& at, const std::vector<double>& to, const MeshCheckReport& before) const;
+  bool markWorse(
+    const MeshCheckReport& now, const MeshCheckReport& before, std::vector<char>& points) const;
   void placeOnParts(const std::vector<double>& from, std::vector<double>& points) const;
+  void matchMates(std::vector<double>& points) const;
+  std::vector<double> untangled(const Want& want) const;
+  void smoothUntangled(Placement& at, const Want& tangled, ImproveFacesResult& result);
+  PartToUntangle solidPart(const std::vector<char>& cells) const;
+  PartToUntangle layerPart() const;
 
   const FaceMesh& Mesh;
   const ImproveFacesOptions& Options;
@@ -260,7 +358,8 @@ void Improver::findMovable()
     {
       continue; // the sides of the layer, whose points move in their planes
     }
-    const bool stays = patch.isEmpty() || patch.isWedge() || patch.isCoupled();
+    const bool stays =
+      patch.isEmpty() || patch.isWedge() || patch.isCoupled() || this->Options.patchesStay;
     for (Index i = this->Mesh.offsets[patch.first];
          i < this->Mesh.offsets[patch.first + patch.count]; ++i)
     {
@@ -314,6 +413,7 @@ void Improver::findMates()
       }
     }
   }
+  const double slack = LayerTolerance * norm(measures.extent().high - measures.extent().low);
   std::vector<Index> mates(this->Mesh.points, -1);
   for (Index face = 0; face < this->Mesh.faces(); ++face)
   {
@@ -322,8 +422,8 @@ void Improver::findMates()
     {
       const Index a = this->Mesh.nodes[first + k], b = this->Mesh.nodes[first + (k + 1) % size];
       const double *p = &this->Start[3 * a], *q = &this->Start[3 * b];
-      const bool across = p[axis] != q[axis] && p[(axis + 1) % 3] == q[(axis + 1) % 3] &&
-        p[(axis + 2) % 3] == q[(axis + 2) % 3];
+      const auto same = [&](int c) { return std::abs(p[c] - q[c]) <= slack; };
+      const bool across = !same(axis) && same((axis + 1) % 3) && same((axis + 2) % 3);
       if (!onSide[a] || !onSide[b] ||
         (across && ((mates[a] >= 0 && mates[a] != b) || (mates[b] >= 0 && mates[b] != a))))
       {
@@ -369,8 +469,8 @@ void Improver::findLengths()
 }
 
 //------------------------------------------------------------------------------
-/// The movable points of cells that are so many cells away from the faces.
-std::vector<char> Improver::near(const std::vector<Index>& faces, int layers) const
+/// The cells that are so many cells away from the faces.
+std::vector<char> Improver::cellsNear(const std::vector<Index>& faces, int layers) const
 {
   std::vector<char> points(this->Mesh.points, 0), cells(this->Mesh.cells, 0);
   const auto addPoints = [&](Index face)
@@ -383,7 +483,6 @@ std::vector<char> Improver::near(const std::vector<Index>& faces, int layers) co
   std::for_each(faces.begin(), faces.end(), addPoints);
   for (int layer = 0; layer < layers; ++layer)
   {
-    std::fill(cells.begin(), cells.end(), 0);
     for (Index face = 0; face < this->Mesh.faces(); ++face)
     {
       const bool reached = std::any_of(this->Mesh.nodes.begin() + this->Mesh.offsets[face],
@@ -404,6 +503,24 @@ std::vector<char> Improver::near(const std::vector<Index>& faces, int layers) co
       }
     }
   }
+  return cells;
+}
+
+//------------------------------------------------------------------------------
+/// The movable points of these cells.
+std::vector<char> Improver::near(const std::vector<Index>& faces, int layers) const
+{
+  const std::vector<char> cells = this->cellsNear(faces, layers);
+  std::vector<char> points(this->Mesh.points, 0);
+  for (Index face = 0; face < this->Mesh.faces(); ++face)
+  {
+    const bool reached = cells[this->Mesh.owner[face]] ||
+      (this->Mesh.internal(face) && cells[this->Mesh.neighbor[face]]);
+    for (Index i = this->Mesh.offsets[face]; reached && i < this->Mesh.offsets[face + 1]; ++i)
+    {
+      points[this->Mesh.nodes[i]] = 1;
+    }
+  }
   for (Index point = 0; point < this->Mesh.points; ++point)
   {
     points[point] = points[point] && this->Movable[point];
@@ -422,24 +539,26 @@ std::vector<char> Improver::near(const std::vector<Index>& faces, int layers) co
 }
 
 //------------------------------------------------------------------------------
-/// Fixes the points of faces and cells that fail a check that they did not fail before. @return
-/// whether any could move
-bool Improver::hold(const MeshCheckReport& now, const MeshCheckReport& before)
+/// Flags the points of faces and cells that fail a check that they did not fail before; false if
+/// there are none.
+bool Improver::markWorse(
+  const MeshCheckReport& now, const MeshCheckReport& before, std::vector<char>& points) const
 {
+  std::fill(points.begin(), points.end(), 0);
   bool any = false;
-  const auto holdFace = [&](Index face)
+  const auto markFace = [&](Index face)
   {
+    any = true;
     for (Index i = this->Mesh.offsets[face]; i < this->Mesh.offsets[face + 1]; ++i)
     {
-      any |= this->Movable[this->Mesh.nodes[i]] != 0;
-      this->Movable[this->Mesh.nodes[i]] = 0;
+      points[this->Mesh.nodes[i]] = 1;
     }
   };
   for (Index face = 0; face < this->Mesh.faces(); ++face)
   {
     if (now.faces[face] & ~before.faces[face])
     {
-      holdFace(face);
+      markFace(face);
     }
   }
   for (Index cell = 0; cell < this->Mesh.cells; ++cell)
@@ -447,13 +566,13 @@ bool Improver::hold(const MeshCheckReport& now, const MeshCheckReport& before)
     for (Index i = this->Mesh.cellOffsets[cell];
          (now.cells[cell] & ~before.cells[cell]) != 0 && i < this->Mesh.cellOffsets[cell + 1]; ++i)
     {
-      holdFace(this->Mesh.cellFaces[i]);
+      markFace(this->Mesh.cellFaces[i]);
     }
   }
   for (Index point = 0; !this->Mates.empty() && point < this->Mesh.points; ++point)
   {
     const Index mate = this->Mates[point];
-    this->Movable[point] = this->Movable[point] && mate >= 0 && this->Movable[mate];
+    points[point] = points[point] || (mate >= 0 && points[mate]);
   }
   return any;
 }
@@ -519,6 +638,7 @@ std::vector<double> Improver::round(const std::vector<double>& from, const Want&
     std::copy_n(
       from.begin() + 3 * energy.freePoints()[i], 3, x.begin() + static_cast<std::ptrdiff_t>(3 * i));
   }
+  function.scaleAt(x);
   MinimizeOptions minimizeOptions;
   minimizeOptions.method = Optimizer::LimitedMemoryBFGS;
   minimizeOptions.maximumIterations = this->Options.iterations;
@@ -533,16 +653,275 @@ std::vector<double> Improver::round(const std::vector<double>& from, const Want&
       points.begin() + 3 * energy.freePoints()[i]);
   }
   this->placeOnParts(from, points);
-  // Not even rounding separates the two sides of a layer.
+  this->matchMates(points);
+  return points;
+}
+
+//------------------------------------------------------------------------------
+/// Not even rounding separates the two sides of a layer where they have moved.
+void Improver::matchMates(std::vector<double>& points) const
+{
+  const auto moved = [&](Index point)
+  {
+    const auto at = points.begin() + 3 * point;
+    return !std::equal(at, at + 3, this->Start.begin() + 3 * point);
+  };
   for (Index point = 0; !this->Mates.empty() && point < this->Mesh.points; ++point)
   {
-    for (int c = 0; c < 3 && this->Mates[point] > point; ++c)
+    const Index mate = this->Mates[point];
+    const bool both = mate > point && (moved(point) || moved(mate));
+    for (int c = 0; both && c < 3; ++c)
     {
-      double& of = points[3 * this->Mates[point] + c];
+      double& of = points[3 * mate + c];
       of = c == this->Axis ? of : points[3 * point + c];
     }
   }
+}
+
+//------------------------------------------------------------------------------
+Placement Improver::place(std::vector<double> points) const
+{
+  Placement placement;
+  placement.points = std::move(points);
+  const double* at = placement.points.data();
+  const FaceMeasures measures(this->Mesh, at, this->Options.convention, this->Options.threads);
+  placement.want = wantOf(this->Mesh, measures, this->Options);
+  placement.report = checkMesh(measures, at, this->Options.facts);
+  return placement;
+}
+
+//------------------------------------------------------------------------------
+/// Points a fraction of the way from some places to others.
+std::vector<double> Improver::between(const std::vector<double>& from,
+  const std::vector<double>& to, const std::vector<double>& fractions) const
+{
+  std::vector<double> points = from;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    const double fraction = fractions[i / 3];
+    points[i] = fraction == 1.0 ? to[i] : from[i] + fraction * (to[i] - from[i]);
+  }
+  this->placeOnParts(from, points);
   return points;
+}
+
+//------------------------------------------------------------------------------
+/// Goes as far to other places as is better, whatever the checks say; false if nowhere.
+bool Improver::findBetter(Placement& at, const std::vector<double>& to) const
+{
+  for (const double fraction : Fractions)
+  {
+    Placement tried =
+      this->place(this->between(at.points, to, std::vector<double>(this->Mesh.points, fraction)));
+    if (isBetter(tried.want, at.want))
+    {
+      at = std::move(tried);
+      return true;
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+/// The same, less far or not at all near faces that would be worse than before.
+bool Improver::findNoWorse(
+  Placement& at, const std::vector<double>& to, const MeshCheckReport& before) const
+{
+  std::vector<double> fractions(this->Mesh.points, 1.0);
+  std::vector<char> worse(this->Mesh.points, 0);
+  for (int attempt = 0; attempt < MostBacktracks; ++attempt)
+  {
+    Placement tried = this->place(this->between(at.points, to, fractions));
+    if (isNoWorse(tried.report, before))
+    {
+      const bool better = isBetter(tried.want, at.want);
+      if (better)
+      {
+        at = std::move(tried);
+      }
+      return better;
+    }
+    if (!this->markWorse(tried.report, before, worse))
+    {
+      std::fill(worse.begin(), worse.end(), 1);
+    }
+    for (std::size_t point = 0; point < worse.size(); ++point)
+    {
+      const double less = fractions[point] < Backtracking ? 0.0 : Backtracking * fractions[point];
+      fractions[point] = worse[point] ? less : fractions[point];
+    }
+  }
+  return false;
+}
+
+//------------------------------------------------------------------------------
+/// The cells as tetrahedra of their centers and fans of their faces. @param cells one flag per cell
+PartToUntangle Improver::solidPart(const std::vector<char>& cells) const
+{
+  PartToUntangle part;
+  // A point beside other cells stays.
+  std::vector<char> stays(this->Mesh.points, 0);
+  std::vector<Index> local(this->Mesh.points, -1);
+  const auto has = [&](Index cell) { return cells[cell] != 0; };
+  const auto forEachSide = [&](Index face, const auto& visit)
+  {
+    visit(this->Mesh.owner[face], false);
+    if (this->Mesh.internal(face))
+    {
+      visit(this->Mesh.neighbor[face], true);
+    }
+  };
+  for (Index face = 0; face < this->Mesh.faces(); ++face)
+  {
+    forEachSide(face,
+      [&](Index cell, bool)
+      {
+        for (Index i = this->Mesh.offsets[face]; i < this->Mesh.offsets[face + 1]; ++i)
+        {
+          stays[this->Mesh.nodes[i]] |= !has(cell);
+        }
+      });
+  }
+  const auto localOf = [&](Index point)
+  {
+    if (local[point] < 0)
+    {
+      // What slides follows in rounds.
+      const bool moves =
+        this->Movable[point] && !stays[point] && this->Constrained.freedom(point) == Freedom::Space;
+      local[point] = part.add(placeOf(this->Start, point), !moves);
+      part.original.emplace_back(local[point], point);
+    }
+    return local[point];
+  };
+  std::vector<Index> centers(this->Mesh.cells, -1);
+  const FaceGeometry geometry =
+    faceGeometry(this->Mesh, this->Start.data(), this->Options.convention, this->Options.threads);
+  for (Index face = 0; face < this->Mesh.faces(); ++face)
+  {
+    const Index* nodes = this->Mesh.nodes.data() + this->Mesh.offsets[face];
+    const Index size = this->Mesh.size(face);
+    forEachSide(face,
+      [&](Index cell, bool beyond)
+      {
+        for (Index i = 1; has(cell) && i + 1 < size; ++i)
+        {
+          const Index a = localOf(nodes[0]), b = localOf(nodes[i]), c = localOf(nodes[i + 1]);
+          if (centers[cell] < 0)
+          {
+            centers[cell] = part.add(geometry.cellCenter[cell], false);
+          }
+          part.addCell(CellType::Tetrahedron, { a, beyond ? b : c, beyond ? c : b, centers[cell] });
+        }
+      });
+  }
+  return part;
+}
+
+//------------------------------------------------------------------------------
+/// One layer as its polygons in the plane; those of more than four corners are divided into
+/// triangles about a point of their own.
+PartToUntangle Improver::layerPart() const
+{
+  PartToUntangle part;
+  const auto inPlane = [this](const Vec3& v) {
+    return Vec3{ v[(this->Axis + 1) % 3], v[(this->Axis + 2) % 3], 0 };
+  };
+  const auto isLow = [this](Index point)
+  {
+    const Index mate = this->Mates[point];
+    return mate >= 0 && this->Start[3 * point + this->Axis] < this->Start[3 * mate + this->Axis];
+  };
+  std::vector<Index> local(this->Mesh.points, -1);
+  const auto localOf = [&](Index point)
+  {
+    if (local[point] < 0)
+    {
+      const bool moves = this->Movable[point] && this->Constrained.freedom(point) != Freedom::Line;
+      local[point] = part.add(inPlane(placeOf(this->Start, point)), !moves);
+      part.original.emplace_back(local[point], point);
+    }
+    return local[point];
+  };
+  for (const FacePatch& patch : this->Mesh.patches)
+  {
+    for (Index face = patch.first; patch.isEmpty() && face < patch.first + patch.count; ++face)
+    {
+      const Index* nodes = this->Mesh.nodes.data() + this->Mesh.offsets[face];
+      const Index size = this->Mesh.size(face);
+      if (!std::all_of(nodes, nodes + size, isLow))
+      {
+        continue;
+      }
+      // Seen from inside, as the normal points out of the low side.
+      std::vector<Index> polygon(size);
+      Vec3 center = { 0, 0, 0 };
+      for (Index k = 0; k < size; ++k)
+      {
+        polygon[size - 1 - k] = localOf(nodes[k]);
+        center += (1.0 / static_cast<double>(size)) * inPlane(placeOf(this->Start, nodes[k]));
+      }
+      if (size <= 4)
+      {
+        part.addCell(size == 3 ? CellType::Triangle : CellType::Quadrilateral, polygon);
+        continue;
+      }
+      const Index middle = part.add(center, false);
+      for (Index k = 0; k < size; ++k)
+      {
+        part.addCell(CellType::Triangle, { polygon[k], polygon[(k + 1) % size], middle });
+      }
+    }
+  }
+  return part;
+}
+
+//------------------------------------------------------------------------------
+/// The start, untangled as elements are, near inverted cells. What is left has tetrahedra that do
+/// not overlap; those with the centers of cells and faces follow in rounds.
+std::vector<double> Improver::untangled(const Want& want) const
+{
+  const bool layer = this->Axis >= 0;
+  const PartToUntangle part =
+    layer ? this->layerPart() : this->solidPart(this->cellsNear(want.list, UntangledLayers));
+  UntangleOptions options;
+  options.maximumSeconds = this->Options.maximumSeconds;
+  options.threads = this->Options.threads;
+  options.observer = [this](const IterationState&)
+  { return !this->Options.proceed || this->Options.proceed(0, 0); };
+  const std::vector<double> found = part.untangle(options);
+  std::vector<double> points = this->Start;
+  for (const auto& [local, point] : part.original)
+  {
+    for (int c = 0; c < (layer ? 2 : 3); ++c)
+    {
+      points[3 * point + (layer ? (this->Axis + 1 + c) % 3 : c)] = found[3 * local + c];
+    }
+  }
+  // The other side follows, and has lower or higher numbers.
+  for (const auto& [local, point] : part.original)
+  {
+    const auto at = points.begin() + 3 * point;
+    const bool moved = layer && !std::equal(at, at + 3, this->Start.begin() + 3 * point);
+    for (int c = 0; moved && c < 3; ++c)
+    {
+      double& of = points[3 * this->Mates[point] + c];
+      of = c == this->Axis ? of : at[c];
+    }
+  }
+  return points;
+}
+
+//------------------------------------------------------------------------------
+/// Untangled cells are valid and no more: minimizes the energy once where they were tangled.
+void Improver::smoothUntangled(Placement& at, const Want& tangled, ImproveFacesResult& result)
+{
+  Placement smooth = this->place(this->round(at.points, tangled, FirstLayers, 1, result));
+  if (!isBetter(at.want, smooth.want) &&
+    (!isNoWorse(at.report, result.before) || isNoWorse(smooth.report, result.before)))
+  {
+    at = std::move(smooth);
+  }
 }
 
 //------------------------------------------------------------------------------
@@ -550,102 +929,79 @@ ImproveFacesResult Improver::run()
 {
   const Stopwatch watch;
   ImproveFacesResult result;
-  const auto measure = [&](const std::vector<double>& at)
-  { return FaceMeasures(this->Mesh, at.data(), this->Options.convention, this->Options.threads); };
-  const auto report = [&](const FaceMeasures& measures, const std::vector<double>& at)
-  { return checkMesh(measures, at.data(), this->Options.facts); };
-
-  std::vector<double> at = this->Start;
-  Want want;
+  Placement at = this->place(this->Start);
+  Placement good = at; // the best of which no check is worse
+  result.before = at.report;
+  result.wantingBefore = at.want.faces;
+  result.invertedBefore = at.want.inverted;
+  const auto finish = [&](StopReason reason)
   {
-    const FaceMeasures measures = measure(at);
-    want = wantOf(this->Mesh, measures, this->Options);
-    result.before = report(measures, at);
-  }
-  Want best = want;
-  result.after = result.before;
-  result.points = at;
-  result.wantingBefore = want.faces;
-  result.wantingAfter = want.faces;
+    result.points = std::move(good.points);
+    result.after = std::move(good.report);
+    result.wantingAfter = good.want.faces;
+    result.invertedAfter = good.want.inverted;
+    result.reason = good.want.faces == 0 ? StopReason::AllValid : reason;
+    return std::move(result);
+  };
   if (std::none_of(this->Movable.begin(), this->Movable.end(), [](char m) { return m != 0; }))
   {
-    result.reason = StopReason::NoFreeVertices;
-    return result;
+    return finish(StopReason::NoFreeVertices);
+  }
+  // Whether `at` is `good`; a tangled mesh may take other faults in passing.
+  bool isGood = true;
+  const auto accept = [&]
+  {
+    isGood = this->Options.untangleOnly || isNoWorse(at.report, result.before);
+    if (isGood && !isBetter(good.want, at.want))
+    {
+      good = at;
+    }
+  };
+  if (at.want.inverted > 0)
+  {
+    const Want tangled = at.want;
+    if (this->findBetter(at, this->untangled(at.want)))
+    {
+      accept();
+      this->smoothUntangled(at, tangled, result);
+      accept();
+    }
   }
   int layers = FirstLayers, failures = 0;
   double tightness = 1;
-  result.reason = StopReason::IterationLimit;
   while (result.rounds < this->Options.rounds)
   {
-    if (want.faces == 0)
+    if (at.want.faces == 0 || failures >= MostFailures)
     {
-      result.reason = StopReason::AllValid;
-      break;
-    }
-    if (failures >= MostFailures)
-    {
-      result.reason = StopReason::NoProgress;
-      break;
+      return finish(StopReason::NoProgress);
     }
     if (watch.reached(this->Options.maximumSeconds))
     {
-      result.reason = StopReason::TimeLimit;
-      break;
+      return finish(StopReason::TimeLimit);
     }
     if (this->Options.proceed &&
       !this->Options.proceed(result.rounds,
         static_cast<double>(result.rounds) / static_cast<double>(this->Options.rounds)))
     {
-      result.reason = StopReason::Aborted;
-      break;
+      return finish(StopReason::Aborted);
     }
     ++result.rounds;
-    const std::vector<double> to = this->round(at, want, layers, tightness, result);
-    bool better = false;
-    for (double fraction : Fractions)
+    const std::vector<double> to = this->round(at.points, at.want, layers, tightness, result);
+    const bool better = at.want.inverted == 0 && isGood ? this->findNoWorse(at, to, result.before)
+                                                        : this->findBetter(at, to);
+    if (better)
     {
-      std::vector<double> tried = at;
-      for (std::size_t i = 0; i < tried.size(); ++i)
-      {
-        tried[i] = fraction == 1.0 ? to[i] : at[i] + fraction * (to[i] - at[i]);
-      }
-      if (fraction < 1.0)
-      {
-        this->placeOnParts(at, tried);
-      }
-      const FaceMeasures measures = measure(tried);
-      Want found = wantOf(this->Mesh, measures, this->Options);
-      if (!isBetter(found, want))
-      {
-        continue;
-      }
-      at = std::move(tried);
-      want = std::move(found);
-      better = true;
-      MeshCheckReport now = report(measures, at);
-      if (isNoWorse(now, result.before))
-      {
-        result.after = std::move(now);
-        result.points = at;
-        result.wantingAfter = want.faces;
-        best = want;
-      }
-      else if (best.faces > 0 && want.inverted == 0 && this->hold(now, result.before))
-      {
-        // What would be worse stays where it was.
-        at = result.points;
-        want = best;
-      }
-      break;
+      accept();
+      failures = 0;
     }
-    failures = better ? 0 : failures + 1;
-    if (!better)
+    else
     {
+      ++failures;
       layers = std::min(layers + 2, MostLayers);
       tightness *= Tightening;
     }
   }
-  return result;
+  return finish(StopReason::IterationLimit);
 }
 }
 

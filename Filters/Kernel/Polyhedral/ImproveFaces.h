@@ -28,6 +28,9 @@ struct ImproveFacesOptions
 {
   /// Faces are to have at most this non-orthogonality, degrees, and this skewness.
   double angle = 65, skewness = 3.5;
+  /// The faces of inverted cells alone are wanting, and other checks may become worse.
+  bool untangleOnly = false;
+  bool patchesStay = false;  ///< the points of patches, but for "empty" ones of a layer, stay
   int rounds = 40;           ///< at most
   int iterations = 40;       ///< of L-BFGS in a round, at most
   double maximumSeconds = 0; ///< of wall time; 0: no limit
@@ -42,8 +45,9 @@ struct ImproveFacesResult
 {
   std::vector<double> points; ///< 3 per point of the mesh
   MeshCheckReport before, after;
-  Index wantingBefore = 0, wantingAfter = 0; ///< faces beyond a target, or of an inverted cell
-  Index freePoints = 0;                      ///< points that could move
+  Index wantingBefore = 0, wantingAfter = 0;   ///< faces beyond a target, or of an inverted cell
+  Index invertedBefore = 0, invertedAfter = 0; ///< faces with a tetrahedron of no positive volume
+  Index freePoints = 0;                        ///< points that could move
   int rounds = 0, iterations = 0;
   StopReason reason = StopReason::NoProgress;
 };
