@@ -273,6 +273,32 @@ bool LayerMesh::lies(vtkDataSet* input, int axis)
     this->Offsets.push_back(static_cast<vtkIdType>(this->Nodes.size()));
     this->Cells.push_back(cell);
   }
+  // Facets across the layer are edges of the plane, so that patches can be chosen.
+  for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
+  {
+    pollInterruption(cell);
+    if (!isFacet(input->GetCellType(cell)))
+    {
+      continue;
+    }
+    input->GetCellPoints(cell, ids);
+    std::vector<vtkIdType> below;
+    for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+    {
+      if (sides[ids->GetId(i)] == Low)
+      {
+        below.push_back(numbers[ids->GetId(i)]);
+      }
+    }
+    constexpr std::size_t ends = 2;
+    if (below.size() == ends && below[0] >= 0 && below[1] >= 0 && ids->GetNumberOfIds() > 3)
+    {
+      this->Nodes.insert(this->Nodes.end(), below.begin(), below.end());
+      this->Types.push_back(VTK_LINE);
+      this->Offsets.push_back(static_cast<vtkIdType>(this->Nodes.size()));
+      this->Cells.push_back(cell);
+    }
+  }
   for (vtkIdType point : this->Points)
   {
     this->Mates.push_back(mates[point]);

@@ -32,7 +32,8 @@ public:
   /// Null for other meshes.
   static std::unique_ptr<LayerMesh> find(vtkDataSet* input);
 
-  /// The planar mesh: the cells of the input in their order, with its arrays.
+  /// The planar mesh: the cells of the input in their order, with its arrays, and then lines for the
+  /// facets across the layer.
   vtkSmartPointer<vtkUnstructuredGrid> planar() const { return this->side(this->Input); }
   /// The same side of another data set with the same points and cells; null for null.
   vtkSmartPointer<vtkUnstructuredGrid> side(vtkDataSet* other) const;

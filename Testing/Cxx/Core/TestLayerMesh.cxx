@@ -10,7 +10,9 @@
 
 #include "tautline/Core/Iteration.h"
 
+#include "vtkCell.h"
 #include "vtkCellData.h"
+#include "vtkCellType.h"
 #include "vtkIntArray.h"
 #include "vtkPointData.h"
 
@@ -56,6 +58,16 @@ TAUTLINE_PART(testFind)
   const Mesh mesh(side.view());
   TAUTLINE_CHECK(mesh.dimension() == Dimension::Planar);
   TAUTLINE_EACH_OF(signed char v, validityOf(mesh), TAUTLINE_CHECK_EQUAL(int(v), int(Valid)));
+  // Facets across the layer are lines, with their arrays; those of the sides are left out.
+  MeshData faced = movedBlock(CellType::Hexahedron, 1);
+  faced.addCell(CellType::Quadrilateral, std::vector<Index>{ 0, 1, 7, 6 });
+  faced.addCell(CellType::Quadrilateral, std::vector<Index>{ 0, 1, 37, 36 });
+  const auto facedGrid = toGrid(faced);
+  const auto withLine = LayerMesh::find(facedGrid)->planar();
+  TAUTLINE_CHECK_EQUAL(withLine->GetNumberOfCells(), 26);
+  TAUTLINE_CHECK_EQUAL(withLine->GetCellType(25), VTK_LINE);
+  const double* ends = withLine->GetCell(25)->GetBounds();
+  TAUTLINE_CHECK(ends[0] == 0 && ends[1] == 1 && ends[2] == 0 && ends[3] == 0);
   TAUTLINE_CHECK(LayerMesh::find(toGrid(movedBlock(CellType::Wedge, 1))) != nullptr);
   // Two layers, a row of cells, other cells and surfaces are none.
   TAUTLINE_CHECK(!LayerMesh::find(toGrid(blockMesh(CellType::Hexahedron, 3, 3, 2))));
