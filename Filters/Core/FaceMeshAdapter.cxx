@@ -194,7 +194,7 @@ void FaceMeshAdapter::listVolumes(vtkDataSet* input, const MeshAdapter& adapter,
   const MeshView& view = adapter.mesh().view();
   auto* grid = vtkUnstructuredGrid::SafeDownCast(input);
   vtkNew<vtkIdList> stream;
-  bool polyhedra = false;
+  std::vector<char> isPolyhedron;
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
   {
     pollInterruption(cell);
@@ -212,7 +212,7 @@ void FaceMeshAdapter::listVolumes(vtkDataSet* input, const MeshAdapter& adapter,
     {
       continue;
     }
-    polyhedra = polyhedra || polyhedron;
+    isPolyhedron.push_back(polyhedron);
     this->Cells.push_back(cell);
   }
   if (adapter.mesh().mirrored())
@@ -220,14 +220,26 @@ void FaceMeshAdapter::listVolumes(vtkDataSet* input, const MeshAdapter& adapter,
     reverseFaces(this->List);
   }
   // Lists of a file of OpenFOAM are as they are: faces that are turned are to be found.
+  const bool polyhedra =
+    std::find(isPolyhedron.begin(), isPolyhedron.end(), 1) != isPolyhedron.end();
   if (polyhedra && !input->GetFieldData()->GetAbstractArray(FoamCase))
   {
-    const Index open = turnFaces(this->List, 0, this->View.points, threads);
-    if (open > 0)
+    const TurnedCells found = turnFaces(this->List, 0, this->View.points, threads);
+    if (found.open > 0)
     {
-      this->Notice = std::to_string(open) +
-        (open == 1 ? " cell is open: it has" : " cells are open: they have") +
+      this->Notice = std::to_string(found.open) +
+        (found.open == 1 ? " cell is open: it has" : " cells are open: they have") +
         " an edge that is not one of two of the faces.";
+    }
+    // Where most lists have no sense, that of the others has no meaning.
+    const bool senseless =
+      2 * found.turned > std::count(isPolyhedron.begin(), isPolyhedron.end(), 1);
+    const Index turned = turnInsideOut(this->List, isPolyhedron, this->View.points, senseless);
+    if (turned > 0)
+    {
+      this->Notice += std::string(this->Notice.empty() ? "" : " ") +
+        "The faces of the polyhedra are listed as they are seen from inside; they are taken as if "
+        "seen from outside.";
     }
   }
 }

@@ -23,7 +23,7 @@ FLOORS = (
     ("_cell_names", "_classes", "_deck_numbers", "_interrupts", "_names"),
     ("_errors",),
     ("_arrays", "_files", "_formats", "_tables"),
-    ("_binary_coordinates", "_determinants", "_grid_checks", "_polyhedra", "_views"),
+    ("_binary_coordinates", "_determinants", "_grid_checks", "_views"),
     ("_packing",),
     ("_arguments", "_foam_case", "_groups", "_legacy", "_pictures", "_reading", "_surfaces", "_unv", "_vtk_readers",
      "_vtk_writers"),

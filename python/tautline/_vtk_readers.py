@@ -12,18 +12,11 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Callable, Iterator
 
-from vtkmodules.vtkCommonDataModel import (
-    vtkCompositeDataSet,
-    vtkDataObject,
-    vtkDataSet,
-    vtkMultiBlockDataSet,
-    vtkUnstructuredGrid,
-)
+from vtkmodules.vtkCommonDataModel import vtkCompositeDataSet, vtkDataObject, vtkDataSet, vtkMultiBlockDataSet
 from vtkmodules.vtkCommonExecutionModel import vtkStreamingDemandDrivenPipeline
 
 from ._arrays import leaves
 from ._errors import Aborted, Error, Messages, run, watch
-from ._polyhedra import turn_outwards
 
 
 @dataclass(frozen=True)
@@ -141,11 +134,7 @@ def read_solver(name: str, form: SolverFormat, time: float | None) -> vtkDataObj
         elif steps:
             _request(reader, steps[0])
         run(reader, messages, _damaged(name, form))
-    data = reader.GetOutputDataObject(0)
-    for leaf in leaves(data):
-        if isinstance(leaf, vtkUnstructuredGrid):
-            turn_outwards(leaf)
-    return _simplified(name, data)
+    return _simplified(name, reader.GetOutputDataObject(0))
 
 
 def times_of(name: str, form: SolverFormat) -> list[float]:

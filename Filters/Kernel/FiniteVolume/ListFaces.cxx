@@ -108,19 +108,25 @@ void reverseFace(ListedFaces& list, Index face)
     list.nodes.begin() + list.faceOffsets[face + 1]);
 }
 
-/// @return false: the cell is open
-bool turnCell(ListedFaces& list, Index cell, const double* points)
+enum class Turn
+{
+  None,
+  Turned,
+  Open
+};
+
+Turn turnCell(ListedFaces& list, Index cell, const double* points)
 {
   const Index first = list.cellOffsets[cell], count = list.cellOffsets[cell + 1] - first;
   const std::vector<FaceEdge> edges = edgesOf(list, cell);
   if (count == 0 || !isClosed(edges))
   {
-    return false;
+    return Turn::Open;
   }
   const std::vector<char> turned = turnedFaces(edges, count);
   if (std::find(turned.begin(), turned.end(), 1) == turned.end())
   {
-    return true;
+    return Turn::None;
   }
   for (Index i = 0; i < count; ++i)
   {
@@ -136,7 +142,7 @@ bool turnCell(ListedFaces& list, Index cell, const double* points)
       reverseFace(list, first + i);
     }
   }
-  return true;
+  return Turn::Turned;
 }
 }
 
@@ -156,14 +162,44 @@ void listLinearCell(ListedFaces& list, CellType type, const Index* nodes)
 }
 
 //------------------------------------------------------------------------------
-Index turnFaces(ListedFaces& list, Index first, const double* points, int threads)
+TurnedCells turnFaces(ListedFaces& list, Index first, const double* points, int threads)
 {
-  std::atomic<Index> open{ 0 };
+  std::atomic<Index> open{ 0 }, turned{ 0 };
   const Index cells = static_cast<Index>(list.cellOffsets.size()) - 1;
   constexpr Index grain = 1024;
   parallelFor(cells - first, grain, threads,
-    [&](Index i) { open += turnCell(list, first + i, points) ? 0 : 1; });
-  return open;
+    [&](Index i)
+    {
+      const Turn turn = turnCell(list, first + i, points);
+      open += turn == Turn::Open;
+      turned += turn == Turn::Turned;
+    });
+  return { open, turned };
+}
+
+//------------------------------------------------------------------------------
+Index turnInsideOut(
+  ListedFaces& list, const std::vector<char>& some, const double* points, bool each)
+{
+  std::vector<double> volumes(some.size());
+  double sum = 0;
+  for (std::size_t cell = 0; cell < some.size(); ++cell)
+  {
+    pollInterruption(static_cast<Index>(cell));
+    volumes[cell] = some[cell] ? sixVolumes(list, static_cast<Index>(cell), points) : 0;
+    sum += volumes[cell];
+  }
+  Index turned = 0;
+  for (std::size_t cell = 0; cell < some.size(); ++cell)
+  {
+    const bool turns = some[cell] && (each ? volumes[cell] : sum) < 0;
+    turned += turns;
+    for (Index face = list.cellOffsets[cell]; turns && face < list.cellOffsets[cell + 1]; ++face)
+    {
+      reverseFace(list, face);
+    }
+  }
+  return turned;
 }
 
 //------------------------------------------------------------------------------

@@ -75,13 +75,13 @@ TAUTLINE_PART(testTurnFaces)
   for (unsigned turned = 1; turned < 63; ++turned)
   {
     ListedFaces list = turnedCube(data, turned);
-    TAUTLINE_CHECK_EQUAL(turnFaces(list, 0, points), 0);
+    TAUTLINE_CHECK_EQUAL(turnFaces(list, 0, points).open, 0);
     const FaceMesh mesh = findFaces(8, list, {}, {});
     TAUTLINE_CHECK_NEAR(faceGeometry(mesh, points, FaceConvention::Esi).volume[0], 1, rounding);
   }
   // All faces turned agree with each other: this is an inverted cell, and stays one.
   ListedFaces list = turnedCube(data, 63);
-  TAUTLINE_CHECK_EQUAL(turnFaces(list, 0, points), 0);
+  TAUTLINE_CHECK_EQUAL(turnFaces(list, 0, points).open, 0);
   const FaceMesh inverted = findFaces(8, list, {}, {});
   TAUTLINE_CHECK_NEAR(faceGeometry(inverted, points, FaceConvention::Esi).volume[0], -1, rounding);
   reverseFaces(list);
@@ -93,7 +93,7 @@ TAUTLINE_PART(testTurnFaces)
   list.faceOffsets.pop_back();
   list.nodes.resize(list.faceOffsets.back());
   list.cellOffsets.back() = 5;
-  TAUTLINE_CHECK_EQUAL(turnFaces(list, 0, points), 1);
+  TAUTLINE_CHECK_EQUAL(turnFaces(list, 0, points).open, 1);
 }
 
 /// Two facets at one face make it two faces of the boundary, each of the cell that it points out
