@@ -273,7 +273,21 @@ bool LayerMesh::lies(vtkDataSet* input, int axis)
     this->Offsets.push_back(static_cast<vtkIdType>(this->Nodes.size()));
     this->Cells.push_back(cell);
   }
-  // Facets across the layer are edges of the plane, so that patches can be chosen.
+  for (vtkIdType point : this->Points)
+  {
+    this->Mates.push_back(mates[point]);
+  }
+  this->addLines(numbers);
+  return !this->Cells.empty();
+}
+
+//------------------------------------------------------------------------------
+/// Facets across the layer are edges of the plane, so that patches can be chosen.
+/// @param numbers per point of the input: that of the planar mesh, or -1
+void LayerMesh::addLines(const std::vector<vtkIdType>& numbers)
+{
+  vtkDataSet* input = this->Input;
+  vtkNew<vtkIdList> ids;
   for (vtkIdType cell = 0; cell < input->GetNumberOfCells(); ++cell)
   {
     pollInterruption(cell);
@@ -285,13 +299,13 @@ bool LayerMesh::lies(vtkDataSet* input, int axis)
     std::vector<vtkIdType> below;
     for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
     {
-      if (sides[ids->GetId(i)] == Low)
+      if (numbers[ids->GetId(i)] >= 0)
       {
         below.push_back(numbers[ids->GetId(i)]);
       }
     }
     constexpr std::size_t ends = 2;
-    if (below.size() == ends && below[0] >= 0 && below[1] >= 0 && ids->GetNumberOfIds() > 3)
+    if (below.size() == ends && ids->GetNumberOfIds() > 3)
     {
       this->Nodes.insert(this->Nodes.end(), below.begin(), below.end());
       this->Types.push_back(VTK_LINE);
@@ -299,11 +313,6 @@ bool LayerMesh::lies(vtkDataSet* input, int axis)
       this->Cells.push_back(cell);
     }
   }
-  for (vtkIdType point : this->Points)
-  {
-    this->Mates.push_back(mates[point]);
-  }
-  return !this->Cells.empty();
 }
 
 //------------------------------------------------------------------------------

@@ -32,7 +32,7 @@ public:
   /// Null for other meshes.
   static std::unique_ptr<LayerMesh> find(vtkDataSet* input);
 
-  /// The planar mesh: the cells of the input in their order, with its arrays, and then lines for the
+  /// The planar mesh: the cells of the input in their order, with its arrays, then lines for the
   /// facets across the layer.
   vtkSmartPointer<vtkUnstructuredGrid> planar() const { return this->side(this->Input); }
   /// The same side of another data set with the same points and cells; null for null.
@@ -53,6 +53,7 @@ public:
 private:
   LayerMesh() = default;
   bool lies(vtkDataSet* input, int axis);
+  void addLines(const std::vector<vtkIdType>& numbers);
 
   vtkDataSet* Input = nullptr;
   int Axis = 0;

@@ -5,9 +5,9 @@
 Each case (all by default) is solved three times with the same settings: on the mesh as it was made; with the internal
 points moved at random; and after
 
-    tautline optimize case.foam --in-place --preset "finite volumes"
+    tautline optimize case.foam --preset "finite volumes" --in-place
 
-which follows tautline untangle where the mesh is one layer of cells. A table has the verdict of checkMesh, the largest
+A table has the verdict of checkMesh, the largest
 non-orthogonality and skewness, how the solver ended after how many iterations (time steps where it is transient), its
 largest initial residual there, and the mean of a field on a patch. The exit code is 1 unless checkMesh fails and the
 solver diverges on the perturbed mesh, and the repaired mesh passes, takes about as many iterations as the original, and
@@ -42,9 +42,7 @@ ENVIRONMENT = {
     **os.environ,
     "FOAM_SIGFPE": "true",  # ends a solver that diverges
 }
-REPAIR = [["optimize", "--preset", "finite volumes"]]
-#: Of one layer: the points that the preset moves belong to its sides, on which they slide.
-REPAIR_LAYER = [["untangle"], [*REPAIR[0], "--boundary", "sliding"]]
+REPAIR = ["optimize", "case.foam", "--preset", "finite volumes", "--in-place"]
 MESHES = ("original", "perturbed", "repaired")
 #: The repaired mesh takes at most so many times the iterations of the original.
 MORE_ITERATIONS = 1.3
@@ -208,13 +206,11 @@ def perturb(folder: Path, case: Case) -> None:
     (mesh / "points").write_text(f"{head}\n{len(points)}\n(\n{lines})\n")
 
 
-def repair(folder: Path, case: Case) -> None:
-    """Moves the points of a case by Tautline's commands. If invalid elements are left, the exit status is not 0."""
-    for command, *options in REPAIR_LAYER if case.spot else REPAIR:
-        words = [sys.executable, "-m", "tautline", command, "case.foam", "--in-place", *options]
-        done = subprocess.run(words, cwd=folder, capture_output=True, text=True)
-        if done.returncode:
-            print(f"{command} ended with {done.returncode}:\n{done.stdout}{done.stderr}")
+def repair(folder: Path) -> None:
+    """Moves the points of a case by a command. If invalid elements are left, the exit status is not 0."""
+    done = subprocess.run([sys.executable, "-m", "tautline", *REPAIR], cwd=folder, capture_output=True, text=True)
+    if done.returncode:
+        print(f"the repair ended with {done.returncode}:\n{done.stdout}{done.stderr}")
 
 
 def check(folder: Path) -> tuple[int, float, float]:
@@ -260,7 +256,7 @@ def solve_case(name: str, work: Path) -> dict[str, Outcome]:
         if after == "perturbed":
             perturb(work / after, case)
         else:
-            repair(work / after, case)
+            repair(work / after)
     for mesh in MESHES:
         failed, non_orthogonality, skewness = check(work / mesh)
         ended, iterations, residuals = solve(work / mesh, case)

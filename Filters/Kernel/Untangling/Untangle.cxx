@@ -372,8 +372,11 @@ UntangleResult untangle(const Mesh& mesh, const UntangleOptions& options, const 
       }
       if (slides(options) && (onSurface || ranks.several()))
       {
-        throw Error("Untangling with a boundary that slides works on planar and volume meshes of "
-                    "one process: let the boundary be fixed, or gather the mesh.");
+        throw Error(onSurface
+            ? "A surface in space is untangled with a boundary that stays and without a geometry: "
+              "let the boundary be fixed."
+            : "Untangling with a boundary that slides works on one process: let the boundary be "
+              "fixed, or gather the mesh.");
       }
       if (dimension == Dimension::None || (onSurface && result.invertedBefore == 0))
       {
