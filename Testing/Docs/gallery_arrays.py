@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import tautline as tl
 from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "Plugin" / "Site"))
 from make_site import parts_of, state_of  # noqa: E402, F401, the snippets as the page has them
@@ -17,13 +18,22 @@ TIMES = re.compile("seconds|rank|result")  # columns of a table that differ from
 MESHES = (".vtu", ".vti", ".mesh", ".node", ".msh")
 
 
+def points_of_cells(mesh) -> np.ndarray:
+    """The points of the cells, one after the other; of polyhedra sorted, since copies of the mesh list them anew."""
+    points = vtk_to_numpy(mesh.GetCells().GetConnectivityArray()).copy()
+    starts = vtk_to_numpy(mesh.GetCells().GetOffsetsArray())
+    for cell in np.flatnonzero(vtk_to_numpy(mesh.GetCellTypesArray()) == VTK_POLYHEDRON):
+        points[starts[cell] : starts[cell + 1]].sort()
+    return points
+
+
 def arrays_of(mesh) -> dict[str, np.ndarray]:
     """Everything that a picture of the mesh depends on, by names such as 'cell array imr'."""
     found = {"points": np.array([mesh.GetPoint(i) for i in range(mesh.GetNumberOfPoints())])}
     if mesh.IsA("vtkUnstructuredGrid"):
         found["types of the cells"] = vtk_to_numpy(mesh.GetCellTypesArray())
         found["offsets of the cells"] = vtk_to_numpy(mesh.GetCells().GetOffsetsArray())
-        found["points of the cells"] = vtk_to_numpy(mesh.GetCells().GetConnectivityArray())
+        found["points of the cells"] = points_of_cells(mesh)
     for kind, data in (("point", mesh.GetPointData()), ("cell", mesh.GetCellData())):
         for i in range(data.GetNumberOfArrays()):
             if data.GetArray(i) is not None:

@@ -270,8 +270,8 @@ def test_polyhedra():
     for turned, inverted in (
         ((0, 0, 0), 0),  # as they should be
         ((every, every, every), 0),  # as vtkCGNSReader lists them
-        ((0, every, 0), 1),  # one is inverted, and stays inverted
-        ((every, 0, every), 1),
+        ((0, every, 0), 2),  # one is inverted, and stays inverted; the next one has its face
+        ((every, 0, every), 2),
         ((1, 2, every), 0),  # without a sense
     ):
         assert tl.quality(polyhedra(*turned), metrics="pyramid_volume").inverted == inverted, turned

@@ -19,8 +19,9 @@ from pathlib import Path
 import tautline as tl
 from PIL import Image
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkIdList, vtkLookupTable
-from vtkmodules.vtkCommonDataModel import vtkPlane, vtkUnstructuredGrid
+from vtkmodules.vtkCommonCore import vtkLookupTable
+from vtkmodules.vtkCommonDataModel import vtkPlane
+from vtkmodules.vtkFiltersCore import vtkExtractCells
 from vtkmodules.vtkFiltersExtraction import vtkExtractGeometry
 from vtkmodules.vtkFiltersGeometry import vtkGeometryFilter
 from vtkmodules.vtkIOImage import vtkPNGWriter
@@ -40,7 +41,7 @@ sys.path.insert(0, os.path.dirname(sys.argv[0]))
 runpy.run_path(sys.argv[0])
 print(next(line for line in open("/proc/self/status") if line.startswith("VmHWM")))
 """
-VALID = 1  # of the array Validity
+VALID, NOT_MEASURED = 1, -2  # of the array Validity
 TRANSLUCENT = 0.12  # opacity of the surface around the elements inside
 HUES = (0.62, 0.0)  # blue is good, red is bad
 UPWARD = ("Validity", "Change")  # arrays whose large values are good
@@ -81,16 +82,16 @@ def surface(mesh, clip: bool):
 
 def failing(mesh, array: str, most: float):
     """The surfaces of the elements that are not valid or whose value is beyond `most`."""
-    bad = vtk_to_numpy(tl.quality(mesh, "imr").mesh.GetCellData().GetArray("Validity")) < VALID
+    validity = vtk_to_numpy(tl.quality(mesh, "imr").mesh.GetCellData().GetArray("Validity"))
+    bad = (validity < VALID) & (validity != NOT_MEASURED)
     if array != "Validity":
         bad |= vtk_to_numpy(array_of(mesh, array)) > most
-    cells, values, nodes = vtkUnstructuredGrid(), mesh.GetCellData(), vtkIdList()
-    cells.SetPoints(mesh.GetPoints())
-    cells.GetCellData().CopyAllocate(values)
+    cells = vtkExtractCells()
+    cells.SetInputData(mesh)
     for cell in bad.nonzero()[0].tolist():
-        mesh.GetCellPoints(cell, nodes)
-        cells.GetCellData().CopyData(values, cell, cells.InsertNextCell(mesh.GetCellType(cell), nodes))
-    return cells
+        cells.AddCellRange(cell, cell)
+    cells.Update()
+    return cells.GetOutput()
 
 
 def draw(window, mesh, array: str, how: list[str], span, place) -> None:
