@@ -321,9 +321,13 @@ void FaceMeshAdapter::listFacets(vtkDataSet* input, int patches)
       continue;
     }
     const int number = numbers ? static_cast<int>(numbers->GetComponent(cell, 0)) : -1;
+    if (patches > 0 && number >= patches)
+    {
+      continue; // of a "processor" patch of another piece, which was put together with this one
+    }
     const Index first = this->View.offsets[cell];
     appendFacet(this->Facets, this->View.connectivity + first, this->View.offsets[cell + 1] - first,
-      number < patches ? number : -1);
+      patches > 0 ? number : -1);
   }
 }
 

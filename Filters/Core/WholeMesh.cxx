@@ -161,6 +161,33 @@ vtkSmartPointer<vtkPoints> joinPoints(const Pieces& sources, const Origins& orig
   return points;
 }
 
+/// The points of a cell by other numbers, as InsertNextCell() takes them: of a polyhedron, its faces.
+void renumberedCell(
+  vtkDataSet* source, vtkIdType cell, const std::vector<vtkIdType>& numbers, vtkIdList* ids)
+{
+  const auto renumber = [&](vtkIdType i)
+  { ids->SetId(i, numbers[static_cast<std::size_t>(ids->GetId(i))]); };
+  auto* grid = vtkUnstructuredGrid::SafeDownCast(source);
+  if (!grid || source->GetCellType(cell) != VTK_POLYHEDRON)
+  {
+    source->GetCellPoints(cell, ids);
+    for (vtkIdType i = 0; i < ids->GetNumberOfIds(); ++i)
+    {
+      renumber(i);
+    }
+    return;
+  }
+  grid->GetFaceStream(cell, ids);
+  for (vtkIdType at = 1; at < ids->GetNumberOfIds();)
+  {
+    const vtkIdType end = at + 1 + ids->GetId(at);
+    while (++at < end)
+    {
+      renumber(at);
+    }
+  }
+}
+
 /// @param numbers of the points of each source in the result
 vtkSmartPointer<vtkDataSet> buildMesh(const Pieces& sources, const Origins& points,
   const Origins& cells, const std::vector<const std::vector<vtkIdType>*>& numbers)
@@ -177,11 +204,7 @@ vtkSmartPointer<vtkDataSet> buildMesh(const Pieces& sources, const Origins& poin
     {
       pollInterruption(static_cast<Index>(c));
       const auto piece = static_cast<std::size_t>(cells[c].piece);
-      sources[piece]->GetCellPoints(cells[c].id, ids);
-      for (vtkIdType k = 0; k < ids->GetNumberOfIds(); ++k)
-      {
-        ids->SetId(k, (*numbers[piece])[static_cast<std::size_t>(ids->GetId(k))]);
-      }
+      renumberedCell(sources[piece], cells[c].id, *numbers[piece], ids);
       grid->InsertNextCell(sources[piece]->GetCellType(cells[c].id), ids);
     }
     result = grid;
@@ -434,10 +457,6 @@ void numberCells(
     whole.pieces[i].cells.assign(static_cast<std::size_t>(pieces[i]->GetNumberOfCells()), -1);
     for (vtkIdType cell = 0; cell < pieces[i]->GetNumberOfCells(); ++cell)
     {
-      if (pieces[i]->GetCellType(cell) == VTK_POLYHEDRON)
-      {
-        throw Error("Polyhedra are not supported on several processes: run Tetrahedralize first.");
-      }
       (isGhost(pieces[i], cell) ? ghosts : origins).push_back({ static_cast<int>(i), cell });
     }
   }

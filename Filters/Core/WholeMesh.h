@@ -54,7 +54,7 @@ struct WholeMesh
  * @param pieces without points or not; not null
  * @param like a mesh with as many pieces, points and cells, whose numbers are taken; or null
  *
- * Throws Error for polyhedra, global ids that points at different places or several cells have, and
+ * Throws Error for global ids that points at different places or several cells have, and
  * images with gaps.
  */
 TAUTLINECORE_EXPORT WholeMesh assemble(

@@ -57,9 +57,11 @@ bool sameSense(const NodeList& a, const NodeList& b)
 class FaceMatch
 {
 public:
-  FaceMatch(Index points, const ListedFaces& cells, const ListedFacets& facets, int threads)
+  FaceMatch(Index points, const ListedFaces& cells, const ListedFacets& facets,
+    const std::vector<FacePatch>& patches, int threads)
     : Cells(cells)
     , Facets(facets)
+    , Patches(patches)
     , Listed(static_cast<Index>(cells.faceOffsets.size()) - 1)
     , Mate(this->Listed, -1)
     , Facet(this->Listed, -1)
@@ -186,13 +188,21 @@ private:
     {
       return;
     }
+    // Two sides of a border that the cells have closed.
+    const bool closed = listed == 2 &&
+      std::all_of(same.begin() + listed, same.end(),
+        [this](Index number)
+        {
+          const int patch = this->Facets.patch[number - this->Listed];
+          return patch >= 0 && this->Patches[patch].type == "processor";
+        });
     for (Index i = 0; i < facets; ++i)
     {
       // Of a baffle, each cell has the facets that point out of it.
       const Index facet = same[listed + i] - this->Listed;
-      const Index side = listed == 2 && facets > 1 && !this->pointsOut(same, i);
+      const Index side = listed == 2 && facets > 1 && !closed && !this->pointsOut(same, i);
       this->ListedAt[facet] = same[side];
-      if (listed <= 2 && this->Facet[same[side]] < 0 && (listed == 1 || facets > 1))
+      if (listed <= 2 && !closed && this->Facet[same[side]] < 0 && (listed == 1 || facets > 1))
       {
         this->Facet[same[side]] = facet;
       }
@@ -204,7 +214,7 @@ private:
         this->Mate[same[i]] = TooMany - same[i == 0 ? 1 : 0];
       }
     }
-    else if (listed == 2 && facets < 2)
+    else if (listed == 2 && (facets < 2 || closed))
     {
       this->Mate[same[0]] = same[1];
       this->Mate[same[1]] = same[0];
@@ -221,6 +231,7 @@ private:
 
   const ListedFaces& Cells;
   const ListedFacets& Facets;
+  const std::vector<FacePatch>& Patches;
   Index Listed;
   std::vector<Index> Mate, Facet; ///< per listed face
   std::vector<Index> ListedAt;    ///< per facet
@@ -317,7 +328,7 @@ void listCellFaces(FaceMesh& mesh)
 FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& facets,
   std::vector<FacePatch> patches, int threads)
 {
-  const FaceMatch match(points, cells, facets, threads);
+  const FaceMatch match(points, cells, facets, patches, threads);
   match.check();
   FaceMesh mesh;
   mesh.points = points;

@@ -121,6 +121,12 @@ TAUTLINE_PART(testBaffle)
   const FaceMeasures measures(baffle, data.points.data(), FaceConvention::Esi);
   TAUTLINE_CHECK(largestOf(measures.evaluate(Metric::Openness).cells) < rounding);
 
+  // Pieces that were put together have both sides of what was their border.
+  const FaceMesh closed = findFaces(
+    plain.points, facesOf(data), facets, { patchOf("a", "processor"), patchOf("b", "processor") });
+  TAUTLINE_CHECK_EQUAL(closed.internalFaces, 1);
+  TAUTLINE_CHECK_EQUAL(closed.strayFacets, 0);
+
   // A facet that is no face of a cell is counted and left out.
   addFacet(facets, { 0, 1, 2 }, 0);
   TAUTLINE_CHECK_EQUAL(
