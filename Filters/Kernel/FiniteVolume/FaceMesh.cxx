@@ -3,6 +3,7 @@
 
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Parallel.h"
+#include "tautline/Core/Random.h"
 
 #include <algorithm>
 #include <array>
@@ -31,11 +32,7 @@ std::uint64_t keyOf(const NodeList& list)
   std::uint64_t key = 0;
   for (Index i = 0; i < list.size; ++i)
   {
-    // The finalizer of the generator SplitMix64 (Steele, Lea, Flood 2014).
-    std::uint64_t x = static_cast<std::uint64_t>(list.nodes[i]) + 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    key += x ^ (x >> 31);
+    key += SplitMix::mixed(static_cast<std::uint64_t>(list.nodes[i]));
   }
   return key;
 }

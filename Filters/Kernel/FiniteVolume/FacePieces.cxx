@@ -3,6 +3,7 @@
 
 #include "FaceShape.h"
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/Random.h"
 
 #include <algorithm>
 #include <cstring>
@@ -15,26 +16,17 @@ namespace
 {
 using Key = std::array<std::uint64_t, 2>;
 
-std::uint64_t mix(std::uint64_t x)
-{
-  // The finalizer of the generator SplitMix64 (Steele, Lea, Flood 2014).
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
 /// A hash of a point; two of them, with different seeds, make collisions unlikely.
 std::uint64_t hashOf(const FacePiece& piece, Index point, std::uint64_t seed)
 {
   if (piece.globalIds)
   {
-    return mix(seed ^ static_cast<std::uint64_t>(piece.globalIds[point]));
+    return SplitMix::mixed(seed ^ static_cast<std::uint64_t>(piece.globalIds[point]));
   }
   const Vec3 place = pointAt(piece.points, point) + Vec3{ 0, 0, 0 }; // -0 becomes 0
   std::array<std::uint64_t, 3> bits;
   std::memcpy(bits.data(), place.data(), sizeof(bits));
-  return mix(mix(mix(seed ^ bits[0]) ^ bits[1]) ^ bits[2]);
+  return SplitMix::mixed(SplitMix::mixed(SplitMix::mixed(seed ^ bits[0]) ^ bits[1]) ^ bits[2]);
 }
 
 /// The same for all orders of the points.
@@ -191,7 +183,9 @@ private:
         const auto at = static_cast<std::uint64_t>(i);
         if (mesh.ownsCell(mesh.owner[face]))
         {
-          add(face, pair.empty() ? keyOfFace(piece, face) : Key{ mix(hashOfText(pair) + at), at },
+          add(face,
+            pair.empty() ? keyOfFace(piece, face)
+                         : Key{ SplitMix::mixed(hashOfText(pair) + at), at },
             ofProcessors);
         }
       }
@@ -203,7 +197,7 @@ private:
     std::uint64_t hash = 0;
     for (const char c : text)
     {
-      hash = mix(hash ^ static_cast<unsigned char>(c));
+      hash = SplitMix::mixed(hash ^ static_cast<unsigned char>(c));
     }
     return hash;
   }

@@ -13,6 +13,20 @@
 
 namespace tautline
 {
+/// The metrics of finite volumes.
+inline std::vector<Metric> faceMetrics()
+{
+  std::vector<Metric> metrics;
+  for (const MetricInfo& info : metricRegistry())
+  {
+    if (info.family == MetricFamily::Faces)
+    {
+      metrics.push_back(info.metric);
+    }
+  }
+  return metrics;
+}
+
 /// The faces of the linear 3D cells of a mesh.
 inline ListedFaces facesOf(const MeshData& data)
 {

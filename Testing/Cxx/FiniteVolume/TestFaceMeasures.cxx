@@ -10,19 +10,6 @@ namespace
 {
 constexpr double rounding = 1e-12;
 
-std::vector<Metric> faceMetrics()
-{
-  std::vector<Metric> metrics;
-  for (const MetricInfo& info : metricRegistry())
-  {
-    if (info.family == MetricFamily::Faces)
-    {
-      metrics.push_back(info.metric);
-    }
-  }
-  return metrics;
-}
-
 /// A prism of height 1 over a polygon.
 MeshData prism(const std::vector<Vec3>& corners, FaceMesh& mesh)
 {

@@ -26,19 +26,6 @@ struct Measured
   std::vector<MeshCheck> checks;
 };
 
-std::vector<Metric> faceMetrics()
-{
-  std::vector<Metric> metrics;
-  for (const MetricInfo& info : metricRegistry())
-  {
-    if (info.family == MetricFamily::Faces)
-    {
-      metrics.push_back(info.metric);
-    }
-  }
-  return metrics;
-}
-
 /// Facets of boundary patches: the plane x = 0 is a wall, the planes across z are empty if wanted.
 using Facets = std::function<ListedFacets(const MeshData&, const FaceMesh&)>;
 
