@@ -355,6 +355,9 @@ FaceMesh findFaces(Index points, const ListedFaces& cells, const ListedFacets& f
     {
       append(mesh, listOf(cells.faceOffsets, cells.nodes, listed), cell);
       mesh.neighbor.push_back(neighbor);
+      // From the smallest point on, whichever a file or a piece begins with.
+      const auto first = mesh.nodes.begin() + mesh.offsets[mesh.faces() - 1];
+      std::rotate(first, std::min_element(first, mesh.nodes.end()), mesh.nodes.end());
     }
   }
   mesh.internalFaces = mesh.faces();
