@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import tautline as tl
 from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonCore import vtkIdList, vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkFiltersCore import vtkDelaunay2D
 
@@ -154,9 +154,32 @@ def make(name: str, mesh, folder: Path, tangle: float = 0.0) -> None:
     print(f"{file}: {worse.mesh.GetNumberOfPoints()} points, {file.stat().st_size} bytes\n{tl.quality(file).summary}")
 
 
+# --- elbow: the case of OpenFOAM beside this file, with internal points moved at random until checkMesh fails ---
+MOVED, DIGITS = 0.2, 6  # largest displacement along each axis; digits after the point
+
+
+def failing_case(folder: Path) -> None:
+    """A copy of the case; of its mesh, only the points differ."""
+    source = Path(__file__).resolve().parent / "elbow"
+    mesh = tl.read(source / "elbow.foam")
+    patches = vtk_to_numpy(mesh.GetCellData().GetArray("Patch"))
+    corners = vtkIdList()
+    inside = np.ones(len(mesh.points), bool)
+    for face in np.flatnonzero(patches >= 0):
+        mesh.GetCellPoints(face, corners)
+        inside[[corners.GetId(i) for i in range(corners.GetNumberOfIds())]] = False
+    moves = np.random.RandomState(SEED).uniform(-MOVED, MOVED, mesh.points.shape)
+    mesh.points[inside] = (mesh.points + moves).round(DIGITS)[inside]
+    file = folder / "elbow-failing.foam"
+    folder.mkdir()
+    tl.write(mesh, file)
+    print(f"{file}:\n{tl.quality(file, criteria='openfoam').summary}")
+
+
 if __name__ == "__main__":
     target = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent
     bracket = tetrahedra(bracket_surface())
     make("bracket.vtu", bracket, target)
     make("bracket-tangled.vtu", bracket, target, TANGLED)
     make("plate.vtu", plate(), target)
+    failing_case(target / "elbow-failing")

@@ -6,7 +6,9 @@
 
 The screenshots of job N are jobN-STEP-NAME.png (Testing/Gui/screenshots.py). Its strip is job_N.png; the place of the
 strip in jobs.html is between the comments <!-- strip: N --> and <!-- end of strip -->. Jobs without screenshots in
-FOLDER keep their strips. A file tutorial-7-report.png becomes the picture of the tutorial's step.
+FOLDER keep their strips. A file tutorial-7-report.png becomes the picture of the tutorial's step; openfoam-N-NAME.png
+becomes openfoam_mesh_N.png of Plugin/Site/openfoam-mesh.md, and openfoam-3-*.png may be a plot of
+Testing/OpenFoam/solve_case.py.
 """
 
 import re
@@ -18,13 +20,14 @@ import numpy as np
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
-from small_png import read, shrink, write  # noqa: E402
+from small_png import FINEST, MAX_COLOURS, read, shrink, write  # noqa: E402
 
 PAGE = HERE / "jobs.html"
 JOBS = range(1, 8)
 WIDTH, GAP = 326, 8  # pixels of a frame, and between two
 COLUMNS = 2
 WIDE = COLUMNS * (WIDTH + GAP) - GAP
+WIDEST = 860  # of a picture on the site (Testing/Docs/check_links.py)
 SHADE = 24  # shades are rounded to multiples, for small files
 
 
@@ -37,6 +40,15 @@ def window(image: np.ndarray) -> np.ndarray:
 
 def posterized(image: np.ndarray) -> np.ndarray:
     return np.minimum((image.astype(int) + SHADE // 2) // SHADE * SHADE, 255).astype(np.uint8)
+
+
+def frequent(image: np.ndarray) -> np.ndarray:
+    """Each color is replaced by the nearest of the most frequent ones: dim faces keep their colors."""
+    rounded = np.minimum((image.astype(int) + FINEST // 2) // FINEST * FINEST, 255)
+    colors, places, counts = np.unique(rounded.reshape(-1, 3), axis=0, return_inverse=True, return_counts=True)
+    kept = colors[np.argsort(-counts, kind="stable")[:MAX_COLOURS]]
+    nearest = [((kept - color) ** 2).sum(axis=1).argmin() for color in colors]
+    return kept[nearest][places].reshape(image.shape).astype(np.uint8)
 
 
 def strip(files: list) -> np.ndarray:
@@ -73,6 +85,9 @@ def main(folder: Path) -> int:
     PAGE.write_text(text, encoding="utf-8")
     for file in folder.glob("tutorial-7-*.png"):
         write(posterized(shrink(window(read(file)), WIDE)), HERE / "tutorial_7.png")
+        made += 1
+    for file in folder.glob("openfoam-*.png"):
+        write(frequent(shrink(window(read(file)), WIDEST)), HERE / f"openfoam_mesh_{file.name.split('-')[1]}.png")
         made += 1
     return 0 if made else 1
 

@@ -3,7 +3,8 @@
 
 Each step is a function that makes what tutorial.html describes, checks its numbers, and returns the view to show.
 The pictures are tutorial_N.png; the states of the views are saved beside the sample meshes, tutorial_N.pvsm. Names of
-files in the states are relative: ParaView finds them with "Search files under specified directory".
+files in the states are relative: ParaView finds them with "Search files under specified directory". The state of
+Plugin/Site/openfoam-mesh.md is openfoam_mesh.pvsm; the pictures of that page are of a session (make_strips.py).
 """
 
 import re
@@ -14,7 +15,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
-from make_pictures import LIT, OBLIQUE, draw, fit, new_view, output, save, side_by_side  # noqa: E402
+from make_pictures import LIT, OBLIQUE, RED, draw, fit, new_view, output, save, side_by_side  # noqa: E402
 from paraview import servermanager, simple  # noqa: E402
 from small_state import shortened  # noqa: E402
 
@@ -23,6 +24,7 @@ ELEMENTS, INVERTED = 8140, 41  # of the sample, as in Data/README.md
 STATES = (2, 4, 5, 6, 8, 9)
 ONE = (440, 280)  # size of a picture with one view
 INSIDE = 0.15  # opacity of a mesh that one looks into
+BEYOND = (90, 180)  # degrees: a non-orthogonality that checkMesh fails
 
 made = {}  # what the steps made, by name
 
@@ -145,17 +147,39 @@ def automate():
     return []
 
 
+def openfoam_mesh():
+    """What openfoam-mesh.md shows: the failing faces of a case, and its repaired mesh. The numbers are checkMesh's."""
+    case = simple.OpenFOAMMeshReader(FileName=str(DATA / "elbow-failing" / "elbow-failing.foam"))
+    measures = {"Metrics": ["Non-orthogonality"], "Criteria": "openfoam"}
+    quality = simple.ElementQuality(Input=case, **measures)
+    assert "checkMesh: Failed 5 mesh checks." in summary(quality), quality.Summary
+    faces = simple.Threshold(Input=output(quality, 8), Scalars=["CELLS", "non_orthogonality"])
+    faces.LowerThreshold, faces.UpperThreshold = BEYOND
+    faces.UpdatePipeline()
+    assert faces.GetDataInformation().GetNumberOfCells() == 25
+    failing = new_view(OBLIQUE)
+    draw(output(quality, 0), failing, edges=False, opacity=INSIDE, light=LIT)
+    draw(faces, failing, colour=RED, light=LIT)
+    better = simple.OptimizeMesh(Input=case, Preset="Finite volumes")
+    assert "checkMesh before: Failed 5 mesh checks. After: Mesh OK." in summary(better), better.Summary
+    checked = simple.ElementQuality(Input=output(better, 0), **measures)
+    assert "checkMesh: Mesh OK." in summary(checked), checked.Summary
+    repaired = new_view(OBLIQUE)
+    draw(output(checked, 0), repaired, "non_orthogonality", light=LIT)
+    return [fit(failing, 1.2), fit(repaired, 1.2)]
+
+
 STEPS = (open_mesh, find, understand, untangle, optimize, compare, report, warp, condition, automate)
 
 
-def save_state(number: int) -> None:
+def save_state(name: str) -> None:
     """The state without the place of this checkout."""
     with tempfile.TemporaryDirectory() as folder:
-        name = Path(folder) / "state.pvsm"
-        simple.SaveState(str(name))
-        text = shortened(name.read_text(encoding="utf-8").replace(f"{DATA}/", ""))
+        file = Path(folder) / "state.pvsm"
+        simple.SaveState(str(file))
+        text = shortened(file.read_text(encoding="utf-8").replace(f"{DATA}/", ""))
     assert str(HERE.parents[1]) not in text
-    (DATA / f"tutorial_{number}.pvsm").write_text(text, encoding="utf-8")
+    (DATA / f"{name}.pvsm").write_text(text, encoding="utf-8")
 
 
 def main(plugin: str, write: bool) -> None:
@@ -167,9 +191,15 @@ def main(plugin: str, write: bool) -> None:
             continue
         save(side_by_side(*views, size=ONE if len(views) == 1 else (660, 280)), HERE / f"tutorial_{number}.png")
         if number in STATES:
-            save_state(number)
+            save_state(f"tutorial_{number}")
         for view in views:
             simple.Delete(view)
+    simple.ResetSession()
+    views = openfoam_mesh()
+    print("openfoam_mesh: passed", flush=True)
+    if write:
+        side_by_side(*views)
+        save_state("openfoam_mesh")
 
 
 if __name__ == "__main__":
