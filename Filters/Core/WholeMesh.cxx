@@ -161,7 +161,8 @@ vtkSmartPointer<vtkPoints> joinPoints(const Pieces& sources, const Origins& orig
   return points;
 }
 
-/// The points of a cell by other numbers, as InsertNextCell() takes them: of a polyhedron, its faces.
+/// The points of a cell by other numbers, as InsertNextCell() takes them: of a polyhedron, the
+/// faces.
 void renumberedCell(
   vtkDataSet* source, vtkIdType cell, const std::vector<vtkIdType>& numbers, vtkIdList* ids)
 {

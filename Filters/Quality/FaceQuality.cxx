@@ -180,9 +180,9 @@ bool hasPolyhedra(const Mesh& mesh)
 }
 
 //------------------------------------------------------------------------------
-bool measuresElements(const std::vector<Metric>& metrics)
+bool measuresElementsOnly(const std::vector<Metric>& metrics)
 {
-  return std::any_of(metrics.begin(), metrics.end(),
+  return std::all_of(metrics.begin(), metrics.end(),
     [](Metric metric) { return metricInfo(metric).family != MetricFamily::Faces; });
 }
 

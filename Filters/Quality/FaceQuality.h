@@ -69,8 +69,8 @@ std::vector<std::unique_ptr<FaceQuality>> makeFaceQuality(RankGroup& group,
   const std::vector<FaceInput>& pieces, const std::vector<Metric>& metrics,
   FaceConvention convention, int threads);
 
-/// Whether some metrics are those of elements.
-bool measuresElements(const std::vector<Metric>& metrics);
+/// Whether all metrics are those of elements, so that polyhedra are left out.
+bool measuresElementsOnly(const std::vector<Metric>& metrics);
 
 /// Of a mesh in one piece; null where there is none.
 std::unique_ptr<FaceQuality> makeFaceQuality(const FaceInput& mesh,

@@ -29,7 +29,7 @@ struct PieceFindings
  * @param reversed one flag per cell of mesh(): it lists its points in the opposite order; or null
  * @param skip one flag per cell: it does not count; or null
  * @param curved how many cells of higher order are not measured at their corners only
- * @param elements whether metrics of elements are wanted, so that other cells are worth a remark
+ * @param elements whether elements alone are measured, so that other cells are worth a remark
  */
 PieceFindings findingsOf(const MeshAdapter& adapter, const unsigned char* reversed,
   const unsigned char* skip, Index curved, bool elements);

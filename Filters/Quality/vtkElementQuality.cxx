@@ -320,7 +320,7 @@ void vtkElementQuality::MeasureAll(
             [&]
             {
               orientations.find(input, this->Threads, *group, this->ReversedMesh,
-                tautline::measuresElements(totals.metrics()));
+                tautline::measuresElementsOnly(totals.metrics()));
               pieceFaces.find(orientations, *group, totals.metrics(), this->ConventionOf(grader),
                 this->ReversedMesh != MEASURE_AS_GIVEN, this->Threads);
             });
@@ -447,7 +447,7 @@ void vtkElementQuality::Measure(const tautline::InputBlock& block,
   {
     this->AddCurvedNotice(*curved, metrics, options);
     this->AddToNotice(
-      findingsOf(adapter, nullptr, skipped, curved->cells(), measuresElements(metrics)).text);
+      findingsOf(adapter, nullptr, skipped, curved->cells(), measuresElementsOnly(metrics)).text);
   }
   totals.addBlock(mesh, validity->GetPointer(0), skipped, block.place, this->Threads);
   if (curved->cells() > 0)

@@ -14,8 +14,8 @@
  * in the opposite order of the others. Parts without a consistent orientation and image data
  * (implicit points) are refused. For better elements run vtkMeshOptimizer afterwards.
  *
- * A mesh with polyhedra is untangled as one of finite volumes, with its other cells: a cell is valid
- * if its volume and the pyramids over its faces are positive, see
+ * A mesh with polyhedra is untangled as one of finite volumes, with its other cells: a cell is
+ * valid if its volume and the pyramids over its faces are positive, see
  * tautline/Polyhedral/ImproveFaces.h. The boundary stays unless another Boundary is chosen. Method
  * and Effort are not used then, and of several processes the first one has the whole mesh.
  *

@@ -45,7 +45,7 @@ def quality_text(result: QualityResult, worst: int = 0) -> str:
         counts += f"{total['missed_at_integration_points']}"
     rows = [[name, *(facts[key] for key in _STATISTICS)] for name, facts in result.statistics.items()]
     table = align(rows, ["metric", *(_HEADINGS.get(key, key) for key in _STATISTICS)])
-    parts = [_verdict(result), counts, result.notice, table]
+    parts = [_verdict(result), _check_mesh(result), counts, result.notice, table]
     angles = result.angles
     rows = [
         [f"{low:g} to {high:g}", count.item(), f"{percent:.1f} %"]
@@ -75,9 +75,21 @@ def _verdict(result: QualityResult) -> str:
     return f"{result.summary.splitlines()[0]}\n\n{table}"
 
 
+def _check_mesh(result: QualityResult) -> str:
+    """The verdict of checkMesh, and the checks that offend."""
+    if result.failed_checks is None:
+        return ""
+    found = [line for line in result.summary.splitlines() if line.startswith("checkMesh: ")]
+    keys = ("offending", "minimum", "maximum", "limit", "on_request")
+    rows = [[name, *(facts[key] for key in keys)] for name, facts in result.mesh_checks.items() if facts["offending"]]
+    table = align(rows, ["check beyond its limit", *(key.replace("_", " ") for key in keys)]) if rows else ""
+    return "\n\n".join(part for part in (*found, table) if part)
+
+
 def quality_json(result: QualityResult) -> str:
     """Counts, statistics, histogram and, by the criteria, verdict, index and counts, as JSON."""
-    names = ("verdict", "index", "criteria", "inverted", "degenerate", "notice", "summary", "statistics", "histogram")
+    names = ("verdict", "index", "criteria", "failed_checks", "failed_checks_of_all", "mesh_checks", "inverted",
+             "degenerate", "notice", "summary", "statistics", "histogram")  # fmt: skip
     facts = {name: getattr(result, name) for name in names}
     return json.dumps(finite(_lists(facts)), indent=2)
 

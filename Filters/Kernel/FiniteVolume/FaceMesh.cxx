@@ -95,7 +95,8 @@ public:
       {
         throw Error("A face of cell " + std::to_string(this->CellOf[i]) + " is one of cell " +
           std::to_string(this->CellOf[TooMany - this->Mate[i]]) +
-          " and of others, too: remove duplicate and overlapping cells.");
+          " and of others, too: remove duplicate and overlapping cells. (ParaView's own reader of "
+          "OpenFOAM cases makes such cells unless Decompose Polyhedra is off.)");
       }
     }
   }

@@ -3,12 +3,13 @@
  * @file ImproveFaces.h
  * @brief Moves points so that a mesh of finite volumes passes the checks of OpenFOAM's checkMesh.
  *
- * Only points near faces that are beyond the targets move. Where cells are inverted, untangle() comes
- * first, on tetrahedra of the centers of cells and fans of their faces, or, of one layer, on its
- * polygons. Then the points minimize the energy of FaceEnergy.h by L-BFGS, in rounds; near faces
- * that would be worse in a check, they go a part of the way, or stay. What the boundary may do is that of BoundaryConstraints. Points of coupled
- * patches, and where three patches meet or two in one plane, stay; so do those of "empty" patches,
- * unless these are the sides of one layer of cells, whose points move together.
+ * Only points near faces that are beyond the targets move. Where cells are inverted, untangle()
+ * comes first, on tetrahedra of the centers of cells and fans of their faces, or, of one layer, on
+ * its polygons. Then the points minimize the energy of FaceEnergy.h by L-BFGS, in rounds; near
+ * faces that would be worse in a check, they go a part of the way, or stay. What the boundary may
+ * do is that of BoundaryConstraints. Points of coupled patches, and where three patches meet or two
+ * in one plane, stay; so do those of "empty" patches, unless these are the sides of one layer of
+ * cells, whose points move together.
  *
  * The result is never worse: no check that can fail has more offending faces or cells than in the
  * input, nor a worse value beyond its limit. The concavity of cells and the checks that only warn
