@@ -212,6 +212,11 @@ private:
       return;
     }
     const int dimension = this->dimension(section);
+    if (last < range.first || range.first < 1)
+    {
+      this->Cursor.failIn(section.begin,
+        "nodes " + std::to_string(range.first) + " to " + std::to_string(last) + " are no range");
+    }
     if (last > this->Bytes)
     {
       this->Cursor.failIn(section.begin,

@@ -34,7 +34,7 @@ void appendFacet(ListedFacets& facets, const Index* nodes, Index size, int patch
   facets.patch.push_back(patch);
 }
 
-/// The faces of a polyhedron; false if the grid has none.
+/// The faces of a polyhedron.
 void listPolyhedron(ListedFaces& list, vtkUnstructuredGrid* grid, vtkIdType cell, vtkIdList* stream)
 {
   grid->GetFaceStream(cell, stream);
@@ -97,8 +97,16 @@ std::vector<std::unique_ptr<FaceMeshAdapter>> FaceMeshAdapter::ofPieces(
   std::vector<FacePiece> faces;
   for (std::size_t i = 0; i < pieces.size(); ++i)
   {
-    faces.push_back(
-      { &adapters[i]->Faces, adapters[i]->points(), lacking ? nullptr : ids[i].data() });
+    // A piece without facets lacks no ids of them.
+    const std::vector<Index>& facets = adapters[i]->FacetIds;
+    const bool bare = adapters[i]->Faces.facet.end() ==
+      std::find_if(adapters[i]->Faces.facet.begin(), adapters[i]->Faces.facet.end(),
+        [](Index facet) { return facet >= 0; });
+    static const Index none = 0;
+    faces.push_back({ &adapters[i]->Faces, adapters[i]->points(), lacking ? nullptr : ids[i].data(),
+      !facets.empty() ? facets.data()
+        : bare        ? &none
+                      : nullptr });
   }
   const std::vector<std::vector<double>> added = joinPieces(group, faces);
   for (std::size_t i = 0; i < pieces.size(); ++i)
@@ -313,6 +321,7 @@ std::vector<FacePatch> FaceMeshAdapter::listPatches(vtkDataSet* input)
 void FaceMeshAdapter::listFacets(vtkDataSet* input, int patches)
 {
   vtkDataArray* numbers = input->GetCellData()->GetArray(PatchArray);
+  vtkDataArray* ids = input->GetCellData()->GetGlobalIds();
   for (Index cell = 0; cell < this->View.numberOfCells; ++cell)
   {
     pollInterruption(cell);
@@ -328,6 +337,10 @@ void FaceMeshAdapter::listFacets(vtkDataSet* input, int patches)
     const Index first = this->View.offsets[cell];
     appendFacet(this->Facets, this->View.connectivity + first, this->View.offsets[cell + 1] - first,
       patches > 0 ? number : -1);
+    if (ids)
+    {
+      this->FacetIds.push_back(static_cast<Index>(ids->GetComponent(cell, 0)));
+    }
   }
 }
 

@@ -89,6 +89,7 @@ private:
   FaceMesh Faces;
   ListedFaces List;
   ListedFacets Facets;
+  std::vector<Index> FacetIds; ///< global ids; empty: there are none
   std::vector<Index> Cells;
   std::vector<double> Points;
   bool Extruded = false;

@@ -249,8 +249,8 @@ std::string summarize(const ImproveFacesResult& result)
                                                  : describe(result.reason))
        << " checkMesh before: " << result.before.verdict(false)
        << " After: " << result.after.verdict(false)
-       << " With all checks: " << result.before.verdict(true) << " " << result.after.verdict(true)
-       << "\n"
+       << " With all checks, before: " << result.before.verdict(true)
+       << " After: " << result.after.verdict(true) << "\n"
        << result.rounds << " rounds, " << result.iterations << " iterations, " << result.freePoints
        << " points could move. Faces beyond the targets: " << result.wantingBefore << " before, "
        << result.wantingAfter << " after.";

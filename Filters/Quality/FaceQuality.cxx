@@ -100,7 +100,9 @@ vtkSmartPointer<vtkPolyData> FaceQuality::faces(bool all) const
   std::vector<Index> chosen;
   for (Index face = 0; face < mesh.faces(); ++face)
   {
-    if (mesh.ownsFace(face) && (all || failed[face]))
+    // What fails as seen from the other piece is not known here.
+    const bool other = mesh.has(face, OnBorder) && mesh.touches(face) && failed[face] && !all;
+    if ((mesh.ownsFace(face) && (all || failed[face])) || other)
     {
       chosen.push_back(face);
     }

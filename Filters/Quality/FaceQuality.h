@@ -42,7 +42,8 @@ public:
    * @brief The faces, after measure() and check(), with cell arrays: `Face`, `Owner` and
    * `Neighbour` (cells of the data set, -1: none), `Patch` (-1: internal), `Failed` (1 << kind of
    * the checks that the face or one of its cells fails), `OwnerWeight`, and the metrics of faces.
-   * Of pieces, each face is in the output of one; a face between two has no `Neighbour`.
+   * Of pieces, each face is in the output of one, but for failed ones between two pieces, which
+   * each has that sees a fault; these have no `Neighbour`.
    * @param all false: only faces that fail a check, or are of a cell that does
    */
   vtkSmartPointer<vtkPolyData> faces(bool all) const;

@@ -618,7 +618,11 @@ void vtkElementQuality::AddBounds(
 //------------------------------------------------------------------------------
 void vtkElementQuality::AddToNotice(const std::string& sentences)
 {
-  this->Notice += (this->Notice.empty() || sentences.empty() ? "" : " ") + sentences;
+  // Pieces have the same remarks.
+  if (this->Notice.find(sentences) == std::string::npos)
+  {
+    this->Notice += (this->Notice.empty() ? "" : " ") + sentences;
+  }
 }
 
 //------------------------------------------------------------------------------

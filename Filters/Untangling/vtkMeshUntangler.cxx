@@ -42,7 +42,7 @@ constexpr const char* BoundaryRemedy = "choose another Boundary";
 
 /// In the order of tautline::Obstacle.
 constexpr std::array<const char*, 5> reasons = { "valid",
-  "the iterations ended before it became valid; try a higher Effort",
+  "the iterations ended before it became valid; try another Boundary or a higher Effort",
   "all its points are fixed; free some, or repair it by hand",
   "the fixed points around leave no valid place for its free ones; free some of them",
   "a fixed point of it is NaN or infinite" };

@@ -33,15 +33,20 @@ def decomposed_cases() -> list[Path]:
         print("there is no OpenFOAM: decomposed cases are not compared")
         return []
     folder = OUT / "faces-on-ranks"
+    shutil.rmtree(folder, ignore_errors=True)
     command = [sys.executable, SCRIPTS / "make_cases.py", "--work", folder / "work", "--cases", folder / "cases",
                "--decompose", "4", *TUTORIALS]  # fmt: skip
     done = subprocess.run(command, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     cases = [file.parent for file in sorted((folder / "cases").rglob("processor0"))][: len(TUTORIALS)]
     assert len(cases) == len(TUTORIALS), cases
+    # Ranks read processors, or, with constant/polyMesh alone, parts of it.
+    wholes = []
     for case in cases:
-        shutil.rmtree(case / "constant" / "polyMesh", ignore_errors=True)  # so that processors are read
-    return cases
+        wholes.append(case.with_name(f"{case.name}_whole"))
+        shutil.copytree(case, wholes[-1], ignore=shutil.ignore_patterns("processor*"))
+        shutil.rmtree(case / "constant" / "polyMesh")
+    return [*cases, *wholes]
 
 
 def foam_file(case: Path, folder: Path) -> str:
@@ -51,7 +56,7 @@ def foam_file(case: Path, folder: Path) -> str:
     return str(copy / f"{case.name}.foam")
 
 
-copies = OUT / "faces-on-ranks" / "copies"
+copies = OUT / "faces-on-ranks-copies"
 shutil.rmtree(copies, ignore_errors=True)
 cases = [foam_file(case, copies) for case in (ELBOW, FAILING, *decomposed_cases())]
 one = run("faces_on_ranks.py", 1, *cases)

@@ -70,7 +70,7 @@ _REFERRING = (".vtm", *_IN_PIECES)
 _MEMORY_PER_BYTE = 8
 #: What converts formats that nothing here reads.
 _CONVERTERS = {
-    ".h5": "a .cas.h5 of Fluent is read where it is saved in the legacy format, .cas (file/cff-files? no)",
+    ".h5": "of Fluent, save the case in the legacy format, .cas: in its console, file/cff-files? no",
     ".step": "it is a geometry without a mesh: mesh it with Gmsh",
     ".stp": "it is a geometry without a mesh: mesh it with Gmsh",
     ".iges": "it is a geometry without a mesh: mesh it with Gmsh",

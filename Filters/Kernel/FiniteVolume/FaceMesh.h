@@ -142,8 +142,8 @@ struct ListedFacets
 
 /**
  * @brief Finds the faces of cells: two cells that list the same points share a face, unless two
- * facets are given there, which are then faces of the boundary (a baffle), unless both are of
- * "processor" patches: pieces were put together. Where one facet is of
+ * facets are given there, which are then faces of the boundary (a baffle). Two facets of
+ * "processor" patches make no baffle, as pieces were put together there. Where one facet is of
  * a patch that isPartly() and the other is not, both are faces of the boundary.
  *
  * The boundary has the given facets, patch by patch, in their order, each from its first point on

@@ -43,8 +43,8 @@ Key keyOfFace(const FacePiece& piece, Index face)
   return key;
 }
 
-/// Of a processorCyclic patch: the same for it and for the patch that it is coupled with; "" if the
-/// name is not one of OpenFOAM's.
+/// Of a processorCyclic patch, with the number of its faces: the same for it and for the patch that
+/// it is coupled with; "" if the name is not one of OpenFOAM's.
 std::string pairName(const FaceMesh& mesh, const FacePatch& patch)
 {
   const std::string prefix = "procBoundary", separator = "to", through = "through";
@@ -69,7 +69,8 @@ std::string pairName(const FaceMesh& mesh, const FacePatch& patch)
     }
     referred = mesh.patches[known->partner].name;
   }
-  return (first ? from + " " + other : other + " " + from) + " " + referred;
+  return (first ? from + " " + other : other + " " + from) + " " + referred + " " +
+    std::to_string(patch.count);
 }
 
 /// A face of a piece, in order of rank, piece and face.
@@ -86,7 +87,7 @@ struct Candidate
   Key key;
   FacePlace place;
   bool hasFacet;
-  bool ofProcessors; ///< of a patch between processors
+  bool ofProcessors; ///< of a patch between processors, or one of a pair: also within a piece
   bool operator<(const Candidate& other) const
   {
     return std::tie(this->key, this->place) < std::tie(other.key, other.place);
@@ -118,6 +119,7 @@ public:
     }
     const Index pieces = this->Group.sum(static_cast<Index>(this->Pieces.size()));
     this->Several = pieces > 1;
+    this->findFirstIds();
     std::vector<std::vector<Candidate>> sent(this->Group.size());
     for (std::size_t i = 0; i < this->Pieces.size(); ++i)
     {
@@ -153,6 +155,53 @@ private:
     }
   }
 
+  /// Of each "cyclic" patch the smallest id of a facet, if pieces have ids; uncouples them.
+  void findFirstIds()
+  {
+    const bool here = std::all_of(this->Pieces.begin(), this->Pieces.end(),
+      [](const FacePiece& piece) { return piece.facetIds != nullptr; });
+    if (!this->Several || !this->Group.everywhere(here))
+    {
+      return;
+    }
+    Index patches = 0;
+    for (const FacePiece& piece : this->Pieces)
+    {
+      patches = std::max(patches, static_cast<Index>(piece.mesh->patches.size()));
+    }
+    this->FirstIds.assign(this->Group.maximum(patches), std::numeric_limits<Index>::max());
+    for (const FacePiece& piece : this->Pieces)
+    {
+      FaceMesh& mesh = *piece.mesh;
+      for (std::size_t p = 0; p < mesh.patches.size(); ++p)
+      {
+        const FacePatch& patch = mesh.patches[p];
+        for (Index face = patch.first; isPaired(patch) && face < patch.first + patch.count; ++face)
+        {
+          const Index facet = mesh.facet[face - mesh.internalFaces];
+          this->FirstIds[p] = std::min(this->FirstIds[p], piece.facetIds[facet]);
+          mesh.partner[face - mesh.internalFaces] = -1;
+        }
+      }
+    }
+    for (Index& first : this->FirstIds)
+    {
+      first = -this->Group.maximum(-first);
+    }
+  }
+
+  static bool isPaired(const FacePatch& patch) { return patch.isCyclic() && patch.partner >= 0; }
+
+  /// Of a face of a "cyclic" patch: the same as that of the face that it is coupled with.
+  Key keyOfPair(const FacePiece& piece, Index number, Index face) const
+  {
+    const FacePatch& patch = piece.mesh->patches[number];
+    const Index facet = piece.mesh->facet[face - piece.mesh->internalFaces];
+    const auto at = static_cast<std::uint64_t>(piece.facetIds[facet] - this->FirstIds[number]);
+    const Index lower = std::min<Index>(number, patch.partner);
+    return { SplitMix::mixed(hashOfText(piece.mesh->patches[lower].name) + at), at };
+  }
+
   void listCandidates(Index number, std::vector<std::vector<Candidate>>& sent)
   {
     const FacePiece& piece = this->Pieces[number];
@@ -171,9 +220,11 @@ private:
         add(face, keyOfFace(piece, face), false);
       }
     }
-    for (const FacePatch& patch : mesh.patches)
+    for (std::size_t p = 0; p < mesh.patches.size(); ++p)
     {
+      const FacePatch& patch = mesh.patches[p];
       const bool ofProcessors = patch.type.rfind("processor", 0) == 0;
+      const bool paired = !this->FirstIds.empty() && isPaired(patch);
       const std::string pair =
         patch.type == "processorCyclic" ? pairName(mesh, patch) : std::string();
       for (Index i = 0; i < patch.count && (this->Several || ofProcessors); ++i)
@@ -181,7 +232,11 @@ private:
         const Index face = patch.first + i;
         pollInterruption(face);
         const auto at = static_cast<std::uint64_t>(i);
-        if (mesh.ownsCell(mesh.owner[face]))
+        if (paired && mesh.ownsCell(mesh.owner[face]))
+        {
+          add(face, this->keyOfPair(piece, static_cast<Index>(p), face), true);
+        }
+        else if (mesh.ownsCell(mesh.owner[face]))
         {
           add(face,
             pair.empty() ? keyOfFace(piece, face)
@@ -247,7 +302,8 @@ private:
 
   static bool isCyclic(const FaceMesh& mesh, Index face)
   {
-    return !mesh.internal(face) && patchOf(mesh, face).type == "processorCyclic";
+    return !mesh.internal(face) &&
+      (patchOf(mesh, face).type == "processorCyclic" || isPaired(patchOf(mesh, face)));
   }
 
   /// Couples faces of one piece, and says where the others count.
@@ -273,28 +329,49 @@ private:
     }
   }
 
+  /// The faces of a cell. Of two at one place, of a patch that isPartly() and the one for the rest,
+  /// the other one is left out: the copy of the cell has the whole face once.
+  static std::vector<Index> facesOnce(const FacePiece& piece, Index cell)
+  {
+    const FaceMesh& mesh = *piece.mesh;
+    std::vector<Index> faces;
+    std::vector<Key> keys;
+    for (Index i = mesh.cellOffsets[cell]; i < mesh.cellOffsets[cell + 1]; ++i)
+    {
+      const Index face = mesh.cellFaces[i];
+      const Key key = mesh.internal(face) ? Key{ 0, 0 } : keyOfFace(piece, face);
+      const bool twice =
+        !mesh.internal(face) && std::find(keys.begin(), keys.end(), key) != keys.end();
+      if (!twice)
+      {
+        keys.push_back(key);
+        faces.push_back(face);
+      }
+    }
+    return faces;
+  }
+
   /// What is sent of a cell: its faces by points that are numbered from 0 on, and which of them the
   /// piece that gets it has.
   void pack(const FacePiece& piece, Index cell, const std::vector<Mates>& pairs,
     std::vector<Index>& numbers, std::vector<double>& places) const
   {
     const FaceMesh& mesh = *piece.mesh;
-    const auto begin = mesh.cellFaces.begin() + mesh.cellOffsets[cell];
-    const auto end = mesh.cellFaces.begin() + mesh.cellOffsets[cell + 1];
+    const std::vector<Index> faces = facesOnce(piece, cell);
     numbers.push_back(pairs.front().there.piece);
     numbers.push_back(static_cast<Index>(pairs.size()));
     for (const Mates& pair : pairs)
     {
       numbers.push_back(pair.there.face);
-      numbers.push_back(std::find(begin, end, pair.here.face) - begin);
+      numbers.push_back(std::find(faces.begin(), faces.end(), pair.here.face) - faces.begin());
     }
     std::map<Index, Index> local;
-    std::vector<Index> order, faces;
-    for (auto face = begin; face != end; ++face)
+    std::vector<Index> order, nodes;
+    for (const Index face : faces)
     {
-      const Index first = mesh.offsets[*face], size = mesh.size(*face);
-      const bool out = mesh.owner[*face] == cell;
-      faces.push_back(size);
+      const Index first = mesh.offsets[face], size = mesh.size(face);
+      const bool out = mesh.owner[face] == cell;
+      nodes.push_back(size);
       for (Index k = 0; k < size; ++k)
       {
         const Index node = mesh.nodes[first + (out ? k : (size - k) % size)];
@@ -303,12 +380,12 @@ private:
         {
           order.push_back(node);
         }
-        faces.push_back(entry.first->second);
+        nodes.push_back(entry.first->second);
       }
     }
     numbers.push_back(static_cast<Index>(order.size()));
-    numbers.push_back(static_cast<Index>(end - begin));
-    numbers.insert(numbers.end(), faces.begin(), faces.end());
+    numbers.push_back(static_cast<Index>(faces.size()));
+    numbers.insert(numbers.end(), nodes.begin(), nodes.end());
     for (const Index node : order)
     {
       places.insert(places.end(), piece.points + 3 * node, piece.points + 3 * node + 3);
@@ -425,6 +502,7 @@ private:
   RankGroup& Group;
   const std::vector<FacePiece>& Pieces;
   bool Several = false;
+  std::vector<Index> FirstIds; ///< per patch; empty: facets have no ids
   std::vector<std::vector<double>> Added;
 };
 
@@ -496,8 +574,11 @@ void joinMeasures(RankGroup& group, const std::vector<FaceMeasures*>& pieces)
   DirectionSums sums;
   for (const FaceMeasures* piece : pieces)
   {
-    extent.add(piece->extent().low);
-    extent.add(piece->extent().high);
+    if (piece->extent().low[0] <= piece->extent().high[0])
+    {
+      extent.add(piece->extent().low);
+      extent.add(piece->extent().high);
+    }
     const DirectionSums own = piece->directionSums();
     sums.empty += own.empty;
     sums.wedge += own.wedge;

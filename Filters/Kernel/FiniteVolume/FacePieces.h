@@ -23,6 +23,9 @@ struct FacePiece
   /// One id per point, the same for the same point; or null, in all pieces: then points with the
   /// same coordinates are one.
   const Index* globalIds = nullptr;
+  /// One id per given facet, in the order of the whole mesh within each patch; or null. The faces
+  /// of "cyclic" patches are coupled by them.
+  const Index* facetIds = nullptr;
 };
 
 /// The extent of the points of all ranks. Collective.
@@ -39,8 +42,9 @@ TAUTLINE_KERNEL_EXPORT int markLayer(RankGroup& group, const std::vector<FacePie
  * @brief Adds the cells across the border of each piece. Collective.
  *
  * The border has the faces that a cell of another piece lists, too, unless two facets are given
- * there (a baffle). They keep their patches and count in one piece only. In one piece, faces of
- * "processor" patches alone are coupled, with each other. Patches of type "processorCyclic" are
+ * there (a baffle). They keep their patches and count in one piece only. Within a piece, only faces
+ * of "processor" patches are coupled. Those of "cyclic" patches are coupled as in the whole mesh if
+ * the facets have ids in all pieces, else within their piece. Patches of type "processorCyclic" are
  * coupled by their names, face by face, as decomposePar writes them.
  *
  * Throws Error where three or more cells share a face.

@@ -17,10 +17,10 @@ namespace
 {
 /// Points so many cells away from a wanting face move, at first and at most.
 constexpr int FirstLayers = 2, MostLayers = 8;
+/// Cells so many cells away from an inverted one are untangled first.
+constexpr int UntangledLayers = 3;
 /// Points that are one above the other are so up to this part of the extent of the mesh.
 constexpr double LayerTolerance = 1e-9;
-/// The same, of those that are untangled first.
-constexpr int UntangledLayers = 3;
 /// Rounds without a better result before the search ends.
 constexpr int MostFailures = 4;
 /// After a round without one, targets are closer to the ideal by this factor.
@@ -42,7 +42,7 @@ constexpr double UntanglingShrinking = 0.5, UntanglingPower = 1, UntanglingWeigh
 struct Want
 {
   Index faces = 0;    ///< beyond a target or of an inverted cell
-  Index inverted = 0; ///< with a tetrahedron of no positive volume
+  Index inverted = 0; ///< with a tetrahedron of no positive volume; of untangleOnly: invalid cells
   double excess = 0;  ///< sum of what is beyond, relative to the targets
   std::vector<Index> list;
 };
@@ -52,8 +52,32 @@ bool isBetter(const Want& a, const Want& b)
   return a.inverted != b.inverted ? a.inverted < b.inverted : a.excess < b.excess;
 }
 
+/// The faces of invalid cells, which `inverted` counts.
+Want invalidCells(const FaceMesh& mesh, const FaceMeasures& measures)
+{
+  const std::vector<signed char> validity = measures.validity();
+  Want want;
+  want.inverted = std::count_if(
+    validity.begin(), validity.end(), [](signed char value) { return value != Valid; });
+  for (Index face = 0; face < mesh.faces(); ++face)
+  {
+    if (validity[mesh.owner[face]] != Valid ||
+      (mesh.internal(face) && validity[mesh.neighbor[face]] != Valid))
+    {
+      want.list.push_back(face);
+    }
+  }
+  want.faces = static_cast<Index>(want.list.size());
+  want.excess = static_cast<double>(want.faces);
+  return want;
+}
+
 Want wantOf(const FaceMesh& mesh, const FaceMeasures& measures, const ImproveFacesOptions& options)
 {
+  if (options.untangleOnly)
+  {
+    return invalidCells(mesh, measures);
+  }
   const FaceValues angles = measures.evaluate(Metric::NonOrthogonality);
   const FaceValues skews = measures.evaluate(Metric::FaceSkewness);
   const FaceValues tets = measures.evaluate(Metric::CenterTetQuality);
@@ -62,8 +86,8 @@ Want wantOf(const FaceMesh& mesh, const FaceMeasures& measures, const ImproveFac
   constexpr double ofInverted = 1;
   for (Index face = 0; face < mesh.faces(); ++face)
   {
-    const double angle = options.untangleOnly ? 0 : angles.faces[face] / options.angle - 1;
-    const double skew = options.untangleOnly ? 0 : skews.faces[face] / options.skewness - 1;
+    const double angle = angles.faces[face] / options.angle - 1;
+    const double skew = skews.faces[face] / options.skewness - 1;
     const bool inverted = !(tets.faces[face] > 0 && fans.faces[face] > 0);
     const double excess =
       std::max(angle, 0.0) + std::max(skew, 0.0) + (inverted ? ofInverted : 0.0);
@@ -76,6 +100,24 @@ Want wantOf(const FaceMesh& mesh, const FaceMeasures& measures, const ImproveFac
   }
   want.faces = static_cast<Index>(want.list.size());
   return want;
+}
+
+/// Whether the values of a check are bad above its limit, or below; of counts neither.
+bool isLargeBad(MeshCheckKind kind)
+{
+  return kind == MeshCheckKind::NonOrthogonality || kind == MeshCheckKind::FaceSkewness ||
+    kind == MeshCheckKind::CellAspectRatio || kind == MeshCheckKind::CellOpenness ||
+    kind == MeshCheckKind::CellConcavity || kind == MeshCheckKind::BoundaryOpenness ||
+    kind == MeshCheckKind::FaceConcavity;
+}
+
+bool isSmallBad(MeshCheckKind kind)
+{
+  return kind == MeshCheckKind::FaceArea || kind == MeshCheckKind::CellVolume ||
+    kind == MeshCheckKind::PyramidVolume || kind == MeshCheckKind::FaceTets ||
+    kind == MeshCheckKind::EdgeLength || kind == MeshCheckKind::FaceFlatness ||
+    kind == MeshCheckKind::CellDeterminant || kind == MeshCheckKind::FaceWeight ||
+    kind == MeshCheckKind::VolumeRatio;
 }
 
 /// Whether no check is worse: in how much offends, and in the worst value beyond a limit.
@@ -107,13 +149,8 @@ bool isNoWorse(const MeshCheckReport& after, const MeshCheckReport& before)
       continue;
     }
     const bool above = b.most > b.limit && a.most > std::max(b.most, b.limit) + slack;
-    const bool below =
-      b.least < b.limit && b.most >= b.limit && a.least < std::min(b.least, b.limit) - slack;
-    // Values are good on one side of their limit only; of counts both are 0.
-    const bool largeIsBad = a.kind == MeshCheckKind::NonOrthogonality ||
-      a.kind == MeshCheckKind::FaceSkewness || a.kind == MeshCheckKind::CellAspectRatio ||
-      a.kind == MeshCheckKind::CellOpenness || a.kind == MeshCheckKind::CellConcavity;
-    if (largeIsBad ? above : below)
+    const bool below = b.least < b.limit && a.least < std::min(b.least, b.limit) - slack;
+    if ((isLargeBad(a.kind) && above) || (isSmallBad(a.kind) && below))
     {
       return false;
     }
@@ -963,8 +1000,12 @@ ImproveFacesResult Improver::run()
     if (this->findBetter(at, this->untangled(at.want)))
     {
       accept();
-      this->smoothUntangled(at, tangled, result);
-      accept();
+      if (!watch.reached(this->Options.maximumSeconds) &&
+        (!this->Options.proceed || this->Options.proceed(0, 0)))
+      {
+        this->smoothUntangled(at, tangled, result);
+        accept();
+      }
     }
   }
   int layers = FirstLayers, failures = 0;

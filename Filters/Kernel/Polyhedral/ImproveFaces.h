@@ -31,7 +31,7 @@ struct ImproveFacesOptions
 {
   /// Faces are to have at most this non-orthogonality, degrees, and this skewness.
   double angle = 65, skewness = 3.5;
-  /// The faces of inverted cells alone are wanting, and other checks may become worse.
+  /// The faces of cells that are not valid alone are wanting, and other checks may become worse.
   bool untangleOnly = false;
   bool patchesStay = false;  ///< the points of patches, but for "empty" ones of a layer, stay
   int rounds = 40;           ///< at most
@@ -48,9 +48,10 @@ struct ImproveFacesResult
 {
   std::vector<double> points; ///< 3 per point of the mesh
   MeshCheckReport before, after;
-  Index wantingBefore = 0, wantingAfter = 0;   ///< faces beyond a target, or of an inverted cell
-  Index invertedBefore = 0, invertedAfter = 0; ///< faces with a tetrahedron of no positive volume
-  Index freePoints = 0;                        ///< points that could move
+  Index wantingBefore = 0, wantingAfter = 0; ///< faces beyond a target, or of an inverted cell
+  /// Faces with a tetrahedron of no positive volume; with untangleOnly cells that are not valid.
+  Index invertedBefore = 0, invertedAfter = 0;
+  Index freePoints = 0; ///< points that could move
   int rounds = 0, iterations = 0;
   StopReason reason = StopReason::NoProgress;
 };
