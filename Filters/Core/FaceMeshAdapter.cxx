@@ -60,10 +60,10 @@ std::string textAt(vtkFieldData* fields, const char* name, int i, const std::str
 }
 
 //------------------------------------------------------------------------------
-FaceMeshAdapter::FaceMeshAdapter(vtkDataSet* input, const MeshAdapter& adapter, int threads)
+FaceMeshAdapter::FaceMeshAdapter(vtkDataSet* input, MeshAdapter& adapter, int threads)
 {
   SingleRank alone;
-  find(alone, { { input, const_cast<MeshAdapter*>(&adapter) } }, { this }, threads);
+  find(alone, { { input, &adapter } }, { this }, threads);
 }
 
 //------------------------------------------------------------------------------

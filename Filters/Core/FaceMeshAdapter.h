@@ -52,7 +52,7 @@ public:
    *
    * Throws Error where cells overlap, and where facets are of no cell.
    */
-  FaceMeshAdapter(vtkDataSet* input, const MeshAdapter& adapter, int threads = 0);
+  FaceMeshAdapter(vtkDataSet* input, MeshAdapter& adapter, int threads = 0);
 
   /// Finds the faces of the pieces of one mesh, and couples them, see joinPieces(). Ghost cells do
   /// not count. Collective. Throws as the constructor does.

@@ -100,23 +100,6 @@ void addSquare(std::array<Vec3, 3>& tensor, const Vec3& v, double weight)
 }
 
 //------------------------------------------------------------------------------
-bool isOfWholeCells(Metric metric)
-{
-  switch (metric)
-  {
-    case Metric::CellVolume:
-    case Metric::Openness:
-    case Metric::CellAspectRatio:
-    case Metric::CellDeterminant:
-    case Metric::AreaDeterminant:
-    case Metric::CellConcavity:
-      return true;
-    default:
-      return false;
-  }
-}
-
-//------------------------------------------------------------------------------
 FaceMeasures::FaceMeasures(
   const FaceMesh& mesh, const double* points, FaceConvention convention, int threads)
   : Mesh(mesh)

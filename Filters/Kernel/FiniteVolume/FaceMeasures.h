@@ -45,9 +45,6 @@ struct FaceValues
   std::vector<double> faces;
 };
 
-/// Whether a metric is one of whole cells, not the worst of faces.
-TAUTLINE_KERNEL_EXPORT bool isOfWholeCells(Metric metric);
-
 /**
  * @class FaceMeasures
  * @brief Evaluates the metrics on a mesh, which must outlive it, and so must the points.

@@ -970,13 +970,11 @@ ImproveFacesResult Improver::run()
   Placement good = at; // the best of which no check is worse
   result.before = at.report;
   result.wantingBefore = at.want.faces;
-  result.invertedBefore = at.want.inverted;
   const auto finish = [&](StopReason reason)
   {
     result.points = std::move(good.points);
     result.after = std::move(good.report);
     result.wantingAfter = good.want.faces;
-    result.invertedAfter = good.want.inverted;
     result.reason = good.want.faces == 0 ? StopReason::AllValid : reason;
     return std::move(result);
   };

@@ -49,8 +49,6 @@ struct ImproveFacesResult
   std::vector<double> points; ///< 3 per point of the mesh
   MeshCheckReport before, after;
   Index wantingBefore = 0, wantingAfter = 0; ///< faces beyond a target, or of an inverted cell
-  /// Faces with a tetrahedron of no positive volume; with untangleOnly cells that are not valid.
-  Index invertedBefore = 0, invertedAfter = 0;
   Index freePoints = 0; ///< points that could move
   int rounds = 0, iterations = 0;
   StopReason reason = StopReason::NoProgress;
