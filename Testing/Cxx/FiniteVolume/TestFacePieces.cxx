@@ -17,6 +17,7 @@ struct MeasuredPiece
   RankPart part;
   FaceMesh mesh;
   std::vector<double> points;
+  std::vector<Index> facetIds;
 };
 
 /// The values of all metrics and the checks, by cells of the whole mesh.
@@ -48,6 +49,28 @@ Measured measureWhole(
   return all;
 }
 
+/// Ids of the facets across x of a block, by the row and column of their cells: the same in all
+/// pieces.
+std::vector<Index> idsOf(const MeshData& data, const ListedFacets& facets)
+{
+  std::vector<Index> ids;
+  for (std::size_t i = 0; i < facets.patch.size(); ++i)
+  {
+    double y = 0, z = 0;
+    const auto size = static_cast<double>(facets.offsets[i + 1] - facets.offsets[i]);
+    for (Index n = facets.offsets[i]; n < facets.offsets[i + 1]; ++n)
+    {
+      y += data.points[3 * facets.nodes[n] + 1] / size;
+      z += data.points[3 * facets.nodes[n] + 2] / size;
+    }
+    constexpr Index perRow = 10, perPatch = 1000;
+    ids.push_back(
+      perPatch * facets.patch[i] + perRow * static_cast<Index>(y) + static_cast<Index>(z));
+  }
+  ids.push_back(-1); // so that there is an address where there is no facet
+  return ids;
+}
+
 /// @param pieceOf the piece of a cell; pieces are dealt to the ranks in turn
 template <class PieceOf>
 Measured measurePieces(const MeshData& data, const Facets& facetsOf,
@@ -66,8 +89,9 @@ Measured measurePieces(const MeshData& data, const Facets& facetsOf,
         MeasuredPiece& made = own.back();
         made.part = partOf(data, piece, pieceOf, ghosts);
         const MeshData& mine = made.part.data;
-        made.mesh = findFaces(
-          mine.numberOfPoints(), facesOf(mine), facetsOf(mine, faceMeshOf(mine)), patches);
+        const ListedFacets facets = facetsOf(mine, faceMeshOf(mine));
+        made.mesh = findFaces(mine.numberOfPoints(), facesOf(mine), facets, patches);
+        made.facetIds = idsOf(mine, facets);
         made.points = mine.points;
         if (ghosts)
         {
@@ -77,7 +101,7 @@ Measured measurePieces(const MeshData& data, const Facets& facetsOf,
       std::vector<FacePiece> list;
       for (MeasuredPiece& piece : own)
       {
-        list.push_back({ &piece.mesh, piece.points.data() });
+        list.push_back({ &piece.mesh, piece.points.data(), nullptr, piece.facetIds.data() });
       }
       if (patches.empty())
       {
@@ -201,6 +225,42 @@ TAUTLINE_PART(testLayerPieces)
     whole.checks[static_cast<std::size_t>(MeshCheckKind::EdgeAlignment)].offending > 0);
   const auto rows = [](Index cell) { return static_cast<int>(cell / 6); };
   compare(whole, measurePieces(data, noFacets, {}, 3, 5, rows, false));
+}
+
+/// Periodic sides whose halves are in different pieces, and in one.
+TAUTLINE_PART(testCyclicPieces)
+{
+  constexpr Index size = 4;
+  constexpr double length = size;
+  MeshData data = blockMesh(CellType::Hexahedron, size, size, size);
+  const Facets sides = [](const MeshData& part, const FaceMesh& mesh)
+  {
+    ListedFacets facets;
+    addFacets(facets, mesh, 0, part, [](const Vec3& p) { return p[0] < 0.5; });
+    addFacets(facets, mesh, 1, part, [](const Vec3& p) { return p[0] > length - 0.5; });
+    return facets;
+  };
+  data.transform(
+    [](const Vec3& p)
+    {
+      const double x = 2 * Pi * p[0] / length, y = std::sin(Pi * p[1] / length);
+      return p + Vec3{ 0.4 * y * std::sin(x), 0.4 * y * std::cos(x + p[2]), 0 };
+    });
+  const std::vector<FacePatch> patches = { patchOf("a", "cyclic", 1), patchOf("b", "cyclic", 0) };
+  const Measured whole = measureWhole(data, sides, patches);
+  TAUTLINE_CHECK_EQUAL(
+    whole.checks[static_cast<std::size_t>(MeshCheckKind::CoupledPoints)].offending, 0);
+  TAUTLINE_CHECK(whole.checks[static_cast<std::size_t>(MeshCheckKind::NonOrthogonality)].most > 10);
+  const auto column = [](Index cell) { return cell % size; };
+  const auto row = [](Index cell) { return cell / size % size; };
+  const auto slabs = [&](Index cell) { return static_cast<int>(2 * column(cell) / size); };
+  // Each piece has as many faces of one half as of the other, of which none belong together.
+  const auto crossed = [&](Index cell)
+  { return static_cast<int>((2 * column(cell) / size + 2 * row(cell) / size) % 2); };
+  const auto rough = [](Index cell) { return static_cast<int>(cell * 7 / 3 % 5); };
+  compare(whole, measurePieces(data, sides, patches, 2, 2, slabs, false));
+  compare(whole, measurePieces(data, sides, patches, 2, 2, crossed, false));
+  compare(whole, measurePieces(data, sides, patches, 3, 5, rough, true));
 }
 
 /// Points of short edges on the border count once.
