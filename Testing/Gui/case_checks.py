@@ -19,7 +19,8 @@ MESH = os.path.join("constant", "polyMesh")
 BAD_PORT, FACES_PORT, CHECKS_PORT = 7, 8, 9  # of Element Quality
 COLUMNS = ("Maximum", "Offending", "Failed", "OnRequest")  # of the checks
 FAILED = {"cell_aspect_ratio": 2, "cell_volume": 2, "non_orthogonality": 25, "pyramid_volume": 54, "face_skewness": 19}
-LARGEST = {"non_orthogonality": (169.779, 14.1579), "face_skewness": (191.872, 1.17818)}  # before and after
+LARGEST = {"non_orthogonality": 169.779, "face_skewness": 191.872}  # by checkMesh
+TARGETS = {"non_orthogonality": 65, "face_skewness": 3.5}  # the defaults of the preset
 CLOSE = 1e-5  # relative: checkMesh prints six digits
 RIGHT_ANGLE, STRAIGHT_ANGLE = 90, 180  # degrees
 RED, INSIDE = (0.8, 0.2, 0.15), 0.25  # color of faces, and opacity of the mesh around them
@@ -40,16 +41,12 @@ def mesh_checks():
     return {name: (largest[row], int(bad[row]), fails[row] and not asked[row]) for row, name in enumerate(names)}
 
 
-def same_largest(found, moment):
-    for name, values in LARGEST.items():
-        assert numpy.isclose(found[name][0], values[moment], rtol=CLOSE), (name, found[name][0])
-
-
 @check
 def failed():
     found = mesh_checks()
     assert {name: bad for name, (_, bad, counted) in found.items() if counted} == FAILED, found
-    same_largest(found, 0)
+    for name, value in LARGEST.items():
+        assert numpy.isclose(found[name][0], value, rtol=CLOSE), (name, found[name][0])
     summary = find("ElementQuality").Summary
     assert f"checkMesh: Failed {len(FAILED)} mesh checks." in summary, summary
 
@@ -81,7 +78,7 @@ def repaired():
 def passed():
     found = mesh_checks()
     assert not any(counted for _, _, counted in found.values()), found
-    same_largest(found, 1)
+    assert all(found[name][0] <= target for name, target in TARGETS.items()), found
 
 
 @check
