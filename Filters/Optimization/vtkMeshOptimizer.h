@@ -574,7 +574,7 @@ private:
   void Optimize(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
     tautline::OptimizerRun& run, bool done, double time, tautline::TableRows& history,
     tautline::TableRows& statistics);
-  /// The measures of finite volumes are those of the layer.
+  /// FINITE_VOLUMES measures the layer itself.
   bool TreatsLayers() override { return this->PlanarLayers && this->Preset != FINITE_VOLUMES; }
   void ImproveFaces(const tautline::OptimizerSettings& settings, const tautline::InputBlock& block,
     tautline::OptimizerRun& run, tautline::TableRows& history, tautline::TableRows& statistics);
