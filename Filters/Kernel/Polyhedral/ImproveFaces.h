@@ -49,7 +49,7 @@ struct ImproveFacesResult
   std::vector<double> points; ///< 3 per point of the mesh
   MeshCheckReport before, after;
   Index wantingBefore = 0, wantingAfter = 0; ///< faces beyond a target, or of an inverted cell
-  Index freePoints = 0; ///< points that could move
+  Index freePoints = 0;                      ///< points that could move
   int rounds = 0, iterations = 0;
   StopReason reason = StopReason::NoProgress;
 };
