@@ -9,7 +9,7 @@ import shutil
 from pathlib import Path
 
 from tautline import __main__ as command_line
-from tautline.studies import _common, _verdicts
+from tautline.studies import _report, _verdicts
 from wrong_data import Recorder, check_verdicts
 
 SMALLEST_PICTURE = 5000  # bytes; an empty one has fewer
@@ -66,7 +66,7 @@ class Studies:
         for verdict in known:
             assert text.count(f"- {verdict.upper()} (") == sum(row["verdict"] == verdict for row in found), verdict
         check_verdicts(study, self.calls[study], self.directory / "wrong_data", others)
-        for picture in pictures if _common.pyplot else ():
+        for picture in pictures if _report.pyplot else ():
             assert (folder / f"{picture}.png").stat().st_size > SMALLEST_PICTURE, f"{study}/{picture}.png is empty"
 
 
@@ -79,4 +79,4 @@ def refused_command(text: str, *arguments: str, code: int = 1) -> None:
 
 def pictures() -> str:
     """Whether pictures were checked."""
-    return "pictures" if _common.pyplot else "no pictures: matplotlib is missing"
+    return "pictures" if _report.pyplot else "no pictures: matplotlib is missing"

@@ -8,7 +8,7 @@ import tautline as tl
 from checks import OUT, refused, wording
 from study_checks import Studies, refused_command
 from tautline._errors import Messages
-from tautline.studies import _common, _verdicts, decomposition
+from tautline.studies import _report, _verdicts, decomposition
 from vtkmodules.vtkCommonCore import vtkIntArray
 from vtkmodules.vtkCommonDataModel import vtkTable
 
@@ -106,7 +106,7 @@ def test_model() -> None:
     assert model.efficiency(1000, 1024) < model.efficiency(1000, 64) < model.efficiency(10000, 64) < 1
     factor, exponent = decomposition.slope([10, 100, 1000], [3 * n**0.6 for n in (10, 100, 1000)])
     assert abs(factor - 3) < 1e-9 and abs(exponent - 0.6) < 1e-12
-    report = _common.Report("decomposition", "verdicts", studies.directory)
+    report = _report.Report("decomposition", "verdicts", studies.directory)
     weak = {n: decomposition.Division(1000 * n, 1.0, 600, 500.0, 10, 100, 9600, 20, 200 * n, 294, 0.1, [])
             for n in (16, 64, 256)}
     numbers = (model.exponent, {"slowest": model.slowest(1000), "halo": model.halo_of(1000)}, {1000: 0.81},
@@ -126,7 +126,7 @@ def test_spread() -> None:
     assert decomposition.counted(tl.domain("disk2d", 500), "graph", 3).halos[1] > 0
     for halos, verdict in (([90, 95, 99], _verdicts.HOLDS), ([90, 99, 101], _verdicts.NOT_DECIDED),
                            ([100, 102, 103], _verdicts.DOES_NOT_HOLD)):
-        report = _common.Report("decomposition", "verdicts", studies.directory)
+        report = _report.Report("decomposition", "verdicts", studies.directory)
         one = decomposition.Division(1000, 1.0, 100, 90.0, 4, 10, 960, 10, 200, 210, 0.1, halos)
         decomposition.division_findings(report, {"any": {method: {8: one} for method in decomposition.METHODS}})
         found = {sentence: verdict for _, sentence, verdict, _ in report.findings}

@@ -5,7 +5,7 @@ import numpy as np
 import tautline as tl
 from checks import OUT
 from study_checks import Studies, pictures, refused_command
-from tautline.studies import _common, _deformed, _warped
+from tautline.studies import _deformed, _meshes, _warped
 from vtkmodules.util.numpy_support import vtk_to_numpy
 
 studies = Studies(OUT / "studies_deformation")
@@ -78,11 +78,11 @@ def check_similarity():
     for name in ("bar", "sphere"):
         moving = _deformed.Moving(name, 1000)
         result = tl.warp(moving.mesh, moving.at(0.5), method="hybrid")
-        ours = _deformed.similarity(moving.mesh, _common.points_of(result.mesh))
+        ours = _deformed.similarity(moving.mesh, _meshes.points_of(result.mesh))
         theirs = vtk_to_numpy(result.mesh.GetCellData().GetArray("TMP shape"))
         assert np.allclose(ours, theirs, rtol=1e-9, atol=1e-12), np.abs(ours - theirs).max()
         turn = np.array([[0.0, -3.0, 0.0], [3.0, 0.0, 0.0], [0.0, 0.0, 3.0]])
-        same = _deformed.similarity(moving.mesh, _common.points_of(moving.mesh) @ turn)
+        same = _deformed.similarity(moving.mesh, _meshes.points_of(moving.mesh) @ turn)
         assert np.abs(same).max() < 1e-11, np.abs(same).max()
 
 
@@ -102,7 +102,7 @@ def check_harmonic():
     """Affine motions of the boundary are extended exactly, in the plane and in space."""
     for name, dimension in (("brain", 2), ("bore", 3)):
         mesh = tl.domain(name, 1000)
-        points = _common.points_of(mesh)
+        points = _meshes.points_of(mesh)
         slope = np.array([[0.3, -0.2, 0.0], [0.1, 0.4, 0.0], [0.2, -0.3, 0.5 * (dimension == 3)]]) * (
             np.arange(3) < dimension,
         )

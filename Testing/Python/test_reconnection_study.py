@@ -3,7 +3,7 @@
 
 from checks import OUT
 from study_checks import Studies
-from tautline.studies import _common, _verdicts, reconnection
+from tautline.studies import _report, _verdicts, reconnection
 
 studies = Studies(OUT / "studies_reconnection")
 TABLES = {domain: len(reconnection.STEPS) for domain in reconnection.DOMAINS} | {
@@ -41,7 +41,7 @@ def test_numbers():
 
 def holds(state, *arguments) -> list:
     """The verdicts of a function that states findings."""
-    report = _common.Report("reconnection", "verdicts", studies.directory)
+    report = _report.Report("reconnection", "verdicts", studies.directory)
     state(report, *arguments)
     return [verdict == _verdicts.HOLDS for _, _, verdict, _ in report.findings]
 

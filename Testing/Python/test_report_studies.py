@@ -14,7 +14,7 @@ import tautline as tl
 from checks import DATA, OUT, run_tests, wording
 from study_checks import Studies, refused_command
 from tautline import __main__ as command_line
-from tautline.studies import _common, _intersections, _inventory, _page, figures, names, peridynamics_local, toy
+from tautline.studies import _intersections, _inventory, _page, _report, figures, names, peridynamics_local, toy
 
 studies = Studies(OUT / "studies_report")
 PICTURES = ("figure_2_1", "figure_2_2", "figure_3_1", "figure_3_3", "figure_3_12", "figure_4_2", "figure_4_4",
@@ -117,7 +117,7 @@ def test_report():
         found = studies_in(folder)
         assert found and all(escape(sentence) in page for sentence in found), study
         drawn = len(list((OUT / "all").glob("*/*.png")))
-        assert page.count("data:image/png") == drawn and (drawn > 0 or not _common.pyplot), drawn
+        assert page.count("data:image/png") == drawn and (drawn > 0 or not _report.pyplot), drawn
     assert wording("condition-number-by-1-h") in page
     targets = set(re.findall(r" id='([^']+)'", page))
     links = set(re.findall(r"href='#([^']+)'", page))

@@ -7,7 +7,7 @@ from importlib import import_module
 from pathlib import Path
 
 import numpy as np
-from tautline.studies import _common, _deformed, _verdicts
+from tautline.studies import _deformed, _report, _verdicts
 
 TRIALS = 1000  # sets of wrong numbers, each with a seed of its own, unless fewer change all verdicts
 FAR = 1e12  # a factor by which numbers change that are near 0, or above a tolerance of rounding errors
@@ -94,7 +94,7 @@ def wrong(value, random: np.random.Generator, count: str = ""):
 
 def verdicts(calls, directory: Path, random=None) -> dict:
     """The verdicts by finding, of the recorded numbers or of wrong ones, as on meshes of full size."""
-    report = _common.Report("wrong_data", "wrong data", directory)
+    report = _report.Report("wrong_data", "wrong data", directory)
     for function, arguments, named in calls:
         if random is not None:
             arguments = [wrong(argument, random) for argument in arguments]

@@ -13,7 +13,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report, cells_of, parser, points_of, sizes_of
+from ._meshes import cells_of, points_of, sizes_of
+from ._report import Report, parser
 from ._verdicts import Times, timed
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
-from ._common import Report, cells_of, points_of, pyplot
+from ._meshes import cells_of, points_of
+from ._report import Report, pyplot
 
 #: Direction of the light, and of the view, of surfaces in space.
 _LIGHT = np.array([0.4, -0.7, 0.6])

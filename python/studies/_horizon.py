@@ -12,7 +12,7 @@ import numpy as np
 import tautline
 from tautline._files import save_figure
 
-from . import _common
+from . import _meshes, _report
 
 #: Tables 4.1 to 4.3 as printed: (aspect ratio, n = 1 / h, delta) and the condition numbers.
 _KEYS = [(ar, n, delta) for ar in (1, 4) for n in (10, 20, 40) for delta in (0.2, 0.3, 0.4)]
@@ -50,7 +50,7 @@ def square(n: int, aspect_ratio: float, delta: float, extra: int = 0, aligned: b
         else:
             return None
         axes.append(first + step * np.arange(count + 1))
-    points, cells = _common.right_triangles(*axes)
+    points, cells = _meshes.right_triangles(*axes)
     inside = lambda p: ((p > 1e-9) & (p < 1 - 1e-9)).all(axis=1)  # noqa: E731
     region = np.where(inside(points[cells].mean(axis=1)), 1, 2)
     return tautline.from_arrays(points, {"triangle": cells}), region, np.where(inside(points), 0.0, 1.0)
@@ -79,7 +79,7 @@ def condition(*arguments: Any, **options: Any) -> float:
     return math.nan if result is None else result.condition
 
 
-class Report(_common.Report):
+class Report(_report.Report):
     """A report with charts of several curves."""
 
     def texts(self, title: str, rows: Sequence[Sequence[Any]], headings: Sequence[str]) -> None:
@@ -90,7 +90,7 @@ class Report(_common.Report):
         """Panels side by side: dicts of title, x, y (labels), lines {label: (x, y[, style])}, scales."""
         if not self._pictures():
             return
-        figure, axes_of = _common.pyplot.subplots(
+        figure, axes_of = _report.pyplot.subplots(
             1, len(panels), figsize=(5.2 * len(panels), 4.2), layout="constrained", squeeze=False)  # fmt: skip
         for axes, panel in zip(axes_of[0], panels):
             colors: dict[str, str] = {}  # one for both discretizations
@@ -106,12 +106,12 @@ class Report(_common.Report):
             axes.grid(True, which="major", alpha=0.3)
             axes.legend(fontsize=8)
         save_figure(figure, self.out / f"{file}.png", dpi=90)
-        _common.pyplot.close(figure)
+        _report.pyplot.close(figure)
 
 
 def parse(name: str, text: str, arguments: Sequence[str]) -> argparse.Namespace:
     """The options every study has; by default all cores are used."""
-    return _common.parser(name, text, threads=0).parse_args(arguments)
+    return _report.parser(name, text, threads=0).parse_args(arguments)
 
 
 def exponent(x: Sequence[float], y: Sequence[float]) -> float:

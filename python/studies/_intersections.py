@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ._common import Report, pyplot
+from ._report import Report, pyplot
 
 #: The triangles of the three cases by name: all inside, one vertex outside, one vertex inside the unit circle.
 CASES = {

@@ -15,7 +15,7 @@ from typing import Iterable
 
 import numpy as np
 
-from ._common import pyplot
+from ._report import pyplot
 from ._inventory import ENTRIES, SECTIONS, Entry
 from ._verdicts import DOES_NOT_HOLD, HOLDS, NOT_DECIDED, TOO_SMALL
 

@@ -12,7 +12,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import TYPICAL_C, Report, Run, improve, measure, methods, parser, scaled
+from ._common import TYPICAL_C, Run, improve, measure, methods
+from ._meshes import scaled
+from ._report import Report, parser
 
 DOMAINS = ("disk3d", "disk2d", "barrier2d", "barrier3d")  # Figure 3.3; the first is that of tables and figures
 ITERATIONS = 20

@@ -14,7 +14,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Method, Report, Run, improve, parser, pyplot
+from ._common import Method, Run, improve
+from ._report import Report, parser, pyplot
 from ._solver_tables import CELLS, COMBINATIONS
 from ._verdicts import Times
 

@@ -10,7 +10,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from tautline._errors import Error
 
-from ._common import TYPICAL_C, Method, Report, Run, cells_of, improve, measure, methods, scaled, sizes_of
+from ._common import TYPICAL_C, Method, Run, improve, measure, methods
+from ._meshes import cells_of, scaled, sizes_of
+from ._report import Report
 
 #: Over the mean size: the size below which the untangling metric (3.3) counts an element. The dissertation has no
 #: value.

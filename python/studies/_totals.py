@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ._common import Report
+from ._report import Report
 from ._solver_tables import COMBINATIONS, METRICS
 from ._solvers import AMG, LABELS, SOLVERS, TITLES, Solve
 from ._verdicts import Times, Verdict, all_of, below, faster

@@ -13,7 +13,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 import tautline
 from tautline._errors import Error
 
-from ._common import TYPICAL_C, Report, Run, parser, points_of, sizes_of, with_points
+from ._common import TYPICAL_C, Run
+from ._meshes import points_of, sizes_of, with_points
+from ._report import Report, parser
 from ._tangled import NOTE, UNITS, by_unit, counts, diverged, tangled_methods, untangle
 
 QUANTITIES = ("si_mean", "si_worst", "imr_mean", "imr_worst")

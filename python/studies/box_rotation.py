@@ -10,7 +10,9 @@ import numpy as np
 
 import tautline
 
-from ._common import QUANTITIES, Report, measure, sizes_of
+from ._common import QUANTITIES, measure
+from ._meshes import sizes_of
+from ._report import Report
 from ._deformed import METHODS, Moving, Deformed, deform, parse, strip
 from ._verdicts import Times, all_of, faster
 

@@ -8,7 +8,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import MESQUITE_PATCH_ITERATIONS, TYPICAL_C, Report, improve, methods, parser, sizes_of
+from ._common import TYPICAL_C, improve, methods
+from ._meshes import sizes_of
+from ._report import MESQUITE_PATCH_ITERATIONS, Report, parser
 from ._pairs import start_mesh
 from ._solver_tables import TABLE_3_8, TABLE_3_9, TABLE_3_10
 from ._tangled import tangled_methods, untangle

@@ -17,7 +17,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet, vtkTable
 import tautline
 from tautline._errors import Messages
 
-from ._common import Method, Report, _configured, _timed, cells_of, parser, points_of
+from ._common import Method, _configured, _timed
+from ._meshes import cells_of, points_of
+from ._report import Report, parser
 from ._verdicts import Verdict, all_of
 
 PARTS, SMALL_PARTS = (2, 4, 8, 16, 32, 64), (2, 4, 8)

@@ -9,7 +9,7 @@ import numpy as np
 
 import tautline
 
-from ._common import Report
+from ._report import Report
 from ._deformed import EXAMPLES, Example, Moving, Deformed, bin_names, deform, distribution, less, parse, strip
 from ._verdicts import Times, all_of, same_count
 from ._verdicts import faster as takes_less

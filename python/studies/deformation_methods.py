@@ -7,7 +7,7 @@ from typing import Callable
 
 import numpy as np
 
-from ._common import Report
+from ._report import Report
 from ._deformed import EXAMPLES, METHODS, Moving, Deformed, deform, parse, strip
 
 AMOUNTS = (1.0, 1.5)

@@ -11,7 +11,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report, cells_of, parser, points_of, pyplot, sizes_of
+from ._meshes import cells_of, points_of, sizes_of
+from ._report import Report, parser, pyplot
 from ._drawings import boundary_faces, image_values, loops, surface_picture
 from ._horizon import square
 from ._intersections import CASES, areas, picture

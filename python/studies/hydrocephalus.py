@@ -8,7 +8,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report, Run, cells_of, points_of, scaled, sizes_of
+from ._common import Run
+from ._meshes import cells_of, points_of, scaled, sizes_of
+from ._report import Report
 from ._tangled import after, untangled_after
 from ._warped import better_worst, experiment, harmonic, of_points, options, warp
 

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from ._common import Report
+from ._report import Report
 from ._deformed import EXAMPLES, Deformed, Moving, deform, parse, strip
 
 AMOUNTS = (1.0, 1.5)

@@ -10,7 +10,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report, cells_of, sizes_of
+from ._meshes import cells_of, sizes_of
+from ._report import Report
 from ._solver_tables import METRICS
 from ._solvers import DOMAINS, PDES, SIZES, TITLES, initial_mesh, options, size_of, smoothed
 from .smoothing_times import BINS, angles

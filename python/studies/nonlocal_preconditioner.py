@@ -10,7 +10,8 @@ import numpy as np
 import tautline
 
 from . import _horizon
-from ._common import parser, sizes_of
+from ._meshes import sizes_of
+from ._report import parser
 from ._horizon import Report, exponent
 from ._verdicts import Times, below, timed
 

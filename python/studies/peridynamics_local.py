@@ -10,7 +10,8 @@ import numpy as np
 
 import tautline
 
-from ._common import parser, right_triangles
+from ._meshes import right_triangles
+from ._report import parser
 from ._horizon import Report, condition, exponent
 from ._verdicts import Times, faster, timed
 

@@ -12,7 +12,7 @@ from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 import tautline
 
-from ._common import Report, parser
+from ._report import Report, parser
 
 CELLS, SMALL_CELLS = 40_000, 3_000
 PERTURBED = 0.97  # of the distance to inversion: nearly flat elements

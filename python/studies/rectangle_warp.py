@@ -6,7 +6,8 @@ from __future__ import annotations
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
-from ._common import Report, points_of, with_points
+from ._meshes import points_of, with_points
+from ._report import Report
 from ._deformed import Deformed, Moving, deform, parse, strip
 from ._verdicts import same_count
 

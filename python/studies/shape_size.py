@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from ._common import MULTI, Report, compare, percent
+from ._common import MULTI, compare
+from ._report import Report, percent
 from ._pairs import Outcome, Goals, everywhere, experiment, options
 from ._verdicts import Verdict, all_of, below, quickest, slowest
 

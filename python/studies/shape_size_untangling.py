@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
-from ._common import MULTI, TYPICAL_C, Report, Run, compare, measure, parser, scaled
+from ._common import MULTI, TYPICAL_C, Run, compare, measure
+from ._meshes import scaled
+from ._report import Report, parser
 from ._tangled import NOTE, UNITS, after, by_unit, counts, diverged, tangled_methods, untangle, untangled_after
 from .shape_untangling import CELLS_3D, INVERTED_3D, tangled
 

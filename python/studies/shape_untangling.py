@@ -8,8 +8,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import MULTI, TYPICAL_C, Report, Run, measure, parser
-from ._common import cells_of, points_of, scaled, sizes_of
+from ._common import MULTI, TYPICAL_C, Run, measure
+from ._meshes import cells_of, points_of, scaled, sizes_of
+from ._report import Report, parser
 from ._tangled import BETA, NOTE, after, counts, diverged, tangled_methods, untangle, untangled_after
 
 # Inverted elements by iteration; the second table has Escobar's method too.

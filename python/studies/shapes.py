@@ -15,7 +15,7 @@ import tautline as tl
 from tautline._files import replace_bytes
 
 from . import _silhouettes
-from ._common import Report, parser
+from ._report import Report, parser
 
 KIMIA_SHAPES = 99  # of the dissertation's set
 #: Table 5.1 of the dissertation, percent.

@@ -10,7 +10,9 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Method, Report, Run, cells_of, improve, parser, points_of
+from ._common import Method, Run, improve
+from ._meshes import cells_of, points_of
+from ._report import Report, parser
 from ._solver_tables import METRICS
 from ._verdicts import Times, all_of, below, quickest, slowest
 

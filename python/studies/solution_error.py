@@ -11,7 +11,8 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report, cells_of, parser, points_of, right_triangles
+from ._meshes import cells_of, points_of, right_triangles
+from ._report import Report, parser
 from ._solver_tables import METRICS
 from ._solvers import order, smoothing
 from ._verdicts import Times, Verdict, all_of, below, timed

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ._common import Report
+from ._report import Report
 from ._solvers import LABELS, Solve, initial_mesh, options, size_of, smoothed, solve, times_of
 from ._verdicts import Verdict, all_of, faster
 

@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from ._common import Report, Run
+from ._common import Run
+from ._report import Report
 from ._solver_tables import BY_METRIC, METRICS
 from ._solvers import AMG, DOMAINS, FULL, ILU, LABELS, NEAR_NULL_SPACE, PDES, TITLES
 from ._solvers import Solve, bars, fastest, initial_mesh, options, size_of, smoothing, solve, table, times_of, within

@@ -9,7 +9,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report
+from ._report import Report
 from ._solvers import AMG, DOMAINS, LABELS, PDES, PRECONDITIONERS, SIZES, TITLES
 from ._solvers import bars, initial_mesh, options, order, size_of, smoothed, solve
 from ._verdicts import constant

@@ -7,7 +7,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report
+from ._report import Report
 from ._solver_tables import BY_PERTURBATION
 from ._solvers import AMG, DOMAINS, ILU, JACOBI, LABELS, PDES, SSOR, TITLES
 from ._solvers import bars, initial_mesh, options, size_of, smoothed, solve, table

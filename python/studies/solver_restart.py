@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ._common import Report, pyplot
+from ._report import Report, pyplot
 from ._solvers import FULL, LABELS, SIZES, Solve, initial_mesh, options, size_of, smoothed, solve
 from ._verdicts import quickest
 

@@ -13,7 +13,7 @@ from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkDataSet, vtkPolyData
 import tautline
 
 from . import _horizon
-from ._common import cells_of, points_of
+from ._meshes import cells_of, points_of
 from ._horizon import Report, exponent
 
 #: Poisson's ratios in plane strain; that of the bond-based model is BONDS.

@@ -12,7 +12,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 import tautline
 
-from ._common import Report, parser
+from ._report import Report, parser
 from ._solvers import initial_mesh, order, smoothed, vertices
 from ._verdicts import Times, Verdict, all_of, faster, quickest
 from .peridynamics_local import grid

@@ -8,7 +8,9 @@ from vtkmodules.vtkCommonDataModel import vtkUnstructuredGrid
 
 import tautline
 
-from ._common import MESQUITE_PATCH_ITERATIONS, MULTI, Report, Run, parser, points_of
+from ._common import MULTI, Run
+from ._meshes import points_of
+from ._report import MESQUITE_PATCH_ITERATIONS, Report, parser
 from ._tangled import NOTE, tangled_methods, untangle
 
 SQUARES = 6  # along each side of the mesh
