@@ -378,6 +378,7 @@ tautline::OptimizerSettings vtkMeshOptimizer::GetSettings()
   {
     options.scalarization.method = static_cast<tautline::Scalarization>(this->Scalarization);
     options.scalarization.c = this->C;
+    options.scalarization.onPatches = this->PatchScalarization;
     options.scalarization.exponent = this->Exponent;
     options.scalarization.tolerance = this->Tolerance;
     options.scalarization.utopia = this->Utopia;
@@ -813,6 +814,7 @@ void vtkMeshOptimizer::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Beta: " << this->Beta << "\n";
   os << indent << "Scalarization: " << this->Scalarization << "\n";
   os << indent << "C: " << this->C << "\n";
+  os << indent << "PatchScalarization: " << this->PatchScalarization << "\n";
   os << indent << "Exponent: " << this->Exponent << "\n";
   os << indent << "Tolerance: " << this->Tolerance << "\n";
   os << indent << "Utopia values: " << this->Utopia.size() << "\n";

@@ -272,6 +272,18 @@ public:
   ///@}
 
   ///@{
+  /**
+   * Local algorithms combine the sums over the elements around the vertex that moves instead of the
+   * sums over the whole mesh, as Mesquite does by default. The objective of the whole mesh may then
+   * rise. With EXPONENTIAL_SUM, OBJECTIVE_PRODUCT, EQUAL_SUM and WEIGHTED_SUM; an error with the
+   * other scalarizations and with global algorithms. Off by default.
+   */
+  vtkSetMacro(PatchScalarization, bool);
+  vtkGetMacro(PatchScalarization, bool);
+  vtkBooleanMacro(PatchScalarization, bool);
+  ///@}
+
+  ///@{
   /// p of EXPONENTIAL_WEIGHTED, above 0. The default is 1.
   vtkSetMacro(Exponent, double);
   vtkGetMacro(Exponent, double);
@@ -439,7 +451,8 @@ public:
   ///@}
 
   ///@{
-  /// Steps in each patch of the local algorithms. The default is 1.
+  /// Steps in each patch of the local algorithms; with several objectives it becomes 1 when a sweep
+  /// has raised the objective. The default is 1.
   vtkTautlineSetRangeMacro(PatchIterations, int, 1, 1000);
   vtkGetMacro(PatchIterations, int);
   ///@}
@@ -592,6 +605,7 @@ private:
   double Beta = 0.0;
   int Scalarization = EXPONENTIAL_SUM;
   double C = 0.0;
+  bool PatchScalarization = false;
   double Exponent = 1.0;
   double Tolerance = 0.01;
   int Optimizer = AUTOMATIC;

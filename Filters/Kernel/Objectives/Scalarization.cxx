@@ -97,6 +97,11 @@ Scalarizer::Scalarizer(const ScalarizationOptions& options, const std::vector<do
   {
     throw Error("c of the exponential sum must be above 0, or 0 to have it chosen.");
   }
+  if (options.onPatches && method > static_cast<int>(Scalarization::WeightedSum))
+  {
+    throw Error("This scalarization combines objectives of the whole mesh only: choose exponential "
+                "sum, objective product, equal sum or weighted sum for patches.");
+  }
   requirePositive(options.exponent, "The exponent of the exponential weighted method");
   if (!(options.tolerance >= 0) || !std::isfinite(options.tolerance))
   {

@@ -61,6 +61,12 @@ struct ScalarizationOptions
   double tolerance = 0.01;
   /// Utopia values U_i, one per objective, or empty for 0.
   std::vector<double> utopia;
+  /**
+   * @brief Local optimizers combine the sums F_i over the elements around the vertex that moves, as
+   * Mesquite does by default, not those over the whole mesh: a step reduces the first, and may
+   * raise the second. Of the methods (3.8) to (3.10) and the weighted sum.
+   */
+  bool onPatches = false;
 };
 
 /**
@@ -101,6 +107,8 @@ public:
 
   /// c of ExponentialSum and WeightedMinMax, given or chosen; 1 for the others.
   double c() const { return this->C; }
+  /// Whether it combines sums over patches, see ScalarizationOptions::onPatches.
+  bool onPatches() const { return this->Options.onPatches; }
 
 private:
   ScalarizationOptions Options;

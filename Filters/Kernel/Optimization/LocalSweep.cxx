@@ -83,6 +83,7 @@ struct LocalSweeper::Base
   }
   virtual ~Base() = default;
   virtual SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values) = 0;
+  virtual void setPatchIterations(int count) = 0;
   template <class Visit>
   void exchange(std::size_t set, const std::vector<Index>& moved, const Visit& visitMoved);
 
@@ -153,6 +154,7 @@ struct LocalSweeper::Implementation : LocalSweeper::Base
   }
 
   SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values) override;
+  void setPatchIterations(int count) override { this->Mover.setPatchIterations(count); }
 
 private:
   void wake(std::int32_t v, std::vector<unsigned char>& next) const;
@@ -275,6 +277,10 @@ SweepResult LocalSweeper::sweep(const Scalarizer& scalarizer, std::vector<double
   return this->Impl->sweep(scalarizer, values);
 }
 
+void LocalSweeper::setPatchIterations(int count)
+{
+  this->Impl->setPatchIterations(count);
+}
 void LocalSweeper::wakeAll()
 {
   std::fill(this->Impl->Active.begin(), this->Impl->Active.end(), 1);

@@ -71,6 +71,8 @@ public:
    */
   SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values);
 
+  /// Of the next sweeps: steps at each vertex.
+  void setPatchIterations(int count);
   /// Lets all vertices move again, whatever was culled.
   void wakeAll();
   /// The next sweep visits the vertices with a flag other than 0 only, one per free vertex; those

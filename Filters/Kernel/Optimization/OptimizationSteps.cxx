@@ -69,6 +69,9 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
   const bool costly = problem.ranks().any(!problem.isSimple());
   const bool simple = !costly && !problem.ranks().several();
   StopReason reason = StopReason::NoProgress;
+  // On patches a step may raise the objective of the whole mesh.
+  const bool falls = !(problem.objectives() > 1 && problem.scalarizer().onPatches());
+  int patchIterations = problem.options().patchIterations;
   double firstGradient = 0;
   bool all = true;          // whether the next sweep visits every vertex
   SweepGains gains(costly); // hexahedra have no closed form
@@ -88,15 +91,26 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
     IterationRecord now = problem.record(iteration);
     now.gradientNorm = sweep.gradientNorm;
     now.moving = sweep.moved;
-    const double lowered = scalarized(problem.scalarizer(), before) - now.objective;
+    const double change = scalarized(problem.scalarizer(), before) - now.objective;
+    const double lowered = falls ? change : std::abs(change);
     const double size = std::abs(now.objective);
     if (!simple && !(std::isfinite(size) && lowered >= -roundingOfSums * size))
     {
       // Blocks of one colour do not use each other's changes of a composite objective, which may
-      // rise or leave its domain, as a product with a factor below 0.
+      // rise or leave its domain, as a product with a factor below 0: the more, the more steps each
+      // vertex makes.
       std::copy(best.begin(), best.end(), simplices.coordinates());
       problem.coordinatesChanged();
       problem.store();
+      if (patchIterations > 1)
+      {
+        patchIterations = 1;
+        sweeper.setPatchIterations(patchIterations);
+        sweeper.wakeAll();
+        all = true;
+        --iteration;
+        continue;
+      }
       failed = true;
       return StopReason::NoProgress;
     }

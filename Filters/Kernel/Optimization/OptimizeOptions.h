@@ -126,7 +126,8 @@ struct OptimizeOptions : BoundaryConstraints
   /// Local algorithms: leave out vertices that moved less than this times their shortest edge; 0:
   /// none.
   double culling = 1e-3;
-  /// Steps in each patch of the local algorithms.
+  /// Steps in each patch of the local algorithms. With several objectives it becomes 1 when a sweep
+  /// has raised the objective.
   int patchIterations = 1;
   /**
    * @brief Over-relaxation of LocalNewton: a step is this times Newton's, 1 to 2 (exclusive).

@@ -123,6 +123,11 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks&
                 "that of the mesh: leave them out.");
   }
   const bool global = isGlobal(options.optimizer);
+  if (global && options.objectives.size() > 1 && options.scalarization.onPatches)
+  {
+    throw Error("Objectives that are combined on patches need a local optimizer: choose Automatic, "
+                "Local Newton or Local Conjugate Gradient.");
+  }
   if (options.model && !options.parts)
   {
     throw Error("A model needs the part of it that each point slides on.");

@@ -159,6 +159,7 @@ QualityGuard::QualityGuard(const Mesh& input, const std::vector<signed char>& va
   }
   this->Worst = this->Larger ? -ranks.maximum(-all.smallest) : ranks.maximum(all.largest);
   this->ValidInput = this->Active = !ranks.any(!all.valid);
+  this->OnPatches = options.objectives.size() > 1 && options.scalarization.onPatches;
   // Elements that the metric does not judge stay valid nevertheless.
   this->HoldWorst =
     this->HoldWorst && info.direction != Direction::Neutral && std::isfinite(this->Worst);

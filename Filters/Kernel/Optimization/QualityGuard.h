@@ -68,8 +68,9 @@ public:
   /// Whether there is something to hold: not where the input has invalid elements, which untangling
   /// answers for, nor where inversion is allowed. Elements the metric is not defined on stay valid.
   bool active() const { return this->Active; }
-  /// Whether the input has no invalid element and inversion is not allowed.
-  bool holdsObjective() const { return this->ValidInput; }
+  /// Whether the input has no invalid element, inversion is not allowed, and steps reduce the
+  /// objective of the whole mesh.
+  bool holdsObjective() const { return this->ValidInput && !this->OnPatches; }
   /// Whether a value of the metric is worse than that of the worst element of the input, beyond
   /// rounding; never if OptimizeOptions::holdWorst is off.
   bool worse(double value) const;
@@ -104,7 +105,7 @@ private:
   Ranks TheRanks;
   Objective Judged;
   std::vector<double> Values;
-  bool Active = false, ValidInput = false;
+  bool Active = false, ValidInput = false, OnPatches = false;
   bool Larger = false;
   bool HoldWorst = true;
   double Worst = 0.0;

@@ -247,8 +247,9 @@ inline bool mayUseNewton(const OptimizeOptions& options)
   { return o.objectiveTemplate == ObjectiveTemplate::Maximum; };
   const bool lexicographic =
     options.objectives.size() > 1 && options.scalarization.method == Scalarization::Lexicographic;
+  const bool onPatches = options.objectives.size() > 1 && options.scalarization.onPatches;
   const StoppingCriteria& stop = options.stopping;
-  return options.optimizer == Optimizer::Automatic && !lexicographic &&
+  return options.optimizer == Optimizer::Automatic && !lexicographic && !onPatches &&
     stop.maximumIterations > 0 &&
     std::none_of(options.objectives.begin(), options.objectives.end(), rough) &&
     !options.allowInversion && !(stop.reduction < 1) && !stop.twoDigits && !stop.allValid;

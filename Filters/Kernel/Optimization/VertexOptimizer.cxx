@@ -221,6 +221,15 @@ void VertexOptimizer<Dim>::findSlopes(const Scalarizer& scalarizer, PatchWorker<
     w.slopes[0] = 1.0;
     return;
   }
+  if (scalarizer.onPatches())
+  {
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      w.now[i] = w.sums[i].f;
+    }
+    scalarizer.value(w.now, w.slopes);
+    return;
+  }
   for (std::size_t i = 0; i < n; ++i)
   {
     w.now[i] = this->Functions[i]->objective(this->Values[i], w.change[i]);
@@ -266,7 +275,8 @@ double VertexOptimizer<Dim>::changeAt(
   {
     w.trial[i] = this->Functions[i]->value(w.patch, d) - w.sums[i].f;
     linear += w.slopes[i] * w.trial[i];
-    visible = visible || !(std::abs(w.trial[i]) <= visibleChange * std::abs(this->Values[i]));
+    const double size = std::abs(scalarizer.onPatches() ? w.now[i] : this->Values[i]);
+    visible = visible || !(std::abs(w.trial[i]) <= visibleChange * size);
   }
   if (n == 1 || !visible || !std::isfinite(linear))
   {
@@ -278,7 +288,9 @@ double VertexOptimizer<Dim>::changeAt(
   std::vector<double> kept = w.now;
   for (std::size_t i = 0; i < n; ++i)
   {
-    after[i] = this->Functions[i]->objective(this->Values[i], w.change[i] + w.trial[i]);
+    after[i] = scalarizer.onPatches()
+      ? kept[i] + w.trial[i]
+      : this->Functions[i]->objective(this->Values[i], w.change[i] + w.trial[i]);
   }
   const double change = scalarizer.value(after) - before;
   w.now = kept;

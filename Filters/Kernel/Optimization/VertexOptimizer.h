@@ -32,6 +32,7 @@ public:
   VertexOptimizer(SimplexMesh& simplices, const Mesh& mesh, double* points,
     const std::vector<LocalTerm>& terms, const LocalOptions& options);
 
+  void setPatchIterations(int count) { this->Options.patchIterations = count; }
   /// The objectives as a sweep begins.
   void begin(const std::vector<double>& values);
   PatchWorker<Dim> makeWorker() const;

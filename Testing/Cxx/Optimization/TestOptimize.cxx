@@ -255,6 +255,73 @@ TAUTLINE_PART(testSweepTakenBack)
   TAUTLINE_CHECK_RELATIVE(found[1], last[1], 1e-12);
 }
 
+/// Shape and untangling of a tangled mesh as one product.
+OptimizeOptions shapeAndUntangling(double beta)
+{
+  TAUTLINE_LET(OptimizeOptions, options, optimizer = Optimizer::LocalConjugateGradient,
+    allowInversion = true, untangleFirst = false, culling = 0);
+  options.objectives = { Objective(), Objective() };
+  options.objectives[0].metric = Metric::ConditioningScaleInvariant;
+  options.objectives[1].metric = Metric::UntangleBeta;
+  options.objectives[1].evaluation.parameters.beta = beta;
+  options.scalarization.method = Scalarization::ObjectiveProduct;
+  return options;
+}
+
+/// Where several steps a patch raise the product, the sweep is repeated with one: the first sweep
+/// is then the same as if one had been asked for.
+TAUTLINE_PART(testFallsBackToOneStep)
+{
+  const MeshData data = perturbedBlock(CellType::Triangle, 40, 0.6);
+  OptimizeOptions options = shapeAndUntangling(0.01);
+  const OptimizeResult one = run(data, options);
+  options.patchIterations = 5;
+  const OptimizeResult several = run(data, options);
+  TAUTLINE_CHECK(one.history.front().inverted > 0);
+  TAUTLINE_CHECK_EQUAL(several.history.back().inverted, 0);
+  TAUTLINE_CHECK_EQUAL(several.history[1].inverted, one.history[1].inverted);
+  TAUTLINE_CHECK_RELATIVE(several.history[1].objective, one.history[1].objective, 1e-9);
+}
+
+/// Combined on patches, the product untangles by other steps than on the whole mesh; a sum has the
+/// same slopes on both.
+TAUTLINE_PART(testScalarizationOnPatches)
+{
+  MeshData small = blockMesh(CellType::Triangle, 2, 2, 0);
+  const std::vector<char> boundary = Mesh(small.view()).boundary().isBoundaryPoint;
+  for (Index i = 0; i < small.numberOfPoints(); ++i)
+  {
+    small.setPoint(i, small.point(i) + (boundary[i] ? Vec3{ 0, 0, 0 } : Vec3{ 1.2, 0.3, 0 }));
+  }
+  const MeshData large = perturbedBlock(CellType::Triangle, 40, 0.6);
+  OptimizeOptions options = shapeAndUntangling(0.01);
+  options.scalarization.onPatches = true;
+  const OptimizeResult result = run(large, options);
+  TAUTLINE_CHECK(result.history.front().inverted > 0);
+  TAUTLINE_CHECK_EQUAL(result.history.back().inverted, 0);
+  OptimizeOptions whole = options;
+  whole.scalarization.onPatches = false;
+  TAUTLINE_CHECK(run(large, whole).history[1].objective != result.history[1].objective);
+
+  for (Scalarization method : { Scalarization::EqualSum, Scalarization::WeightedSum })
+  {
+    // The slopes of a sum are the same everywhere.
+    options.scalarization.method = whole.scalarization.method = method;
+    const OptimizeResult a = run(small, options), b = run(small, whole);
+    for (std::size_t i = 0; i < a.points.size(); ++i)
+    {
+      TAUTLINE_CHECK_NEAR(a.points[i], b.points[i], 1e-9);
+    }
+  }
+  options.scalarization.method = Scalarization::Lexicographic;
+  TAUTLINE_CHECK_THROWS(run(small, options), wording("choose-exponential-sum-objective-product"));
+  options.scalarization.method = Scalarization::ObjectiveProduct;
+  options.optimizer = Optimizer::LimitedMemoryBFGS;
+  options.allowInversion = false;
+  TAUTLINE_CHECK_THROWS(
+    run(perturbedBlock(CellType::Triangle, 5, 0.1), options), wording("need-a-local-optimizer"));
+}
+
 /// Other metrics and templates, in patches and globally: each reduces its own objective and inverts
 /// nothing.
 TAUTLINE_PART(testMetrics)
