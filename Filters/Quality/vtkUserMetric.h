@@ -5,7 +5,8 @@
  *
  * Set the facts, add an observer of vtkCommand::UserEvent and call AddToRegistry(). The metric is
  * then known by its name to all filters that measure, to criteria and to ParaView's menus (of
- * proxies created afterwards). It has no derivatives: it cannot be optimized.
+ * proxies created afterwards). As an objective it takes derivatives by differences, with optimizers
+ * that move all points together.
  *
  * The event is invoked once for all cells of a type that are to be measured. The observer reads
  * GetCellType() and GetCorners() (a tuple x y z for each corner of each cell, cell after cell) and

@@ -68,6 +68,45 @@ def test_register():
     assert graded.verdict == "failed" and "longest" in graded.values
 
 
+def shape(corners, cell_type):
+    """The inverse mean ratio; infinite for flat and inverted elements."""
+    edges = (corners[:, 1:] - corners[:, :1]).transpose(0, 2, 1)
+    if cell_type == "triangle":
+        ideal = np.array([[1, 0.5], [0, np.sqrt(0.75)]])
+        edges = edges[:, :2]
+    else:
+        ideal = np.array([[1, 0.5, 0.5], [0, np.sqrt(0.75), np.sqrt(1 / 12)], [0, 0, np.sqrt(2 / 3)]])
+    T = edges @ np.linalg.inv(ideal)
+    n = T.shape[1]
+    determinant = np.linalg.det(T)
+    found = np.full(len(T), np.inf)
+    valid = determinant > 0
+    found[valid] = (T[valid] ** 2).sum(axis=(1, 2)) / (n * determinant[valid] ** (2 / n))
+    return found
+
+
+def test_optimized():
+    """A metric of Python as an objective gives the same minimum as the built-in one that it copies."""
+    tl.register_metric("my_shape", shape, cell_types=["triangle", "tetrahedron"], scale_invariant=True, full=(1, np.inf),
+                       ideal=1.0)
+    for domain, cells in (("disk2d", 300), ("disk3d", 600)):
+        mesh = tl.perturb(tl.domain(domain, cells), fraction=0.6, seed=3).mesh
+        options = dict(optimizer="l-bfgs", relative_change=1e-9, maximum_iterations=300)
+        built_in = tl.optimize(mesh, "custom", objectives="imr", **options)
+        ours = tl.optimize(mesh, "custom", objectives="my_shape", **options)
+        first, last = (np.array(ours.history["objective"])[[0, -1]], np.array(built_in.history["objective"])[[0, -1]])
+        assert np.allclose(first, last, rtol=1e-6), (domain, first, last)
+        assert first[1] < 0.95 * first[0] and ours.inverted == 0, (domain, first)
+        automatic = tl.optimize(mesh, "custom", objectives="my_shape", relative_change=1e-9)
+        assert np.isclose(automatic.history["objective"][-1], first[1], rtol=1e-6)
+        both = tl.optimize(mesh, "custom", objectives=["my_shape", "size"], scalarization="equal sum", **options)
+        assert both.history["objective"][-1] < both.history["objective"][0]
+    for refusal in (dict(optimizer="local newton"), dict(optimizer="newton-cg"), dict(improve_worst=0.01),
+                    dict(limits=0.1)):
+        refused(wording("without-derivatives-of-its-own"), tl.optimize, mesh, "custom", objectives="my_shape", **refusal)
+    tl.unregister_metric("my_shape")
+
+
 def test_replaced_and_removed():
     tl.register_metric("constant", lambda corners, cell: np.ones(len(corners)))
     assert (tl.quality(PLATE, "constant").values["constant"] == 1).all()
@@ -111,9 +150,9 @@ def test_refused():
     refused(wording("the-metric-sometimes-failed-on"), tl.quality, PLATE, "sometimes")
     wrong["now"] = False
     assert (tl.quality(PLATE, "sometimes").values["sometimes"] == 1).all()
-    # It cannot be optimized.
-    if hasattr(tl, "optimize"):
-        refused(wording("has-no-derivatives"), tl.optimize, PLATE, objectives=["sometimes"])
+    # Improve Mesh takes derivatives of each metric.
+    if hasattr(tl, "improve"):
+        refused(wording("has-no-derivatives"), tl.improve, BRACKET, metric="sometimes")
     refused(wording("cannot-be"), tl.load_metrics, "/nonexistent.so")
 
 

@@ -109,11 +109,13 @@ def register_metric(
     scale_invariant: bool = False,
     rotation_invariant: bool = True,
 ) -> int:
-    """Register a metric of one's own, for measuring, colouring, statistics and criteria.
+    """Register a metric of one's own, for measuring, coloring, statistics, criteria and optimization.
 
     The metric is then known by its name to quality, compare, metric_field, criteria and, in pvpython and in ParaView's
-    Python shell, to the menus of filters that are made afterwards. It has no derivatives and cannot be optimized: for
-    that, register one in C++ (tautline/Quality/UserMetric.h). A metric that was registered in Python under the same
+    Python shell, to the menus of filters that are made afterwards. As an objective of optimize it takes derivatives by
+    central differences, 6 evaluations for each corner of an element, and moves all points together (L-BFGS or a
+    conjugate gradient): tens of times slower than a metric that is registered in C++ (tautline/Quality/UserMetric.h),
+    and with a boundary that is fixed or slides on flat parts. A metric that was registered in Python under the same
     name is replaced. With a server of ParaView, or several processes of pvbatch, it is registered in this process only:
     put the registration into a file then, for load_metrics.
 

@@ -97,7 +97,6 @@ ObjectiveSumState::ObjectiveSumState(
 {
   const MetricInfo& info = metricInfo(this->objective.metric);
   checkTemplate(this->objective);
-  requireDerivatives(info);
   if (!this->ranks.any(!this->elements.empty()))
   {
     throwNoElements(info, false);
@@ -245,12 +244,14 @@ void ObjectiveSumState::findTerms(double scale, OrderlessSums* gradient, double*
         return &ElementFunction::term<Template>;
       }
     });
+  const std::unique_ptr<ElementTable> table = this->elements.tabulated(gradient != nullptr);
   this->elements.forEachChunk(
     [&](Index i)
     {
       const ElementSum::Chunk& chunk = this->elements.chunks()[i];
       const BatchEvaluator evaluate = this->elements.evaluator(chunk, gradient != nullptr);
-      const BatchContext context = this->elements.context(chunk);
+      BatchContext context = this->elements.context(chunk);
+      context.table = table.get();
       withNodes(*context.topology,
         [&](auto nodesOfCell)
         {

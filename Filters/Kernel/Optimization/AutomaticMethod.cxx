@@ -2,6 +2,7 @@
 #include "AutomaticMethod.h"
 
 #include "HarmonicStart.h"
+#include "OptionChecks.h"
 #include "tautline/Core/Memory.h"
 
 #include <cmath>
@@ -212,6 +213,11 @@ bool Stage::move(bool onlyLocal, const IterationRecord& first)
   if (isGlobal(optimizer))
   {
     this->Reason = this->Steps.minimizeAll(optimizer);
+    return false;
+  }
+  if (needDifferences(this->Options))
+  {
+    this->Reason = this->Steps.minimizeAll(Optimizer::LimitedMemoryBFGS);
     return false;
   }
   if (!onlyLocal && mayUseNewton(this->Options))

@@ -19,7 +19,8 @@ namespace tautline
  * corners, and goes over to it where sweeps converge too slowly: from the start, or near the
  * minimum from where they are. If its matrix does not fit into memory the sweeps go on; if it does
  * not get as far as they did, their points are kept. Where sweeps fail, as those of several
- * objectives can, LimitedMemoryBFGS goes on. With points that slide on a surface, sweeps and
+ * objectives can, LimitedMemoryBFGS goes on; it is the method for metrics without derivatives of
+ * their own, too. With points that slide on a surface, sweeps and
  * Newton's method, which holds points on curved parts, take turns.
  *
  * @param onlyLocal constraints that only sweeps keep

@@ -49,6 +49,13 @@ GlobalFunction::GlobalFunction(OptimizationProblem& problem, Optimizer optimizer
   {
     this->move(std::vector<double>(this->Size * this->Rows.rows(), 0.0).data());
   }
+  for (const Objective& objective : problem.resolved())
+  {
+    this->Stand.push_back(needsDifferences(objective.metric)
+        ? std::make_unique<ObjectiveSum>(
+            problem.moving(), Objective(), problem.options().threads, problem.ranks())
+        : nullptr);
+  }
   findValidityLevels(problem.moving(), problem.options().threads, this->Start);
   // An objective that is infinite on inverted elements needs no other check, if these have no
   // inside.
@@ -312,8 +319,9 @@ void GlobalFunction::fillMatrix()
   this->Convex = !this->Problem.ranks().any(!convex);
   for (std::size_t i = 0; i < this->Objectives.size(); ++i)
   {
-    this->Convex ? this->Hessian->addConvexPart(this->Problem.sum(i), this->Slopes[i])
-                 : this->Hessian->add(this->Problem.sum(i), this->Slopes[i]);
+    const ObjectiveSum& sum = this->Stand[i] ? *this->Stand[i] : this->Problem.sum(i);
+    this->Convex ? this->Hessian->addConvexPart(sum, this->Slopes[i])
+                 : this->Hessian->add(sum, this->Slopes[i]);
   }
   if (this->hasConstraints())
   {

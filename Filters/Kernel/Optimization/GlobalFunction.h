@@ -82,6 +82,9 @@ private:
   std::vector<signed char> Start, Levels; ///< a ValidityLevel per cell: at the start, now
   std::vector<double> Gradient;
   std::vector<double> Objectives, Slopes;
+  /// Per objective without derivatives of its own: the shape, whose Hessian stands for its own in
+  /// the preconditioner.
+  std::vector<std::unique_ptr<ObjectiveSum>> Stand;
   std::unique_ptr<HessianMatrix> Hessian;
   std::unique_ptr<GridHierarchy> Grids;
   std::vector<double> All, Product; ///< of the rows of all points here, on several ranks

@@ -8,6 +8,13 @@
 
 namespace tautline
 {
+//------------------------------------------------------------------------------
+bool needDifferences(const OptimizeOptions& options)
+{
+  return std::any_of(options.objectives.begin(), options.objectives.end(),
+    [](const Objective& objective) { return needsDifferences(objective.metric); });
+}
+
 namespace
 {
 void requireFinite(const double* values, Index count, const char* what)
@@ -68,6 +75,35 @@ void checkSizes(const Mesh& mesh, const OptimizeOptions& options, const Ranks& r
 }
 
 /// The metric that judges the worst element must have a value for each, and a better direction.
+/// Throws Error if a metric without derivatives of its own is an objective of what needs them.
+void checkDifferences(const Mesh& mesh, const OptimizeOptions& options)
+{
+  if (!needDifferences(options))
+  {
+    return;
+  }
+  const std::string what = "A metric without derivatives of its own, as those of Python are, ";
+  if (isLocal(options.optimizer) || options.optimizer == Optimizer::NewtonConjugateGradient)
+  {
+    throw Error(what +
+      "is optimized by differences for all points at once: choose Automatic, L-BFGS "
+      "or a conjugate gradient, or register it in C++.");
+  }
+  if (options.improveWorst > 0)
+  {
+    throw Error(
+      what + "cannot improve the worst element: set Improve Worst to 0, or register it in C++.");
+  }
+  if (mesh.dimension() == Dimension::Surface || options.slideSurface || options.model ||
+    options.limits)
+  {
+    throw Error(what +
+      "moves points in a plane or in space with a fixed boundary, or along flat "
+      "parts, only: register it in C++ to let them slide on surfaces or to limit "
+      "their way.");
+  }
+}
+
 void checkWorstMetric(const Mesh& mesh, Metric metric)
 {
   const MetricInfo& info = metricInfo(metric);
@@ -123,6 +159,7 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks&
                 "that of the mesh: leave them out.");
   }
   const bool global = isGlobal(options.optimizer);
+  checkDifferences(mesh, options);
   if (global && options.objectives.size() > 1 && options.scalarization.onPatches)
   {
     throw Error("Objectives that are combined on patches need a local optimizer: choose Automatic, "

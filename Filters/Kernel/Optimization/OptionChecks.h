@@ -16,6 +16,9 @@
 
 namespace tautline
 {
+/// Whether an objective is a metric without derivatives of its own, see needsDifferences().
+bool needDifferences(const OptimizeOptions& options);
+
 /// Throws Error, with the remedy, for options that are out of range or do not fit the mesh, which
 /// ranks may have parts of.
 void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks& ranks);

@@ -14,14 +14,17 @@
 
 namespace tautline
 {
+struct ElementTable;
+
 /// Everything a batch evaluator needs that is the same for all batches of a block.
 struct BatchContext : CellSource
 {
   const EvaluationOptions* options = nullptr;
   bool largerIsBetter = false;
-  bool scaleInvariant = false;      ///< the metric does not depend on the size of T
-  int lengthPower = 0;              ///< of metrics that are not functions of T: their unit
-  const UserMetric* user = nullptr; ///< evaluates a metric that is not built in
+  bool scaleInvariant = false;         ///< the metric does not depend on the size of T
+  int lengthPower = 0;                 ///< of metrics that are not functions of T: their unit
+  const UserMetric* user = nullptr;    ///< evaluates a metric that is not built in
+  const ElementTable* table = nullptr; ///< of a metric that is evaluated for many elements at once
 };
 
 /// Cells and their vertices, with the values and gradients that an evaluator finds.

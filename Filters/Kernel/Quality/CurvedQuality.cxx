@@ -199,7 +199,7 @@ bool CurvedQuality::measures(Metric metric, const EvaluationOptions& options) co
 {
   const MetricInfo& info = metricInfo(metric);
   const bool target = info.family == MetricFamily::Target && metric != Metric::UntangleBeta &&
-    !options.targets && !(info.user && !objectiveProblem(metric).empty());
+    !options.targets && !needsDifferences(metric);
   return this->Count > 0 &&
     (target || metric == Metric::MinimumJacobian || metric == Metric::Size ||
       isCertified(metric, options));

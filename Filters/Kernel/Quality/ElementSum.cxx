@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ElementSum.h"
 
+#include "UserMetric.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 
 #include <algorithm>
@@ -278,6 +279,15 @@ void raise(Packet q, double power, Packet& value, Packet& slope)
     value = q * slope * (1.0 / power);
   }
 }
+}
+
+//------------------------------------------------------------------------------
+std::unique_ptr<ElementTable> ElementSum::tabulated(bool withSlopes) const
+{
+  const MetricInfo& info = metricInfo(this->TheMetric);
+  return info.user && !info.user->hasDerivatives()
+    ? std::make_unique<ElementTable>(tabulate(this->TheMesh, info, withSlopes))
+    : nullptr;
 }
 
 //------------------------------------------------------------------------------

@@ -15,11 +15,12 @@
 #ifndef tautline_ElementSum_h
 #define tautline_ElementSum_h
 
-#include "Batch.h"
+#include "ElementTable.h"
 #include "tautline/Core/Parallel.h"
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 
 namespace tautline
 {
@@ -139,6 +140,9 @@ public:
     return this->Order[chunk.block].empty() ? nullptr : this->Order[chunk.block].data();
   }
 
+  /// The values of a metric that is evaluated for many elements at once; null for the others.
+  std::unique_ptr<ElementTable> tabulated(bool withSlopes) const;
+
   /// Calls work(i) for each chunk; at one time only for chunks that share no vertex, and in an
   /// order that is fixed for each vertex.
   template <class Work>
@@ -162,7 +166,8 @@ public:
   template <bool WithGradient, class Total, class Function>
   std::vector<Total> run(const Function& function, double* gradient, bool numbered) const
   {
-    numbered = numbered || this->Options.targets;
+    const std::unique_ptr<ElementTable> table = this->tabulated(WithGradient);
+    numbered = numbered || this->Options.targets || table;
     std::vector<Total> totals(this->Chunks.size());
     const Scratch scratch(*this);
     const bool renumbered = !this->PackedPoints.empty();
@@ -176,7 +181,8 @@ public:
       {
         const Chunk& chunk = this->Chunks[i];
         const BatchEvaluator evaluate = this->evaluator(chunk, WithGradient);
-        const BatchContext context = this->context(chunk);
+        BatchContext context = this->context(chunk);
+        context.table = table.get();
         Total total;
         withNodes(*context.topology,
           [&](auto nodesOfCell)

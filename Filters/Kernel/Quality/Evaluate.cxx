@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ElementSum.h"
+#include "ElementTable.h"
 #include "JudgedValues.h"
 #include "UserMetric.h"
 
@@ -19,7 +20,7 @@ MetricCode metricCode(Metric metric)
   const MetricInfo& info = metricInfo(metric);
   if (info.user)
   {
-    return !info.user->hasDerivatives() ? MetricCode()
+    return !info.user->hasDerivatives() ? tableMetricCode()
       : info.family == MetricFamily::Target
       ? userTargetMetricCode(info.inverted != InvertedValue::Larger)
       : userCornerMetricCode();
@@ -104,10 +105,14 @@ std::string objectiveProblem(Metric metric)
       " compares the cells on both sides of faces and is no function of one element. Choose "
       "another metric.";
   }
-  return !info.user || info.user->hasDerivatives() ? ""
-                                                   : std::string(info.label) +
-      " has no derivatives: it measures elements and cannot be optimized. Register it in C++ "
-      "(tautline/Quality/UserMetric.h), or choose another metric.";
+  return "";
+}
+
+//------------------------------------------------------------------------------
+bool needsDifferences(Metric metric)
+{
+  const UserMetric* user = metricInfo(metric).user;
+  return user && !user->hasDerivatives();
 }
 
 //------------------------------------------------------------------------------
@@ -115,27 +120,14 @@ void requireDerivatives(const MetricInfo& info)
 {
   if (info.user && !info.user->hasDerivatives())
   {
-    throw Error(objectiveProblem(info.metric));
+    throw Error(std::string(info.label) +
+      " has no derivatives of its own, which this takes. Register it in C++ "
+      "(tautline/Quality/UserMetric.h), or choose another metric.");
   }
 }
 
 namespace
 {
-/// A point as a user's metric sees it: in the plane of a planar mesh, mirrored with the mesh.
-Vec3 cornerAsSeen(const Mesh& mesh, const CellTopology& t, Vec3 p)
-{
-  if (t.dimension == 2 && mesh.dimension() == Dimension::Planar)
-  {
-    const auto& frame = mesh.frame();
-    return { dot(frame[mesh.mirrored() ? 1 : 0], p), dot(frame[mesh.mirrored() ? 0 : 1], p), 0 };
-  }
-  if (mesh.mirrored() && mesh.dimension() == Dimension::Volume)
-  {
-    p[0] = -p[0];
-  }
-  return p;
-}
-
 /// The smallest number with all digits.
 constexpr double smallestNormal = std::numeric_limits<double>::min();
 
@@ -181,37 +173,6 @@ Index countBeyond(const BatchContext& context, const MetricInfo& info, const Bat
   return count;
 }
 
-/// Evaluates a metric of many elements at once, block by block, in the calling thread.
-void evaluateElementsMetric(
-  const Mesh& mesh, const MetricInfo& info, double* values, double undefined)
-{
-  const MeshView& view = mesh.view();
-  std::fill(values, values + view.numberOfCells, 0.0);
-  for (const CellBlock& block : mesh.blocks())
-  {
-    if (!info.definedOn(block.type) || block.count == 0)
-    {
-      continue;
-    }
-    const CellTopology& t = topology(block.type);
-    std::vector<double> points(3 * t.nodes * block.count), found(block.count);
-    for (Index i = 0; i < block.count; ++i)
-    {
-      const Index* nodes = view.connectivity + view.offsets[block.cell(i)];
-      for (int k = 0; k < t.nodes; ++k)
-      {
-        const Vec3 p = cornerAsSeen(mesh, t, pointOf(view, nodes[k]));
-        std::copy(p.begin(), p.end(), points.begin() + 3 * (t.nodes * i + k));
-      }
-    }
-    info.user->evaluateElements(block.type, block.count, points.data(), found.data());
-    for (Index i = 0; i < block.count; ++i)
-    {
-      values[block.cell(i)] = std::isfinite(found[i]) ? found[i] : undefined;
-    }
-  }
-}
-
 /// @param undefined the value where that of the metric is not finite
 Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& options, double* values,
   double* gradients, double undefined = 0.0)
@@ -223,7 +184,9 @@ Index evaluateAll(const Mesh& mesh, Metric metric, const EvaluationOptions& opti
     {
       requireDerivatives(metricInfo(metric));
     }
-    evaluateElementsMetric(mesh, metricInfo(metric), values, undefined);
+    const std::vector<double> found = tabulate(mesh, metricInfo(metric), false).values;
+    std::transform(found.begin(), found.end(), values,
+      [undefined](double value) { return std::isfinite(value) ? value : undefined; });
     return 0;
   }
   const MeshView& view = mesh.view();

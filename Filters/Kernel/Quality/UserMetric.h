@@ -11,7 +11,8 @@
  *    takes targets and a combination of the corners, as the built-in target metrics do;
  *  - a function of the corners of the element (CornerMetric);
  *  - a function of the corners of many elements at once, without derivatives (ElementsMetric): to
- *    measure and to colour, not to optimize. Those of Python are of this kind.
+ *    measure, to color, and to optimize by differences for all points at once, which is slow. Those
+ *    of Python are of this kind.
  *
  * Example: the inverse mean ratio, for T. The derivatives come from automatic differentiation.
  *
@@ -500,7 +501,7 @@ Metric registerCornerMetric(const MetricDescription& description, Function funct
     description, std::make_unique<const CornerMetric<Function>>(std::move(function)));
 }
 
-/// Registers a function of the corners of many elements; for measuring only.
+/// Registers a function of the corners of many elements.
 TAUTLINE_KERNEL_EXPORT Metric registerElementsMetric(
   const MetricDescription& description, ElementsFunction function);
 
