@@ -9,7 +9,7 @@ import shutil
 from pathlib import Path
 
 from tautline import __main__ as command_line
-from tautline.studies import _report, _verdicts
+from tautline.studies import _evidence, _report, _verdicts
 from wrong_data import Recorder, check_verdicts
 
 SMALLEST_PICTURE = 5000  # bytes; an empty one has fewer
@@ -57,14 +57,16 @@ class Studies:
                         assert math.isfinite(float(value)), f"{file.name}: {name} is {value}"
         found = self.rows(study, "findings")
         assert len(found) == findings, f"{study}: {len(found)} findings, not {findings}"
-        known = (_verdicts.HOLDS, _verdicts.DOES_NOT_HOLD, _verdicts.NOT_DECIDED, _verdicts.TOO_SMALL)
-        assert {row["verdict"] for row in found} <= set(known)
-        assert all(row["figures"] and row["finding"] for row in found)
+        assert {row["verdict"] for row in found} <= set(_verdicts.WORDS)
+        assert all(row["ours"] and row["claim"] for row in found)
+        assert all(row["criterion"] for row in found if row["verdict"] in (_verdicts.HOLDS, _verdicts.DOES_NOT_HOLD)), (
+            "a small mesh decides only what has a proof")
         text = (folder / f"{study}.txt").read_text(encoding="utf-8")
-        holding = sum(row["verdict"] == _verdicts.HOLDS for row in found)
-        assert f"{holding} of {findings} hold" in text
-        for verdict in known:
+        for verdict in _verdicts.WORDS:
             assert text.count(f"- {verdict.upper()} (") == sum(row["verdict"] == verdict for row in found), verdict
+        record = _evidence.read(folder / f"{study}.json")
+        assert [finding.row() for finding in _evidence.findings(record)] == record["findings"]
+        assert {"tautline", "vtk", "numpy"} <= set(record["versions"]) and record["options"]["small"]
         check_verdicts(study, self.calls[study], self.directory / "wrong_data", others)
         for picture in pictures if _report.pyplot else ():
             assert (folder / f"{picture}.png").stat().st_size > SMALLEST_PICTURE, f"{study}/{picture}.png is empty"

@@ -2,6 +2,7 @@
 """The study of divisions for ranks in the small size: divisions, counts, the model, verdicts."""
 
 import math
+from argparse import Namespace
 
 import numpy as np
 import tautline as tl
@@ -16,6 +17,11 @@ studies = Studies(OUT / "studies_decomposition")
 METHODS = [method.replace(" ", "_").replace("-", "") for method in decomposition.METHODS]
 DOMAINS = ("disk3d", "disk2d")
 FINDINGS = 7 * len(DOMAINS) + len(decomposition.RANK_CELLS) + 7
+
+
+def report_of() -> _report.Report:
+    """A report in full size, which decides."""
+    return _report.Report("decomposition", "verdicts", Namespace(out=studies.directory, small=False, format=[]))
 
 
 def run_all() -> None:
@@ -106,18 +112,18 @@ def test_model() -> None:
     assert model.efficiency(1000, 1024) < model.efficiency(1000, 64) < model.efficiency(10000, 64) < 1
     factor, exponent = decomposition.slope([10, 100, 1000], [3 * n**0.6 for n in (10, 100, 1000)])
     assert abs(factor - 3) < 1e-9 and abs(exponent - 0.6) < 1e-12
-    report = _report.Report("decomposition", "verdicts", studies.directory)
+    report = report_of()
     weak = {n: decomposition.Division(1000 * n, 1.0, 600, 500.0, 10, 100, 9600, 20, 200 * n, 294, 0.1, [])
             for n in (16, 64, 256)}
     numbers = (model.exponent, {"slowest": model.slowest(1000), "halo": model.halo_of(1000)}, {1000: 0.81},
                model.parts_of(1000, 64))
     decomposition.scaling_findings(report, weak, *numbers)
-    verdicts = [verdict for _, _, verdict, _ in report.findings]
+    verdicts = [finding.verdict for finding in report.recorded]
     assert verdicts[:6] == [_verdicts.HOLDS] * 6, report.findings
     weak[256].slowest = 500
     weak[64].halo = 900
     decomposition.scaling_findings(report, weak, *numbers)
-    verdicts = [verdict for _, _, verdict, _ in report.findings][len(verdicts):]
+    verdicts = [finding.verdict for finding in report.recorded][len(verdicts):]
     assert verdicts[0] == verdicts[3] == _verdicts.DOES_NOT_HOLD, verdicts
 
 
@@ -126,10 +132,10 @@ def test_spread() -> None:
     assert decomposition.counted(tl.domain("disk2d", 500), "graph", 3).halos[1] > 0
     for halos, verdict in (([90, 95, 99], _verdicts.HOLDS), ([90, 99, 101], _verdicts.NOT_DECIDED),
                            ([100, 102, 103], _verdicts.DOES_NOT_HOLD)):
-        report = _report.Report("decomposition", "verdicts", studies.directory)
+        report = report_of()
         one = decomposition.Division(1000, 1.0, 100, 90.0, 4, 10, 960, 10, 200, 210, 0.1, halos)
         decomposition.division_findings(report, {"any": {method: {8: one} for method in decomposition.METHODS}})
-        found = {sentence: verdict for _, sentence, verdict, _ in report.findings}
+        found = {finding.claim: finding.verdict for finding in report.findings}
         assert found["The graph's largest halo is smaller than the k-d tree's, for every number of parts"] == verdict
 
 

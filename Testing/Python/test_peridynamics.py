@@ -9,7 +9,7 @@ import tautline as tl
 from checks import points, refused, run_tests, shell, square, wording
 from study_checks import Studies
 from tautline._choices import PERIDYNAMICS_PRECONDITIONERS
-from tautline.studies import _horizon, names, nonlocal_preconditioner, state_based
+from tautline.studies import _horizon, names, nonlocal_preconditioner, peridynamics_tables, state_based
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from wrong_data import verdicts
 
@@ -153,18 +153,47 @@ def test_commands():
 
 
 def printed(calls):
-    """The calls on the tables with the printed numbers as ours, to the finest mesh."""
-    return [(function, ({(table, *key): (number, number) for table, row in _horizon.TABLES.items()
-                         for key, number in row.items()},), named) for function, _, named in calls]
+    """The calls on the tables with the printed numbers as ours and their ratios, and with ideal condition numbers."""
+    made = []
+    for function, arguments, named in calls:
+        if function.__name__ in ("number_findings", "ratio_findings"):
+            table, _, *ratios = arguments
+            numbers = _horizon.TABLES[table]
+            exact = [{(ar, n, d): numbers[ar, n, d] / numbers[ar, n // 2, d] for ar, n, d in given} for given in ratios]
+            made.append((function, (table, cells_of(table), *exact), named))
+    return made + ideal(calls)
+
+
+def cells_of(table):
+    """The printed numbers of a table as ours."""
+    return {key: peridynamics_tables.Entry(v, v, v) for key, v in _horizon.TABLES[table].items()}
+
+
+def ideal_cells(growth, stretch):
+    """Entries 0.8 delta^-2 at 1/h = 10, with factors of a refinement, larger for smaller delta, and of anisotropy."""
+    return {(ar, n, d): peridynamics_tables.Entry(
+        *[0.8 / d**2 * (growth + 0.01 / d) ** math.log2(n / 10) * stretch ** (ar > 1)] * 3)
+        for ar, n, d in _horizon.TABLES["4.1"]}  # fmt: skip
+
+
+def ideal(calls):
+    """The calls on trends with condition numbers c delta^-2, and ones that double under refinement."""
+    made = {"integrable_findings": (ideal_cells(1.0, 1.0), ideal_cells(1.0, 1.02)),
+            "singular_findings": (ideal_cells(2.0, 1.3),)}
+    return [(function, made[function.__name__], named) for function, _, named in calls if function.__name__ in made]
 
 
 def stated(calls):
     """The calls on the horizon, the element size and the aspect ratio with numbers as the dissertation states them."""
     ideal = {
-        "horizon_findings": ({("constant", 1): -2.0, ("linear", 4): -1.95},
-                             {"constant": [25.0, 6.2, 25.5, 6.1], "linear": [20.0, 5.0, 20.2, 5.1]}),
-        "size_findings": ({(1.0, 0.2): [0.3, 0.1, 0.02], (2.5, 0.2): [1.05, 0.98, 0.95]},),
-        "ratio_findings": ({40: [10.0, 14.0, 14.1, 14.0]},),
+        "horizon_findings": ({("constant", 1): -2.0, ("linear", 1): -1.95},
+                             {("constant", 1): [25.0, 6.2], ("constant", 4): [25.5, 6.1], ("linear", 1): [20.0, 5.0],
+                              ("linear", 4): [20.2, 5.1]}),
+        "bound_findings": ({("linear", 10, 0.5): 0.5},),
+        "limit_findings": ({0.2: 0.66, 0.1: 0.63},),
+        "size_findings": ({("constant", 1.0, 0.2): [16.0, 17.0, 17.5], ("linear", 1.0, 0.2): [10.0, 13.0, 14.9],
+                           ("linear", 2.5, 0.2): [10.0, 20.0, 40.0]},),
+        "ratio_findings": ({40: {1: 10.0, 4: 14.0, 16: 14.1, 64: 14.0}},),
     }
     return [(function, ideal[function.__name__], named) for function, _, named in calls]
 
@@ -189,9 +218,25 @@ def test_preconditioner_study():
     assert [v for (_, text), v in found.items() if "Jacobi: with" in text] == ["holds"], found
 
 
+def check_stated(calls):
+    """What the dissertation states holds with such numbers; growth with a power of 1 is not our h^-(p-2)."""
+    found = verdicts(calls, OUT / "stated")
+    not_ours = [v for (_, text), v in found.items() if "like h^-(p-2)" in text or "like AR^" in text]
+    assert len(found) == 14 and not_ours == ["does not hold"] * 2, found
+    assert list(found.values()).count("holds") == 12, found
+
+
+def check_ideal(calls):
+    """All trends hold with such numbers; their ratios decrease with delta without cut triangles."""
+    found = verdicts(ideal(calls), OUT / "ideal")
+    assert len(found) == 14, found
+    for (_, text), verdict in found.items():
+        assert verdict == ("does not hold" if text.startswith("It does because") else "holds"), (text, verdict)
+
+
 def test_studies():
     studies = Studies(OUT / "studies")
-    expected = {"peridynamics_tables": 7, "peridynamics_horizon": 7, "peridynamics_kernel": 2}
+    expected = {"peridynamics_tables": 34, "peridynamics_horizon": 14, "peridynamics_kernel": 2}
 
     def rows(name):
         studies.run(name, "--threads", "1")
@@ -199,8 +244,9 @@ def test_studies():
         theirs = others[name](studies.calls[name]) if name in others else ()
         studies.check(name, expected[name], (name,) if name == "peridynamics_tables" else (), {}, theirs)
         if name == "peridynamics_horizon":
-            found = verdicts(theirs, OUT / "stated")
-            assert len(found) == 7 and set(found.values()) == {"holds"}, found
+            check_stated(theirs)
+        if name == "peridynamics_tables":
+            check_ideal(studies.calls[name])
         return studies.rows(name, name)
 
     for row in rows("peridynamics_tables"):

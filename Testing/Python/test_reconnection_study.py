@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The study of reconnection in the small size; its verdicts follow from its numbers."""
 
+from argparse import Namespace
+
 from checks import OUT
 from study_checks import Studies
 from tautline.studies import _report, _verdicts, reconnection
@@ -41,9 +43,9 @@ def test_numbers():
 
 def holds(state, *arguments) -> list:
     """The verdicts of a function that states findings."""
-    report = _report.Report("reconnection", "verdicts", studies.directory)
+    report = _report.Report("reconnection", "verdicts", Namespace(out=studies.directory, small=False, format=[]))
     state(report, *arguments)
-    return [verdict == _verdicts.HOLDS for _, _, verdict, _ in report.findings]
+    return [finding.verdict == _verdicts.HOLDS for finding in report.findings]
 
 
 def test_reach():

@@ -130,22 +130,58 @@ def test_commands():
 
 
 def test_study():
+    """Two seeds: rates by method and weight, pictures, and verdicts of such numbers as the dissertation's."""
     studies = Studies(OUTPUT / "study")
-    told = studies.run("shapes", "--locations", "contour", "--no-pictures")
-    studies.check("shapes", 5, (), {"table_5_1": 4})
-    rows = {row["method"]: row for row in studies.rows("shapes", "table_5_1")}
-    assert rows["dissertation"]["dissertation"] == "72.2" and rows["felzenszwalb"]["dissertation"] == "64.4"
-    assert 100 > float(rows["dissertation"]["rate"]) > float(rows["felzenszwalb"]["rate"]) > 30, rows
+    told = studies.run("shapes", "--locations", "contour", "--seeds", "2")
+    calls = studies.calls["shapes"]
+    studies.check("shapes", 14, ("figure_5_5", "figure_5_6", "figure_5_7"), {"table_5_1": 20}, kimia(calls))
+    first = [row for row in studies.rows("shapes", "table_5_1") if row["seed"] == "1" and row["b"] == "3.0"]
+    rows = {row["method"]: row for row in first}
+    full, plain = rows[shapes.TITLES["dissertation"]], rows[shapes.TITLES["felzenszwalb"]]
+    assert full["dissertation"] == "72.2" and plain["dissertation"] == "64.4"
+    assert 100 > float(full["rate"]) > float(plain["rate"]) > 30, rows
     assert wording("synthetic-silhouettes") in told
     assert "labels.csv" in run("study", "shapes", "--data", "nowhere", code=1)
-    function, (rates, halves, _, _), _ = studies.calls["shapes"][0]
-    high = {**rates, **shapes.PRINTED, "highest": 99.0, "diffusion": 100.0}
-    of_kimia = function, (high, (97.1, 97.0), True, {"theta = 0.5 d_max": 72.2}), {}
-    found = verdicts([of_kimia], OUTPUT / "study")
-    assert len(found) == 8 and set(found.values()) == {"holds"}, found
-    low = {"felzenszwalb": 80.0, "dissertation": 70.0, "highest": 97.6, "diffusion": 97.0}
-    other = function, ({**rates, **low}, (97.1, 80.0), True, {"theta = 0.5 d_max": 60.0}), {}
-    assert set(verdicts([other], OUTPUT / "study").values()) == {"does not hold"}
+    found = verdicts(kimia(calls), OUTPUT / "study")
+    assert len(found) == 15 and set(found.values()) == {"holds"}, found
+    # The printed rates are in the range of the rates with other weights: b decides, which the dissertation lacks.
+    open_rates = {m: {0.3: r - 5, 1.0: r + 5} for m, r in zip(shapes.METHODS, (64.4, 70.0, 66.0, 72.2))}
+    call = rate_call(calls), (open_rates, True), {}
+    found = verdicts([call], OUTPUT / "study")
+    assert [v for (source, _), v in found.items() if source == "Table 5.1"] == ["not decided"] * 2, found
+    call = rate_call(calls), ({m: {b: r + 30 for b, r in row.items()} for m, row in open_rates.items()}, True), {}
+    found = verdicts([call], OUTPUT / "study")
+    assert [v for (source, _), v in found.items() if source == "Table 5.1"] == ["does not hold"] * 2, found
+    call = rate_call(calls), (open_rates, False), {}
+    found = verdicts([call], OUTPUT / "study")
+    assert [v for (source, _), v in found.items() if source == "Table 5.1"] == ["not decided"] * 2, found
+
+
+def rate_call(calls):
+    """The function that states the findings on rates."""
+    return next(function for function, _, _ in calls if function.__name__ == "rate_findings")
+
+
+def kimia(calls):
+    """The calls with numbers as the dissertation's, on its set, and one on theta."""
+    rates = {m: {b: rate for b in (1.0, 3.0)} for m, rate in zip(shapes.METHODS, (64.4, 68.0, 66.0, 72.2))}
+    made = {
+        "rate_findings": (rates, True),
+        "high_findings": ({"highest": 99.0, "diffusion": 100.0}, (97.1, 97.0), True),
+        "figure_findings": ([(9, 10)], [(2, 4)], 0.1, [(0.5, 0.1), (0.4, 0.2)]),
+    }
+    return [(function, made[function.__name__], named) for function, _, named in calls] + [
+        (shapes.theta_findings, (72.2, 72.0), {})]
+
+
+def test_seeds():
+    """Images of a folder get random borders with seeds after the first; they show the same."""
+    images, _ = _silhouettes.families(1, 2, seed=5)
+    moved = _silhouettes.moved(images, 2)
+    again = _silhouettes.moved(images, 2)
+    assert all(np.array_equal(a, b) for a, b in zip(moved, again))
+    for image, other in zip(images, moved):
+        assert other.shape > image.shape and other.sum() == image.sum()
 
 
 def test_unseen_study():

@@ -87,8 +87,8 @@ def shape(corners, cell_type):
 
 def test_optimized():
     """A metric of Python as an objective gives the same minimum as the built-in one that it copies."""
-    tl.register_metric("my_shape", shape, cell_types=["triangle", "tetrahedron"], scale_invariant=True, full=(1, np.inf),
-                       ideal=1.0)
+    tl.register_metric("my_shape", shape, cell_types=["triangle", "tetrahedron"], scale_invariant=True,
+                       full=(1, np.inf), ideal=1.0)
     for domain, cells in (("disk2d", 300), ("disk3d", 600)):
         mesh = tl.perturb(tl.domain(domain, cells), fraction=0.6, seed=3).mesh
         options = dict(optimizer="l-bfgs", relative_change=1e-9, maximum_iterations=300)
@@ -103,7 +103,8 @@ def test_optimized():
         assert both.history["objective"][-1] < both.history["objective"][0]
     for refusal in (dict(optimizer="local newton"), dict(optimizer="newton-cg"), dict(improve_worst=0.01),
                     dict(limits=0.1)):
-        refused(wording("without-derivatives-of-its-own"), tl.optimize, mesh, "custom", objectives="my_shape", **refusal)
+        refused(wording("without-derivatives-of-its-own"), tl.optimize, mesh, "custom", objectives="my_shape",
+                **refusal)
     tl.unregister_metric("my_shape")
 
 

@@ -3,6 +3,7 @@
 
 import copy
 import dataclasses
+from argparse import Namespace
 from importlib import import_module
 from pathlib import Path
 
@@ -94,12 +95,12 @@ def wrong(value, random: np.random.Generator, count: str = ""):
 
 def verdicts(calls, directory: Path, random=None) -> dict:
     """The verdicts by finding, of the recorded numbers or of wrong ones, as on meshes of full size."""
-    report = _report.Report("wrong_data", "wrong data", directory)
+    report = _report.Report("wrong_data", "wrong data", Namespace(out=directory, small=False, format=[]))
     for function, arguments, named in calls:
         if random is not None:
             arguments = [wrong(argument, random) for argument in arguments]
         function(report, *arguments, **named)
-    return {(source, sentence): verdict for source, sentence, verdict, _ in report.findings}
+    return {finding.key: finding.verdict for finding in report.findings}
 
 
 def check_verdicts(study: str, calls, directory: Path, others=()) -> None:

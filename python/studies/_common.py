@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 import time
@@ -17,8 +18,9 @@ from tautline._arguments import pick
 from tautline._choices import OPTIMIZE_OPTIMIZERS, OPTIMIZE_SCALARIZATIONS, TEMPLATES
 from tautline._errors import Messages, run, watch
 
+from ._memory import remembered
 from ._meshes import copied
-from ._verdicts import Times
+from ._verdicts import GAIN_BAND, Times, Verdict, all_of, below, less, unless
 
 #: c of (3.8), the upper end of the dissertation's typical values.
 TYPICAL_C = 1e6
@@ -27,6 +29,12 @@ LARGE = 200_000
 #: The names of the methods of several objectives.
 MULTI = ("exponential-sum", "objective-product", "equal-sum")
 OPTIMIZERS = {"nlcg": "local conjugate gradient", "newton": "local newton"}
+#: Qualities that differ by a smaller part are alike: another perturbation of the mesh changes them by as much.
+QUALITY_MARGIN = 0.01
+#: Qualities of methods with a comparable performance differ by at most this part.
+COMPARABLE = 0.1
+#: How a message of the optimizer begins where it converged, and where it could not go on.
+_CONVERGED, _STUCK = "Converged", ("No step", "No vertex")
 
 
 @dataclass(frozen=True)
@@ -68,20 +76,30 @@ class Run:
     kept: dict[int, vtkDataSet] = field(default_factory=dict)
     #: CPU seconds of whole runs of the same optimization; empty: of this run alone.
     repeated: tuple[float, ...] = ()
+    #: Why it failed: an error, no step that reduces the objective, vertices that left the domain; "": it did not.
+    failure: str = ""
+
+    def converged(self) -> bool:
+        """Whether further iterations would not change the mesh, by what the optimizer said."""
+        return not self.failure and self.reason.startswith(_CONVERGED)
 
     def at(self, quantity: str, iteration: int) -> float:
-        """The value after an iteration, or after the last one if the run stopped earlier."""
+        """The value after an iteration; after the last one only if the run converged, else NaN."""
         series = self.seconds if quantity == "seconds" else self.values[quantity]
-        return float(series[min(iteration, len(series) - 1)])
+        if iteration > self.iterations[-1]:
+            return float(series[-1]) if self.converged() else math.nan
+        found = np.flatnonzero(self.iterations == iteration)
+        return float(series[found[0]]) if found.size else math.nan
 
     def last(self, quantity: str) -> float:
-        return float(self.values[quantity][-1])
+        """The value at the end; NaN if the run failed."""
+        return math.nan if self.failure else float(self.values[quantity][-1])
 
     def first(self, quantity: str) -> float:
         return float(self.values[quantity][0])
 
     def last_second(self) -> float:
-        return float(self.seconds[-1])
+        return math.nan if self.failure else float(self.seconds[-1])
 
     def times(self) -> Times:
         """The CPU seconds of all runs."""
@@ -101,20 +119,74 @@ QUANTITIES: dict[str, tuple[str, Callable[[np.ndarray], float]]] = {
 }
 
 
+#: Aggregations of any other metric: METRIC_mean, METRIC_min, METRIC_max.
+AGGREGATIONS: dict[str, Callable[[np.ndarray], float]] = {"mean": np.mean, "min": np.min, "max": np.max}
+
+
 def measure(mesh: vtkDataSet, quantities: Iterable[str]) -> dict[str, float]:
     """The quantities of a mesh over its valid elements, and `inverted`, the number of all others."""
-    quantities = list(quantities)
-    names = list(dict.fromkeys(QUANTITIES[q][0] for q in quantities))
+    parts = {q: QUANTITIES.get(q) or (q.rsplit("_", 1)[0], AGGREGATIONS[q.rsplit("_", 1)[1]]) for q in quantities}
+    names = list(dict.fromkeys(metric for metric, _ in parts.values()))
     threads = 0 if mesh.GetNumberOfCells() >= LARGE else 1
     found = tautline.quality(mesh, names, reversed_mesh="measure as given", threads=threads)
     valid = found.validity == 1
     result = {}
-    for quantity in quantities:
-        metric, aggregate = QUANTITIES[quantity]
+    for quantity, (metric, aggregate) in parts.items():
         result[quantity] = float(aggregate(found.values[metric][valid])) if valid.any() else 0.0
     return {**result, "inverted": float(np.count_nonzero(~valid))}
 
 
+def patch_option(made: argparse.ArgumentParser) -> None:
+    """Add the option that chooses where objectives are combined."""
+    made.add_argument("--patch-scalarization", action="store_true",
+                      help="combine the objectives on the patch of a vertex, Mesquite's default, not on the whole mesh")
+
+
+def failures(runs: dict[str, Run], names: Iterable[str] = ()) -> str:
+    """Why runs failed (of the methods `names`, by default all), a line each, or ""."""
+    return "\n".join(f"{n} failed: {runs[n].failure}" for n in (names or runs) if runs[n].failure)
+
+
+def judged(runs: dict[str, Run], names: Iterable[str], verdict: Any) -> Verdict:
+    """A verdict that rests on the runs of these methods: not decided if one of them failed."""
+    return unless(failures(runs, names).split("\n")[0], verdict)
+
+
+def time_judged(runs: dict[str, Run], names: Iterable[str], verdict: Any) -> Verdict:
+    """A verdict on times: not decided if a run failed or made fewer iterations than the others."""
+    names = list(names)
+    made = {n: len(runs[n].iterations) - 1 for n in names}
+    uneven = "the runs made different numbers of iterations: " + ", ".join(f"{n} {k}" for n, k in made.items())
+    return judged(runs, names, unless(uneven if len(set(made.values())) > 1 else "", verdict))
+
+
+def about(one: Times, other: Times, printed: float) -> Verdict:
+    """Whether one takes the printed multiple of the other's time, within the band of gains."""
+    low, high = (factor * printed for factor in GAIN_BAND)
+    return all_of((below(other, one, 1.0 / low), below(one, other, high)))
+
+
+def best_of(runs: dict[str, Run], name: str, others: Iterable[str], quantity: str) -> Verdict:
+    """Whether a method has the smallest value of a quantity at the end, by more than the margin of qualities."""
+    others = [n for n in others if n != name]
+    value = runs[name].last(quantity)
+    return judged(runs, [name, *others], all_of(less(value, runs[n].last(quantity), QUALITY_MARGIN) for n in others))
+
+
+def worst_of(runs: dict[str, Run], name: str, quantity: str) -> Verdict:
+    """Whether a method has the largest value of a quantity at the end, by more than the margin of qualities."""
+    others = [n for n in runs if n != name]
+    value = runs[name].last(quantity)
+    return judged(runs, runs, all_of(less(runs[n].last(quantity), value, QUALITY_MARGIN) for n in others))
+
+
+def reduces(run: Run, quantity: str) -> Verdict:
+    """Whether a run reduces a quantity, by more than the margin of qualities."""
+    failed = f"{run.method.name} failed: {run.failure}" if run.failure else ""
+    return unless(failed, less(run.last(quantity), run.first(quantity), QUALITY_MARGIN))
+
+
+@remembered
 def improve(
     mesh: vtkDataSet,
     method: Method,
@@ -160,7 +232,11 @@ def improve(
         text = f"{method.name}, {optimizer}: {count - 1} iterations, {seconds[-1]:.1f} CPU s"
         print(text, file=sys.stderr, flush=True)
     repeated = tuple(float(stamps[-1]) for stamps in timed)
-    return Run(method, optimizer, steps, seconds, values, final, filter_.GetReason(), kept, repeated)
+    reason = filter_.GetReason()
+    if not trace:
+        seconds = seconds[[0, -1]]
+    failure = reason if reason.startswith(_STUCK) else ""
+    return Run(method, optimizer, steps, seconds, values, final, reason, kept, repeated, failure)
 
 
 def _configured(
@@ -179,12 +255,14 @@ def _configured(
     best_known: float | None = None,
     weights: Sequence[tuple[str, float]] = (),
     template: str = "default",
+    patch_scalarization: bool = False,
     threads: int = 0,
 ) -> tuple[Any, Messages]:
     """A vtkMeshOptimizer of a method, with fixed boundary and without culling, and its messages.
 
     weights: further objectives and their weights; the scalarization is then the weighted sum, with 1 for the others.
-    template: aggregation of the objectives of the method.
+    template: aggregation of the objectives of the method. patch_scalarization: combine the objectives' values on the
+    patch of a vertex instead of those on the whole mesh.
     """
     filter_ = tautline.vtkMeshOptimizer()
     messages = watch(filter_)
@@ -194,6 +272,8 @@ def _configured(
         filter_.AddObjectiveByName(name, filter_.DEFAULT_TEMPLATE, weight)
     scalarization = "weighted sum" if weights else method.scalarization
     filter_.SetScalarization(pick("scalarization", scalarization, OPTIMIZE_SCALARIZATIONS))
+    if patch_scalarization and len(method.objectives) + len(weights) > 1:
+        filter_.SetPatchScalarization(True)
     filter_.SetOptimizer(pick("optimizer", OPTIMIZERS.get(optimizer, optimizer), OPTIMIZE_OPTIMIZERS))
     filter_.SetHoldWorst(False)  # the methods of the dissertation promise nothing about single elements
     filter_.SetMaximumIterations(iterations)

@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of meshes in the plane and in space, and images of silhouettes, for the study `figures`."""
+"""Pictures of meshes in the plane and in space, and of silhouettes."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import NamedTuple, Sequence
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from ._meshes import cells_of, points_of
 from ._report import Report, pyplot
+
+try:
+    from matplotlib.colors import ListedColormap
+except ImportError:  # there are no pictures
+    ListedColormap = None
 
 #: Direction of the light, and of the view, of surfaces in space.
 _LIGHT = np.array([0.4, -0.7, 0.6])
@@ -82,13 +86,39 @@ def surface_picture(report: Report, file: str, meshes: dict[str, vtkDataSet], co
     report.save(figure, file)
 
 
-def image_values(shapes: Any) -> tuple[list[np.ndarray], list[str]]:
-    """The images [row, column] of a set of tautline.read_silhouettes(), and the classes."""
-    images, labels = [], []
-    for i in range(shapes.GetNumberOfBlocks()):
-        image = shapes.GetBlock(i)
-        columns, rows, _ = image.GetDimensions()
-        values = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(rows, columns, -1)[..., 0]
-        images.append(values)
-        labels.append(image.GetFieldData().GetAbstractArray("Label").GetValue(0))
-    return images, labels
+#: Backgrounds of silhouettes: right and wrong matches, and others.
+FRAMES = {"right": "#cceacc", "wrong": "#fac7bd", "": "#ffffff"}
+_SHAPE, _DETECTED = "#5a6169", "#d94010"
+
+
+class Silhouette(NamedTuple):
+    """A panel of a picture: a silhouette, the mesh that was detected in it, and the background, see FRAMES."""
+
+    image: np.ndarray
+    mesh: vtkDataSet | None = None
+    frame: str = ""
+    title: str = ""
+
+
+def silhouettes_picture(report: Report, file: str, rows: Sequence[Sequence[Silhouette]], size: float) -> None:
+    """Silhouettes and detected meshes in rows; size: of a panel, in inches."""
+    if pyplot is None:
+        return
+    columns = max(map(len, rows))
+    figure, axes = pyplot.subplots(len(rows), columns, figsize=(size * columns, size * len(rows)), squeeze=False)
+    for axis in axes.flat:
+        axis.set(xticks=[], yticks=[])
+        axis.set_frame_on(False)
+    for line, panels in zip(axes, rows):
+        for axis, panel in zip(line, panels):
+            low, high = float(np.min(panel.image)), float(np.max(panel.image))
+            # The shape is the side of the threshold that fewer pixels of the border are on.
+            inside = panel.image > 0.5 * (low + high)
+            border = np.concatenate([inside[0], inside[-1], inside[:, 0], inside[:, -1]])
+            shown = inside if border.mean() < 0.5 else ~inside
+            axis.imshow(shown, cmap=ListedColormap([FRAMES[panel.frame], _SHAPE]), origin="lower", vmin=0, vmax=1,
+                        interpolation="nearest")
+            if panel.mesh is not None:
+                axis.triplot(*points_of(panel.mesh)[:, :2].T, cells_of(panel.mesh), color=_DETECTED, linewidth=1)
+            axis.set_title(panel.title, fontsize=8)
+    report.save(figure, file)

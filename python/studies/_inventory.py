@@ -27,14 +27,17 @@ def _entries(text: str) -> list[Entry]:
 
 
 ENTRIES = _entries("""
+Figure 1.1 | a mesh before and after the improvement | figures | figure_1_1
+Figure 1.2 | a tangled mesh | figures | figure_1_2
 Figure 2.1 | contours of IMR, RR, SI and SS | figures | figure_2_1
 Figure 2.2 | meshes of wrench and hinge | figures | figure_2_2
+Table 2.4 | numbers of triangles | mesh_independence | table_2_4
 Table 2.6 | smoothing times | smoothing_times | table_2_6*
-Table 2.7 | angles by metric | smoothing_times | table_2_7* boundary angles
-Figure 2.3 | restart value of GMRES | solver_restart | iterations seconds figure_2_3
+Table 2.7 | angles by metric | smoothing_times | table_2_7* boundary angles meshes
+Figure 2.3 | restart value of GMRES | solver_restart | iterations_* seconds_* figure_2_3
 Table 2.8 | solvers by metric, Poisson | solver_metrics | poisson_* total_poisson_*
 Table 2.9 | solvers by perturbation, Poisson | solver_perturbation | poisson_*
-Figure 2.4 | increase of the time by perturbation, Poisson | solver_perturbation | pi_poisson_*
+Figure 2.4 | increase of the time by perturbation, Poisson | solver_perturbation | pi_poisson_* failures_poisson_*
 Figure 2.5 | order of the iterations, Poisson | solver_orders | figure_2_5 poisson_* eigenvalues_*
 Figure 2.6 | order of the time, Poisson | solver_orders | figure_2_6 poisson_orders_seconds
 Table 2.10 | solvers by metric, general second order | solver_metrics | elliptic_* total_elliptic_*
@@ -67,47 +70,51 @@ Figure 3.12 | bore | figures | figure_3_12
 Table 3.8 | condition numbers, brain | conditioning | table_3_8
 Table 3.9 | condition numbers, bore | conditioning | table_3_9
 Table 3.10 | condition numbers, disk | conditioning | table_3_10
+Figure 4.1 | horizon and force | figures | figure_4_1
 Figure 4.2 | sparsity pattern | figures | figure_4_2
+Figure 4.3 | boundary conditions, local and nonlocal | figures | figure_4_3
 Figure 4.4 | triangles cut by the horizon | figures | figure_4_4
 Figure 4.5 | areas by chords | figures | figure_4_5
 Figure 4.6 | meshes with an interaction layer | figures | figure_4_6
 Figure 4.7 | anisotropic mesh | figures | figure_4_7
 Figure 4.8 | aspect ratio | figures | figure_4_8
-Table 4.1 | condition numbers, constant basis, p = 1 | peridynamics_tables | peridynamics_tables
-Table 4.2 | condition numbers, linear basis, p = 1 | peridynamics_tables | peridynamics_tables
-Table 4.3 | condition numbers, linear basis, p = 2.5 | peridynamics_tables | peridynamics_tables
-Figure 4.9 | by horizon and aspect ratio, constant basis | peridynamics_horizon | *_constant_p1 | 4.5.1
+Table 4.1 | condition numbers, constant basis, p = 1 | peridynamics_tables | table_4_1* peridynamics_tables
+Table 4.2 | condition numbers, linear basis, p = 1 | peridynamics_tables | table_4_2* peridynamics_tables
+Table 4.3 | condition numbers, linear basis, p = 2.5 | peridynamics_tables | table_4_3* peridynamics_tables
+Figure 4.9 | by horizon and ratio, constant basis | peridynamics_horizon | *_constant_p1 *s_p1 short_horizons | 4.5.1
 Figure 4.10 | by delta^-2, constant basis | peridynamics_horizon | *_constant_p1_inverse | 4.5.1
-Figure 4.11 | by horizon and element size, constant basis | peridynamics_horizon | *_constant_p1 | 4.5.1
+Figure 4.11 | by horizon and element size, constant basis | peridynamics_horizon | *_constant_p1 growth_h | 4.5.1
 Figure 4.12 | by delta^-2 and element size, constant basis | peridynamics_horizon | *_constant_p1_inverse | 4.5.1
-Figure 4.13 | by horizon and aspect ratio, linear basis | peridynamics_horizon | *_linear_p1 | 4.5.2
+Figure 4.13 | by horizon and aspect ratio, linear basis | peridynamics_horizon | *_linear_p1 growth_ratio | 4.5.2
 Figure 4.14 | by delta^-2, linear basis | peridynamics_horizon | *_linear_p1_inverse | 4.5.2
-Figure 4.15 | by horizon and element size, linear basis | peridynamics_horizon | *_linear_p1 | 4.5.2
+Figure 4.15 | by horizon and element size, linear basis | peridynamics_horizon | *_linear_p1 growth_h | 4.5.2
 Figure 4.16 | by delta^-2 and element size, linear basis | peridynamics_horizon | *_linear_p1_inverse | 4.5.2
-Figure 4.17 | by horizon and aspect ratio, p = 2.5 | peridynamics_horizon | *_linear_p2.5 | 4.5.3
-Figure 4.18 | by horizon and element size, p = 2.5 | peridynamics_horizon | *_linear_p2.5 *_h *_ratio | 4.5.3
-Figure 4.19 | by the exponent of the kernel | peridynamics_kernel | peridynamics_kernel
+Figure 4.17 | by horizon and aspect ratio, p = 2.5 | peridynamics_horizon | *_linear_p2.5 growth_ratio | 4.5.3
+Figure 4.18 | by horizon and element size, p = 2.5 | peridynamics_horizon | *_linear_p2.5 *_h *_ratio growth_h | 4.5.3
+Figure 4.19 | by the exponent of the kernel | peridynamics_kernel | peridynamics_kernel kernel_*
 Figure 4.20 | rectangle with a sinking top | rectangle_warp | *
+Figure 4.21 | an element of a structured mesh | figures | figure_4_21
 Figure 4.22 | the same, anisotropic | rectangle_warp | *
+Figure 4.23 | coefficients and direction of the motion | figures | figure_4_23
 Figure 4.24 | cylinder | deformation | strip_cylinder | 4.10.1
-Figure 4.25 | quality, cylinder | deformation | quality | 4.10.1
-Figure 4.26 | inverted elements, cylinder | deformation | inverted | 4.10.1
+Figure 4.25 | quality, cylinder | deformation | quality quality_cylinder | 4.10.1
+Figure 4.26 | inverted elements, cylinder | deformation | inverted seconds sweep_cylinder | 4.10.1
 Figure 4.27 | bar | deformation | strip_bar | 4.10.2
-Figure 4.28 | quality, bar | deformation | quality | 4.10.2
-Figure 4.29 | inverted elements, bar | deformation | inverted | 4.10.2
+Figure 4.28 | quality, bar | deformation | quality quality_bar | 4.10.2
+Figure 4.29 | inverted elements, bar | deformation | inverted seconds sweep_bar | 4.10.2
 Figure 4.30 | gate | deformation | strip_gate | 4.10.3
-Figure 4.31 | quality, gate | deformation | quality | 4.10.3
-Figure 4.32 | inverted elements, gate | deformation | inverted | 4.10.3
+Figure 4.31 | quality, gate | deformation | quality quality_gate | 4.10.3
+Figure 4.32 | inverted elements, gate | deformation | inverted seconds sweep_gate | 4.10.3
 Figure 4.33 | cylinder, diagonal | deformation | strip_cylinder-diagonal | 4.10.4
-Figure 4.34 | quality, cylinder, diagonal | deformation | quality | 4.10.4
+Figure 4.34 | quality, cylinder, diagonal | deformation | quality quality_cylinder-diagonal | 4.10.4
 Figure 4.35 | bending bar | deformation | strip_bending-bar | 4.10.5
-Figure 4.36 | quality, bending bar | deformation | quality | 4.10.5
+Figure 4.36 | quality, bending bar | deformation | quality quality_bending-bar | 4.10.5
 Figure 4.37 | sphere | figures | figure_4_37_a
-Figure 4.38 | quality, sphere | deformation | quality | 4.10.6
+Figure 4.38 | quality, sphere | deformation | quality quality_sphere | 4.10.6
 Figure 4.39 | inverted elements, sphere | deformation | inverted strip_sphere | 4.10.6
 Figure 5.1 | overview of shape matching | figures | figure_5_1
 Figure 5.2 | largest distance from the center of mass | figures | figure_5_2
-Table 5.1 | recognition rates | shapes | table_5_1 | 5.3
+Table 5.1 | recognition rates | shapes | table_5_1 sweep ranks | 5.3
 Figure 5.3 | a poor and an improved match | shapes | *5_3*
 Figure 5.4 | samples of the silhouettes | figures | figure_5_4
 Figure 5.5 | good matches | shapes | *5_5*
@@ -145,6 +152,31 @@ SECTIONS = (
     ("5.2", "shape matching", "Silhouette to Mesh, Match Shape; silhouette(), match()", "figures"),
     ("5.3", "retrieval", "Shape Retrieval; retrieval()", "shapes"),
     ("2.8", "time-dependent problems", "Solve PDE with a Time Scheme; solve()", "time_stepping"),
+    ("2.7.1, 2.8", "other elements, three dimensions, anisotropic coefficients", "Solver Study; solver_study()",
+     "solver_meshes"),
+    ("3.2, 3.3", "Pareto optimality, forms of the objective", "Optimize Mesh; optimize()", "pareto, formulations"),
+    ("4.11", "target matrices of the initial mesh in FEMWARP", "-", "target_matrices"),
     ("-", "beyond the dissertation", "Improve Mesh, Warp Mesh; improve(), warp()", "reconnection, box_rotation"),
     ("-", "decomposition of the domain, many processes", "Optimize Mesh; optimize()", "decomposition"),
+    ("-", "threads", "all filters", "thread_scaling"),
 )
+
+#: Chapters of the dissertation, in the order of the summary; 0 has what this project states.
+CHAPTERS = {
+    1: "1 Introduction",
+    2: "2 Metrics, preconditioners and solvers",
+    3: "3 Several objectives",
+    4: "4 Nonlocal models, moving meshes",
+    5: "5 Shape matching",
+    6: "6 Conclusions",
+    0: "This project's own statements",
+}
+
+#: Tables and figures that no study makes, and why.
+NOT_MADE: dict[str, str] = {
+    "Table 2.1, 2.2, 2.3, 2.5, 3.1": "definitions of notation, metrics, problems and combinations: no results",
+    "Figure 1.3": "a picture of another work (fragmentation); there is no model of fracture here",
+    "Figure 1.4": "the subject of Figure 4.35",
+    "Figure 1.5": "the subject of Figure 5.4",
+    "Figure 1.6": "a flowchart of the chapters: nothing to compute",
+}

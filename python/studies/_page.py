@@ -11,22 +11,25 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from html import escape
 from pathlib import Path
-from typing import Iterable
+from typing import Any, Iterable, Sequence
 
 import numpy as np
 
+from . import _evidence
+from ._findings import Finding
+from ._inventory import CHAPTERS, ENTRIES, NOT_MADE, SECTIONS, Entry
 from ._report import pyplot
-from ._inventory import ENTRIES, SECTIONS, Entry
-from ._verdicts import DOES_NOT_HOLD, HOLDS, NOT_DECIDED, TOO_SMALL
+from ._verdicts import DOES_NOT_HOLD, HOLDS, NOT_DECIDED, TOO_SMALL, VARIES, WORDS
 
-_CLASSES = {HOLDS: "yes", DOES_NOT_HOLD: "no", NOT_DECIDED: "open", TOO_SMALL: "open"}
+_CLASSES = {HOLDS: "yes", DOES_NOT_HOLD: "no", VARIES: "open", NOT_DECIDED: "open", TOO_SMALL: "open"}
 #: Shades of a channel in pictures, so that their colors are at most 256.
 _SHADES = 6
 _STYLE = """
 body { font: 15px/1.45 sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #202020 }
 table { border-collapse: collapse; margin: 0.5em 0; display: block; overflow-x: auto }
 td, th { border: 1px solid #ccc; padding: 2px 8px; text-align: left; vertical-align: top }
-pre { overflow-x: auto; font-size: 12px; background: #f6f6f6; padding: 6px }
+.numbers { font-size: 13px } .numbers td { text-align: right } .numbers td:first-child { text-align: left }
+caption { text-align: left; font-weight: bold }
 img { max-width: 100%; display: block; margin: 0.5em 0 } h3 { margin: 1.5em 0 0.3em }
 .yes { color: #106010 } .no { color: #a01010 } .open { color: #705000 } .small { color: #606060; font-size: 13px }
 """
@@ -38,24 +41,75 @@ class Study:
 
     name: str
     text: str
-    folder: Path
-    findings: list[dict[str, str]]
+    record: dict[str, Any] | None
+    #: The pictures by the names of their files, as elements of the page.
+    pictures: dict[str, str]
     error: str = ""
 
+    @property
+    def findings(self) -> list[Finding]:
+        return _evidence.findings(self.record)
 
-def page(studies: dict[str, Study], small: bool, width: int) -> str:
+    @property
+    def parts(self) -> list[dict[str, Any]]:
+        """Its paragraphs and tables."""
+        return self.record["parts"] if self.record else []
+
+
+def study_in(name: str, text: str, folder: Path, width: int) -> Study:
+    """What a study wrote into a folder; its pictures have at most a width."""
+    pictures = {path.stem: _picture(path, f"{name}/{path.stem}", width) for path in sorted(folder.glob("*.png"))}
+    return Study(name, text, _evidence.read(folder / f"{name}.json"), pictures)
+
+
+def study_of(name: str, text: str, report: str) -> Study:
+    """The committed results of a study; its pictures are taken from a report."""
+    found = {match.group(1): match.group() for match in re.finditer(rf"<img alt='{name}/([^']+)' [^>]*>", report)}
+    pictures = {file: found[file] for file in sorted(found)}
+    return Study(name, text, _evidence.committed(name), pictures)
+
+
+def page(studies: dict[str, Study], small: bool) -> str:
     """The report."""
     parts = [f"<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Tautline: studies</title>"
              f"<style>{_STYLE}</style></head><body><h1>Studies of the dissertation</h1>", _introduction(studies, small),
-             _overview(studies), "<h2>Tables and figures</h2>"]
+             _summary(studies), _runs(studies), _overview(studies), "<h2>Tables and figures</h2>"]
     shown: dict[str, set[str]] = {name: set() for name in studies}
-    pictures: dict[Path, str] = {}
+    pictures: dict[tuple[str, str], str] = {}
     for entry in ENTRIES:
         if entry.study in studies:
-            parts.append(_entry(entry, studies, shown[entry.study], pictures, width))
-    parts.append("<h2>Further findings and tables, by study</h2>")
-    parts += [_rest(study, shown[name], pictures, width) for name, study in studies.items()]
-    return "\n".join([*parts, _sections(), "</body></html>\n"])
+            parts.append(_entry(entry, studies, shown[entry.study], pictures))
+    parts.append("<h2>Methods, further findings and tables, by study</h2>")
+    parts += [_rest(study, shown[name], pictures) for name, study in studies.items()]
+    return "\n".join([*parts, _not_made(), _sections(), "</body></html>\n"])
+
+
+def chapter(source: str) -> int:
+    """The chapter of a table, figure or section; 0 if the text names none."""
+    found = re.search(r"(?<![\d.])([1-6])(?:\.\d|\b)", source)
+    return int(found.group(1)) if found else 0
+
+
+def by_chapter(studies: Iterable[Study]) -> dict[int, list[Finding]]:
+    """The findings about the dissertation by chapter, and our own as chapter 0."""
+    groups: dict[int, list[Finding]] = {number: [] for number in CHAPTERS}
+    for study in studies:
+        for finding in study.findings:
+            groups[0 if finding.own else chapter(finding.source)].append(finding)
+    return groups
+
+
+def summary_markdown(studies: Iterable[Study]) -> str:
+    """The numbers of findings by chapter and verdict, as a table in Markdown."""
+    rows = [["chapter", *WORDS[:-1]], ["---"] * len(WORDS)]
+    rows += [[CHAPTERS[number], *map(str, counts(found))] for number, found in by_chapter(studies).items() if found]
+    return "\n".join("| " + " | ".join(row) + " |" for row in rows)
+
+
+def counts(findings: Sequence[Finding]) -> list[int]:
+    """The numbers of findings by verdict, in the order of WORDS; those too small to decide are not decided."""
+    words = [finding.verdict for finding in findings]
+    return [words.count(word) + (words.count(TOO_SMALL) if word == NOT_DECIDED else 0) for word in WORDS[:-1]]
 
 
 def references(text: str) -> set[str]:
@@ -72,17 +126,53 @@ def references(text: str) -> set[str]:
 
 
 def _introduction(studies: dict[str, Study], small: bool) -> str:
-    verdicts = [row["verdict"] for study in studies.values() for row in study.findings]
-    counts = ", ".join(f"{word}: {verdicts.count(word)}" for word in _CLASSES if word in verdicts)
-    text = (f"<p>{len(studies)} studies, {len(verdicts)} findings ({counts}). Of each table and figure: our numbers "
-            "with the dissertation's in brackets or in columns of their own, what the dissertation states with our "
-            "verdict, and our pictures. Times are CPU seconds; differences within their noise are not decided.</p>")
+    text = ("<p>The dissertation is on optimization-based meshing: quality metrics and solvers (chapter 2), several "
+            "objectives (3), nonlocal models and moving meshes (4), shape matching (5). For each table and figure: our "
+            "numbers with the dissertation's in brackets or in columns of their own, what the dissertation states with "
+            "our verdict, and our pictures. Meshes are this project's. A finding holds, does not hold, varies with the "
+            "seed of the random numbers, or is not decided, because times differ by less than their noise or because a "
+            "number is missing. Times are CPU seconds.</p>")
     if small:
         text += ("<p><b>This is the small size</b>: meshes of some thousand cells, which show the layout and decide "
-                 "only what does not depend on size. <code>python3 -m tautline study all --out DIR</code> runs the "
-                 "studies in full, which takes hours.</p>")
+                 "only what does not depend on size. <code>python3 -m tautline study all --record --out DIR</code> "
+                 "runs the studies at the sizes of the committed report, which takes hours.</p>")
     failed = [f"<li>{escape(s.name)}: {escape(s.error)}</li>" for s in studies.values() if s.error]
     return text + (f"<p>Failed:</p><ul>{''.join(failed)}</ul>" if failed else "")
+
+
+def _summary(studies: dict[str, Study]) -> str:
+    """Per chapter how many findings hold, and each that does not, with its reason."""
+    groups = by_chapter(studies.values())
+    head = "".join(f"<th>{word}</th>" for word in WORDS[:-1])
+    rows = "".join(f"<tr><td>{escape(CHAPTERS[number])}</td>{''.join(f'<td>{n}</td>' for n in counts(found))}</tr>"
+                   for number, found in groups.items() if found)
+    parts = [f"<h2 id='summary'>Summary</h2><table><tr><th>chapter</th>{head}</tr>{rows}</table>"]
+    for number, found in groups.items():
+        others = [finding for finding in found if finding.verdict not in (HOLDS, TOO_SMALL)]
+        if others:
+            lines = "".join(
+                f"<tr><td>{escape(f.source)}</td><td>{escape(f.claim)}</td><td class='{_CLASSES[f.verdict]}'>"
+                f"{f.verdict}</td><td>{escape(f.reason)}</td></tr>" for f in others)
+            parts.append(f"<h3>{escape(CHAPTERS[number])}: what does not hold, varies or is not decided</h3><table><tr>"
+                         f"<th>where</th><th>statement</th><th>verdict</th><th>reason</th></tr>{lines}</table>")
+    return "\n".join(parts)
+
+
+def _runs(studies: dict[str, Study]) -> str:
+    """The options, date, versions and time of each study."""
+    rows = []
+    for study in studies.values():
+        if study.record:
+            options = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in study.record["options"].items()
+                                if value not in (False, [], ""))
+            versions = ", ".join(f"{key} {value}" for key, value in study.record["versions"].items())
+            small = study.record["options"].get("small")
+            reduced = "" if small else _evidence.size_of(study.name).reduced
+            spent = f"{study.record['seconds'] / 60:.1f}"
+            cells = (study.name, options, reduced, study.record["date"], spent, versions)
+            rows.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
+    return ("<h2>Runs</h2><table><tr><th>study</th><th>options</th><th>why it is reduced</th><th>date</th>"
+            f"<th>CPU minutes</th><th>versions</th></tr>{''.join(rows)}</table>")
 
 
 def _overview(studies: dict[str, Study]) -> str:
@@ -96,73 +186,89 @@ def _overview(studies: dict[str, Study]) -> str:
             "<th>findings</th></tr>" + "".join(rows) + "</table>")
 
 
-def _words(rows: Iterable[dict[str, str]]) -> str:
-    verdicts = [row["verdict"] for row in rows]
+def _words(findings: Iterable[Finding]) -> str:
+    verdicts = [finding.verdict for finding in findings]
     return ", ".join(f"<span class='{_CLASSES[word]}'>{word}: {verdicts.count(word)}</span>"
-                     for word in _CLASSES if word in verdicts) or "-"
+                     for word in WORDS if word in verdicts) or "-"
 
 
 def _anchor(name: str) -> str:
     return name.lower().replace(" ", "-").replace(".", "-")
 
 
-def _findings_of(entry: Entry, studies: dict[str, Study]) -> list[dict[str, str]]:
-    """The findings about a table or figure, of any study, and those of its own study on its section."""
-    return [row for study in studies.values() for row in study.findings
-            if entry.name in references(row["source"])
-            or (study.name == entry.study and set(entry.sections) & set(re.split(r"[, ]+", row["source"])))]
+def _findings_of(entry: Entry, studies: dict[str, Study]) -> list[Finding]:
+    """The findings of the dissertation on a table or figure, of any study, and of its own study on its section."""
+    return [finding for study in studies.values() for finding in study.findings
+            if not finding.own and (entry.name in references(finding.source) or (
+                study.name == entry.study and set(entry.sections) & set(re.split(r"[, ]+", finding.source))))]
 
 
-def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: dict[Path, str], width: int) -> str:
+def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: dict[tuple[str, str], str]) -> str:
     study = studies[entry.study]
     parts = [f"<h3 id='{_anchor(entry.name)}'>{entry.name}: {escape(entry.caption)}</h3>"
-             f"<p class='small'>Study {entry.study}</p>", _table(_findings_of(entry, studies))]
-    for file, text in _tables(study.folder, study.name):
-        if file not in shown and any(fnmatchcase(file, pattern) for pattern in entry.files):
+             f"<p class='small'>Study <a href='#study-{entry.study}'>{entry.study}</a></p>",
+             _table(_findings_of(entry, studies))]
+    for part in study.parts:
+        file = part.get("file", "")
+        if file and file not in shown and any(fnmatchcase(file, pattern) for pattern in entry.files):
             shown.add(file)
-            parts.append(f"<pre>{escape(text)}</pre>")
-    for path in sorted(study.folder.glob("*.png")):
-        if any(fnmatchcase(path.stem, pattern) for pattern in entry.files):
-            if path in pictures:
-                parts.append(f"<p class='small'>Picture: see <a href='#{pictures[path]}'>above</a>.</p>")
+            parts.append(_part(part))
+    for file, picture in study.pictures.items():
+        if any(fnmatchcase(file, pattern) for pattern in entry.files):
+            key = study.name, file
+            if key in pictures:
+                parts.append(f"<p class='small'>Picture: see <a href='#{pictures[key]}'>above</a>.</p>")
             else:
-                pictures[path] = _anchor(entry.name)
-                parts.append(_picture(path, width))
+                pictures[key] = _anchor(entry.name)
+                parts.append(picture)
     return "\n".join(parts)
 
 
-def _rest(study: Study, shown: set[str], pictures: dict[Path, str], width: int) -> str:
-    """What a study has beyond tables and figures."""
-    there = [row for entry in ENTRIES for row in _findings_of(entry, {study.name: study})]
-    findings = [row for row in study.findings if row not in there]
-    texts = [text for file, text in _tables(study.folder, study.name) if file not in shown]
-    images = [_picture(path, width) for path in sorted(study.folder.glob("*.png")) if path not in pictures]
-    if not (findings or texts or images or study.error):
+def _rest(study: Study, shown: set[str], pictures: dict[tuple[str, str], str]) -> str:
+    """What a study has beyond tables and figures: its paragraphs, its own findings, further tables and pictures."""
+    there = [finding for entry in ENTRIES for finding in _findings_of(entry, {study.name: study})]
+    findings = [finding for finding in study.findings if finding not in there]
+    texts = [_part(part) for part in study.parts if part.get("file", "") not in shown]
+    images = [picture for file, picture in study.pictures.items() if (study.name, file) not in pictures]
+    parts = [f"<h3 id='study-{study.name}'>{study.name}</h3><p>{escape(study.text)}</p>",
+             f"<p class='no'>{escape(study.error)}</p>" if study.error else "",
+             _table([finding for finding in findings if not finding.own])]
+    own = [finding for finding in findings if finding.own]
+    if own:
+        parts += ["<p>Our own:</p>", _table(own, "this project states")]
+    return "\n".join([*parts, *texts, *images])
+
+
+def _part(part: dict[str, Any]) -> str:
+    """A paragraph or a table."""
+    if "text" in part:
+        return "".join(f"<p>{escape(line)}</p>" for line in part["text"].split("\n"))
+    head = "".join(f"<th>{escape(name)}</th>" for name in part["headings"])
+    rows = "".join("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in row) + "</tr>" for row in part["rows"])
+    return f"<table class='numbers'><caption>{escape(part['title'])}</caption><tr>{head}</tr>{rows}</table>"
+
+
+def _table(findings: Sequence[Finding], whose: str = "the dissertation states") -> str:
+    if not findings:
         return ""
-    return "\n".join([f"<h3 id='{study.name}'>{study.name}</h3><p>{escape(study.text)}</p>",
-                      f"<p class='no'>{escape(study.error)}</p>" if study.error else "", _table(findings),
-                      *(f"<pre>{escape(text)}</pre>" for text in texts), *images])
+    lines = []
+    for f in findings:
+        stated = f"<br><span class='small'>there: {escape(f.stated)}</span>" if f.stated else ""
+        rule = f"<br><span class='small'>criterion: {escape(f.criterion)}</span>" if f.criterion else ""
+        reason = f"<br><span class='small'>{escape(f.reason)}</span>" if f.reason else ""
+        lines.append(f"<tr><td>{escape(f.source)}</td><td>{escape(f.claim)}{stated}{rule}</td>"
+                     f"<td class='{_CLASSES[f.verdict]}'>{f.verdict}</td><td>{escape(f.ours)}{reason}</td></tr>")
+    return (f"<table><tr><th>where</th><th>{whose}</th><th>verdict</th><th>our numbers</th></tr>"
+            f"{''.join(lines)}</table>")
 
 
-def _table(rows: list[dict[str, str]]) -> str:
-    if not rows:
-        return ""
-    lines = "".join(f"<tr><td>{escape(r['source'])}</td><td>{escape(r['finding'])}</td><td class='"
-                    f"{_CLASSES[r['verdict']]}'>{r['verdict']}</td><td>{escape(r['figures'])}</td></tr>" for r in rows)
-    return ("<table><tr><th>where</th><th>the dissertation states</th><th>verdict</th><th>our numbers</th></tr>"
-            f"{lines}</table>")
+def _not_made() -> str:
+    rows = "".join(f"<tr><td>{escape(name)}</td><td>{escape(reason)}</td></tr>" for name, reason in NOT_MADE.items())
+    return ("<h2>Tables and figures that are not made</h2><table><tr><th>in the dissertation</th><th>reason</th></tr>"
+            f"{rows}</table>")
 
 
-def _tables(folder: Path, name: str) -> list[tuple[str, str]]:
-    """The tables in the text of a study, each with the name of its file."""
-    path = folder / f"{name}.txt"
-    if not path.is_file():
-        return []
-    parts = path.read_text(encoding="utf-8").split("\n\n")
-    return [(found.group(1), part) for part in parts for found in [re.match(r".*\[([^\]]+)\.csv\]\n", part)] if found]
-
-
-def _picture(path: Path, width: int) -> str:
+def _picture(path: Path, label: str, width: int) -> str:
     """A picture of at most a width, with few shades."""
     if pyplot is None:
         return ""
@@ -172,7 +278,7 @@ def _picture(path: Path, width: int) -> str:
     image = image[:rows, :columns].reshape(rows // step, step, columns // step, step, 3).mean(axis=(1, 3))
     shades = np.round(image * (_SHADES - 1)).astype(int)
     data = base64.b64encode(_png(shades @ [_SHADES * _SHADES, _SHADES, 1])).decode()
-    return f"<img alt='{escape(path.stem)}' src='data:image/png;base64,{data}'>"
+    return f"<img alt='{escape(label)}' src='data:image/png;base64,{data}'>"
 
 
 def _png(codes: np.ndarray) -> bytes:

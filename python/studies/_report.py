@@ -4,19 +4,27 @@
 from __future__ import annotations
 
 import argparse
+import datetime
 import math
+import platform
+import time
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Sequence
+from typing import Any, Iterator, Sequence
 
 import numpy as np
+from vtkmodules.vtkCommonCore import vtkVersion
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
+import tautline
 from tautline._errors import Error
 from tautline._files import make_folder, replace_text, save_figure
-from tautline._tables import align, csv_rows
+from tautline._tables import align, csv_rows, json_text
 
+from . import _memory
+from ._findings import COLUMNS, Finding, columns, merged, spread
 from ._meshes import cells_of, points_of, sizes_of
-from ._verdicts import DOES_NOT_HOLD, HOLDS, TOO_SMALL, Verdict, word
+from ._verdicts import HOLDS, TOO_SMALL, WORDS, Open, Verdict, word
 
 try:
     import matplotlib
@@ -33,17 +41,26 @@ MESQUITE_PATCH_ITERATIONS = 5
 BEYOND = 3.0
 
 
+#: Formats of tables and pictures.
+TABLE_FORMATS, PICTURE_FORMATS = ("csv", "json", "tex"), ("png", "svg", "pdf")
+
+
 def parser(name: str, text: str | None, cells: int = 0, threads: int | None = 1, repeats: int = 0,
-           steps: bool = False) -> Options:
+           steps: bool = False, seeds: bool = False) -> Options:
     """The options every study has.
 
-    threads: the default, None for studies that always use one. cells, repeats, steps: further options, see below.
+    threads: the default, None for studies that always use one. cells, repeats, steps, seeds: further options, see
+    below.
     """
     made = Options(prog=f"python3 -m tautline study {name}", description=(text or "").split("\n")[0])
     made.add_argument("--small", action="store_true", help="a small mesh, for a test: seconds; without verdicts")
     made.add_argument(
         "--out", type=Path, default=Path(f"study-{name}"), metavar="DIR", help="directory of the output (%(default)s)",
     )
+    made.add_argument("--format", nargs="+", choices=(*TABLE_FORMATS, *PICTURE_FORMATS), default=["csv", "png"],
+                      help="of tables and pictures (%(default)s; CSV, JSON and PNG are always written)")
+    made.add_argument("--resume", action="store_true",
+                      help="keep the results of long calculations in DIR/parts, and use those that are there")
     if threads is not None:
         made.add_argument("--threads", type=int, default=threads,
                           help="0 is all cores (%(default)s" + (", for comparable times)" if threads == 1 else ")"))
@@ -55,6 +72,10 @@ def parser(name: str, text: str | None, cells: int = 0, threads: int | None = 1,
     if steps:
         made.add_argument("--patch-iterations", type=int, default=MESQUITE_PATCH_ITERATIONS,
                           help="conjugate gradient steps per vertex and sweep (default: %(default)s, Mesquite's)")
+    if seeds:
+        made.add_argument("--seeds", type=int, default=1, metavar="N",
+                          help="repeat the study with N seeds of its random numbers: medians, ranges, and verdicts "
+                          "by the share of the seeds (default: %(default)s)")
     return made
 
 
@@ -63,37 +84,74 @@ class Options(argparse.ArgumentParser):
 
     def parse_args(self, *arguments: Any, **more: Any) -> argparse.Namespace:  # type: ignore[override]
         given = super().parse_args(*arguments, **more)
-        if getattr(given, "repeats", 1) < 1:
-            raise Error(f"--repeats is {given.repeats}; at least one run is needed")
+        for name in ("repeats", "seeds"):
+            if getattr(given, name, 1) < 1:
+                raise Error(f"--{name} is {getattr(given, name)}; at least one is needed")
         if given.small and hasattr(given, "repeats"):
             given.repeats = 1
         return given
 
 
+@dataclass
+class Table:
+    """A table, of each seed."""
+
+    title: str
+    headings: list[str]
+    #: Per seed the rows, as texts.
+    rows: list[list[list[str]]]
+
+    def texts(self) -> list[list[str]]:
+        """The rows; numbers that depend on the seed are given by their median and range."""
+        first, *others = self.rows
+        alike = [rows for rows in others if [len(r) for r in rows] == [len(r) for r in first]]
+        return [[spread([row[k], *(rows[i][k] for rows in alike)]) for k in range(len(row))]
+                for i, row in enumerate(first)]
+
+
 class Report:
     """Collects tables, pictures and findings of a study and writes them to a directory.
 
-    small: whether the meshes are too small for verdicts; the findings then have figures only.
+    In the small size meshes are too small for verdicts; the findings then have figures only.
     """
 
-    def __init__(self, name: str, title: str, out: Path, small: bool = False) -> None:
-        self.name, self.out, self.small = name, Path(out), small
-        self.parts = [f"{title}\n{'=' * len(title)}"]
-        self.findings: list[tuple[str, str, str, str]] = []  # source, sentence, verdict, figures
+    def __init__(self, name: str, title: str, given: argparse.Namespace) -> None:
+        self.name, self.title, self.given = name, title, given
+        self.out, self.small = Path(given.out), bool(given.small)
+        self.parts: list[str | Table] = []
+        self.recorded: list[Finding] = []
+        self._seed = 0
+        self._tables: dict[str, Table] = {}
+        self._rows: dict[str, list[list[Any]]] = {}
+        self._began = time.process_time()
         make_folder(self.out)
+        _memory.keep(self.out / "parts" if getattr(given, "resume", False) else None)
+
+    @property
+    def seeds(self) -> Iterator[int]:
+        """The seeds to run with, one after the other; what is reported belongs to the current one."""
+        for seed in range(1, getattr(self.given, "seeds", 1) + 1):
+            self._seed = seed
+            yield seed
+
+    @property
+    def findings(self) -> list[Finding]:
+        """One finding of those of all seeds."""
+        return merged(self.recorded)
 
     def text(self, paragraph: str) -> None:
-        self.parts.append(paragraph)
+        """A paragraph; those of later seeds are dropped."""
+        if self._seed <= 1:
+            self.parts.append(paragraph)
 
     def table(self, file: str, title: str, headings: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
-        """A table in the text and a CSV file."""
+        """A table in the text and in files."""
         self.csv(file, headings, rows)
-        shown = [[_short(value) for value in row] for row in rows]
-        self.parts.append(f"{title}  [{file}.csv]\n{align(shown, headings)}")
+        self._shown(file, title, headings, rows)
 
     def beside(self, file: str, title: str, columns: Sequence[Any], ours: dict[str, Sequence[float]],
                theirs: dict[str, Sequence[float]], head: str = "method") -> None:
-        """Our numbers, with those of the dissertation in brackets; the CSV file has separate columns for them."""
+        """Our numbers, with the dissertation's in brackets; the CSV file has separate columns for them."""
         rows, shown = [], []
         for label, values in ours.items():
             known = list(theirs.get(label, [])) or [math.nan] * len(values)
@@ -102,12 +160,29 @@ class Report:
             shown.append([label, *(_short(v) + ("" if math.isnan(k) else f" ({_short(k)})") for v, k in pairs)])
         names = [str(column) for column in columns]
         self.csv(file, [head, *names, *(f"{name} dissertation" for name in names)], rows)
-        title = f"{title}; in brackets those of the dissertation  [{file}.csv]"
-        self.parts.append(f"{title}\n{align(shown, [head, *names])}")
+        self._shown(file, f"{title}; the dissertation's in brackets", [head, *names], shown)
+
+    def aligned(self, title: str, headings: Sequence[Any], rows: Sequence[Sequence[str]], file: str = "") -> None:
+        """A table of texts in the report, without a CSV file; file: what the table belongs to."""
+        self._shown(file or title, title, headings, rows)
 
     def csv(self, file: str, headings: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+        """A CSV file; with several seeds its first column is the seed."""
         shown = [["" if _missing(value) else value for value in row] for row in rows]
+        if getattr(self.given, "seeds", 1) > 1:
+            headings = ["seed", *headings]
+            shown = self._rows.setdefault(file, []) + [[self._seed, *row] for row in shown]
+            self._rows[file] = shown
         replace_text(self.out / f"{file}.csv", csv_rows([headings, *shown], "\r\n"))
+
+    def _shown(self, file: str, title: str, headings: Sequence[Any], rows: Sequence[Sequence[Any]]) -> None:
+        """Show a table; the tables of several seeds become one."""
+        texts = [[_short(value) for value in row] for row in rows]
+        if self._seed > 1 and file in self._tables:
+            self._tables[file].rows.append(texts)
+            return
+        self._tables[file] = Table(f"{title}  [{file}]", [str(heading) for heading in headings], [texts])
+        self.parts.append(self._tables[file])
 
     def curves(self, file: str, runs: Sequence[Any]) -> None:
         """A CSV file of every quantity of every run after every iteration."""
@@ -119,13 +194,24 @@ class Report:
         ]
         self.csv(file, ["method", "optimizer", "iteration", "cpu_seconds", *names], rows)
 
-    def finding(self, source: str, sentence: str, holds: Verdict, figures: str, any_size: bool = False) -> None:
-        """Add a statement of the dissertation, whether our numbers agree with it (None: not decided), and the numbers.
+    def finding(self, source: str, claim: str, holds: Verdict, ours: str, *, criterion: str = "", stated: str = "",
+                reason: str = "", own: bool = False, proof: str = "") -> None:
+        """Add a statement, and whether our numbers agree with it.
 
-        any_size: whether a small mesh decides it, too.
+        source: the table, figure or section that states it. ours: our numbers. criterion: what must be true of them for
+        the statement to hold; "": the claim says it. stated: the dissertation's number. reason: why it does not hold.
+        own: it is not a statement of the dissertation. proof: why a small mesh decides it, too.
         """
-        verdict = TOO_SMALL if self.small and not any_size else word(None if holds is None else bool(holds))
-        self.findings.append((source, sentence, verdict, figures))
+        if holds is None:
+            holds = Open("the numbers do not decide it")
+        if self.small and not proof:
+            verdict, why = TOO_SMALL, ""
+        else:
+            verdict = word(holds)
+            why = holds.reason if isinstance(holds, Open) else "" if verdict == HOLDS else reason
+        seeds = (self._seed,) if self._seed else ()
+        rule = criterion + (f" ({proof})" if criterion and proof else proof)
+        self.recorded.append(Finding(source, claim, rule, stated, ours, verdict, why, own, seeds))
 
     def plot(self, file: str, runs: Sequence[Any], panels: Sequence[tuple[str, str, bool]]) -> None:
         """A picture of quantities against iterations; a panel is (quantity, label of the axis, logarithmic)."""
@@ -250,25 +336,39 @@ class Report:
         axes[0].legend(fontsize=8)
         self.save(figure, file)
 
-    def aligned(self, title: str, headings: Sequence[Any], rows: Sequence[Sequence[str]]) -> None:
-        """A table of texts in the report, without a CSV file."""
-        self.parts.append(f"{title}\n{align(rows, [str(heading) for heading in headings])}")
-
-    def finish(self, heading: str = "Findings of the dissertation") -> int:
-        """Write and print the report; `heading` is that of the findings."""
-        verdicts = [verdict for _, _, verdict, _ in self.findings]
-        undecided = len(verdicts) - verdicts.count(HOLDS) - verdicts.count(DOES_NOT_HOLD)
-        lines = [f"{heading}: {verdicts.count(HOLDS)} of {len(verdicts)} hold"
-                 + (f", {undecided} are not decided" if undecided else "")]
-        for source, sentence, verdict, figures in self.findings:
-            lines.append(f"- {verdict.upper()} ({source}): {sentence}\n    ours: {figures}")
-        self.parts.append("\n".join(lines))
-        self.csv("findings", ["source", "finding", "verdict", "figures"], self.findings)
-        text = "\n\n".join(self.parts) + "\n"
-        replace_text(self.out / f"{self.name}.txt", text)
+    def finish(self) -> int:
+        """Write and print the report."""
+        found = self.findings
+        text = "\n\n".join([f"{self.title}\n{'=' * len(self.title)}", *map(_paragraph, self.parts), summary(found)])
+        rows = [COLUMNS, *(columns(finding) for finding in found)]
+        replace_text(self.out / "findings.csv", csv_rows(rows, "\r\n"))
+        replace_text(self.out / f"{self.name}.txt", text + "\n")
+        replace_text(self.out / f"{self.name}.json", json_text(self.record()) + "\n")
+        if "tex" in self.given.format:
+            for file, table in self._tables.items():
+                replace_text(self.out / f"{file}.tex", latex(table))
+        _memory.keep(None)
         print(text)
         print(f"Files: {self.out}")
         return 0
+
+    def record(self) -> dict[str, Any]:
+        """Everything but the pictures, as JSON has it."""
+        options = {key: value for key, value in vars(self.given).items()
+                   if key not in ("out", "format", "resume") and value is not None}
+        tables = {id(table): file for file, table in self._tables.items()}
+        return {
+            "study": self.name,
+            "title": self.title,
+            "options": {key: str(value) if isinstance(value, Path) else value for key, value in options.items()},
+            "date": datetime.date.today().isoformat(),
+            "versions": versions(),
+            "seconds": round(time.process_time() - self._began, 1),
+            "findings": [finding.row() for finding in self.findings],
+            "parts": [{"text": part} if isinstance(part, str) else
+                      {"file": tables[id(part)], "title": part.title, "headings": part.headings, "rows": part.texts()}
+                      for part in self.parts],
+        }
 
     def _pictures(self) -> bool:
         missing = "No pictures: matplotlib is not installed."
@@ -277,10 +377,60 @@ class Report:
         return pyplot is not None
 
     def save(self, figure: Any, file: str) -> None:
-        """Save a figure of pyplot."""
-        figure.tight_layout()
-        save_figure(figure, self.out / f"{file}.png", dpi=110, bbox_inches="tight")
+        """Save a figure of pyplot; those of later seeds are dropped."""
+        if self._seed <= 1:
+            figure.tight_layout()
+            for kind in {"png", *self.given.format} & set(PICTURE_FORMATS):
+                save_figure(figure, self.out / f"{file}.{kind}", dpi=110, bbox_inches="tight")
         pyplot.close(figure)
+
+
+def summary(found: Sequence[Finding]) -> str:
+    """The findings as a text: how many hold, then each."""
+    verdicts = [finding.verdict for finding in found]
+    counts = ", ".join(f"{verdicts.count(word)} {word}" for word in WORDS if word in verdicts)
+    lines = [f"Findings: {len(found)}" + (f" ({counts})" if counts else "")]
+    for finding in found:
+        whose = ", ours" if finding.own else ""
+        lines.append(f"- {finding.verdict.upper()} ({finding.source}{whose}): {finding.claim}")
+        lines.append(f"    ours: {finding.ours}")
+        for name in ("stated", "criterion", "reason"):
+            if getattr(finding, name):
+                lines.append(f"    {name}: {getattr(finding, name)}")
+    return "\n".join(lines)
+
+
+def versions() -> dict[str, str]:
+    """What the numbers depend on."""
+    return {"tautline": tautline.__version__, "vtk": vtkVersion.GetVTKVersion(), "numpy": np.__version__,
+            "python": platform.python_version(), "processor": processor()}
+
+
+def processor() -> str:
+    """The name of the processor where the system tells it, else its architecture."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.machine()
+    return next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), platform.machine())
+
+
+#: Characters with a meaning in LaTeX.
+_LATEX = str.maketrans({"\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}",
+                        "<": r"\textless{}", ">": r"\textgreater{}", **{c: "\\" + c for c in "&%$#_{}"}})
+
+
+def latex(table: Table) -> str:
+    """A table as LaTeX; it needs no package."""
+    rows = [table.headings, *table.texts()]
+    lines = [" & ".join(cell.translate(_LATEX) for cell in row) + r" \\" for row in rows]
+    columns_ = "l" + "r" * (len(table.headings) - 1)
+    return "\n".join([f"% {table.title}", rf"\begin{{tabular}}{{{columns_}}}", r"\hline", lines[0], r"\hline",
+                      *lines[1:], r"\hline", r"\end{tabular}", ""])
+
+
+def _paragraph(part: str | Table) -> str:
+    return part if isinstance(part, str) else f"{part.title}\n{align(part.texts(), part.headings)}"
 
 
 def _panels(count: int, columns: int, size: tuple[float, float]) -> tuple[Any, Sequence[Any]]:

@@ -6,6 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet
 
 import tautline
 from tautline._errors import Error
@@ -17,6 +19,7 @@ _NOTE = (
 )
 _SIZE = 128
 _BEST = 10  # matches of a query that count
+_MARGIN = 8  # pixels by which images of a folder grow at most on each side, with seeds after the first
 
 
 def mask(curve: np.ndarray) -> np.ndarray:
@@ -76,16 +79,39 @@ def families(per_class: int = 11, classes: int = 9, seed: int = 1) -> tuple[list
     return images, labels
 
 
-def data_set(folder: str | None, small: bool, seed: int):
-    """Shapes, labels or None, number of matches that count, description: those of a folder, or the families if None.
+def images_of(shapes: vtkMultiBlockDataSet) -> tuple[list[np.ndarray], list[str]]:
+    """The images [row, column] of a set of tautline.read_silhouettes(), and the classes."""
+    images, labels = [], []
+    for i in range(shapes.GetNumberOfBlocks()):
+        image = shapes.GetBlock(i)
+        columns, rows, _ = image.GetDimensions()
+        values = vtk_to_numpy(image.GetPointData().GetScalars()).reshape(rows, columns, -1)[..., 0]
+        images.append(values)
+        labels.append(image.GetFieldData().GetAbstractArray("Label").GetValue(0))
+    return images, labels
 
-    folder: has a list labels.csv, or images named by their class, see tautline.read_silhouettes().
+
+def moved(images: list[np.ndarray], seed: int) -> list[np.ndarray]:
+    """Images with wider borders, by random numbers of pixels: the grid of locations lies elsewhere in the shape."""
+    random = np.random.default_rng(seed)
+    return [np.pad(image, random.integers(0, _MARGIN + 1, (2, 2)), constant_values=np.median(
+        np.concatenate([image[0], image[-1], image[:, 0], image[:, -1]]))) for image in images]
+
+
+def data_set(folder: str | None, small: bool, seed: int) -> tuple[list[np.ndarray], list[str], int, str]:
+    """Images, classes, number of matches that count, description: those of a folder, or the families if None.
+
+    folder: has a list labels.csv, or images named by their class, see tautline.read_silhouettes(). With seed 1 its
+    images are as they are, see moved() for others.
     small: fewer families of fewer members.
     """
     if folder is not None:
         if not Path(folder).is_dir():
             raise Error(f"{folder}: there is no such folder; it needs a list labels.csv, or images")
-        return tautline.read_silhouettes(folder), None, _BEST, f"The silhouettes in {Path(folder).name}"
+        images, labels = images_of(tautline.read_silhouettes(folder))
+        text = f"The silhouettes in {Path(folder).name}"
+        return (images, labels, _BEST, text) if seed == 1 else (
+            moved(images, seed), labels, _BEST, f"{text}, with random borders of seed {seed}")
     per_class, classes = (4, 5) if small else (11, 9)
     shapes, labels = families(per_class, classes, seed)
     text = f"{len(shapes)} synthetic silhouettes of {classes} families, seed {seed}. {_NOTE}"

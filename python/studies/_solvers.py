@@ -4,10 +4,11 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 import time
 from dataclasses import dataclass
-from typing import Any, Sequence
+from typing import Any, Iterable, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataSet
@@ -15,9 +16,10 @@ from vtkmodules.vtkCommonDataModel import vtkDataSet
 import tautline
 
 from ._common import Method, Run, improve
+from ._memory import remembered
 from ._report import Report, parser, pyplot
-from ._solver_tables import CELLS, COMBINATIONS
-from ._verdicts import Times
+from ._solver_tables import CELLS, COMBINATIONS, METRICS
+from ._verdicts import COUNT_TOLERANCE, Open, Times, Verdict, all_of, any_of, faster, same_count
 
 DOMAINS = ("wrench", "hinge")
 #: The three problems of Table 2.3.
@@ -39,15 +41,25 @@ JACOBI, SSOR, ILU, AMG = (tuple(COMBINATIONS[4 * i : 4 * i + 4]) for i in range(
 #: Reduction of the objective at which smoothing stops, section 2.4.
 REDUCTION = 0.95
 SWEEPS = 200
+#: Relative change of the objective in an iteration at which a mesh is completely smoothed.
+CONVERGED = 1e-5
 INITIAL_FRACTION = 0.5  # of the interior vertices, perturbed before smoothing
 FULL, SMALL = 500_000, 1_000
 REPEATS = 3  # runs of each combination, for their times
+#: CPU seconds from which a combination is run once: the noise is a smaller part of longer times.
+LONG = 2.0
+#: Why ours does not fail where the printed one does.
+POSITIVE = ("without inverted elements the matrix, Jacobi's preconditioner and SSOR are positive definite, so that CG "
+            "and MINRES with these cannot break down; all combinations converge on our meshes")
 SIZES = tuple(CELLS["wrench"])
+
+#: Columns of a table that are shown beside each other.
+COLUMNS_SHOWN = 8
 
 
 def options(name: str, text: str | None, pdes: bool = True, full: int = FULL) -> argparse.ArgumentParser:
     """The options of a study of solvers; --size is a number of vertices."""
-    made = parser(name, text, repeats=REPEATS)
+    made = parser(name, text, repeats=REPEATS, seeds=True)
     made.add_argument("--size", type=vertices, default=0, metavar="N",
                       help=f"vertices of each mesh, 10K to 500K (default: {full // 1000}K)")
     made.add_argument("--domain", choices=DOMAINS, action="append", help="one of the two domains (default: both)")
@@ -56,6 +68,8 @@ def options(name: str, text: str | None, pdes: bool = True, full: int = FULL) ->
     made.add_argument("--combinations", type=int, nargs="+", default=list(COMBINATIONS), metavar="N",
                       help="numbers of Table 2.5 (default: all)")
     if pdes:
+        made.add_argument("--elasticity-size", type=vertices, default=0, metavar="N", help="vertices of each mesh for "
+                          "elasticity, whose systems take ten times as long (default: as the others)")
         made.add_argument("--pde", choices=tuple(PDES), action="append", help="one of the problems (default: all)")
     return made
 
@@ -68,18 +82,27 @@ def vertices(text: str) -> int:
     return factor * int(digits)
 
 
-def size_of(given: argparse.Namespace, full: int = FULL) -> int:
-    return given.size or (SMALL if given.small else full)
+def size_of(given: argparse.Namespace, full: int = FULL, small: int = SMALL, pde: str = "") -> int:
+    """The number of vertices, of the meshes for a problem."""
+    own = given.elasticity_size if pde == "elasticity" else 0
+    return own or given.size or (small if given.small else full)
+
+
+def sizes_up_to(given: argparse.Namespace, pde: str = "") -> list[int]:
+    """The sizes of Table 2.4 up to the largest one of a study or problem; in a small study its half and its quarter."""
+    largest = size_of(given, small=2 * SMALL, pde=pde)
+    lower = [n for n in SIZES if n < largest] or [largest // 4, largest // 2]
+    return [*lower, largest]
 
 
 # --- meshes ---------------------------------------------------------------------------------------------
 
 
-def initial_mesh(domain: str, size: int) -> vtkDataSet:
+def initial_mesh(domain: str, size: int, seed: int = 1) -> vtkDataSet:
     """A mesh of about `size` vertices, half of the interior ones perturbed, as the dissertation's before smoothing."""
     # A planar mesh has about two triangles per vertex; Table 2.4 has the exact numbers for its sizes.
     cells = CELLS[domain].get(size, 2 * size)
-    return tautline.perturb(tautline.domain(domain, cells), fraction=INITIAL_FRACTION).mesh
+    return tautline.perturb(tautline.domain(domain, cells), fraction=INITIAL_FRACTION, seed=seed).mesh
 
 
 def smoothed(mesh: vtkDataSet, metric: str, threads: int) -> vtkDataSet:
@@ -87,20 +110,54 @@ def smoothed(mesh: vtkDataSet, metric: str, threads: int) -> vtkDataSet:
     return smoothing(mesh, metric, threads).mesh
 
 
-def smoothing(mesh: vtkDataSet, metric: str, threads: int, repeats: int = 1) -> Run:
-    """Smooth to 95 % of the possible reduction (section 2.4); the best value is that of a converged run.
+def template(metric: str) -> str:
+    """How the values of the elements are aggregated: (2.5) and (2.6); of other metrics in their own way."""
+    if metric not in METRICS:
+        return "default"
+    return "sum of squared reciprocals" if metric in ("si", "ss") else "sum of squares"
 
-    repeats: runs, for the times; those of the converged run do not count.
+
+def _smooth(mesh: vtkDataSet, metric: str, sweeps: int, threads: int, **more: Any) -> Run:
+    return improve(mesh, Method(metric, metric, (metric,)), sweeps, ["imr_mean"], template=template(metric),
+                   trace=False, threads=threads, **more)
+
+
+@remembered
+def best_objective(mesh: vtkDataSet, metric: str, threads: int) -> float:
+    """The objective of the completely smoothed mesh: by L-BFGS after sweeps of Local Newton."""
+    run = _smooth(mesh, metric, 2 * SWEEPS, threads, optimizer="automatic", relative_change=CONVERGED)
+    return float(run.values["objective"].min())
+
+
+@remembered
+def smoothing(mesh: vtkDataSet, metric: str, threads: int, repeats: int = 1, optimizer: str = "nlcg",
+              share: float = REDUCTION, best: float | None = None) -> Run:
+    """Smooth to a share of the possible reduction (section 2.4); a share of 1 is until it converges.
+
+    best: the objective of the completely smoothed mesh. repeats: runs, for the times.
     """
-    method = Method(metric, metric, (metric,))
-    template = "sum of squared reciprocals" if metric in ("si", "ss") else "sum of squares"
-    common = dict(template=template, trace=False, threads=threads)
-    best = improve(mesh, method, 2 * SWEEPS, ["imr_mean"], optimizer="automatic", relative_change=1e-5, **common)
-    known = float(best.values["objective"].min())
-    return improve(mesh, method, SWEEPS, ["imr_mean"], reduction=REDUCTION, best_known=known, repeats=repeats, **common)
+    if best is None:
+        best = best_objective(mesh, metric, threads)
+    return _smooth(mesh, metric, SWEEPS, threads, optimizer=optimizer, reduction=share, best_known=best,
+                   relative_change=CONVERGED if share == 1 else 0.0, repeats=repeats)
 
 
 # --- solves ---------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Setup:
+    """How combinations are run."""
+
+    combinations: tuple[int, ...]
+    #: Seconds of a combination; 0: no limit.
+    time_limit: float
+    repeats: int
+    threads: int
+
+
+def setup_of(given: argparse.Namespace, combinations: Sequence[int] = ()) -> Setup:
+    return Setup(tuple(combinations or given.combinations), given.time_limit, given.repeats, given.threads)
 
 
 @dataclass(frozen=True)
@@ -121,28 +178,62 @@ class Solve:
         """CPU seconds of the fastest run."""
         return self.times.best
 
+    @property
+    def failed(self) -> bool:
+        return not self.converged and not self.unfinished
+
     def shown(self, value: float) -> str:
         if self.unfinished:
             return f">{value:,.4g}"
         return f"{value:,.4g}" if self.converged else "*"
 
 
-def solve(mesh: vtkDataSet, pde: str, given: argparse.Namespace, **more) -> dict[int, Solve]:
-    """Run the chosen combinations on one mesh."""
-    options = {"combinations": list(given.combinations), "combination_time_limit": given.time_limit, "time_limit": 0.0,
-               "conditions": False, "threads": given.threads, **PDES[pde], **more}
+@remembered
+def solve(mesh: vtkDataSet, problem: dict[str, Any], setup: Setup, **more: Any) -> dict[int, Solve]:
+    """Run combinations on one mesh; problem: options of solver_study(), such as those of PDES."""
+    options = {"combinations": list(setup.combinations), "combination_time_limit": setup.time_limit, "time_limit": 0.0,
+               "conditions": False, "threads": setup.threads, **problem, **more}
     began = time.perf_counter()
-    runs = [tautline.solver_study(mesh, **options).rows for _ in range(given.repeats)]
+    runs = {row["number"]: [row] for row in tautline.solver_study(mesh, **options).rows}
+    for _ in range(setup.repeats - 1):
+        again = [n for n, rows in runs.items() if rows[0]["cpu_seconds"] < LONG]
+        if again:
+            for row in tautline.solver_study(mesh, **{**options, "combinations": again}).rows:
+                runs[row["number"]].append(row)
     if mesh.GetNumberOfPoints() >= SIZES[1]:
-        print(f"{pde}: {time.perf_counter() - began:.0f} s", file=sys.stderr, flush=True)
-    return {rows[0]["number"]: _solve(rows) for rows in zip(*runs)}
+        print(f"{problem['pde']}: {time.perf_counter() - began:.0f} s", file=sys.stderr, flush=True)
+    return {n: _solve(rows) for n, rows in runs.items()}
 
 
 def _solve(rows: Sequence[dict[str, Any]]) -> Solve:
     """A combination of its rows in several runs of the study."""
-    row = min(rows, key=lambda r: r["cpu_seconds"])
-    return Solve(row["number"], Times(tuple(r["cpu_seconds"] for r in rows)), row["iterations"], row["converged"],
-                 "time limit" in row["reason"], row["reason"])
+    failing = [r for r in rows if not r["converged"]]
+    row = failing[0] if failing else min(rows, key=lambda r: r["cpu_seconds"])
+    return Solve(row["number"], Times(tuple(r["cpu_seconds"] for r in rows)), row["iterations"],
+                 not failing, "time limit" in row["reason"], row["reason"])
+
+
+def trouble(row: dict[int, Solve], numbers: Iterable[int]) -> str:
+    """Why the times of combinations do not count; "": they do."""
+    for n in numbers:
+        if n not in row:
+            return f"{LABELS[n]} was not run"
+        if not row[n].converged:
+            return f"{LABELS[n]} {'did not finish' if row[n].unfinished else 'failed'}: {row[n].reason}"
+    return ""
+
+
+def most_of(verdicts: Iterable[Verdict]) -> Verdict:
+    """Whether more than half hold; not decided if those that are not decided make the difference."""
+    found = list(verdicts)
+    undecided = [v for v in found if isinstance(v, Open)]
+    holding = sum(bool(v) for v in found if not isinstance(v, Open))
+    if 2 * holding > len(found):
+        return True
+    if found and 2 * (holding + len(undecided)) <= len(found):
+        return False
+    return Open(f"{len(undecided)} of {len(found)} are not decided: {undecided[0].reason}" if undecided
+                else "there is nothing to compare")
 
 
 # --- reports --------------------------------------------------------------------------------------------
@@ -169,22 +260,38 @@ def table(report: Report, file: str, title: str, found: dict, theirs: dict, head
         headings = [h for n in numbers for h in (f"{n} {what}", f"{n} converged", f"{n} reason", f"{n} dissertation")]
         report.csv(f"{file}_{what}", [head, *headings], rows)
         note = "; in brackets those of the dissertation, '*' is a failure"
-        for part in range(0, len(numbers), 8):
-            report.aligned(f"{title}, {what}{note}  [{file}_{what}.csv]", [head, *numbers[part : part + 8]],
-                           [[row[0], *row[1 + part : 9 + part]] for row in shown])
+        for part in range(0, len(numbers), COLUMNS_SHOWN):
+            columns = numbers[part : part + COLUMNS_SHOWN]
+            report.aligned(f"{title}, {what}{note}", [head, *columns],
+                           [[row[0], *row[1 + part : 1 + part + COLUMNS_SHOWN]] for row in shown],
+                           f"{file}_{what}_{columns[0]}_to_{columns[-1]}")
 
 
-def within(found: dict[int, Solve], theirs: Sequence[float | None], factor: float) -> tuple[int, int, str]:
-    """The number of iteration counts that agree within a factor, the number of all in both, and those that disagree."""
-    both = [n for n in found if n in COMBINATIONS and found[n].converged and theirs[n - 1] is not None]
-    ratios = {n: found[n].iterations / theirs[n - 1] for n in both}
-    off = {n: r for n, r in ratios.items() if not 1 / factor <= r <= factor}
-    return len(both) - len(off), len(both), ", ".join(f"{n} {LABELS[n]}: {r:.2f} times" for n, r in off.items())
+def count_finding(report: Report, where: str, label: str, row: dict[int, Solve],
+                  theirs: Sequence[float | None]) -> None:
+    """Whether the iterations are the printed ones, where both converged."""
+    both = [n for n in row if n in COMBINATIONS and row[n].converged and theirs[n - 1] is not None]
+    off = [n for n in both if not same_count(row[n].iterations, theirs[n - 1])]
+    report.finding(where, f"The numbers of iterations with {label} are the printed ones",
+                   not off if both else Open("none converged both here and there"),
+                   f"{len(both) - len(off)} of {len(both)}" + "".join(
+                       f"; {LABELS[n]} {row[n].iterations}, printed {theirs[n - 1]:g}" for n in off),
+                   criterion=f"each differs from the printed one by at most {COUNT_TOLERANCE:.0%} of it",
+                   stated=", ".join(f"{n}: {theirs[n - 1]:g}" for n in both))
 
 
 def times_of(row: dict[int, Solve], without: Sequence[int] = ()) -> dict[int, Times]:
     """The times of the converged combinations."""
     return {n: s.times for n, s in row.items() if s.converged and n not in without}
+
+
+def group_is_faster(row: dict[int, Solve], group: tuple[int, ...], every: bool = False) -> Verdict:
+    """Whether one of a group of combinations (every: each) is faster than all outside it; not if it failed."""
+    times = times_of(row, NEAR_NULL_SPACE)
+    inside = {n: times.get(n, Open(trouble(row, [n]))) for n in group}
+    outside = [t for n, t in times.items() if n not in group]
+    verdicts = [t if isinstance(t, Open) else all_of(faster(t, other) for other in outside) for t in inside.values()]
+    return all_of(verdicts) if every else any_of(verdicts)
 
 
 def fastest(row: dict[int, Solve]) -> list[int]:
@@ -212,4 +319,4 @@ def bars(report: Report, file: str, title: str, series: dict[str, dict[int, floa
 
 def order(sizes: Sequence[float], values: Sequence[float]) -> float:
     """s of O(N^s) by linear least squares of the logarithms."""
-    return float(np.polyfit(np.log(sizes), np.log(values), 1)[0])
+    return float(np.polyfit(np.log(sizes), np.log(np.maximum(values, math.ulp(0.0))), 1)[0])

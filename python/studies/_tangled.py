@@ -3,22 +3,27 @@
 
 from __future__ import annotations
 
-from typing import Any, Iterable, Sequence
+import math
+from typing import Any, Callable, Iterable, Sequence
 
 import numpy as np
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 
 from tautline._errors import Error
 
-from ._common import TYPICAL_C, Method, Run, improve, measure, methods
+from ._common import TYPICAL_C, Method, Run, failures, improve, judged, measure, methods
+from ._memory import remembered
 from ._meshes import cells_of, scaled, sizes_of
 from ._report import Report
+from ._verdicts import Open, Verdict, all_of, less
 
 #: Over the mean size: the size below which the untangling metric (3.3) counts an element. The dissertation has no
 #: value.
 BETA = 0.01
-#: Mean sizes of the elements in which the methods are compared.
-UNITS = (0.001, 0.1, 1.0, 10.0, 100.0)
+#: Mean sizes of the elements, and beta over them, in which the methods are compared; where objectives are combined; c.
+UNITS, SMALL_UNITS = (0.1, 1.0, 10.0, 100.0), (1.0, 100.0)
+BETAS = (BETA, 0.3, 1.0)
+SMALLEST_C = 1e4
 LABELS = {"si": "SI", "size": "size", "untangle_beta": "untangling"}
 NOTE = (
     "Objectives: sum of 1 / SI over the elements valid at the start of an iteration, sum of the squared untangling "
@@ -26,29 +31,34 @@ NOTE = (
     "elements, whose terms are negative.) Steps may invert elements, as with the metrics without a barrier there.\n"
     "The scalarizations combine the objectives' values on the whole mesh, as (3.11) to (3.13) are written. "
     "Mesquite's default for patches evaluates an objective on the patch alone, where values are far below c, so that "
-    "the exponential sum is nearly the equal sum; the dissertation does not state which of them its figures are from."
+    "the exponential sum is nearly the equal sum; the dissertation does not state which of them its figures are from. "
+    "--patch-scalarization evaluates them there."
 )
 #: A weight that makes the untangling metric ineffective; without this metric tangled meshes are refused.
 _NEGLIGIBLE = 1e-30
 #: Growth of a mesh beyond which it counts as diverged; the sum of 1 / SI has no lower bound.
 _DIVERGED = 100.0
+#: How the reason of a run begins that diverged: its method fails, not its optimizer.
+DIVERGED = "Diverged"
 
 
 def tangled_methods(*objectives: str) -> list[Method]:
     return methods(*objectives, names=[LABELS[o] for o in objectives])
 
 
+@remembered
 def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iterable[str], *,
-             keep: Sequence[int] = (), c: float = TYPICAL_C, **options: Any) -> Run:
+             keep: Sequence[int] = (), c: float = TYPICAL_C, beta: float = BETA, **options: Any) -> Run:
     """Run a method on a tangled mesh, one iteration at a time while it has inverted elements.
 
+    beta: of the untangling metric, over the mean size.
+
     The optimizer excludes the shape terms of elements that are inverted at its start; a restart includes them as soon
-    as they are valid. A product of objectives of which one is 0 cannot be reduced: further iterations do not change the
-    mesh.
+    as they are valid. A product of objectives of which one is 0 cannot be reduced: the optimizer then has converged.
     """
     quantities = list(quantities)
-    beta = BETA * float(np.mean(np.abs(sizes_of(mesh))))
-    rows, seconds, kept, reason = [measure(mesh, quantities)], [0.0], {0: mesh}, ""
+    beta *= float(np.mean(np.abs(sizes_of(mesh))))
+    rows, seconds, kept, reason, failure = [measure(mesh, quantities)], [0.0], {0: mesh}, "", ""
     now, done, repaired = mesh, 0, False
     extent = _DIVERGED * mesh.GetLength()
     while done < iterations:
@@ -59,9 +69,9 @@ def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iter
             run = improve(now, method, chunk, quantities, beta=beta, c=c, allow_inversion=True,
                           keep=[k - done for k in keep], weights=_weights(method), **options)
         except Error as error:
-            reason = str(error)
+            reason = failure = str(error)
             break
-        reason, now = run.reason, run.mesh
+        reason, failure, now = run.reason, run.failure, run.mesh
         steps = len(run.iterations) - 1
         for step in range(1, steps + 1):
             rows.append({q: run.values[q][step] for q in rows[0]})
@@ -70,19 +80,14 @@ def untangle(mesh: vtkDataSet, method: Method, iterations: int, quantities: Iter
         done += steps
         now.ComputeBounds()
         if now.GetLength() > extent:
-            reason = f"Diverged: vertices left the domain in iteration {done}."
+            reason = failure = f"{DIVERGED}: vertices left the domain in iteration {done}."
             break
-        if steps < chunk:
+        if failure or steps < chunk:
             break
-    # After an early end the mesh no longer changes.
-    while len(rows) <= iterations:
-        rows.append(rows[-1])
-        seconds.append(seconds[-1])
     kept.update({k: now for k in keep if k not in kept and k >= done})
     values = {key: np.array([row[key] for row in rows]) for key in rows[0]}
-    return Run(
-        method, options.get("optimizer", "nlcg"), np.arange(len(rows)), np.array(seconds), values, now, reason, kept,
-    )
+    return Run(method, options.get("optimizer", "nlcg"), np.arange(len(rows)), np.array(seconds), values, now, reason,
+               kept, failure=failure)
 
 
 def _weights(method: Method) -> list[tuple[str, float]]:
@@ -96,40 +101,126 @@ def counts(runs: dict[str, Run], iterations: Sequence[int]) -> dict[str, list[fl
 
 
 def untangled_after(run: Run) -> float:
-    """The first iteration after which no element is inverted; infinity if there is none."""
+    """The first iteration after which no element is inverted; infinity if there is none, NaN if the run failed."""
+    if run.failure:
+        return math.nan
     wrong = np.flatnonzero(run.values["inverted"] > 0)
     first = int(wrong[-1]) + 1 if wrong.size else 0
-    return first if first < len(run.iterations) else float("inf")
+    return first if first < len(run.values["inverted"]) else math.inf
 
 
 def after(runs: dict[str, Run]) -> str:
-    """The iterations after which no element is inverted, by method, for the figures of a finding."""
-    return "iterations until all are valid: " + ", ".join(f"{n} {untangled_after(r):g}" for n, r in runs.items())
+    """The iterations after which no element is inverted, by method, for the numbers of a finding."""
+    return "iterations until all are valid: " + ", ".join(f"{n} {_until(r)}" for n, r in runs.items())
 
 
-def by_unit(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterations: int, mean_sizes: Sequence[float],
-            **options: Any) -> None:
-    """A table of the scalarizations in other units of length, given by the mean size of the elements."""
+def _until(run: Run) -> str:
+    done = untangled_after(run)
+    return "failed" if math.isnan(done) else "never" if math.isinf(done) else f"{done:g}"
+
+
+def untangles(runs: dict[str, Run], names: Iterable[str], within: float = math.inf) -> Verdict:
+    """Whether each method leaves no inverted element, within a number of iterations."""
+    def one(name: str) -> Verdict:
+        done = untangled_after(runs[name])
+        return judged(runs, [name], math.isfinite(done) and done <= within)
+
+    return all_of(map(one, names))
+
+
+def fails(runs: dict[str, Run], names: Iterable[str]) -> Verdict:
+    """Whether each method leaves inverted elements, or diverges; not decided where the optimizer failed."""
+    def one(name: str) -> Verdict:
+        run = runs[name]
+        if run.failure.startswith(DIVERGED):
+            return bool(run.values["inverted"][-1] > 0)
+        return judged(runs, [name], run.last("inverted") > 0)
+
+    return all_of(map(one, names))
+
+
+def sooner(runs: dict[str, Run], one: str, other: str) -> Verdict:
+    """Whether a method needs fewer iterations than another one, which also untangles the mesh; a tie is not fewer.
+
+    A method that untangles the mesh is sooner than one that never does.
+    """
+    return judged(runs, (one, other), untangled_after(runs[one]) < untangled_after(runs[other]))
+
+
+def better(runs: dict[str, Run], one: str, others: Iterable[str], quantity: str, margin: float) -> Verdict:
+    """Whether a method has a larger value at the end than each of the others, of those that leave no inverted element.
+
+    Not decided if it is the only one that is left.
+    """
+    others = [n for n in others if n != one]
+    left = [n for n in others if runs[n].last("inverted") == 0]
+    if failures(runs, (one, *others)) or not left:
+        return judged(runs, (one, *others), Open(f"no method but {one} leaves no inverted element"))
+    if runs[one].last("inverted") != 0:
+        return False
+    return all_of(less(runs[n].last(quantity), runs[one].last(quantity), margin) for n in left)
+
+
+def settings(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterations: int, units: Sequence[float],
+             betas: Sequence[float] = BETAS, **options: Any) -> dict[str, dict[str, Run]]:
+    """The runs of several objectives and of untangling alone in settings that the dissertation does not state.
+
+    units: mean sizes of the elements; none: that of the mesh, which the dissertation states. A table says when all
+    elements are valid.
+    """
     dimension = cells_of(mesh).shape[1] - 1
     mean = float(np.mean(np.abs(sizes_of(mesh))))
-    every = tangled_methods(*objectives)[len(objectives) :]
-    variants = [("exponential-sum, c chosen", every[0], 0.0), *((m.name, m, TYPICAL_C) for m in every)]
-    rows = []
-    for size in mean_sizes:
+    every = [m for m in tangled_methods(*objectives) if m.name == "untangle" or len(m.objectives) > 1]
+    varied = [(size, beta, where, TYPICAL_C)
+              for size in (units or (mean,)) for beta in betas for where in (False, True)]
+    varied += [(size, betas[0], False, SMALLEST_C) for size in (units or (mean,))]
+    found, rows = {}, []
+    for size, beta, where, c in varied:
         start = scaled(mesh, (size / mean) ** (1.0 / dimension))
-        for name, method, c in variants:
-            run = untangle(start, method, iterations, ("si_mean", "si_worst"), c=c, **options)
-            done = untangled_after(run)
-            valid_after = "never" if np.isinf(done) else f"{done:g}"
-            rows.append([size, name, valid_after, int(run.last("inverted")), run.last("si_worst")])
-    title = f"Other units of length, {iterations} iterations: when all elements are valid, inverted ones at the end"
-    report.table("units", title, ["mean size", "method", "valid after", "inverted", "worst SI"], rows)
+        chosen = {**options, "patch_scalarization": where, "c": c, "beta": beta}
+        runs = {m.name: untangle(start, m, iterations, ("si_mean",), **chosen)
+                for m in every}
+        place = "patch" if where else "mesh"
+        found[f"{size:g}, {beta:g}, {place}, {c:g}"] = runs
+        rows.append([size, beta, place, c, *map(_until, runs.values())])
+    report.table("settings", f"Other settings, {iterations} iterations: after which iteration all elements are valid",
+                 ["mean size", "beta / mean", "combined on", "c", *(m.name for m in every)], rows)
     report.text(
         "Rows repeat where the largest value of the untangling metric is below that of the other metrics: the "
         "optimizer then rescales it as in section 3.3.3, which eliminates the unit."
     )
+    return found
 
 
-def diverged(runs: dict[str, Run]) -> str:
-    """A sentence on the runs whose vertices left the domain, or ""."""
-    return "\n".join(f"{r.method.label}: {r.reason}" for r in runs.values() if r.reason.startswith("Diverged"))
+def in_settings(found: dict[str, dict[str, Run]], test: Callable[[dict[str, Run]], Verdict]) -> Verdict:
+    """Whether a test of the runs holds in all settings, or in none; not decided where they differ or half fail."""
+    verdicts = [test(runs) for runs in found.values()]
+    decided = [bool(v) for v in verdicts if not isinstance(v, Open)]
+    if not verdicts or 2 * len(decided) <= len(verdicts):
+        return next((v for v in verdicts if isinstance(v, Open)), Open("there is nothing to compare"))
+    if any(decided) and not all(decided):
+        return Open("it depends on what the dissertation does not state (unit of length, beta, c, where objectives are "
+                    f"combined): true in {sum(decided)} of {len(decided)} settings")
+    return all(decided)
+
+
+def until_all(found: dict[str, dict[str, Run]], names: Iterable[str]) -> str:
+    """The iterations after which no element is inverted, the least and the largest of the settings."""
+    def text(name: str) -> str:
+        done = [untangled_after(runs[name]) for runs in found.values()]
+        known = [d for d in done if math.isfinite(d)]
+        least = f"{min(known):g} to {max(known):g}" if known else "never"
+        return f"{name} {least}" + (f" (not in {len(done) - len(known)} of {len(done)} settings)" if known and
+                                    len(known) < len(done) else "")
+
+    return "iterations until all are valid: " + ", ".join(map(text, names))
+
+
+def inverted_table(report: Report, file: str, title: str, runs: dict[str, Run], iterations: Sequence[int],
+                   theirs: dict[str, Sequence[float]], extra: dict[str, list[float]] | None = None) -> None:
+    """A table of inverted elements by iterations, with the dissertation's by method, and why runs failed."""
+    labels = {n: r.method.label for n, r in runs.items()}
+    known = {labels.get(name, name): row for name, row in theirs.items()}
+    report.beside(file, title, iterations, counts(runs, iterations) | (extra or {}), known)
+    if failures(runs):
+        report.text(failures(runs))

@@ -6,37 +6,95 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass
-from typing import Callable, Iterable, Optional, Sequence, TypeVar
+from typing import Any, Callable, Iterable, Sequence, TypeVar, Union
 
 T = TypeVar("T")
-#: True: the finding holds; False: it does not; None: the numbers do not decide it.
-Verdict = Optional[bool]
 
-HOLDS, DOES_NOT_HOLD, NOT_DECIDED, TOO_SMALL = "holds", "does not hold", "not decided", "too small to decide"
+
+@dataclass(frozen=True)
+class Open:
+    """The verdict of numbers that decide nothing, and why they do not."""
+
+    reason: str
+
+    def __bool__(self) -> bool:
+        raise TypeError("a verdict that is not decided is neither true nor false")
+
+
+#: True: the finding holds; False: it does not; Open: the numbers do not decide it.
+Verdict = Union[bool, Open]
+
+HOLDS, DOES_NOT_HOLD, VARIES = "holds", "does not hold", "varies"
+NOT_DECIDED, TOO_SMALL = "not decided", "too small to decide"
+#: All of them, in the order of reports.
+WORDS = (HOLDS, DOES_NOT_HOLD, VARIES, NOT_DECIDED, TOO_SMALL)
 
 #: Times that differ by a smaller part are taken for equal: what runs of one program on an idle machine differ by.
 TIME_MARGIN = 0.05
+#: A gain is the printed one if it lies between these multiples of it: meshes and machines are other ones.
+GAIN_BAND = (0.5, 2.0)
+#: Counts of elements and of iterations on other meshes are the printed ones within this relative tolerance.
+COUNT_TOLERANCE = 0.5
 
 
 def word(verdict: Verdict) -> str:
     """The words of a verdict."""
-    return {True: HOLDS, False: DOES_NOT_HOLD, None: NOT_DECIDED}[verdict]
+    return NOT_DECIDED if isinstance(verdict, Open) else HOLDS if verdict else DOES_NOT_HOLD
 
 
-def all_of(verdicts: Iterable[Verdict]) -> Verdict:
-    """Whether all hold: False if one does not, else None if one is not decided, or if there is none."""
+def all_of(verdicts: Iterable[Any]) -> Verdict:
+    """Whether all hold: False if one does not, else not decided if one is not, or if there is none."""
+    return _joined(verdicts, False)
+
+
+def any_of(verdicts: Iterable[Any]) -> Verdict:
+    """Whether one holds: True if one does, else not decided if one is not, or if there is none."""
+    return _joined(verdicts, True)
+
+
+def _joined(verdicts: Iterable[Any], decisive: bool) -> Verdict:
+    """The decisive verdict if it is among them, else the first that is not decided, else the other one."""
     found = list(verdicts)
-    if any(v is not None and not v for v in found):
-        return False
-    return True if found and all(v is not None for v in found) else None
+    undecided = [v for v in found if isinstance(v, Open)]
+    if any(bool(v) is decisive for v in found if not isinstance(v, Open)):
+        return decisive
+    if undecided or not found:
+        return undecided[0] if undecided else Open("there is nothing to compare")
+    return not decisive
 
 
-def any_of(verdicts: Iterable[Verdict]) -> Verdict:
-    """Whether one holds: True if one does, else None if one is not decided, or if there is none."""
-    found = list(verdicts)
-    if any(v is not None and v for v in found):
-        return True
-    return False if found and all(v is not None for v in found) else None
+def is_not(verdict: Verdict) -> Verdict:
+    """The opposite verdict."""
+    return verdict if isinstance(verdict, Open) else not verdict
+
+
+def unless(reason: str, verdict: Any) -> Verdict:
+    """Not decided for a reason; the verdict where the reason is empty."""
+    return Open(reason) if reason else verdict
+
+
+def less(one: float, other: float, error: float) -> Verdict:
+    """Whether a number is smaller than another one; not decided where they differ by less than their relative error."""
+    if not (math.isfinite(one) and math.isfinite(other)):
+        return Open("a number is missing")
+    if abs(one - other) <= error * max(abs(one), abs(other)):
+        return Open(f"the numbers {one:.6g} and {other:.6g} differ by less than their error of {error:g}")
+    return one < other
+
+
+def close(one: float, other: float, tolerance: float) -> Verdict:
+    """Whether a number is another one within a relative tolerance; not decided where one is missing."""
+    if not (math.isfinite(one) and math.isfinite(other)):
+        return Open("a number is missing")
+    return abs(one - other) <= tolerance * abs(other)
+
+
+def gain(ours: float, printed: float) -> Verdict:
+    """Whether a relative gain is as large as the printed one: between half of it and twice it."""
+    if not math.isfinite(ours):
+        return Open("the gain has no number")
+    low, high = sorted(factor * printed for factor in GAIN_BAND)
+    return low <= ours <= high
 
 
 @dataclass(frozen=True)
@@ -87,7 +145,9 @@ def faster(one: Times, other: Times) -> Verdict:
 def below(one: Times, other: Times, factor: float) -> Verdict:
     """Whether one takes less than `factor` times the time of the other."""
     low, high = one.over(other)
-    return True if high < factor else False if low > factor else None
+    if low <= factor <= high:
+        return Open(f"the times {one} and {other} differ by less than their noise")
+    return high < factor
 
 
 def quickest(times: dict, name: object) -> Verdict:
@@ -100,7 +160,7 @@ def slowest(times: dict, name: object) -> Verdict:
     return all_of(faster(other, times[name]) for key, other in times.items() if key != name)
 
 
-def same_count(ours: float, printed: float, tolerance: float) -> bool:
+def same_count(ours: float, printed: float, tolerance: float = COUNT_TOLERANCE) -> bool:
     """Whether a count is the printed one within a relative tolerance, rounded up to a whole number."""
     return abs(ours - printed) <= math.ceil(tolerance * printed)
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import csv
 import io
-import os
 import sys
 import time
+import traceback
 from importlib import import_module
 from pathlib import Path
 
@@ -17,19 +16,29 @@ from tautline._errors import Error
 from tautline._files import make_folder, replace_text
 
 from . import described, names
-from ._page import Study, page
+from ._evidence import minutes, size_of
+from ._page import Study, page, study_in
 
 #: Pixels, of the pictures in the report.
 WIDTH = 900
+#: The file of a study's folder with the options of the run that ended there.
+OPTIONS = "options.txt"
+#: The studies with silhouettes.
+WITH_DATA = ("figures", "shapes")
 
 
 def main(arguments: list[str]) -> int:
     made = argparse.ArgumentParser(prog="python3 -m tautline study all", description=__doc__)
-    made.add_argument("--small", action="store_true", help="small meshes: minutes; without verdicts")
+    size = made.add_mutually_exclusive_group()
+    size.add_argument("--small", action="store_true", help="small meshes: minutes; without verdicts")
+    size.add_argument("--record", action="store_true",
+                      help="the sizes of the committed report, at most half an hour of CPU time for each study")
     made.add_argument("--out", type=Path, default=Path("studies"), metavar="DIR",
                       help="directory of the report, report.html, and of a directory per study (%(default)s)")
     made.add_argument("--studies", nargs="+", metavar="NAME", help="these only (default: all)")
-    made.add_argument("--reuse", action="store_true", help="do not run studies whose results are in the directory")
+    made.add_argument("--resume", action="store_true",
+                      help="go on where a run into the same directory stopped: leave out studies that ended with these "
+                      "options, and in the others the calculations that ended")
     made.add_argument("--width", type=int, default=WIDTH, metavar="PIXELS",
                       help="largest width of the pictures in the report (%(default)s)")
     made.add_argument("--data", metavar="FOLDER", help="silhouettes for figures and shapes (default: synthetic)")
@@ -40,8 +49,10 @@ def main(arguments: list[str]) -> int:
         if name not in known:
             raise Error(f"there is no study '{name}'; there are {', '.join(known)}")
     make_folder(given.out)
-    found = {name: result(name, given) for name in chosen}
-    replace_text(given.out / "report.html", page(found, given.small, given.width))
+    if not given.small:
+        _announce(chosen, given.record)
+    found = {name: result(name, given, f"{i} of {len(chosen)}") for i, name in enumerate(chosen, 1)}
+    replace_text(given.out / "report.html", page(found, given.small))
     failed = [name for name, study in found.items() if study.error]
     print(f"{given.out / 'report.html'}: {len(found)} studies" + (f"; failed: {', '.join(failed)}" if failed else ""))
     return 1 if failed else 0
@@ -52,32 +63,37 @@ def studies() -> list[str]:
     return [name for name in names() if name != "all"]
 
 
-def result(name: str, given: argparse.Namespace) -> Study:
-    """Run a study, unless its results are to be reused, and read what it wrote; an error is part of the report."""
+def _announce(chosen: list[str], record: bool) -> None:
+    """Say on the standard error how long the studies took in the committed run."""
+    known = {name: minutes(name) for name in chosen}
+    lines = [f"{name:24} " + ("not known" if time is None else f"{time:6.1f} min") +
+             (", at a reduced size" if size_of(name).reduced and not record else "") for name, time in known.items()]
+    total = sum(time for time in known.values() if time is not None)
+    print("CPU time of the committed run:", *lines, f"together {total / 60:.1f} h" +
+          ("" if record else "; the full size takes longer where they are reduced"), sep="\n", file=sys.stderr)
+
+
+def result(name: str, given: argparse.Namespace, place: str) -> Study:
+    """Run a study, unless it ended before, and read what it wrote; an error is part of the report."""
     folder = given.out / name
-    text = described(name)
-    if given.reuse and (folder / "findings.csv").is_file():
-        return Study(name, text, folder, findings(folder))
-    options = ["--out", str(folder)] + (["--small"] if given.small else [])
-    if name == "shapes" and sys.platform == "linux" and not os.environ.get("DISPLAY"):
-        options.append("--no-pictures")  # they are rendered
-    if given.data and name in ("figures", "shapes"):
+    options = ["--small"] if given.small else list(size_of(name).options) if given.record else []
+    if given.data and name in WITH_DATA:
         options += ["--data", given.data]
-    print(f"{name} ...", file=sys.stderr, flush=True)
+    ended = folder / OPTIONS
+    if given.resume and ended.is_file() and ended.read_text(encoding="utf-8").split("\n") == options:
+        return study_in(name, described(name), folder, given.width)
+    expected = None if given.small else minutes(name)
+    print(f"{place}: {name}" + ("" if expected is None else f", {expected:.1f} min in the committed run") + " ...",
+          file=sys.stderr, flush=True)
+    ended.unlink(missing_ok=True)
     began = time.process_time()
     try:
         with contextlib.redirect_stdout(io.StringIO()):
-            import_module(f".{name}", __package__).main(options)
-    except Error as error:
-        return Study(name, text, folder, [], str(error))
-    print(f"{name}: {time.process_time() - began:.1f} CPU s", file=sys.stderr, flush=True)
-    return Study(name, text, folder, findings(folder))
-
-
-def findings(folder: Path) -> list[dict[str, str]]:
-    """The findings of a study; those of older formats have yes and no for verdicts."""
-    with open(folder / "findings.csv", encoding="utf-8", newline="") as stream:
-        rows = list(csv.DictReader(stream))
-    words = {"yes": "holds", "no": "does not hold"}
-    return [{"source": row["source"], "finding": row["finding"], "figures": row.get("figures", ""),
-             "verdict": row["verdict"] if "verdict" in row else words[row["holds"]]} for row in rows]
+            more = ["--out", str(folder), *(["--resume"] if given.resume else [])]
+            import_module(f".{name}", __package__).main(options + more)
+    except Exception as error:  # hours of other studies do not depend on it
+        traceback.print_exc()
+        return Study(name, described(name), None, {}, str(error) or type(error).__name__)
+    print(f"{place}: {name}, {time.process_time() - began:.1f} CPU s", file=sys.stderr, flush=True)
+    replace_text(ended, "\n".join(options))
+    return study_in(name, described(name), folder, given.width)

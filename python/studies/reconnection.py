@@ -12,11 +12,14 @@ from vtkmodules.vtkFiltersSources import vtkSphereSource
 
 import tautline
 
+from ._memory import remembered
 from ._report import Report, parser
+from ._verdicts import Verdict, all_of, less
 
 CELLS, SMALL_CELLS = 40_000, 3_000
 PERTURBED = 0.97  # of the distance to inversion: nearly flat elements
 EXPECTED_ERROR = 1e-3  # relative, of the eigenvalues
+CONDITION_ERROR = 2 * EXPECTED_ERROR  # of their ratio
 COLUMNS = ("elements", "smallest angle", "worst imr", "condition", "preconditioned", "iterations")
 ANGLE, CONDITION, PRECONDITIONED, ITERATIONS = 1, 3, 4, 5
 #: Label and what is done with the mesh with slivers.
@@ -41,15 +44,23 @@ SIDE, RADIUS, AROUND, PLATE_ANGLE = 2.0, 0.4, 64, 33.0
 Rows = dict[str, list[float]]
 
 
+@remembered
 def figures(mesh: vtkDataSet, threads: int) -> list[float]:
-    """The numbers of COLUMNS: of Poisson's matrix, and with Jacobi's preconditioner; iterations of CG."""
+    """The numbers of COLUMNS: of Poisson's matrix, and with Jacobi's preconditioner; iterations of CG; nan: failed."""
     measured = tautline.improve(mesh, "custom", swap=False, smooth=False, contract=False, insert=False, compound=False,
                                 threads=threads)
     found = tautline.condition(mesh, pde="poisson", preconditioner="jacobi", tolerance=EXPECTED_ERROR, shares=False,
                                threads=threads)
     solved = tautline.solve(mesh, pde="poisson", source=1.0, solver="cg", preconditioner="jacobi", threads=threads)
-    return [float(measured.elements), measured.smallest_angle, measured.worst, found.condition,
-            found.preconditioned_condition, float(solved.iterations)]
+    condition, preconditioned = (row["condition"] if row["converged"] else np.nan for row in found.spectrum)
+    return [float(measured.elements), measured.smallest_angle, measured.worst, condition, preconditioned,
+            float(solved.iterations) if solved.converged else np.nan]
+
+
+@remembered
+def stepped(mesh: vtkDataSet, label: str, threads: int) -> vtkDataSet:
+    """What a step makes of the mesh with slivers."""
+    return STEPS[label](mesh, threads)
 
 
 def domain_findings(report: Report, domain: str, rows: Rows) -> None:
@@ -58,29 +69,31 @@ def domain_findings(report: Report, domain: str, rows: Rows) -> None:
     def text(column: int) -> str:
         return ", ".join(f"{name} {row[column]:.5g}" for name, row in rows.items())
 
-    def finding(sentence: str, holds: bool, column: int) -> None:
-        report.finding(domain, sentence, holds, text(column))
+    def finding(sentence: str, holds: Verdict, column: int) -> None:
+        report.finding(domain, sentence, holds, text(column), own=True,
+                       criterion=f"by more than the error of both condition numbers, {CONDITION_ERROR:g} each"
+                       if column in (CONDITION, PRECONDITIONED) else "")
 
     start, repaired, best = rows["with slivers"], rows["remove slivers"], rows["aggressive"]
     finding("Removing slivers makes the condition number of the matrix smaller",
-            repaired[CONDITION] < start[CONDITION], CONDITION)
-    finding("... and that with Jacobi's preconditioner",
-            repaired[PRECONDITIONED] < start[PRECONDITIONED], PRECONDITIONED)
-    finding("CG needs fewer iterations without slivers", repaired[ITERATIONS] < start[ITERATIONS], ITERATIONS)
+            less(repaired[CONDITION], start[CONDITION], 2 * CONDITION_ERROR), CONDITION)
+    finding("Removing slivers makes the condition number with Jacobi's preconditioner smaller",
+            less(repaired[PRECONDITIONED], start[PRECONDITIONED], 2 * CONDITION_ERROR), PRECONDITIONED)
+    finding("CG needs fewer iterations without slivers", less(repaired[ITERATIONS], start[ITERATIONS], 0), ITERATIONS)
     finding("The preset aggressive needs no more iterations than removing slivers",
-            best[ITERATIONS] <= repaired[ITERATIONS], ITERATIONS)
+            less(best[ITERATIONS], repaired[ITERATIONS] + 1, 0), ITERATIONS)
     finding("Moving points alone leaves a smaller smallest angle than the preset aggressive",
-            rows["best shape (points move)"][ANGLE] < best[ANGLE], ANGLE)
+            less(rows["best shape (points move)"][ANGLE], best[ANGLE], 0), ANGLE)
 
 
 def refinement_findings(report: Report, rows: Rows) -> None:
     """Whether the improved meshes have at least the smallest angle of Delaunay refinement; rows: its angle, the number
     of its points, our angle and points."""
-    holds = all(ours >= theirs and points <= count for theirs, count, ours, points in rows.values())
+    holds = all_of(ours >= theirs and points <= count for theirs, count, ours, points in rows.values())
     shown = ", ".join(f"{name} {ours:.4g} with {points:.0f} points (refinement {theirs:.4g} with {count:.0f})"
                       for name, (theirs, count, ours, points) in rows.items())
     report.finding("plane", "The smallest angle is at least that of Delaunay refinement with as many points", holds,
-                   shown)
+                   shown, own=True, criterion="at least its angle, with at most its number of points, on every domain")
 
 
 def plate(cells: int) -> vtkDataSet:
@@ -107,6 +120,7 @@ def plate(cells: int) -> vtkDataSet:
     return mesher.GetOutput()
 
 
+@remembered
 def against_refinement(cells: int, threads: int) -> Rows:
     """Delaunay refinements, then the same meshes perturbed and improved with no more points."""
     rows = {}
@@ -136,6 +150,7 @@ def delaunay_ball() -> vtkDataSet:
     return mesher.GetOutput()
 
 
+@remembered
 def reach(cells: int, threads: int) -> Rows:
     """Per mesh and boundary: elements before and after, angle and worst imr before and after, degrees of the smallest
     bound of what remains (90: nothing remains)."""
@@ -157,14 +172,15 @@ def reach_findings(report: Report, rows: Rows) -> None:
     shown = ", ".join(f"{name} {row[4]:.4g} degrees, {row[5]:.4g}" for name, row in rows.items())
     sliding = [row[4] for name, row in rows.items() if name.split(", ")[0] in SOLIDS and name.endswith("sliding")]
     report.finding("solids", "Smallest angle and worst inverse mean ratio improve on all meshes",
-                   all(row[4] > row[2] and row[5] < row[3] for row in rows.values()), shown)
+                   all_of(row[4] > row[2] and row[5] < row[3] for row in rows.values()), shown, own=True)
     report.finding("solids", "With a sliding boundary, the smallest angle of the domains is at least "
-                   f"{REACHED:g} degrees", min(sliding) >= REACHED, ", ".join(f"{angle:.4g}" for angle in sliding))
+                   f"{REACHED:g} degrees", all_of(angle >= REACHED for angle in sliding),
+                   ", ".join(f"{angle:.4g}" for angle in sliding), own=True)
 
 
 def main(arguments: list[str]) -> int:
     given = parser("reconnection", __doc__, CELLS).parse_args(arguments)
-    report = Report("reconnection", "What slivers cost a solver", given.out, given.small)
+    report = Report("reconnection", "What slivers cost a solver", given)
     cells = given.cells or (SMALL_CELLS if given.small else CELLS)
     report.text(
         f"Meshes of the domains, all inner points moved at random by up to {PERTURBED:g} of their distance to "
@@ -174,7 +190,7 @@ def main(arguments: list[str]) -> int:
     )
     for domain in DOMAINS:
         poor = tautline.perturb(tautline.domain(domain, cells), PERTURBED, 100.0).mesh
-        rows = {label: figures(step(poor, given.threads), given.threads) for label, step in STEPS.items()}
+        rows = {label: figures(stepped(poor, label, given.threads), given.threads) for label in STEPS}
         report.table(domain, domain, ["mesh", *COLUMNS], [[label, *row] for label, row in rows.items()])
         domain_findings(report, domain, rows)
     rows = against_refinement(cells, given.threads)
@@ -187,4 +203,4 @@ def main(arguments: list[str]) -> int:
                  ["mesh", "elements", "elements after", "angle", "imr", "angle after", "imr after", "bound"],
                  [[name, *row] for name, row in rows.items()])
     reach_findings(report, rows)
-    return report.finish("Findings")
+    return report.finish()

@@ -32,6 +32,24 @@ std::invoke_result_t<Work> inMemory(const OptimizeOptions& options, const Work& 
     throw MemoryError("The matrix does not fit into memory.");
   }
 }
+
+/// Goes back to the coordinates before a sweep.
+void takeBack(OptimizationProblem& problem, const std::vector<double>& coordinates)
+{
+  std::copy(coordinates.begin(), coordinates.end(), problem.simplices().coordinates());
+  problem.coordinatesChanged();
+  problem.store();
+}
+
+/// Lets further sweeps make one step at each vertex; whether they made several.
+bool makeSingleSteps(LocalSweeper& sweeper, int& patchIterations)
+{
+  const bool several = patchIterations > 1;
+  patchIterations = 1;
+  sweeper.setPatchIterations(patchIterations);
+  sweeper.wakeAll();
+  return several;
+}
 }
 
 //------------------------------------------------------------------------------
@@ -99,14 +117,9 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
       // Blocks of one colour do not use each other's changes of a composite objective, which may
       // rise or leave its domain, as a product with a factor below 0: the more, the more steps each
       // vertex makes.
-      std::copy(best.begin(), best.end(), simplices.coordinates());
-      problem.coordinatesChanged();
-      problem.store();
-      if (patchIterations > 1)
+      takeBack(problem, best);
+      if (makeSingleSteps(sweeper, patchIterations))
       {
-        patchIterations = 1;
-        sweeper.setPatchIterations(patchIterations);
-        sweeper.wakeAll();
         all = true;
         --iteration;
         continue;

@@ -1,0 +1,58 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Makes the committed findings of the studies, their report and its summary.
+
+make_studies.py DIR --write takes the results of `python3 -m tautline study all --record --out DIR`; without DIR the
+report is made again of the committed findings, with the pictures that it has: after a reason was added to
+python/studies/evidence/reasons.json, for instance. Without --write nothing is written; the code is 1 if a file is not
+what this program makes.
+"""
+
+import argparse
+import json
+import re
+import sys
+from pathlib import Path
+
+from tautline.studies import _evidence, described
+from tautline.studies._page import page, study_in, study_of, summary_markdown
+from tautline.studies.all import studies
+
+ROOT = Path(__file__).resolve().parent.parent.parent
+REPORT = ROOT / "Plugin" / "Documentation" / "studies.html"
+SITE = ROOT / "Plugin" / "Site" / "studies.md"
+BEGIN, END = "<!-- summary: made by make_studies.py -->", "<!-- end of the summary -->"
+WIDTH = 420  # pixels, of a picture
+
+
+def main() -> int:
+    made = argparse.ArgumentParser(description=__doc__)
+    made.add_argument("results", nargs="?", type=Path, help="a folder of `study all`")
+    made.add_argument("--write", action="store_true")
+    given = made.parse_args()
+    report = REPORT.read_text(encoding="utf-8") if REPORT.is_file() else ""
+    files = {}
+    found = {}
+    for name in studies():
+        folder = given.results / name if given.results else None
+        if folder and (folder / f"{name}.json").is_file():
+            found[name] = study_in(name, described(name), folder, WIDTH)
+            files[_evidence.FOLDER / f"{name}.json"] = json.dumps(found[name].record, indent=1) + "\n"
+        else:
+            found[name] = study_of(name, described(name), report)
+    files[REPORT] = page(found, small=False)
+    text = SITE.read_text(encoding="utf-8")
+    table = f"{BEGIN}\n{summary_markdown(found.values())}\n{END}"
+    files[SITE] = re.sub(rf"{re.escape(BEGIN)}.*{re.escape(END)}", lambda _: table, text, flags=re.DOTALL)
+    wrong = [file for file, content in files.items()
+             if not file.is_file() or file.read_text(encoding="utf-8") != content]
+    for file in wrong:
+        print(f"{file.relative_to(ROOT)}: {'written' if given.write else 'is not what this program makes'}")
+        if given.write:
+            file.parent.mkdir(exist_ok=True)
+            file.write_text(files[file], encoding="utf-8")
+    return 1 if wrong and not given.write else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Findings of the studies: what is stated, the criterion by which it is judged, and the verdict, of all seeds."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import asdict, dataclass
+from typing import Any, Iterable, Sequence
+
+from ._verdicts import DOES_NOT_HOLD, HOLDS, NOT_DECIDED, TOO_SMALL, VARIES
+
+_NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A statement, judged by our numbers."""
+
+    #: The table, figure or section that states it.
+    source: str
+    claim: str
+    #: What must be true of our numbers, chosen before they were computed.
+    criterion: str
+    #: The dissertation's number, if it has one.
+    stated: str
+    ours: str
+    verdict: str
+    #: Why it does not hold, varies or is not decided.
+    reason: str
+    #: Whether it is this project's statement, not the dissertation's.
+    own: bool
+    #: The seeds of the random numbers; none: nothing is random.
+    seeds: tuple[int, ...] = ()
+
+    @property
+    def key(self) -> tuple[str, str]:
+        """What the findings of several seeds have in common."""
+        return self.source, self.claim
+
+    def row(self) -> dict[str, Any]:
+        """As JSON has it."""
+        return {**asdict(self), "seeds": list(self.seeds)}
+
+    @staticmethod
+    def of(row: dict[str, Any]) -> Finding:
+        """The reverse of row()."""
+        return Finding(**{**row, "seeds": tuple(row["seeds"])})
+
+
+#: The columns of findings.csv.
+COLUMNS = ("source", "claim", "kind", "verdict", "stated", "ours", "criterion", "reason", "seeds")
+
+
+def columns(finding: Finding) -> list[str]:
+    """The row of a finding in findings.csv."""
+    return [finding.source, finding.claim, "own" if finding.own else "dissertation", finding.verdict, finding.stated,
+            finding.ours, finding.criterion, finding.reason, " ".join(map(str, finding.seeds))]
+
+
+def merged(findings: Iterable[Finding]) -> list[Finding]:
+    """One finding of those of several seeds with one source and claim, in the order of their first appearance."""
+    groups: dict[tuple[str, str], list[Finding]] = {}
+    for finding in findings:
+        groups.setdefault(finding.key, []).append(finding)
+    return [_merge(group) for group in groups.values()]
+
+
+def _merge(group: Sequence[Finding]) -> Finding:
+    """The finding of several seeds.
+
+    It holds if it holds with each seed, and does not if it does with none; where it holds with some it varies. Seeds
+    that do not decide it count only if all do not.
+    """
+    first = group[0]
+    if len(group) == 1:
+        return first
+    words = [finding.verdict for finding in group]
+    holding, failing = words.count(HOLDS), words.count(DOES_NOT_HOLD)
+    decided = holding + failing
+    if not decided:
+        verdict = TOO_SMALL if TOO_SMALL in words else NOT_DECIDED
+    else:
+        verdict = VARIES if holding and failing else HOLDS if holding else DOES_NOT_HOLD
+        if 2 * decided <= len(group):
+            verdict = NOT_DECIDED
+    share = f"holds with {holding} of {len(group)} seeds"
+    if decided < len(group) and decided:
+        share += f", is not decided with {len(group) - decided}"
+    reasons = list(dict.fromkeys(finding.reason for finding in group if finding.reason))
+    reason = "; ".join(([share] if verdict in (VARIES, NOT_DECIDED) else []) + reasons[:1])
+    ours = spread([finding.ours for finding in group]) + ("" if verdict == TOO_SMALL else f" ({share})")
+    return Finding(first.source, first.claim, first.criterion, first.stated, ours, verdict, reason, first.own,
+                   tuple(seed for finding in group for seed in finding.seeds))
+
+
+def spread(texts: Sequence[str]) -> str:
+    """One text of several that differ in their numbers: the median and the range of each number.
+
+    Texts that differ in words, too, follow one another.
+    """
+    if len(set(texts)) == 1:
+        return texts[0]
+    parts = [_NUMBER.split(text) for text in texts]
+    if any(part != parts[0] for part in parts):
+        return " | ".join(f"seed {n}: {text}" for n, text in enumerate(texts, 1))
+    made = [parts[0][0]]
+    for numbers, after in zip(zip(*(_NUMBER.findall(text) for text in texts)), parts[0][1:]):
+        made += [number_range(numbers), after]
+    return "".join(made)
+
+
+def number_range(texts: Sequence[str]) -> str:
+    """The median of numbers, and in brackets the least and the largest one, each as it is written."""
+    ordered = sorted(texts, key=lambda text: _value(text))
+    median = ordered[len(ordered) // 2]
+    return median if ordered[0] == ordered[-1] else f"{median} [{ordered[0]} to {ordered[-1]}]"
+
+
+def _value(text: str) -> float:
+    try:
+        return float(text.replace(",", ""))
+    except ValueError:
+        return math.inf
