@@ -55,8 +55,8 @@ def main(arguments: list[str]) -> int:
         "hexahedra, and hexahedra in one half and wedges in the other. Half of the interior points are perturbed, then "
         "the mesh is smoothed by each metric to 95 % of the possible reduction; RR, SI and SS are defined on triangles "
         f"and tetrahedra. Anisotropic: -{ANISOTROPY:g} u_xx - u_yy - u_zz = 1; there also a mesh with as many points "
-        f"whose elements are {ANISOTROPY**0.5:g} times longer along x, smoothed by IMR with the matching target, an element "
-        "that is equilateral in the metric of the inverse of the coefficients. A result that holds on triangles "
+        f"whose elements are {ANISOTROPY**0.5:g} times longer along x, smoothed by IMR with the matching target, an "
+        "element that is equilateral in the metric of the inverse coefficients. A result that holds on triangles "
         f"and not on another mesh does not carry over. CPU seconds of {given.repeats} run(s)."
     )
     for seed in report.seeds:

@@ -100,10 +100,12 @@ public:
   Scalarizer scalarizer() const { return worstScalarizer(this->First, this->Pull, this->first()); }
 
   /// Whether both can be reduced relative to where they start: a sum of values that are all 0 is
-  /// at its best.
+  /// at its best, and one that is not finite gives no scale.
   bool canImprove() const
   {
-    return !this->Mean || (std::abs(this->First[0]) > 0 && std::abs(this->First[1]) > 0);
+    return !this->Mean ||
+      std::all_of(this->First.begin(), this->First.end(),
+        [](double sum) { return sum != 0 && std::isfinite(sum); });
   }
 
 private:

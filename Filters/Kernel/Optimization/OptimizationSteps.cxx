@@ -33,6 +33,21 @@ std::invoke_result_t<Work> inMemory(const OptimizeOptions& options, const Work& 
   }
 }
 
+std::vector<double> coordinatesOf(SimplexMesh& simplices)
+{
+  const double* x = simplices.coordinates();
+  return { x, x + VertexStride * static_cast<std::size_t>(simplices.freeVertices()) };
+}
+
+/// By how much a sweep has lowered the objective of the mesh. On patches steps may raise it: by how
+/// much it has changed.
+double loweredBy(
+  const Scalarizer& scalarizer, const IterationRecord& before, const IterationRecord& now)
+{
+  const double lowered = scalarized(scalarizer, before) - now.objective;
+  return now.objectives.size() > 1 && scalarizer.onPatches() ? std::abs(lowered) : lowered;
+}
+
 /// Goes back to the coordinates before a sweep.
 void takeBack(OptimizationProblem& problem, const std::vector<double>& coordinates)
 {
@@ -80,15 +95,12 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
   SimplexMesh& simplices = problem.simplices();
   LocalSweeper sweeper(simplices, problem.moving(), problem.points().data(), problem.localTerms(),
     problem.localOptions(), &problem.order());
-  std::vector<double> best(simplices.coordinates(),
-    simplices.coordinates() + VertexStride * static_cast<std::size_t>(simplices.freeVertices()));
+  std::vector<double> best = coordinatesOf(simplices);
   // One objective in closed form needs neither the mesh's own points on the way nor a way back:
   // each step reduces it. Records of several ranks are of stored points.
   const bool costly = problem.ranks().any(!problem.isSimple());
   const bool simple = !costly && !problem.ranks().several();
   StopReason reason = StopReason::NoProgress;
-  // On patches a step may raise the objective of the whole mesh.
-  const bool falls = !(problem.objectives() > 1 && problem.scalarizer().onPatches());
   int patchIterations = problem.options().patchIterations;
   double firstGradient = 0;
   bool all = true;          // whether the next sweep visits every vertex
@@ -109,14 +121,12 @@ StopReason OptimizationSteps::sweep(Slowness* slow, bool& failed, bool& repaired
     IterationRecord now = problem.record(iteration);
     now.gradientNorm = sweep.gradientNorm;
     now.moving = sweep.moved;
-    const double change = scalarized(problem.scalarizer(), before) - now.objective;
-    const double lowered = falls ? change : std::abs(change);
+    const double lowered = loweredBy(problem.scalarizer(), before, now);
     const double size = std::abs(now.objective);
     if (!simple && !(std::isfinite(size) && lowered >= -roundingOfSums * size))
     {
       // Blocks of one colour do not use each other's changes of a composite objective, which may
-      // rise or leave its domain, as a product with a factor below 0: the more, the more steps each
-      // vertex makes.
+      // rise or leave its domain, as a product with a factor below 0: most with several steps.
       takeBack(problem, best);
       if (makeSingleSteps(sweeper, patchIterations))
       {
