@@ -69,21 +69,21 @@ def merged(findings: Iterable[Finding]) -> list[Finding]:
 def _merge(group: Sequence[Finding]) -> Finding:
     """The finding of several seeds.
 
-    It holds if it holds with each seed, and does not if it does with none; where it holds with some it varies. Seeds
-    that do not decide it count only if all do not.
+    It holds if it holds with each seed, and does not if it does with none; where it holds with some it varies. It is
+    not decided if half of the seeds do not decide it.
     """
     first = group[0]
     if len(group) == 1:
         return first
     words = [finding.verdict for finding in group]
     holding, failing = words.count(HOLDS), words.count(DOES_NOT_HOLD)
-    decided = holding + failing
-    if not decided:
-        verdict = TOO_SMALL if TOO_SMALL in words else NOT_DECIDED
+    decided = holding + failing + words.count(VARIES)
+    if TOO_SMALL in words:
+        verdict = TOO_SMALL
+    elif 2 * decided <= len(group):
+        verdict = NOT_DECIDED
     else:
-        verdict = VARIES if holding and failing else HOLDS if holding else DOES_NOT_HOLD
-        if 2 * decided <= len(group):
-            verdict = NOT_DECIDED
+        verdict = HOLDS if holding == decided else DOES_NOT_HOLD if failing == decided else VARIES
     share = f"holds with {holding} of {len(group)} seeds"
     if decided < len(group) and decided:
         share += f", is not decided with {len(group) - decided}"

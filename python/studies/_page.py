@@ -130,8 +130,8 @@ def _introduction(studies: dict[str, Study], small: bool) -> str:
             "objectives (3), nonlocal models and moving meshes (4), shape matching (5). For each table and figure: our "
             "numbers with the dissertation's in brackets or in columns of their own, what the dissertation states with "
             "our verdict, and our pictures. Meshes are this project's. A finding holds, does not hold, varies with the "
-            "seed of the random numbers, or is not decided, because times differ by less than their noise or because a "
-            "number is missing. Times are CPU seconds.</p>")
+            "seed of the random numbers or with what is not stated, or is not decided: times differ by less than their "
+            "noise, a run failed, or a number is missing. Times are CPU seconds.</p>")
     if small:
         text += ("<p><b>This is the small size</b>: meshes of some thousand cells, which show the layout and decide "
                  "only what does not depend on size. <code>python3 -m tautline study all --record --out DIR</code> "

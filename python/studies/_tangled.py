@@ -15,7 +15,7 @@ from ._common import TYPICAL_C, Method, Run, failures, improve, judged, measure,
 from ._memory import remembered
 from ._meshes import cells_of, scaled, sizes_of
 from ._report import Report
-from ._verdicts import Open, Verdict, all_of, less
+from ._verdicts import Mixed, Open, Verdict, all_of, less
 
 #: Over the mean size: the size below which the untangling metric (3.3) counts an element. The dissertation has no
 #: value.
@@ -193,14 +193,14 @@ def settings(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterat
 
 
 def in_settings(found: dict[str, dict[str, Run]], test: Callable[[dict[str, Run]], Verdict]) -> Verdict:
-    """Whether a test of the runs holds in all settings, or in none; not decided where they differ or half fail."""
+    """Whether a test of the runs holds in all settings, in none, or in some; not decided where half fail."""
     verdicts = [test(runs) for runs in found.values()]
     decided = [bool(v) for v in verdicts if not isinstance(v, Open)]
     if not verdicts or 2 * len(decided) <= len(verdicts):
         return next((v for v in verdicts if isinstance(v, Open)), Open("there is nothing to compare"))
     if any(decided) and not all(decided):
-        return Open("it depends on what the dissertation does not state (unit of length, beta, c, where objectives are "
-                    f"combined): true in {sum(decided)} of {len(decided)} settings")
+        return Mixed("it depends on what the dissertation does not state (unit of length, beta, c, where objectives "
+                     f"are combined): true in {sum(decided)} of {len(decided)} settings")
     return all(decided)
 
 

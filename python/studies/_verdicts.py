@@ -21,7 +21,11 @@ class Open:
         raise TypeError("a verdict that is not decided is neither true nor false")
 
 
-#: True: the finding holds; False: it does not; Open: the numbers do not decide it.
+class Mixed(Open):
+    """The verdict of numbers that agree with a statement in some cases only, and what the cases depend on."""
+
+
+#: True: the finding holds; False: it does not; Open: the numbers do not decide it; Mixed: it holds in some cases.
 Verdict = Union[bool, Open]
 
 HOLDS, DOES_NOT_HOLD, VARIES = "holds", "does not hold", "varies"
@@ -39,6 +43,8 @@ COUNT_TOLERANCE = 0.5
 
 def word(verdict: Verdict) -> str:
     """The words of a verdict."""
+    if isinstance(verdict, Mixed):
+        return VARIES
     return NOT_DECIDED if isinstance(verdict, Open) else HOLDS if verdict else DOES_NOT_HOLD
 
 

@@ -17,7 +17,7 @@ from . import _silhouettes
 from ._drawings import Silhouette, silhouettes_picture
 from ._memory import remembered
 from ._report import Report, parser
-from ._verdicts import GAIN_BAND, Open, Verdict, all_of, any_of, gain, unless
+from ._verdicts import GAIN_BAND, Mixed, Open, Verdict, all_of, any_of, gain, unless
 
 KIMIA_SHAPES = 99  # of the dissertation's set
 #: Table 5.1 of the dissertation, percent.
@@ -171,7 +171,7 @@ def _of_weights(verdicts: dict[float, Verdict]) -> Verdict:
     """What holds with each weight holds, what does with none does not; else the weight decides."""
     every, some = all_of(verdicts.values()), any_of(verdicts.values())
     if isinstance(every, bool) and isinstance(some, bool) and every != some:
-        return Open("the dissertation does not give b, and it depends on b")
+        return Mixed("the dissertation does not give b, and it depends on b")
     return every
 
 

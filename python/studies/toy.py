@@ -12,7 +12,7 @@ from ._common import MULTI, QUALITY_MARGIN, Run, failures, judged
 from ._meshes import points_of
 from ._report import MESQUITE_PATCH_ITERATIONS, Report, parser
 from ._tangled import NOTE, after, tangled_methods, untangle, untangles
-from ._verdicts import Open, Verdict, all_of, less
+from ._verdicts import Mixed, Open, Verdict, all_of, less
 
 SQUARES = 6  # along each side of the mesh
 SHIFT = 1.3  # of the vertex in the middle along its row, in edges: past the next vertex
@@ -110,13 +110,13 @@ def main(arguments: list[str]) -> int:
 
 
 def in_all(counts: list[float], removed: bool) -> Verdict:
-    """Whether the method removes the inverted elements in all settings, or in none; not decided where they differ."""
+    """Whether the method removes the inverted elements in all settings, in none, or in some."""
     if not counts or any(np.isnan(counts)):
         return Open("a run failed")
     holding = [(count == 0) == removed for count in counts]
     if any(holding) and not all(holding):
-        return Open("it depends on what the dissertation does not state (shift, unit of length, steps per vertex, c, "
-                    f"where objectives are combined): true in {sum(holding)} of {len(holding)} settings")
+        return Mixed("it depends on what the dissertation does not state (shift, unit of length, steps per vertex, c, "
+                     f"where objectives are combined): true in {sum(holding)} of {len(holding)} settings")
     return all(holding)
 
 
