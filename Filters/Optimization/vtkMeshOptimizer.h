@@ -451,7 +451,7 @@ public:
   ///@}
 
   ///@{
-  /// Steps in each patch of the local algorithms; with several objectives it becomes 1 when a sweep
+  /// Steps in each patch of the local algorithms; it becomes 1 when a sweep
   /// has raised the objective. The default is 1.
   vtkTautlineSetRangeMacro(PatchIterations, int, 1, 1000);
   vtkGetMacro(PatchIterations, int);

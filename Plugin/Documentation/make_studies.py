@@ -16,13 +16,23 @@ from pathlib import Path
 
 from tautline.studies import _evidence, described
 from tautline.studies._page import page, study_in, study_of, summary_markdown
-from tautline.studies.all import studies
+from tautline.studies.all import OPTIONS, studies
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 REPORT = ROOT / "Plugin" / "Documentation" / "studies.html"
 SITE = ROOT / "Plugin" / "Site" / "studies.md"
 BEGIN, END = "<!-- summary: made by make_studies.py -->", "<!-- end of the summary -->"
 WIDTH = 420  # pixels, of a picture
+
+
+def check(name: str, folder: Path) -> None:
+    """Refuse results of a study that did not end, or that ran with other options than those of the record."""
+    ended, expected = folder / OPTIONS, list(_evidence.size_of(name).options)
+    if not ended.is_file():
+        raise SystemExit(f"{folder} has no results of a run that ended")
+    options = ended.read_text(encoding="utf-8").split()
+    if options[: len(expected)] != expected or set(options[len(expected) :: 2]) - {"--data"}:
+        raise SystemExit(f"{folder} was run with '{' '.join(options)}', not with '{' '.join(expected)}'")
 
 
 def main() -> int:
@@ -35,7 +45,8 @@ def main() -> int:
     found = {}
     for name in studies():
         folder = given.results / name if given.results else None
-        if folder and (folder / f"{name}.json").is_file():
+        if folder and name not in _evidence.PENDING:
+            check(name, folder)
             found[name] = study_in(name, described(name), folder, WIDTH)
             files[_evidence.FOLDER / f"{name}.json"] = json.dumps(found[name].record, indent=1) + "\n"
         else:

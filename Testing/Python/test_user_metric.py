@@ -9,6 +9,7 @@ import sys
 import numpy as np
 import tautline as tl
 from checks import DATA, OUT, refused, run_tests, wording
+from vtkmodules.util.numpy_support import vtk_to_numpy
 
 LIBRARY = sys.argv[1]
 PLATE, BRACKET = DATA / "plate.vtu", DATA / "bracket.vtu"
@@ -85,6 +86,15 @@ def shape(corners, cell_type):
     return found
 
 
+def moved(mesh, matrix):
+    """The mesh with its points multiplied by a matrix from the right."""
+    copy = mesh.NewInstance()
+    copy.DeepCopy(mesh)
+    places = vtk_to_numpy(copy.GetPoints().GetData())
+    places[:] = places @ matrix
+    return copy
+
+
 def test_optimized():
     """A metric of Python as an objective gives the same minimum as the built-in one that it copies."""
     tl.register_metric("my_shape", shape, cell_types=["triangle", "tetrahedron"], scale_invariant=True,
@@ -97,6 +107,10 @@ def test_optimized():
         first, last = (np.array(ours.history["objective"])[[0, -1]], np.array(built_in.history["objective"])[[0, -1]])
         assert np.allclose(first, last, rtol=1e-6), (domain, first, last)
         assert first[1] < 0.95 * first[0] and ours.inverted == 0, (domain, first)
+        # Turned out of the plane, and seen in a mirror, which lists the corners the other way round.
+        turned = moved(mesh, np.array([[0.6, 0, 0.8], [0, 1, 0], [-0.8, 0, 0.6]]) * (1, 1, -1))
+        again = tl.optimize(turned, "custom", objectives="my_shape", **options)
+        assert np.allclose(np.array(again.history["objective"])[[0, -1]], first, rtol=1e-6), domain
         automatic = tl.optimize(mesh, "custom", objectives="my_shape", relative_change=1e-9)
         assert np.isclose(automatic.history["objective"][-1], first[1], rtol=1e-6)
         both = tl.optimize(mesh, "custom", objectives=["my_shape", "size"], scalarization="equal sum", **options)

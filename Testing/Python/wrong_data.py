@@ -107,7 +107,8 @@ def check_verdicts(study: str, calls, directory: Path, others=()) -> None:
     """Check that other numbers change every verdict: random ones, and those of other calls."""
     right = verdicts(calls, directory)
     assert right, f"{study} states no findings"
-    fixed = {key for key, verdict in right.items() if verdicts(others, directory).get(key, verdict) == verdict}
+    theirs = verdicts(others, directory)
+    fixed = {key for key, verdict in right.items() if theirs.get(key, verdict) == verdict}
     for seed in range(TRIALS):
         if not fixed:
             break

@@ -132,7 +132,7 @@ def measure(mesh: vtkDataSet, quantities: Iterable[str]) -> dict[str, float]:
     valid = found.validity == 1
     result = {}
     for quantity, (metric, aggregate) in parts.items():
-        result[quantity] = float(aggregate(found.values[metric][valid])) if valid.any() else 0.0
+        result[quantity] = float(aggregate(found.values[metric][valid])) if valid.any() else math.nan
     return {**result, "inverted": float(np.count_nonzero(~valid))}
 
 

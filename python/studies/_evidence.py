@@ -35,8 +35,6 @@ SIZES: dict[str, Size] = {
     "hydrocephalus": Size(_SEEDS),
     "local_coefficients": Size(("--seeds", "5")),
     "mesh_independence": Size(("--size", "100K"), _SOLVERS),
-    "shape_interpolation": Size(("--cells", "100000"), "1,000,000 elements on four domains take hours"),
-    "shape_size": Size(("--cells", "100000"), "1,000,000 elements on four domains take hours"),
     "shape_size_untangling": Size(_SEEDS),
     "shape_untangling": Size((*_SEEDS, "--no-large")),
     "smoothing_times": Size(("--cells", "200000"), "the sweep over the shares of the reduction takes hours"),
@@ -47,6 +45,14 @@ SIZES: dict[str, Size] = {
     "solver_restart": Size(("--size", "100K", "--elasticity-size", "20K"), _SOLVERS),
     "target_matrices": Size(("--seeds", "5")),
     "time_stepping": Size(("--size", "20K"), "100 time steps by 8 combinations on 500,000 vertices take hours"),
+}
+
+
+#: Studies that are not in the committed report, and why.
+PENDING: dict[str, str] = {
+    name: "its statements are about 500,000 vertices, which no run within half an hour has had yet"
+    for name in ("mesh_independence", "smoothing_times", "solver_coefficients", "solver_meshes", "solver_metrics",
+                 "solver_orders", "solver_perturbation", "solver_restart", "time_stepping", "solution_error")
 }
 
 

@@ -8,7 +8,7 @@ import re
 from dataclasses import asdict, dataclass
 from typing import Any, Iterable, Sequence
 
-from ._verdicts import DOES_NOT_HOLD, HOLDS, NOT_DECIDED, TOO_SMALL, VARIES
+from ._verdicts import DOES_NOT_HOLD, HOLDS, NOT_DECIDED, TOO_SMALL, VARIES, WORDS
 
 _NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:,\d{3})*(?:\.\d+)?(?:e[-+]?\d+)?")
 
@@ -58,63 +58,70 @@ def columns(finding: Finding) -> list[str]:
             finding.ours, finding.criterion, finding.reason, " ".join(map(str, finding.seeds))]
 
 
-def merged(findings: Iterable[Finding]) -> list[Finding]:
+def merged(findings: Iterable[Finding], seeds: int = 1) -> list[Finding]:
     """One finding of those of several seeds with one source and claim, in the order of their first appearance."""
     groups: dict[tuple[str, str], list[Finding]] = {}
     for finding in findings:
         groups.setdefault(finding.key, []).append(finding)
-    return [_merge(group) for group in groups.values()]
+    return [_merge(group, seeds) for group in groups.values()]
 
 
-def _merge(group: Sequence[Finding]) -> Finding:
+def _merge(group: Sequence[Finding], seeds: int) -> Finding:
     """The finding of several seeds.
 
-    It holds if it holds with each seed, and does not if it does with none; where it holds with some it varies. It is
-    not decided if half of the seeds do not decide it.
+    Of the seeds that decide it, it holds if it holds with each, does not if it does with none, and varies else. It is
+    not decided if half of all seeds do not decide it.
     """
     first = group[0]
-    if len(group) == 1:
+    if seeds == 1 or not first.seeds:
         return first
     words = [finding.verdict for finding in group]
     holding, failing = words.count(HOLDS), words.count(DOES_NOT_HOLD)
     decided = holding + failing + words.count(VARIES)
     if TOO_SMALL in words:
         verdict = TOO_SMALL
-    elif 2 * decided <= len(group):
+    elif 2 * decided <= seeds:
         verdict = NOT_DECIDED
     else:
         verdict = HOLDS if holding == decided else DOES_NOT_HOLD if failing == decided else VARIES
-    share = f"holds with {holding} of {len(group)} seeds"
-    if decided < len(group) and decided:
-        share += f", is not decided with {len(group) - decided}"
-    reasons = list(dict.fromkeys(finding.reason for finding in group if finding.reason))
-    reason = "; ".join(([share] if verdict in (VARIES, NOT_DECIDED) else []) + reasons[:1])
-    ours = spread([finding.ours for finding in group]) + ("" if verdict == TOO_SMALL else f" ({share})")
-    return Finding(first.source, first.claim, first.criterion, first.stated, ours, verdict, reason, first.own,
+    share = "; ".join(f"{word} with {words.count(word)} of {seeds} seeds" for word in WORDS if word in words)
+    mixed = len(set(words)) > 1 or len(group) < seeds
+    reasons = [finding.reason for finding in group if finding.reason and finding.verdict == verdict]
+    reasons += [finding.reason for finding in group if finding.reason] if verdict in (VARIES, NOT_DECIDED) else []
+    reason = "; ".join(([share] if mixed else []) + reasons[:1]) if verdict not in (HOLDS, TOO_SMALL) else ""
+    ours = spread({finding.seeds[0]: finding.ours for finding in group})
+    return Finding(first.source, first.claim, first.criterion, first.stated,
+                   ours if verdict == TOO_SMALL else f"{ours} ({share})", verdict, reason, first.own,
                    tuple(seed for finding in group for seed in finding.seeds))
 
 
-def spread(texts: Sequence[str]) -> str:
-    """One text of several that differ in their numbers: the median and the range of each number.
+def spread(texts: dict[int, str]) -> str:
+    """One text of the texts of several seeds that differ in their numbers: the median and the range of each number.
 
     Texts that differ in words, too, follow one another.
     """
-    if len(set(texts)) == 1:
-        return texts[0]
-    parts = [_NUMBER.split(text) for text in texts]
+    first = next(iter(texts.values()))
+    if len(set(texts.values())) == 1:
+        return first
+    parts = [_NUMBER.split(text) for text in texts.values()]
     if any(part != parts[0] for part in parts):
-        return " | ".join(f"seed {n}: {text}" for n, text in enumerate(texts, 1))
+        return " | ".join(f"seed {seed}: {text}" for seed, text in texts.items())
     made = [parts[0][0]]
-    for numbers, after in zip(zip(*(_NUMBER.findall(text) for text in texts)), parts[0][1:]):
+    for numbers, after in zip(zip(*(_NUMBER.findall(text) for text in texts.values())), parts[0][1:]):
         made += [number_range(numbers), after]
     return "".join(made)
 
 
 def number_range(texts: Sequence[str]) -> str:
-    """The median of numbers, and in brackets the least and the largest one, each as it is written."""
-    ordered = sorted(texts, key=lambda text: _value(text))
-    median = ordered[len(ordered) // 2]
-    return median if ordered[0] == ordered[-1] else f"{median} [{ordered[0]} to {ordered[-1]}]"
+    """The median of numbers, and in brackets the least and the largest one, each as it is written.
+
+    Of an even number of them there is no one in the middle: the range alone.
+    """
+    ordered = sorted(texts, key=_value)
+    if ordered[0] == ordered[-1]:
+        return ordered[0]
+    ends = f"{ordered[0]} to {ordered[-1]}"
+    return f"{ordered[len(ordered) // 2]} [{ends}]" if len(ordered) % 2 else f"[{ends}]"
 
 
 def _value(text: str) -> float:

@@ -2,7 +2,7 @@
 """Parts of a study that ran before: results of its long functions, kept in files, so that it goes on where it stopped.
 
 A result is found by the name of the function, its arguments (meshes by their points, cells and arrays) and the version
-of this package. It is not found again after the package was changed without a new version: remove the folder then.
+of this package. A change of the package without a new version does not show: remove the folder then.
 """
 
 from __future__ import annotations
@@ -11,24 +11,41 @@ import functools
 import hashlib
 import io
 import pickle
+import time
 from pathlib import Path
-from typing import Any, Callable, TypeVar
+from typing import Any, Callable, NamedTuple, TypeVar
 
 from vtkmodules.vtkCommonCore import vtkObject
 from vtkmodules.vtkCommonDataModel import vtkDataSet
 from vtkmodules.vtkIOLegacy import vtkDataSetReader, vtkDataSetWriter
 
 import tautline
+from tautline._errors import Error
 from tautline._files import make_folder, replace_bytes
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+class Kept(NamedTuple):
+    """A result, and the CPU seconds that it took."""
+
+    result: Any
+    seconds: float
+
+
 _folder: list[Path] = []
+#: CPU seconds of the results that were read since keep().
+_saved = [0.0]
 
 
 def keep(folder: Path | None) -> None:
     """Keep results in a folder from now on, and use those that are there; None: keep nothing."""
     _folder[:] = [] if folder is None else [folder]
+    _saved[0] = 0.0
+
+
+def saved() -> float:
+    """CPU seconds that the results that were read since keep() had taken."""
+    return _saved[0]
 
 
 def remembered(function: F) -> F:
@@ -43,10 +60,13 @@ def remembered(function: F) -> F:
         name = f"{function.__module__.split('.')[-1]}.{function.__name__}"
         file = _folder[0] / f"{name}-{hashlib.sha256(content).hexdigest()[:24]}.pickle"
         if file.is_file():
-            return _Reader(io.BytesIO(file.read_bytes())).load()
+            kept = _read(file)
+            _saved[0] += kept.seconds
+            return kept.result
+        began, before = time.process_time(), _saved[0]
         result = function(*arguments, **options)
         make_folder(file.parent)
-        replace_bytes(file, _packed(result))
+        replace_bytes(file, _packed(Kept(result, time.process_time() - began + _saved[0] - before)))
         return result
 
     return call  # type: ignore[return-value]
@@ -80,6 +100,14 @@ class _Reader(pickle.Unpickler):
         reader.ReadAllFieldsOn()
         reader.Update()
         return reader.GetOutput()
+
+
+def _read(file: Path) -> Kept:
+    """The result of a file. Raises Error, which names it, if it is damaged."""
+    try:
+        return Kept(*_Reader(io.BytesIO(file.read_bytes())).load())
+    except Exception as error:
+        raise Error(f"{file} cannot be read ({error}): remove it, or its folder") from None
 
 
 def _packed(made: Any) -> bytes:

@@ -77,10 +77,10 @@ def page(studies: dict[str, Study], small: bool) -> str:
     shown: dict[str, set[str]] = {name: set() for name in studies}
     pictures: dict[tuple[str, str], str] = {}
     for entry in ENTRIES:
-        if entry.study in studies:
+        if entry.study in studies and studies[entry.study].record:
             parts.append(_entry(entry, studies, shown[entry.study], pictures))
     parts.append("<h2>Methods, further findings and tables, by study</h2>")
-    parts += [_rest(study, shown[name], pictures) for name, study in studies.items()]
+    parts += [_rest(study, shown[name], pictures) for name, study in studies.items() if study.record or study.error]
     return "\n".join([*parts, _not_made(), _sections(), "</body></html>\n"])
 
 
@@ -164,7 +164,7 @@ def _runs(studies: dict[str, Study]) -> str:
     for study in studies.values():
         if study.record:
             options = ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in study.record["options"].items()
-                                if value not in (False, [], ""))
+                                if value is not False and value != [])
             versions = ", ".join(f"{key} {value}" for key, value in study.record["versions"].items())
             small = study.record["options"].get("small")
             reduced = "" if small else _evidence.size_of(study.name).reduced
@@ -179,8 +179,10 @@ def _overview(studies: dict[str, Study]) -> str:
     rows = []
     for entry in ENTRIES:
         study = studies.get(entry.study)
-        words = _words(_findings_of(entry, studies)) if study else "not run"
-        rows.append(f"<tr><td><a href='#{_anchor(entry.name)}'>{entry.name}</a></td><td>{escape(entry.caption)}</td>"
+        known = study is not None and study.record is not None
+        words = _words(_findings_of(entry, studies)) if known else "not run"
+        name = f"<a href='#{_anchor(entry.name)}'>{entry.name}</a>" if known else entry.name
+        rows.append(f"<tr><td>{name}</td><td>{escape(entry.caption)}</td>"
                     f"<td>{entry.study}</td><td>{words}</td></tr>")
     return ("<h2>Overview</h2><table><tr><th>in the dissertation</th><th>content</th><th>study</th>"
             "<th>findings</th></tr>" + "".join(rows) + "</table>")

@@ -99,13 +99,17 @@ class Table:
     title: str
     headings: list[str]
     #: Per seed the rows, as texts.
-    rows: list[list[list[str]]]
+    rows: dict[int, list[list[str]]]
 
     def texts(self) -> list[list[str]]:
-        """The rows; numbers that depend on the seed are given by their median and range."""
-        first, *others = self.rows
-        alike = [rows for rows in others if [len(r) for r in rows] == [len(r) for r in first]]
-        return [[spread([row[k], *(rows[i][k] for rows in alike)]) for k in range(len(row))]
+        """The rows; numbers that depend on the seed are given by their median and range.
+
+        Where tables of seeds have other rows, they follow one another, with the seed before each row.
+        """
+        first, *others = self.rows.values()
+        if any([len(row) for row in rows] != [len(row) for row in first] for rows in others):
+            return [[f"seed {seed}: {row[0]}", *row[1:]] for seed, rows in self.rows.items() for row in rows]
+        return [[spread({seed: rows[i][k] for seed, rows in self.rows.items()}) for k in range(len(row))]
                 for i, row in enumerate(first)]
 
 
@@ -137,7 +141,7 @@ class Report:
     @property
     def findings(self) -> list[Finding]:
         """One finding of those of all seeds."""
-        return merged(self.recorded)
+        return merged(self.recorded, getattr(self.given, "seeds", 1))
 
     def text(self, paragraph: str) -> None:
         """A paragraph; those of later seeds are dropped."""
@@ -178,11 +182,14 @@ class Report:
     def _shown(self, file: str, title: str, headings: Sequence[Any], rows: Sequence[Sequence[Any]]) -> None:
         """Show a table; the tables of several seeds become one."""
         texts = [[_short(value) for value in row] for row in rows]
-        if self._seed > 1 and file in self._tables:
-            self._tables[file].rows.append(texts)
-            return
-        self._tables[file] = Table(f"{title}  [{file}]", [str(heading) for heading in headings], [texts])
-        self.parts.append(self._tables[file])
+        known = self._tables.get(file)
+        if known is None:
+            known = Table(f"{title}  [{file}]", [str(heading) for heading in headings], {})
+            self._tables[file] = known
+            self.parts.append(known)
+        if self._seed in known.rows:
+            raise Error(f"there are two tables {file}")
+        known.rows[self._seed] = texts
 
     def curves(self, file: str, runs: Sequence[Any]) -> None:
         """A CSV file of every quantity of every run after every iteration."""
@@ -363,7 +370,7 @@ class Report:
             "options": {key: str(value) if isinstance(value, Path) else value for key, value in options.items()},
             "date": datetime.date.today().isoformat(),
             "versions": versions(),
-            "seconds": round(time.process_time() - self._began, 1),
+            "seconds": round(time.process_time() - self._began + _memory.saved(), 1),
             "findings": [finding.row() for finding in self.findings],
             "parts": [{"text": part} if isinstance(part, str) else
                       {"file": tables[id(part)], "title": part.title, "headings": part.headings, "rows": part.texts()}
@@ -416,7 +423,7 @@ def processor() -> str:
 
 
 #: Characters with a meaning in LaTeX.
-_LATEX = str.maketrans({"\\": r"\textbackslash{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}",
+_LATEX = str.maketrans({"\\": r"\textbackslash{}", "|": r"\textbar{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}",
                         "<": r"\textless{}", ">": r"\textgreater{}", **{c: "\\" + c for c in "&%$#_{}"}})
 
 

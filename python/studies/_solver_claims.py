@@ -38,21 +38,23 @@ def _printed(number: int, seconds: float | None, iterations: float | None) -> So
 # --- the best and the worst metric ------------------------------------------------------------------------------
 
 
-def better(one: Solve, other: Solve) -> bool:
-    """Whether one solve is faster; where the times are within their noise, whether it has fewer iterations.
+def better(one: Solve, other: Solve) -> Verdict:
+    """Whether one solve is faster; where the times are within their noise, whether it has fewer iterations; else open.
 
     The matrices of meshes that differ in their points only have one sparsity pattern, so that iterations are work.
     """
     verdict = faster(one.times, other.times)
-    return one.iterations < other.iterations if isinstance(verdict, Open) else bool(verdict)
+    if isinstance(verdict, Open) and one.iterations != other.iterations:
+        return one.iterations < other.iterations
+    return verdict
 
 
-def extreme(rows: Rows, metric: str, ahead: Callable[[Solve, Solve], bool]) -> dict[int, Verdict]:
+def extreme(rows: Rows, metric: str, ahead: Callable[[Solve, Solve], Verdict]) -> dict[int, Verdict]:
     """By combination, whether the metric is ahead of all others; not decided where it failed with one of them."""
     numbers = [n for n in COMBINATIONS if all(n in row for row in rows.values())]
     failed = {n: next((why for row in rows.values() if (why := trouble(row, [n]))), "") for n in numbers}
     return {n: Open(failed[n]) if failed[n] else
-            all(ahead(rows[metric][n], row[n]) for m, row in rows.items() if m != metric) for n in numbers}
+            all_of(ahead(rows[metric][n], row[n]) for m, row in rows.items() if m != metric) for n in numbers}
 
 
 def counted(found: dict[int, Verdict]) -> str:

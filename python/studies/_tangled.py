@@ -119,9 +119,16 @@ def _until(run: Run) -> str:
     return "failed" if math.isnan(done) else "never" if math.isinf(done) else f"{done:g}"
 
 
+def _diverged(run: Run) -> bool:
+    """Whether a run diverged and left inverted elements."""
+    return run.failure.startswith(DIVERGED) and bool(run.values["inverted"][-1] > 0)
+
+
 def untangles(runs: dict[str, Run], names: Iterable[str], within: float = math.inf) -> Verdict:
-    """Whether each method leaves no inverted element, within a number of iterations."""
+    """Whether each method leaves no inverted element, within a number of iterations; one that diverges does not."""
     def one(name: str) -> Verdict:
+        if _diverged(runs[name]):
+            return False
         done = untangled_after(runs[name])
         return judged(runs, [name], math.isfinite(done) and done <= within)
 
@@ -132,8 +139,8 @@ def fails(runs: dict[str, Run], names: Iterable[str]) -> Verdict:
     """Whether each method leaves inverted elements, or diverges; not decided where the optimizer failed."""
     def one(name: str) -> Verdict:
         run = runs[name]
-        if run.failure.startswith(DIVERGED):
-            return bool(run.values["inverted"][-1] > 0)
+        if _diverged(run):
+            return True
         return judged(runs, [name], run.last("inverted") > 0)
 
     return all_of(map(one, names))
@@ -142,9 +149,13 @@ def fails(runs: dict[str, Run], names: Iterable[str]) -> Verdict:
 def sooner(runs: dict[str, Run], one: str, other: str) -> Verdict:
     """Whether a method needs fewer iterations than another one, which also untangles the mesh; a tie is not fewer.
 
-    A method that untangles the mesh is sooner than one that never does.
+    A method that untangles the mesh is sooner than one that never does, or diverges; not decided if both do not.
     """
-    return judged(runs, (one, other), untangled_after(runs[one]) < untangled_after(runs[other]))
+    first, second = (math.inf if _diverged(runs[n]) else untangled_after(runs[n]) for n in (one, other))
+    left = [n for n in (one, other) if not _diverged(runs[n])]
+    if math.isinf(first) and math.isinf(second):
+        return Open("neither method untangles the mesh")
+    return judged(runs, left, bool(first < second))
 
 
 def better(runs: dict[str, Run], one: str, others: Iterable[str], quantity: str, margin: float) -> Verdict:
@@ -193,15 +204,13 @@ def settings(report: Report, mesh: vtkDataSet, objectives: Sequence[str], iterat
 
 
 def in_settings(found: dict[str, dict[str, Run]], test: Callable[[dict[str, Run]], Verdict]) -> Verdict:
-    """Whether a test of the runs holds in all settings, in none, or in some; not decided where half fail."""
+    """Whether a test of the runs holds in all settings, in none, or in some; not decided if it is open in one."""
     verdicts = [test(runs) for runs in found.values()]
     decided = [bool(v) for v in verdicts if not isinstance(v, Open)]
-    if not verdicts or 2 * len(decided) <= len(verdicts):
-        return next((v for v in verdicts if isinstance(v, Open)), Open("there is nothing to compare"))
     if any(decided) and not all(decided):
         return Mixed("it depends on what the dissertation does not state (unit of length, beta, c, where objectives "
-                     f"are combined): true in {sum(decided)} of {len(decided)} settings")
-    return all(decided)
+                     f"are combined): true in {sum(decided)} of {len(verdicts)} settings")
+    return all_of(verdicts)
 
 
 def until_all(found: dict[str, dict[str, Run]], names: Iterable[str]) -> str:

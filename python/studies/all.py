@@ -80,12 +80,13 @@ def result(name: str, given: argparse.Namespace, place: str) -> Study:
     if given.data and name in WITH_DATA:
         options += ["--data", given.data]
     ended = folder / OPTIONS
-    if given.resume and ended.is_file() and ended.read_text(encoding="utf-8").split("\n") == options:
-        return study_in(name, described(name), folder, given.width)
+    if given.resume and ended.is_file() and ended.read_text(encoding="utf-8").split() == options:
+        return _read(name, folder, given.width)
     expected = None if given.small else minutes(name)
     print(f"{place}: {name}" + ("" if expected is None else f", {expected:.1f} min in the committed run") + " ...",
           file=sys.stderr, flush=True)
-    ended.unlink(missing_ok=True)
+    for file in (ended, *folder.glob("*.png")):  # of an earlier run
+        file.unlink(missing_ok=True)
     began = time.process_time()
     try:
         with contextlib.redirect_stdout(io.StringIO()):
@@ -95,5 +96,13 @@ def result(name: str, given: argparse.Namespace, place: str) -> Study:
         traceback.print_exc()
         return Study(name, described(name), None, {}, str(error) or type(error).__name__)
     print(f"{place}: {name}, {time.process_time() - began:.1f} CPU s", file=sys.stderr, flush=True)
-    replace_text(ended, "\n".join(options))
-    return study_in(name, described(name), folder, given.width)
+    replace_text(ended, " ".join(options))
+    return _read(name, folder, given.width)
+
+
+def _read(name: str, folder: Path, width: int) -> Study:
+    """What a study wrote; files of another version are its error."""
+    try:
+        return study_in(name, described(name), folder, width)
+    except (KeyError, TypeError, ValueError) as error:
+        return Study(name, described(name), None, {}, f"{folder} cannot be read ({error}): remove it")

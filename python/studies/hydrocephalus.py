@@ -18,7 +18,7 @@ from ._literal import literal
 from ._tangled import (
     BETA, SMALL_UNITS, UNITS, fails, in_settings, settings, sooner, until_all, untangled_after, untangles,
 )
-from ._verdicts import GAIN_BAND, gain
+from ._verdicts import GAIN_RULE, gain
 from .toy import MINIMUM
 from ._warped import better_worst, experiment, harmonic, of_points, options, seeded, warp
 
@@ -118,8 +118,7 @@ def findings(report: Report, runs: dict[str, Run], varied: dict[str, dict[str, R
     report.finding("3.6", "The exponential sum significantly decreases the number of iterations to untangle the brain",
                    in_settings(varied, lambda r: gain(gained(r), decrease)), "decreases of "
                    + ", ".join(sorted({percent(gained(r)) for r in varied.values() if math.isfinite(gained(r))})),
-                   criterion=f"the decrease is between {GAIN_BAND[0]:g} and {GAIN_BAND[1]:g} times the printed one, in "
-                   "all settings of settings.csv", stated=f"{percent(decrease)} (9 against 33)")
+                   criterion=GAIN_RULE + ", in all settings of settings.csv", stated=f"{percent(decrease)} (9 against 33)")
     report.finding("Table 3.7", "The objective product does not eliminate all inverted elements",
                    in_settings(varied, lambda r: fails(r, ["objective-product"])),
                    until_all(varied, ["objective-product"]),

@@ -8,7 +8,7 @@ from ._common import (
 )
 from ._pairs import Goals, Outcome, common_findings, everywhere, experiment, of_user, options
 from ._report import Report, percent
-from ._verdicts import GAIN_BAND, Verdict, all_of, gain, less, quickest, slowest
+from ._verdicts import GAIN_BAND, GAIN_RULE, Verdict, all_of, gain, less, quickest, slowest
 
 # Table 3.2, seconds after 1, 5, 10 and 20 iterations.
 TIMES = {
@@ -83,7 +83,7 @@ def quality_findings(report: Report, found: Outcome) -> None:
     improved = 1 - runs["exponential-sum"].last("imr_worst") / size.last("imr_worst")
     finding("3.4.1", "The exponential sum has a far better worst element by IMR than size alone",
             judged(runs, ("exponential-sum", "size"), gain(improved, WORST_GAIN)), percent(improved),
-            f"the gain is {BAND}", percent(WORST_GAIN))
+            GAIN_RULE, percent(WORST_GAIN))
     finding("3.6", "The exponential sum has the best worst shape of the multiobjective methods",
             best_of(runs, "exponential-sum", MULTI, "imr_worst"),
             compare({n: runs[n] for n in MULTI}, "imr_worst"), f"its worst IMR is the smallest {END}")

@@ -17,7 +17,7 @@ from . import _silhouettes
 from ._drawings import Silhouette, silhouettes_picture
 from ._memory import remembered
 from ._report import Report, parser
-from ._verdicts import GAIN_BAND, Mixed, Open, Verdict, all_of, any_of, gain, unless
+from ._verdicts import GAIN_BAND, Mixed, Open, Verdict, all_of, any_of, as_large, unless
 
 KIMIA_SHAPES = 99  # of the dissertation's set
 #: Table 5.1 of the dissertation, percent.
@@ -195,7 +195,7 @@ def rate_findings(report: Report, rates: dict[str, dict[float, float]], kimia: b
     printed = PRINTED["dissertation"] - PRINTED["felzenszwalb"]
     low, high = GAIN_BAND
     report.finding("5.3, 5.4", "They raise it by 7.8 points", unless("" if kimia else _NOT_KIMIA, _of_weights(
-        {b: gain(v, printed) for b, v in gains.items()})), told, stated=f"{printed:.1f} points",
+        {b: as_large(v, printed) for b, v in gains.items()})), told, stated=f"{printed:.1f} points",
         criterion=f"with each b from {low:g} to {high:g} times as many")  # fmt: skip
     for key, what in (("distortion", "The new term of the energy, distortion, improves the results"),
                       ("center", "The rule of the center of mass improves the results")):

@@ -97,7 +97,7 @@ Scalarizer::Scalarizer(const ScalarizationOptions& options, const std::vector<do
   {
     throw Error("c of the exponential sum must be above 0, or 0 to have it chosen.");
   }
-  if (options.onPatches && method > static_cast<int>(Scalarization::WeightedSum))
+  if (options.onPatches && n > 1 && method > static_cast<int>(Scalarization::WeightedSum))
   {
     throw Error("This scalarization combines objectives of the whole mesh only: choose exponential "
                 "sum, objective product, equal sum or weighted sum for patches.");

@@ -63,8 +63,8 @@ struct ScalarizationOptions
   std::vector<double> utopia;
   /**
    * @brief Local optimizers combine the sums F_i over the elements around the vertex that moves, as
-   * Mesquite does by default, not those over the whole mesh: a step reduces the first, and may
-   * raise the second. Of the methods (3.8) to (3.10) and the weighted sum.
+   * Mesquite does by default, instead of the sums over the whole mesh, which a step may then raise.
+   * The methods (3.8) to (3.10) and the weighted sum have it.
    */
   bool onPatches = false;
 };

@@ -228,7 +228,8 @@ bool Stage::move(bool onlyLocal, const IterationRecord& first)
   {
     this->sweep(nullptr);
   }
-  if (this->Failed && !onlyLocal && !this->Steps.slidesOnSurface())
+  const bool onPatches = this->Problem.objectives() > 1 && this->Problem.scalarizer().onPatches();
+  if (this->Failed && !onlyLocal && !onPatches && !this->Steps.slidesOnSurface())
   {
     this->Reason = this->Steps.minimizeAll(Optimizer::LimitedMemoryBFGS);
   }

@@ -277,10 +277,13 @@ SweepResult LocalSweeper::sweep(const Scalarizer& scalarizer, std::vector<double
   return this->Impl->sweep(scalarizer, values);
 }
 
+//------------------------------------------------------------------------------
 void LocalSweeper::setPatchIterations(int count)
 {
   this->Impl->setPatchIterations(count);
 }
+
+//------------------------------------------------------------------------------
 void LocalSweeper::wakeAll()
 {
   std::fill(this->Impl->Active.begin(), this->Impl->Active.end(), 1);

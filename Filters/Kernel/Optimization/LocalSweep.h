@@ -71,7 +71,7 @@ public:
    */
   SweepResult sweep(const Scalarizer& scalarizer, std::vector<double>& values);
 
-  /// Of the next sweeps: steps at each vertex.
+  /// Sets how many steps the next sweeps make at each vertex.
   void setPatchIterations(int count);
   /// Lets all vertices move again, whatever was culled.
   void wakeAll();

@@ -186,7 +186,8 @@ QualityGuard::State settleWorst(const Mesh& mesh, OptimizationSteps& steps,
     bool outOfTime = false;
     result.worstFirst =
       together && raiseWorst(mesh, steps, first, guard, start, limits, watch, report, outOfTime);
-    const auto proceeds = [&] { return !result.worstFirst && !stopped && !outOfTime; };
+    const bool sweeps = !needDifferences(options);
+    const auto proceeds = [&] { return sweeps && !result.worstFirst && !stopped && !outOfTime; };
     if (proceeds())
     {
       outOfTime = improveWorst(problem, guard, limits, report);

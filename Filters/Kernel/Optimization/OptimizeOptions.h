@@ -126,7 +126,7 @@ struct OptimizeOptions : BoundaryConstraints
   /// Local algorithms: leave out vertices that moved less than this times their shortest edge; 0:
   /// none.
   double culling = 1e-3;
-  /// Steps in each patch of the local algorithms. With several objectives it becomes 1 when a sweep
+  /// Steps in each patch of the local algorithms. It becomes 1 when a sweep
   /// has raised the objective.
   int patchIterations = 1;
   /**

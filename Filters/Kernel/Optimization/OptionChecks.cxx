@@ -74,7 +74,29 @@ void checkSizes(const Mesh& mesh, const OptimizeOptions& options, const Ranks& r
   }
 }
 
-/// The metric that judges the worst element must have a value for each, and a better direction.
+/// Throws Error for what combines sums over the whole mesh only.
+void checkPatches(const OptimizeOptions& options)
+{
+  const std::string what = "Objectives that are combined on patches need ";
+  if (isGlobal(options.optimizer) || needDifferences(options))
+  {
+    throw Error(what +
+      "a local optimizer, and metrics with derivatives of their own: choose "
+      "Automatic, Local Newton or Local Conjugate Gradient.");
+  }
+  const auto hasNoPatches = [](const Objective& objective)
+  {
+    return objective.objectiveTemplate == ObjectiveTemplate::PowerMean ||
+      objective.objectiveTemplate == ObjectiveTemplate::Maximum;
+  };
+  if (std::any_of(options.objectives.begin(), options.objectives.end(), hasNoPatches))
+  {
+    throw Error(what +
+      "sums over the elements: choose another template than power mean and "
+      "maximum.");
+  }
+}
+
 /// Throws Error if a metric without derivatives of its own is an objective of what needs them.
 void checkDifferences(const Mesh& mesh, const OptimizeOptions& options)
 {
@@ -82,7 +104,7 @@ void checkDifferences(const Mesh& mesh, const OptimizeOptions& options)
   {
     return;
   }
-  const std::string what = "A metric without derivatives of its own, as those of Python are, ";
+  const std::string what = "A metric without derivatives of its own, such as a metric of Python, ";
   if (isLocal(options.optimizer) || options.optimizer == Optimizer::NewtonConjugateGradient)
   {
     throw Error(what +
@@ -104,6 +126,7 @@ void checkDifferences(const Mesh& mesh, const OptimizeOptions& options)
   }
 }
 
+/// The metric that judges the worst element must have a value for each, and a better direction.
 void checkWorstMetric(const Mesh& mesh, Metric metric)
 {
   const MetricInfo& info = metricInfo(metric);
@@ -160,10 +183,9 @@ void checkOptions(const Mesh& mesh, const OptimizeOptions& options, const Ranks&
   }
   const bool global = isGlobal(options.optimizer);
   checkDifferences(mesh, options);
-  if (global && options.objectives.size() > 1 && options.scalarization.onPatches)
+  if (options.objectives.size() > 1 && options.scalarization.onPatches)
   {
-    throw Error("Objectives that are combined on patches need a local optimizer: choose Automatic, "
-                "Local Newton or Local Conjugate Gradient.");
+    checkPatches(options);
   }
   if (options.model && !options.parts)
   {

@@ -207,6 +207,7 @@ bool VertexOptimizer<Dim>::placeOnSurface(
     for (std::size_t i = 0; i < n; ++i)
     {
       w.sums[i].f = old[i];
+      w.now[i] = scalarizer.onPatches() ? old[i] : w.now[i];
     }
     const bool upright = this->Options.allowInversion ||
       (this->isUpright(v, w.patch, normals) && this->staysValidInside(w.patch, zero));

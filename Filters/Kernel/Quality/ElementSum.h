@@ -30,7 +30,7 @@ TAUTLINE_KERNEL_EXPORT MetricCode metricCode(Metric metric);
 /// Throws Error on a metric that the mesh's dimension does not define, and on options out of range.
 void checkEvaluation(const Mesh& mesh, const MetricInfo& info, const EvaluationOptions& options);
 
-/// Throws Error on a metric that can only be measured.
+/// Throws Error on a metric without derivatives of its own, see needsDifferences().
 TAUTLINE_KERNEL_EXPORT void requireDerivatives(const MetricInfo& info);
 
 /// The evaluator of a metric on a block, or null where the metric is not defined.

@@ -2,6 +2,7 @@
 #include "ElementTable.h"
 
 #include "UserMetric.h"
+#include "tautline/Mesh/MeshElements.h"
 
 #include <cmath>
 #include <limits>
@@ -66,29 +67,36 @@ public:
   /// The derivatives by coordinate c of corner k; 0 where there is no finite value nearby.
   std::vector<double> slopes(int k, int c, const std::vector<double>& here)
   {
-    // Of the size of an element: balances rounding and the third derivative.
+    // A step of this fraction of the element's size balances rounding and the third derivative.
     static const double fraction = std::cbrt(std::numeric_limits<double>::epsilon());
     Vec3 axis = { 0, 0, 0 };
     axis[c] = 1;
     const Vec3 seen = asSeen(this->TheMesh, this->Topology, axis);
+    if (norm(seen) == 0)
+    {
+      return std::vector<double>(this->Block.count); // at right angles to the plane of the mesh
+    }
+    std::vector<Vec3> kept(this->Block.count);
+    for (Index i = 0; i < this->Block.count; ++i)
+    {
+      std::copy_n(this->corner(i, k), 3, kept[i].begin());
+    }
     const auto valuesAt = [&](double way)
     {
-      const std::vector<double> kept = this->Points;
       for (Index i = 0; i < this->Block.count; ++i)
       {
         for (int d = 0; d < 3; ++d)
         {
-          this->corner(i, k)[d] += way * fraction * this->Extents[i] * seen[d];
+          this->corner(i, k)[d] = kept[i][d] + way * fraction * this->Extents[i] * seen[d];
         }
       }
-      std::vector<double> found = this->values();
-      this->Points = kept;
-      return found;
+      return this->values();
     };
     std::vector<double> found = valuesAt(1.0);
     const std::vector<double> back = valuesAt(-1.0);
     for (Index i = 0; i < this->Block.count; ++i)
     {
+      std::copy(kept[i].begin(), kept[i].end(), this->corner(i, k));
       const double h = fraction * this->Extents[i];
       const double forth = found[i];
       found[i] = std::isfinite(forth) && std::isfinite(back[i]) ? (forth - back[i]) / (2 * h)
@@ -164,7 +172,8 @@ ElementTable tabulate(const Mesh& mesh, const MetricInfo& info, bool withSlopes)
     {
       table.values[block.cell(i)] = std::isfinite(values[i]) ? values[i] : NaN;
     }
-    for (int j = 0; withSlopes && j < 3 * topology(block.type).nodes; ++j)
+    const bool inSums = withSlopes && isElement(mesh, block.type); // facets beside volumes are not
+    for (int j = 0; inSums && j < 3 * topology(block.type).nodes; ++j)
     {
       const std::vector<double> slopes = elements.slopes(j / 3, j % 3, values);
       for (Index i = 0; i < block.count; ++i)

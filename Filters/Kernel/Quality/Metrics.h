@@ -217,8 +217,8 @@ TAUTLINE_KERNEL_EXPORT void mirrorUserMetrics(const std::string& list);
 /// Why a metric cannot be the objective of an optimization, or "".
 TAUTLINE_KERNEL_EXPORT std::string objectiveProblem(Metric metric);
 
-/// Whether a metric is evaluated for many elements at once, without derivatives of its own, as
-/// those of Python are (MetricArgument::Elements): global optimizers take differences.
+/// Whether a metric is evaluated for many elements at once, without derivatives of its own, such as
+/// a metric of Python (MetricArgument::Elements): global optimizers take differences.
 TAUTLINE_KERNEL_EXPORT bool needsDifferences(Metric metric);
 
 /**

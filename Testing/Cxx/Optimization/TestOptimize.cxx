@@ -314,8 +314,15 @@ TAUTLINE_PART(testScalarizationOnPatches)
     }
   }
   options.scalarization.method = Scalarization::Lexicographic;
+  OptimizeOptions alone = options;
+  alone.objectives.resize(1);
+  alone.untangleFirst = true;
+  TAUTLINE_CHECK_EQUAL(run(small, alone).history.back().inverted, 0); // one is not combined
   TAUTLINE_CHECK_THROWS(run(small, options), wording("choose-exponential-sum-objective-product"));
   options.scalarization.method = Scalarization::ObjectiveProduct;
+  OptimizeOptions mean = options;
+  mean.objectives[0].objectiveTemplate = ObjectiveTemplate::PowerMean;
+  TAUTLINE_CHECK_THROWS(run(small, mean), wording("sums-over-the-elements"));
   options.optimizer = Optimizer::LimitedMemoryBFGS;
   options.allowInversion = false;
   TAUTLINE_CHECK_THROWS(
