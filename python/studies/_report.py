@@ -423,8 +423,9 @@ def processor() -> str:
 
 
 #: Characters with a meaning in LaTeX.
-_LATEX = str.maketrans({"\\": r"\textbackslash{}", "|": r"\textbar{}", "^": r"\textasciicircum{}", "~": r"\textasciitilde{}",
-                        "<": r"\textless{}", ">": r"\textgreater{}", **{c: "\\" + c for c in "&%$#_{}"}})
+_LATEX = str.maketrans({"\\": r"\textbackslash{}", "|": r"\textbar{}", "^": r"\textasciicircum{}",
+                        "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}",
+                        **{c: "\\" + c for c in "&%$#_{}"}})
 
 
 def latex(table: Table) -> str:

@@ -214,8 +214,8 @@ def mesh_findings(report: Report, holes: dict[str, int], inverted: dict[str, int
                    ", ".join(f"{name} {n}" for name, n in inverted.items()), proof=same)
     report.finding("Figure 3.12", "The bore has no inverted element at first, and as many as in the dissertation after "
                    "FEMWARP", all_of((bore[0] == 0, same_count(bore[1], INVERTED_3_12))), f"{bore[0]} and {bore[1]}",
-                   stated=f"0 and {INVERTED_3_12}", own=True, criterion=f"none, and within {COUNT_TOLERANCE:.0%} of the "
-                   "printed count")  # fmt: skip
+                   stated=f"0 and {INVERTED_3_12}", own=True, criterion=f"none, and within {COUNT_TOLERANCE:.0%} of "
+                   "the printed count")  # fmt: skip
     report.finding("Figure 4.37 (a)", "The surface has two parts, the cube and the sphere", parts == 2,
                    f"{parts} parts", own=True, proof="the surfaces are the same at any size")
 

@@ -118,7 +118,8 @@ def findings(report: Report, runs: dict[str, Run], varied: dict[str, dict[str, R
     report.finding("3.6", "The exponential sum significantly decreases the number of iterations to untangle the brain",
                    in_settings(varied, lambda r: gain(gained(r), decrease)), "decreases of "
                    + ", ".join(sorted({percent(gained(r)) for r in varied.values() if math.isfinite(gained(r))})),
-                   criterion=GAIN_RULE + ", in all settings of settings.csv", stated=f"{percent(decrease)} (9 against 33)")
+                   criterion=GAIN_RULE + ", in all settings of settings.csv",
+                   stated=f"{percent(decrease)} (9 against 33)")
     report.finding("Table 3.7", "The objective product does not eliminate all inverted elements",
                    in_settings(varied, lambda r: fails(r, ["objective-product"])),
                    until_all(varied, ["objective-product"]),
