@@ -146,7 +146,7 @@ def _summary(studies: dict[str, Study]) -> str:
     head = "".join(f"<th>{word}</th>" for word in WORDS[:-1])
     rows = "".join(f"<tr><td>{escape(CHAPTERS[number])}</td>{''.join(f'<td>{n}</td>' for n in counts(found))}</tr>"
                    for number, found in groups.items() if found)
-    parts = [f"<h2 id='summary'>Summary</h2><table><tr><th>chapter</th>{head}</tr>{rows}</table>"]
+    parts = [f"<h2><a name=\"summary\"></a>Summary</h2><table><tr><th>chapter</th>{head}</tr>{rows}</table>"]
     for number, found in groups.items():
         others = [finding for finding in found if finding.verdict not in (HOLDS, TOO_SMALL)]
         if others:
@@ -171,6 +171,9 @@ def _runs(studies: dict[str, Study]) -> str:
             spent = f"{study.record['seconds'] / 60:.1f}"
             cells = (study.name, options, reduced, study.record["date"], spent, versions)
             rows.append("<tr>" + "".join(f"<td>{escape(cell)}</td>" for cell in cells) + "</tr>")
+    rows += [f"<tr><td>{name}</td><td colspan='5'>not in this report: {escape(reason)}</td></tr>"
+             for name, reason in _evidence.PENDING.items()
+             if name in studies and not studies[name].record and not studies[name].error]
     return ("<h2>Runs</h2><table><tr><th>study</th><th>options</th><th>why it is reduced</th><th>date</th>"
             f"<th>CPU minutes</th><th>versions</th></tr>{''.join(rows)}</table>")
 

@@ -240,7 +240,7 @@ def most_of(verdicts: Iterable[Verdict]) -> Verdict:
 
 
 def table(report: Report, file: str, title: str, found: dict, theirs: dict, head: str) -> None:
-    """Two tables, iterations and seconds, of rows {label: {number: Solve}}; in brackets those of the dissertation."""
+    """Two tables, iterations and seconds, of rows {label: {number: Solve}}; the dissertation's numbers in brackets."""
     numbers = sorted({n for row in found.values() for n in row})
     for what, place in (("iterations", 1), ("seconds", 0)):
         rows, shown = [], []
@@ -259,7 +259,7 @@ def table(report: Report, file: str, title: str, found: dict, theirs: dict, head
             shown.append([label, *texts])
         headings = [h for n in numbers for h in (f"{n} {what}", f"{n} converged", f"{n} reason", f"{n} dissertation")]
         report.csv(f"{file}_{what}", [head, *headings], rows)
-        note = "; in brackets those of the dissertation, '*' is a failure"
+        note = f"{'; the dissertation in brackets' if theirs else ''}; '*' is a failure"
         for part in range(0, len(numbers), COLUMNS_SHOWN):
             columns = numbers[part : part + COLUMNS_SHOWN]
             report.aligned(f"{title}, {what}{note}", [head, *columns],
