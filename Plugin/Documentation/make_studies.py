@@ -8,6 +8,8 @@ python/studies/evidence/reasons.json, for instance. Without --write nothing is w
 what this program makes.
 """
 
+from __future__ import annotations
+
 import argparse
 import json
 import re
@@ -22,7 +24,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 REPORT = ROOT / "Plugin" / "Documentation" / "studies.html"
 SITE = ROOT / "Plugin" / "Site" / "studies.md"
 BEGIN, END = "<!-- summary: made by make_studies.py -->", "<!-- end of the summary -->"
-WIDTH = 420  # pixels, of a picture
+WIDTH = 860  # pixels, of a picture
 
 
 def check(name: str, folder: Path) -> None:
@@ -41,13 +43,19 @@ def main() -> int:
     made.add_argument("--write", action="store_true")
     given = made.parse_args()
     report = REPORT.read_text(encoding="utf-8") if REPORT.is_file() else ""
-    files = {}
+    files: dict[Path, str | bytes] = {}
     found = {}
+
+    def show(label: str, data: bytes) -> str:
+        file = f"study_{label.replace('/', '_')}.png"
+        files[REPORT.parent / file] = data
+        return f"<img alt='{label}' src=\"{file}\">"
+
     for name in studies():
         folder = given.results / name if given.results else None
         if folder and name not in _evidence.PENDING:
             check(name, folder)
-            found[name] = study_in(name, described(name), folder, WIDTH)
+            found[name] = study_in(name, described(name), folder, WIDTH, show)
             files[_evidence.FOLDER / f"{name}.json"] = json.dumps(found[name].record, indent=1) + "\n"
         else:
             found[name] = study_of(name, described(name), report)
@@ -55,13 +63,20 @@ def main() -> int:
     text = SITE.read_text(encoding="utf-8")
     table = f"{BEGIN}\n{summary_markdown(found.values())}\n{END}"
     files[SITE] = re.sub(rf"{re.escape(BEGIN)}.*{re.escape(END)}", lambda _: table, text, flags=re.DOTALL)
-    wrong = [file for file, content in files.items()
-             if not file.is_file() or file.read_text(encoding="utf-8") != content]
+    files = {file: content.encode() if isinstance(content, str) else content for file, content in files.items()}
+    wrong = [file for file, content in files.items() if not file.is_file() or file.read_bytes() != content]
     for file in wrong:
         print(f"{file.relative_to(ROOT)}: {'written' if given.write else 'is not what this program makes'}")
         if given.write:
             file.parent.mkdir(exist_ok=True)
-            file.write_text(files[file], encoding="utf-8")
+            file.write_bytes(files[file])
+    shown = set(re.findall(r'src="(study_[^"]+)"', files[REPORT].decode()))
+    for file in REPORT.parent.glob("study_*.png"):
+        if file.name not in shown:
+            wrong.append(file)
+            print(f"{file.relative_to(ROOT)}: {'removed' if given.write else 'is not in the report'}")
+            if given.write:
+                file.unlink()
     return 1 if wrong and not given.write else 0
 
 

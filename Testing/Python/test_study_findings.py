@@ -32,6 +32,7 @@ def test_verdicts():
     assert _verdicts.gain(0.4, 0.5) and _verdicts.gain(0.7, 0.5) and not _verdicts.gain(0.2, 0.5)
     # Of a large gain, what remains decides: 2 times faster is not 33 times faster.
     assert not _verdicts.gain(0.5, 0.97) and not _verdicts.gain(0.9, 0.97) and _verdicts.gain(0.95, 0.97)
+    assert _verdicts.gain(0.993, 0.97)
     assert _verdicts.same_count(10, 13) and not _verdicts.same_count(0, 1) and not _verdicts.same_count(3, 0)
     assert is_open(_verdicts.same_count(math.nan, 3))
     assert _verdicts.gain(-0.4, -0.5) and not _verdicts.gain(0.4, -0.5)
@@ -150,6 +151,10 @@ def test_committed():
             assert finding.verdict in _verdicts.WORDS[:-1], (name, finding)
             assert finding.own or _page.chapter(finding.source), (name, finding.source)
             assert finding.reason or finding.verdict == HOLDS, f"{name}: no reason why {finding.claim!r} does not hold"
+    for name, entries in _evidence.read(_evidence.FOLDER / f"{_evidence.REASONS}.json").items():
+        stated = {(finding.claim, finding.verdict) for finding in findings[name]}
+        stale = [entry["claim"] for entry in entries if (entry["claim"], entry["verdict"]) not in stated]
+        assert not stale, f"{name}: reasons for what is not found: {stale}"
     still = [f"{name}: {finding.claim}" for name, found in findings.items() for finding in found
              if finding.verdict == NOT_DECIDED]
     assert len(still) <= MOST_OPEN, still

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from html import escape
 from pathlib import Path
-from typing import Any, Iterable, Sequence
+from typing import Any, Callable, Iterable, Sequence
 
 import numpy as np
 
@@ -22,8 +22,8 @@ from ._report import pyplot
 from ._verdicts import DOES_NOT_HOLD, HOLDS, NOT_DECIDED, TOO_SMALL, VARIES, WORDS
 
 _CLASSES = {HOLDS: "yes", DOES_NOT_HOLD: "no", VARIES: "open", NOT_DECIDED: "open", TOO_SMALL: "open"}
-#: Shades of a channel in pictures, so that their colors are at most 256.
-_SHADES = 6
+#: Shades of a channel in pictures, so that their colors are at most 256; 255 is a multiple of one less.
+_SHADES = 4
 _STYLE = """
 body { font: 15px/1.45 sans-serif; max-width: 70em; margin: 2em auto; padding: 0 1em; color: #202020 }
 table { border-collapse: collapse; margin: 0.5em 0; display: block; overflow-x: auto }
@@ -56,9 +56,18 @@ class Study:
         return self.record["parts"] if self.record else []
 
 
-def study_in(name: str, text: str, folder: Path, width: int) -> Study:
-    """What a study wrote into a folder; its pictures have at most a width."""
-    pictures = {path.stem: _picture(path, f"{name}/{path.stem}", width) for path in sorted(folder.glob("*.png"))}
+def embedded(label: str, data: bytes) -> str:
+    """An element with the picture itself."""
+    return f"<img alt='{escape(label)}' src='data:image/png;base64,{base64.b64encode(data).decode()}'>"
+
+
+def study_in(name: str, text: str, folder: Path, width: int, show: Callable[[str, bytes], str] = embedded) -> Study:
+    """What a study wrote into a folder; its pictures have at most a width.
+
+    show: makes an element of a label, STUDY/FILE, and a PNG file.
+    """
+    pictures = {path.stem: show(f"{name}/{path.stem}", _picture(path, width)) for path in sorted(folder.glob("*.png"))
+                if pyplot is not None}
     return Study(name, text, _evidence.read(folder / f"{name}.json"), pictures)
 
 
@@ -76,9 +85,10 @@ def page(studies: dict[str, Study], small: bool) -> str:
              _summary(studies), _runs(studies), _overview(studies), "<h2>Tables and figures</h2>"]
     shown: dict[str, set[str]] = {name: set() for name in studies}
     pictures: dict[tuple[str, str], str] = {}
+    listed: dict[tuple[str, str], str] = {}
     for entry in ENTRIES:
         if entry.study in studies and studies[entry.study].record:
-            parts.append(_entry(entry, studies, shown[entry.study], pictures))
+            parts.append(_entry(entry, studies, shown[entry.study], pictures, listed))
     parts.append("<h2>Methods, further findings and tables, by study</h2>")
     parts += [_rest(study, shown[name], pictures) for name, study in studies.items() if study.record or study.error]
     return "\n".join([*parts, _not_made(), _sections(), "</body></html>\n"])
@@ -208,11 +218,18 @@ def _findings_of(entry: Entry, studies: dict[str, Study]) -> list[Finding]:
                 study.name == entry.study and set(entry.sections) & set(re.split(r"[, ]+", finding.source))))]
 
 
-def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: dict[tuple[str, str], str]) -> str:
+def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: dict[tuple[str, str], str],
+           listed: dict[tuple[str, str], str]) -> str:
+    """A table or figure; findings and pictures that stand at an earlier one are not repeated."""
     study = studies[entry.study]
+    findings = _findings_of(entry, studies)
+    new = [finding for finding in findings if finding.key not in listed]
+    places = dict.fromkeys(listed[finding.key] for finding in findings if finding.key in listed)
+    listed.update((finding.key, entry.name) for finding in new)
+    links = ", ".join(f"<a href='#{_anchor(name)}'>{name}</a>" for name in places)
     parts = [f"<h3 id='{_anchor(entry.name)}'>{entry.name}: {escape(entry.caption)}</h3>"
              f"<p class='small'>Study <a href='#study-{entry.study}'>{entry.study}</a></p>",
-             _table(_findings_of(entry, studies))]
+             _table(new), f"<p class='small'>Further findings: {links}.</p>" if links else ""]
     for part in study.parts:
         file = part.get("file", "")
         if file and file not in shown and any(fnmatchcase(file, pattern) for pattern in entry.files):
@@ -273,17 +290,14 @@ def _not_made() -> str:
             f"{rows}</table>")
 
 
-def _picture(path: Path, label: str, width: int) -> str:
-    """A picture of at most a width, with few shades."""
-    if pyplot is None:
-        return ""
+def _picture(path: Path, width: int) -> bytes:
+    """A picture of at most a width, with few shades, as a PNG file."""
     image = pyplot.imread(path)[..., :3]
     step = max(1, -(-image.shape[1] // width))
     rows, columns = (n // step * step for n in image.shape[:2])
     image = image[:rows, :columns].reshape(rows // step, step, columns // step, step, 3).mean(axis=(1, 3))
     shades = np.round(image * (_SHADES - 1)).astype(int)
-    data = base64.b64encode(_png(shades @ [_SHADES * _SHADES, _SHADES, 1])).decode()
-    return f"<img alt='{escape(label)}' src='data:image/png;base64,{data}'>"
+    return _png(shades @ [_SHADES * _SHADES, _SHADES, 1])
 
 
 def _png(codes: np.ndarray) -> bytes:

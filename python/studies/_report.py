@@ -41,6 +41,8 @@ MESQUITE_PATCH_ITERATIONS = 5
 BEYOND = 3.0
 
 
+#: Options that name files and folders: only their last part belongs to the results.
+FILES = ("mesh", "data")
 #: Formats of tables and pictures.
 TABLE_FORMATS, PICTURE_FORMATS = ("csv", "json", "tex"), ("png", "svg", "pdf")
 
@@ -209,8 +211,6 @@ class Report:
         the statement to hold; "": the claim says it. stated: the dissertation's number. reason: why it does not hold.
         own: it is not a statement of the dissertation. proof: why a small mesh decides it, too.
         """
-        if holds is None:
-            holds = Open("the numbers do not decide it")
         if self.small and not proof:
             verdict, why = TOO_SMALL, ""
         else:
@@ -367,7 +367,7 @@ class Report:
         return {
             "study": self.name,
             "title": self.title,
-            "options": {key: str(value) if isinstance(value, Path) else value for key, value in options.items()},
+            "options": {key: Path(value).name if key in FILES else value for key, value in options.items()},
             "date": datetime.date.today().isoformat(),
             "versions": versions(),
             "seconds": round(time.process_time() - self._began + _memory.saved(), 1),
