@@ -32,7 +32,7 @@ def main(arguments: list[str]) -> int:
     size = made.add_mutually_exclusive_group()
     size.add_argument("--small", action="store_true", help="small meshes: minutes; without verdicts")
     size.add_argument("--record", action="store_true",
-                      help="the sizes of the committed report, at most half an hour of CPU time for each study")
+                      help="the sizes of the committed report, chosen for half an hour of CPU time for each study")
     made.add_argument("--out", type=Path, default=Path("studies"), metavar="DIR",
                       help="directory of the report, report.html, and of a directory per study (%(default)s)")
     made.add_argument("--studies", nargs="+", metavar="NAME", help="these only (default: all)")
