@@ -421,8 +421,9 @@ public:
   ///@{
   /**
    * HYBRID: whether to untangle before the optimization of shape, which then keeps every element
-   * valid; else (4.24) as it stands, with this beta (relative to the mean element, at least 0) in
-   * its untangling metric. The defaults are on and 0.
+   * valid; else the objective (4.24), with this beta (relative to the mean element, at least 0) in
+   * its untangling metric, the automatic optimizer and c; what this leaves inverted is
+   * untangled afterwards. The defaults are on and 0.
    */
   vtkSetMacro(UntangleFirst, bool);
   vtkGetMacro(UntangleFirst, bool);

@@ -118,8 +118,10 @@ struct WarpOptions
    * is still above 10, the worst of them while the mean grows by at most a tenth; then minimize the
    * exponential sum of F_1, the shape (4.22), and of these squared ratios, the worst of which is
    * held. They are a barrier that keeps
-   * every element valid, and replace the untangling metric of (4.24), which is 0 there. Off: (4.24)
-   * itself; elements it leaves inverted are untangled afterwards.
+   * every element valid, and replace the untangling metric of (4.24), which is 0 there. Off:
+   * minimize (4.24) itself, by `optimization`, whose c and optimizer are chosen unless they are
+   * given (the dissertation: local conjugate gradients, c of 1e4 to 1e6 in its unit of length);
+   * elements that this leaves inverted are untangled afterwards.
    */
   bool untangleFirst = true;
   /// beta of (4.24) with untangleFirst off, relative to the mean area or volume of the elements; at
