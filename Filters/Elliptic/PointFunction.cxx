@@ -9,6 +9,8 @@
 #include "vtkExprTkFunctionParser.h"
 #include "vtkNew.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
+#include "vtkPolyData.h"
 
 #include <algorithm>
 #include <functional>
@@ -160,50 +162,153 @@ std::string plain(std::string message)
   message = message.substr(0, message.find_first_of("\t\n"));
   return message;
 }
+
+/// An expression that is evaluated at the points of a data set.
+class Expression
+{
+public:
+  Expression(std::string text, const std::string& what, vtkDataSet* data, int components)
+    : Subject("The expression '" + text + "' of the " + what)
+    , Text(std::move(text))
+    , Data(data)
+    , Components(components)
+    , Values(checked(this->Text, what, components), data)
+  {
+  }
+
+  /// Writes NaN, instead of an error, where the value is not finite.
+  void allowInvalid()
+  {
+    this->Values.Parser->SetReplaceInvalidValues(true);
+    this->Values.Parser->SetReplacementValue(std::numeric_limits<double>::quiet_NaN());
+  }
+
+  /// Evaluates at a point, the first time at point 0.
+  void evaluate(vtkIdType point, double* values)
+  {
+    this->Values.moveTo(point);
+    vtkExprTkFunctionParser* parser = this->Values.Parser;
+    const bool scalar = this->Components == 1;
+    if (!this->Known && !(scalar ? parser->IsScalarResult() : parser->IsVectorResult()) &&
+      this->Values.Message.empty())
+    {
+      throw Error(this->Subject +
+        (scalar ? " is a vector; a number is expected: take a component of it."
+                : " is a number; a vector is expected: write (" + this->Text +
+              ")*iHat + 0*jHat, for example."));
+    }
+    this->Known = true;
+    if (this->Values.Message.empty())
+    {
+      const double number = scalar ? parser->GetScalarResult() : 0.0;
+      const double* result = scalar ? &number : parser->GetVectorResult();
+      std::copy(result, result + this->Components, values);
+    }
+    if (!this->Values.Message.empty())
+    {
+      throw Error(this->Values.Message.find("mathematically wrong") == std::string::npos
+          ? this->Subject + " is not understood: " + plain(this->Values.Message)
+          : this->Subject + " is not finite at point " + std::to_string(point) + ", " +
+            placeOf(this->Data, point) + ".");
+    }
+  }
+
+private:
+  static const std::string& checked(
+    const std::string& text, const std::string& what, int components)
+  {
+    if (text.find_first_not_of(" \t\n") == std::string::npos)
+    {
+      throw Error("The expression of the " + what + " is empty: write one, such as sin(x)*y" +
+        (components > 1 ? "*iHat - jHat" : "") + ".");
+    }
+    return text;
+  }
+
+  std::string Subject, Text;
+  vtkDataSet* Data;
+  int Components;
+  Evaluator Values;
+  bool Known = false; ///< whether the result has the components
+};
 }
 
 //------------------------------------------------------------------------------
 std::vector<double> evaluate(const std::string& expression, const std::string& what,
   vtkDataSet* data, int components, bool finite)
 {
-  const std::string subject = "The expression '" + expression + "' of the " + what;
-  if (expression.find_first_not_of(" \t\n") == std::string::npos)
+  Expression evaluated(expression, what, data, components);
+  if (!finite)
   {
-    throw Error("The expression of the " + what + " is empty: write one, such as sin(x)*y" +
-      (components > 1 ? "*iHat - jHat" : "") + ".");
+    evaluated.allowInvalid();
   }
   const vtkIdType count = data->GetNumberOfPoints();
   std::vector<double> values(static_cast<std::size_t>(components) * count);
-  Evaluator evaluator(expression, data);
-  evaluator.Parser->SetReplaceInvalidValues(!finite);
-  evaluator.Parser->SetReplacementValue(std::numeric_limits<double>::quiet_NaN());
   for (vtkIdType i = 0; i < count; ++i)
   {
-    evaluator.moveTo(i);
-    vtkExprTkFunctionParser* parser = evaluator.Parser;
-    if (i == 0 && !(components == 1 ? parser->IsScalarResult() : parser->IsVectorResult()) &&
-      evaluator.Message.empty())
-    {
-      throw Error(subject +
-        (components == 1 ? " is a vector; a number is expected: take a component of it."
-                         : " is a number; a vector is expected: write (" + expression +
-              ")*iHat + 0*jHat, for example."));
-    }
-    if (evaluator.Message.empty())
-    {
-      const double scalar = components == 1 ? parser->GetScalarResult() : 0.0;
-      const double* result = components == 1 ? &scalar : parser->GetVectorResult();
-      std::copy(result, result + components, values.begin() + components * i);
-    }
-    if (!evaluator.Message.empty())
-    {
-      throw Error(evaluator.Message.find("mathematically wrong") == std::string::npos
-          ? subject + " is not understood: " + plain(evaluator.Message)
-          : subject + " is not finite at point " + std::to_string(i) + ", " + placeOf(data, i) +
-            ".");
-    }
+    evaluated.evaluate(i, values.data() + components * i);
   }
   return values;
+}
+
+//------------------------------------------------------------------------------
+/// The place is the one point of a data set.
+struct PlaceFunction::Implementation
+{
+  Implementation(const std::string& expression, const std::string& what, int components)
+    : Evaluated(expression, what, this->singlePoint(), components)
+  {
+  }
+
+  void evaluate(const Vec3& place, double* values)
+  {
+    this->Points->SetPoint(0, place.data());
+    this->Evaluated.evaluate(0, values);
+  }
+
+private:
+  vtkDataSet* singlePoint()
+  {
+    this->Points->SetDataTypeToDouble();
+    this->Points->InsertNextPoint(0.0, 0.0, 0.0);
+    this->Data->SetPoints(this->Points);
+    return this->Data;
+  }
+
+  vtkNew<vtkPoints> Points;
+  vtkNew<vtkPolyData> Data;
+  Expression Evaluated;
+};
+
+//------------------------------------------------------------------------------
+PlaceFunction::PlaceFunction(
+  const std::string& expression, const std::string& what, int components, double step)
+  : Components(components)
+  , Step(step)
+  , Inside(std::make_unique<Implementation>(expression, what, components))
+{
+}
+
+//------------------------------------------------------------------------------
+PlaceFunction::~PlaceFunction() = default;
+
+//------------------------------------------------------------------------------
+void PlaceFunction::evaluate(const Vec3& place, double* values, double* gradients)
+{
+  this->Inside->evaluate(place, values);
+  for (int k = 0; k < VectorSize; ++k)
+  {
+    double before[VectorSize], after[VectorSize];
+    Vec3 moved = place;
+    moved[k] = place[k] - this->Step;
+    this->Inside->evaluate(moved, before);
+    moved[k] = place[k] + this->Step;
+    this->Inside->evaluate(moved, after);
+    for (int c = 0; c < this->Components; ++c)
+    {
+      gradients[VectorSize * c + k] = (after[c] - before[c]) / (2.0 * this->Step);
+    }
+  }
 }
 
 //------------------------------------------------------------------------------

@@ -8,6 +8,7 @@
 
 #include "tautline/Core/Types.h"
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -53,5 +54,28 @@ std::vector<double> valuesAt(
  */
 std::vector<double> evaluate(const std::string& expression, const std::string& what,
   vtkDataSet* data, int components, bool finite = true);
+
+/**
+ * @class tautline::PlaceFunction
+ * @brief An expression of x, y, z as a function of any place. Throws Error as evaluate().
+ */
+class PlaceFunction
+{
+public:
+  /// @param step of the central differences, in the unit of length
+  PlaceFunction(
+    const std::string& expression, const std::string& what, int components, double step);
+  ~PlaceFunction();
+
+  /// Writes `components` values, and their gradients by central differences, 3 each.
+  void evaluate(const Vec3& place, double* values, double* gradients);
+
+private:
+  struct Implementation;
+
+  int Components;
+  double Step;
+  std::unique_ptr<Implementation> Inside;
+};
 }
 #endif

@@ -4,10 +4,12 @@
 #include "ContentStamp.h"
 #include "EllipticInput.h"
 #include "EllipticOutput.h"
+#include "PointFunction.h"
 #include "ProcessGroup.h"
 #include "Sections.h"
 #include "TableRows.h"
 
+#include "tautline/Elliptic/ErrorNorms.h"
 #include "tautline/Elliptic/TimeStepping.h"
 
 #include "vtkCellData.h"
@@ -21,6 +23,8 @@
 #include "vtkTable.h"
 
 #include <algorithm>
+#include <cmath>
+#include <exception>
 #include <sstream>
 
 vtkStandardNewMacro(vtkEllipticSolver);
@@ -131,6 +135,7 @@ void vtkEllipticSolver::Reset()
   this->Iterations = 0;
   this->ComputedTimeSteps = this->TimeScheme == STATIONARY ? 0 : this->NumberOfTimeSteps;
   this->SetupSeconds = this->SolveSeconds = 0.0;
+  this->SolutionError = this->GradientError = 0.0;
 }
 
 //------------------------------------------------------------------------------
@@ -357,6 +362,12 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
 {
   if (this->TimeScheme != STATIONARY)
   {
+    if (!this->ExactSolution.empty())
+    {
+      throw tautline::Error(
+        "An exact solution can be compared with a stationary one only: choose no "
+        "time scheme, or leave the exact solution empty.");
+    }
     this->ComputeSteps(input, mesh, processes, table);
     return;
   }
@@ -380,6 +391,10 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
   const tautline::LinearSolution solved = solver.solve(system.rightHandSide().data(), x.data());
   const tautline::Index outside = this->AddSolution(input.fields(x), mesh.output);
   tautline::addResiduals(table, solved.residuals, mesh.name);
+  if (!this->ExactSolution.empty())
+  {
+    this->Compare(system, x, processes);
+  }
 
   const bool converged = tautline::converged(solved.reason);
   this->Converged = this->Converged && converged;
@@ -392,6 +407,44 @@ void vtkEllipticSolver::Compute(const tautline::EllipticInput& input, tautline::
   {
     this->Warn();
   }
+}
+
+//------------------------------------------------------------------------------
+void vtkEllipticSolver::Compare(const tautline::EllipticSystem& system,
+  const std::vector<double>& unknowns, tautline::RankGroup& processes)
+{
+  // The smallest step whose rounding errors are below the errors of the differences.
+  constexpr double relativeStep = 1e-5;
+  const tautline::EllipticSolution solution = system.fields(unknowns);
+  const double size = processes.maximum(tautline::diagonalOf(system.mesh().view()));
+  tautline::PlaceFunction exact(
+    this->ExactSolution, "exact solution", solution.components, relativeStep * size);
+  // An error at a place must not keep a process from the sums.
+  std::exception_ptr failure;
+  const std::array<double, 2> norms = tautline::errorNorms(system, solution,
+    [&](const tautline::Vec3& place, double* value, double* gradient)
+    {
+      try
+      {
+        if (!failure)
+        {
+          exact.evaluate(place, value, gradient);
+        }
+      }
+      catch (...)
+      {
+        failure = std::current_exception();
+      }
+    });
+  if (failure)
+  {
+    std::rethrow_exception(failure);
+  }
+  this->SolutionError = std::hypot(this->SolutionError, norms[0]);
+  this->GradientError = std::hypot(this->GradientError, norms[1]);
+  std::ostringstream text;
+  text << "Errors in L2: " << norms[0] << " of the solution, " << norms[1] << " of its gradient.";
+  this->AddToSummary(text.str());
 }
 
 //------------------------------------------------------------------------------
@@ -433,5 +486,6 @@ void vtkEllipticSolver::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "VelocityType: " << this->VelocityType << "\n";
   os << indent << "SolutionName: " << this->SolutionName << "\n";
   os << indent << "ComputeGradient: " << this->ComputeGradient << "\n";
+  os << indent << "ExactSolution: " << this->ExactSolution << "\n";
   os << indent << "ComputeSections: " << this->ComputeSections << "\n";
 }

@@ -129,6 +129,33 @@ def test_quadratic():
     refused(wording("inverted-against-the-rest"), tl.solve, curved)
 
 
+def test_exact():
+    """Errors in closed form: of x^2, whose solution on right triangles is its interpolation; in space, on a slope."""
+    n = 8
+    flat = square(n)
+    known = np.array([n**-2 / np.sqrt(30), 1 / (n * np.sqrt(3))])
+    found = tl.solve(flat, source=-2.0, given="x^2", exact="x^2", solver="direct")
+    errors = [found.solution_error, found.gradient_error]
+    assert np.allclose(errors, known, rtol=1e-7), errors
+    assert all(f"{error:.3g}"[:4] in found.summary for error in errors), found.summary
+    s, t, _ = points(flat).T
+    triangles = vtk_to_numpy(flat.GetCells().GetConnectivityArray()).reshape(-1, 3)
+    slope = tl.from_arrays(np.column_stack([s, t, s]) / np.sqrt([2, 1, 2]), {"triangle": triangles})
+    found = tl.solve(slope, source=-2.0, given="2*x^2", exact="2*x^2", solver="direct")
+    assert np.allclose([found.solution_error, found.gradient_error], known, rtol=1e-7)  # the normal part does not count
+    body = {"pde": "elasticity", "source": 0, "given": "x*iHat", "solver": "direct"}
+    for mesh in (flat, DATA / "bracket.vtu"):
+        found = tl.solve(mesh, exact="x*iHat + 0.5*jHat", **body)
+        volume = np.abs(tl.quality(mesh, ["size"]).values["size"]).sum()
+        assert abs(found.solution_error - 0.5 * np.sqrt(volume)) < 1e-9 and found.gradient_error < 1e-9
+    assert np.isnan(tl.solve(flat).solution_error)
+    refused(wording("is-a-number-a-vector-is-expected"), tl.solve, flat, exact="x", **body)
+    refused(wording("is-not-understood"), tl.solve, flat, exact="q + 1")
+    refused(wording("is-not-finite-at-point"), tl.solve, flat, exact="sqrt(x - 0.5)")
+    refused(wording("an-exact-solution-can-be-compared"), tl.solve, flat, exact="x", time_scheme="bdf2")
+    assert wording("errors-in-l2") in shell("solve", DATA / "plate.vtu", "--exact", "x*y")
+
+
 def test_time_steps():
     """Heat and wave equations: eigenmodes in closed form, all solutions, histories, what is refused."""
     n, steps, dt = 8, 5, 0.02

@@ -67,6 +67,8 @@ class SolveResult(Result):
         Number of unknowns.
     assembly_seconds, setup_seconds, solve_seconds : float
         Times of the assembly, of the set-up of the preconditioner or factorization, and of the solution.
+    solution_error, gradient_error : float
+        With `exact`, the norms in L2 of the error and of its gradient; else nan.
     summary : str
         The result in words.
     """
@@ -85,6 +87,8 @@ class SolveResult(Result):
     assembly_seconds: float
     setup_seconds: float
     solve_seconds: float
+    solution_error: float
+    gradient_error: float
     summary: str
 
 
@@ -317,6 +321,8 @@ def solve_result(filter_: Any, output: vtkDataObject, series: bool = False) -> S
         assembly_seconds=filter_.GetAssemblySeconds(),
         setup_seconds=filter_.GetSetupSeconds(),
         solve_seconds=filter_.GetSolveSeconds(),
+        solution_error=filter_.GetSolutionError() if filter_.GetExactSolution() else np.nan,
+        gradient_error=filter_.GetGradientError() if filter_.GetExactSolution() else np.nan,
         summary=filter_.GetSummary(),
     )
 
