@@ -11,16 +11,16 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject
 
 from . import _commands
 from ._arguments import sets
-from ._arrays import Array, cell_array, columns, point_array, snake
+from ._arrays import CELLS, Array, cell_array, columns, has_array, point_array, snake
 from ._io import Mesh, as_mesh
-from ._metrics import Metrics, by_metric, choose
+from ._metrics import Metrics, by_metric, choose, metrics as known_metrics
 from ._results import Result
 from ._tables import comparison_rows, comparison_text
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class CompareResult(Result):
-    """The result of compare().
+    """The result of compare(). On several MPI ranks each has the arrays of its piece, the first one the statistics.
 
     Attributes
     ----------
@@ -74,11 +74,13 @@ def choose_metrics(filter_: Any, metrics: Metrics = ("imr",)) -> None:
 def compare_result(filter_: Any, mesh: vtkDataObject) -> CompareResult:
     """The result of a filter that has run."""
     table = columns(filter_.GetOutputDataObject(1))
-    rows = {name: row for row, name in enumerate(table.pop("Metric"))}
+    rows = {name: row for row, name in enumerate(table.pop("Metric", ()))}
+    # The table is on the first rank of MPI; the others know what they measured by its arrays.
+    names = list(rows) or [m["name"] for m in known_metrics() if has_array(mesh, f"{m['name']}_difference", CELLS)]
     return CompareResult(
         mesh=mesh,
         statistics=by_metric({n: {snake(key): table[key][row].item() for key in table} for n, row in rows.items()}),
-        difference=by_metric({name: cell_array(mesh, f"{name}_difference") for name in rows}),
+        difference=by_metric({name: cell_array(mesh, f"{name}_difference") for name in names}),
         change=cell_array(mesh, "Change"),
         displacement=point_array(mesh, "Displacement"),
         summary=filter_.GetSummary(),

@@ -16,7 +16,7 @@ from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 
 from . import _commands, _vtk
 from ._arguments import picked, sets
-from ._arrays import Array, InputArrays, Values, cell_array, columns, is_number, point_array, snake
+from ._arrays import CELLS, Array, InputArrays, Values, cell_array, columns, has_array, is_number, point_array, snake
 from ._certificate import REFUTED, certificate, certificate_text, verify_certificate
 from ._choices import TARGETS, Target
 from ._errors import Aborted, Error, checked, unknown, wrong_usage
@@ -40,7 +40,8 @@ _MAX_WORST = 10  # elements listed per metric
 @dataclass(frozen=True, repr=False, eq=False)
 class QualityResult(Result):
     """The result of quality(). Dicts are by the names of the metrics, in the order in which they were given; labels,
-    symbols and aliases of metrics are found, too.
+    symbols and aliases of metrics are found, too. On several MPI ranks each has the arrays of its piece; the numbers of
+    the whole mesh are on the first rank, and empty or None on the others.
 
     Attributes
     ----------
@@ -70,7 +71,7 @@ class QualityResult(Result):
     worst : vtkPolyData
         A point at the center of each of the worst elements, in curved ones where the determinant is smallest, with the
         arrays Metric, Rank, CellId, Value, Validity.
-    inverted, degenerate : int
+    inverted, degenerate : int | None
         Number of inverted elements, and of elements without area or volume.
     verdict : str | None
         By the criteria, if any were given: "passed", "warning", "failed", or "none" if no element could be graded.
@@ -107,8 +108,8 @@ class QualityResult(Result):
     histogram: dict[str, dict[str, Array]]
     angles: dict[str, Array]
     worst: vtkPolyData
-    inverted: int
-    degenerate: int
+    inverted: int | None
+    degenerate: int | None
     verdict: str | None
     index: float | None
     indices: Array | None
@@ -264,11 +265,13 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
     statistics = _statistics(columns(filter_.GetStatistics()), worst)
     bins = columns(filter_.GetDistribution())
     ranges = columns(filter_.GetHistogram())
-    totals = next(iter(statistics.values()))
+    # The tables are on the first rank of MPI; the others know what they measured by its arrays.
+    measured = list(statistics) or [m["name"] for m in known_metrics() if has_array(mesh, m["name"], CELLS)]
+    totals = next(iter(statistics.values()), {"inverted": None, "degenerate": None})
     graded = bool(filter_.GetVerdict())
     return QualityResult(
         mesh=mesh,
-        values=by_metric({name: cell_array(mesh, name) for name in statistics}),
+        values=by_metric({name: cell_array(mesh, name) for name in measured}),
         validity=cell_array(mesh, "Validity"),
         statistics=by_metric(statistics),
         distribution=by_metric({n: {"value": bins[f"{n} value"], "count": bins[f"{n} count"]} for n in statistics}),
@@ -296,7 +299,7 @@ def quality_result(filter_: Any, mesh: vtkDataObject) -> QualityResult:
 def _chosen_checks(filter_: Any) -> list[str]:
     wanted = {name.strip() for name in filter_.GetChecks().split(",")}
     if filter_.GetVerdict():
-        wanted |= set(columns(filter_.GetCriteriaTable())["Metric"])
+        wanted |= set(columns(filter_.GetCriteriaTable()).get("Metric", ()))
     known = [filter_.GetKnownCheck(i).split("\t")[0] for i in range(filter_.GetNumberOfKnownChecks())]
     return [name for name in known if name in wanted or "all" in wanted]
 
@@ -305,7 +308,7 @@ def _statistics(table: dict[str, Any], worst: vtkPolyData) -> dict[str, dict[str
     numbers = {metric["name"]: metric["number"] for metric in known_metrics()}
     of, ids, values = (point_array(worst, name) for name in ("Metric", "CellId", "Value"))
     result = {}
-    for row, name in enumerate(table["Metric"]):
+    for row, name in enumerate(table.get("Metric", ())):
         facts = {snake(key): _plain(table[key][row]) for key in table if key not in _NOT_NUMBERS}
         mine = np.flatnonzero(of == numbers[name])
         positions = np.asarray(table["WorstPositions"][row]).reshape(-1, 3)
@@ -322,7 +325,7 @@ def _by_metric(table: dict[str, Any]) -> dict[str, dict[str, Any]]:
     keys = [key for key in table if key != "Metric"]
     return {
         str(name): {snake(key): int(table[key][row]) if key in counts else _plain(table[key][row]) for key in keys}
-        for row, name in enumerate(table["Metric"])
+        for row, name in enumerate(table.get("Metric", ()))
     }
 
 
