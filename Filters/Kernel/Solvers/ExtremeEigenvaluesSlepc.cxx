@@ -3,6 +3,7 @@
 
 #include <slepceps.h>
 
+#include <algorithm>
 #include <limits>
 
 namespace tautline
@@ -19,6 +20,10 @@ constexpr double PlanarNeighbours = 11.0;
 
 constexpr PetscInt LargestBasis = 40; // vectors Krylov-Schur keeps for the largest eigenvalue
 constexpr PetscInt Block = 4;         // vectors LOBPCG iterates with
+
+/// With a factorization, iterations are cheap, and the error bound is by the residual of A x, which
+/// is larger than that of A^-1 x: the tolerance times this, and not below the least.
+constexpr double FactoredTolerance = 1e-4, LeastTolerance = 1e-12;
 
 bool isFactorAffordable(Mat matrix, int blockSize)
 {
@@ -180,6 +185,9 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
         petsc(STGetKSP(transformation, &inner));
         petsc(KSPSetType(inner, KSPPREONLY));
         petsc(KSPGetPC(inner, &pc));
+        petsc(EPSSetTolerances(solver,
+          std::max(FactoredTolerance * options.tolerance, LeastTolerance),
+          options.maximumIterations));
         const std::string package = chooseFactorization(pc, symmetric, ranks, optionSet, "st_");
         optionSet.setDefault("-st_mat_mumps_icntl_13", "1"); // or several ranks do not count
         low.method = "Krylov-Schur, shift-invert (Cholesky by " + package + ")";
