@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The studies `figures`, `peridynamics_local` and `thread_scaling` in the small size, and the report of `study all`."""
+"""The studies `figures`, `peridynamics_local`, `thread_scaling` and `rank_scaling`, small, and the report of `study all`."""
 
 import base64
 import contextlib
@@ -7,6 +7,7 @@ import csv
 import io
 import math
 import re
+import shutil
 import subprocess
 import sys
 from html import escape
@@ -26,6 +27,7 @@ from tautline.studies import (
     figures,
     names,
     peridynamics_local,
+    rank_scaling,
     thread_scaling,
     toy,
 )
@@ -112,6 +114,22 @@ def test_threads():
         assert list(results) == [1, 2] and thread_scaling.same(results) is True
         assert thread_scaling.same({**results, 3: np.nextafter(results[1], np.inf)}) is False
     assert isinstance(thread_scaling.same({1: np.zeros(3)}), _verdicts.Open)
+
+
+def test_rank_scaling():
+    """Results on two ranks are those of one; with other numbers they are not."""
+    if not shutil.which("mpirun") or not shutil.which("pvbatch"):
+        print("not run, without mpirun or pvbatch")
+        return
+    refused_command("increasing numbers", "study", "rank_scaling", "--small", "--ranks", "2", "1")
+    studies.run("rank_scaling", "--ranks", "1", "2")
+    studies.check("rank_scaling", 3, ("rank_scaling",), {"seconds": 3})
+    _, (found,), _ = studies.calls["rank_scaling"][0]
+    for results in found.values():
+        assert list(results) == [1, 2] and rank_scaling.same(results) is True
+        assert rank_scaling.same({**results, 3: results[1] * (1 + 10 * rank_scaling.ROUNDING)}) is False
+        assert rank_scaling.same({**results, 3: results[1][1:]}) is False
+    assert isinstance(rank_scaling.same({1: np.zeros(3)}), _verdicts.Open)
 
 
 def test_contours():

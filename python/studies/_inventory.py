@@ -158,7 +158,7 @@ SECTIONS = (
     ("4.11", "target matrices of the initial mesh in FEMWARP", "-", "target_matrices"),
     ("-", "beyond the dissertation", "Improve Mesh, Warp Mesh; improve(), warp()", "reconnection, box_rotation"),
     ("-", "decomposition of the domain, many processes", "Optimize Mesh; optimize()", "decomposition"),
-    ("-", "threads", "all filters", "thread_scaling"),
+    ("-", "threads and MPI ranks", "all filters", "thread_scaling, rank_scaling"),
 )
 
 #: Chapters of the dissertation, in the order of the summary; 0 has what this project states.
