@@ -23,7 +23,8 @@ def slopes(exponents: Sequence[float], values: Sequence[float]) -> list[float]:
     with np.errstate(invalid="ignore"):
         p, logs = np.array(exponents, float), np.log(values)
     inside = [(p >= low) & (p <= high) for low, high in _PARTS]
-    return [float(np.polyfit(p[k], logs[k], 1)[0]) if k.sum() > 1 else math.nan for k in inside]
+    return [float(np.polyfit(p[k], logs[k], 1)[0]) if k.sum() > 1 and np.isfinite(logs[k]).all() else math.nan
+            for k in inside]
 
 
 def exponential(rates: Sequence[float]) -> Verdict:
