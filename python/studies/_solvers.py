@@ -48,6 +48,8 @@ FULL, SMALL = 500_000, 1_000
 REPEATS = 3  # runs of each combination, for their times
 #: CPU seconds from which a combination is run once: the noise is a smaller part of longer times.
 LONG = 2.0
+#: Shorter ones are run until they have taken so many CPU seconds, or so many times.
+ENOUGH, MOST_RUNS = 1.0, 10
 #: Why ours does not fail where the printed one does.
 POSITIVE = ("without inverted elements the matrix, Jacobi's preconditioner and SSOR are positive definite, so that CG "
             "and MINRES with these cannot break down; all combinations converge on our meshes")
@@ -195,8 +197,9 @@ def solve(mesh: vtkDataSet, problem: dict[str, Any], setup: Setup, **more: Any) 
                "conditions": False, "threads": setup.threads, **problem, **more}
     began = time.perf_counter()
     runs = {row["number"]: [row] for row in tautline.solver_study(mesh, **options).rows}
-    for _ in range(setup.repeats - 1):
-        again = [n for n, rows in runs.items() if rows[0]["cpu_seconds"] < LONG]
+    for run in range(1, MOST_RUNS if setup.repeats > 1 else 1):
+        again = [n for n, rows in runs.items() if rows[0]["cpu_seconds"] < LONG and (
+            run < setup.repeats or sum(row["cpu_seconds"] for row in rows) < ENOUGH)]
         if again:
             for row in tautline.solver_study(mesh, **{**options, "combinations": again}).rows:
                 runs[row["number"]].append(row)

@@ -129,18 +129,23 @@ class Times:
         return min(self.runs)
 
     @property
+    def middle(self) -> float:
+        """The median, of an even number of runs the slower one in the middle: what is slower was disturbed."""
+        return sorted(self.runs)[len(self.runs) // 2]
+
+    @property
     def worst(self) -> float:
         return max(self.runs)
 
     def over(self, other: Times) -> tuple[float, float]:
-        """The smallest and the largest ratio to the times of other work that the runs and the margin allow."""
-        low = self.best / max(other.worst, math.ulp(0.0)) / (1 + TIME_MARGIN)
-        high = self.worst / max(other.best, math.ulp(0.0)) * (1 + TIME_MARGIN)
+        """The smallest and the largest ratio to other times that the faster half of the runs and the margin allow."""
+        low = self.best / max(other.middle, math.ulp(0.0)) / (1 + TIME_MARGIN)
+        high = self.middle / max(other.best, math.ulp(0.0)) * (1 + TIME_MARGIN)
         return low, high
 
     def __add__(self, other: Times) -> Times:
-        """The times of both works: the fastest and the slowest runs together."""
-        return Times((self.best + other.best, self.worst + other.worst))
+        """The times of both works: the fastest runs together, the medians and the slowest."""
+        return Times((self.best + other.best, self.middle + other.middle, self.worst + other.worst))
 
     def __str__(self) -> str:
         spread = f" to {self.worst:.3g}" if self.worst > self.best else ""
@@ -158,7 +163,7 @@ def timed(repeats: int, work: Callable[[], T]) -> tuple[T, Times]:
 
 
 def faster(one: Times, other: Times) -> Verdict:
-    """Whether one takes less time: not decided unless all its runs are faster than all of the other by the margin."""
+    """Whether one takes less time: not decided unless its faster runs are faster than the other's by the margin."""
     return below(one, other, 1.0)
 
 

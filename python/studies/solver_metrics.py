@@ -8,7 +8,7 @@ import argparse
 from . import _own_mesh
 from ._common import Run
 from ._report import Report
-from ._solver_claims import Rows, eigenvalue_findings, extreme_eigenvalues, factor_findings, metric_findings
+from ._solver_claims import FINE_ERROR, Rows, eigenvalue_findings, extreme_eigenvalues, factor_findings, metric_findings
 from ._solver_tables import BY_METRIC, METRICS
 from ._solvers import AMG, DOMAINS, FULL, ILU, LABELS, LONG, NEAR_NULL_SPACE, PDES, POSITIVE, TITLES
 from ._solvers import Solve, bars, count_finding, fastest, initial_mesh, options, setup_of, size_of, smoothing, solve
@@ -71,7 +71,8 @@ def solved(report: Report, given: argparse.Namespace, pde: str, domain: str, run
     factor_findings(report, pde, domain, rows, smooth, dict(zip(METRICS, map(float, TABLE_2_6[domain]))))
     sensitivity_findings(report, pde, domain, rows)
     if pde == "poisson":
-        eigenvalue_findings(report, domain, {m: extreme_eigenvalues(r.mesh, given.threads) for m, r in runs.items()})
+        eigenvalue_findings(report, domain, {m: extreme_eigenvalues(r.mesh, given.threads, error=FINE_ERROR)
+                                             for m, r in runs.items()})
 
 
 def shown(report: Report, pde: str, domain: str, title: str, rows: Rows, smooth: dict, theirs: dict) -> None:

@@ -22,11 +22,11 @@ GROUPED = tuple(n for group in GROUPS.values() for n in group)
 #: The most robust combinations, and the least robust ones of elasticity.
 ROBUST = {"elliptic": (SSOR[0], SSOR[2]), "elasticity": (AMG[1],)}
 SENSITIVE = (SSOR[1], SSOR[3], ILU[1])
-NOISE = "by more than the ranges of PI that the times of all runs allow"
+NOISE = "by more than the ranges of PI that the faster half of the runs allows"
 
 #: Solves by fraction and number of the combination.
 Rows = dict[float, dict[int, Solve]]
-#: PI, and the least and the largest one that the times of all runs allow.
+#: PI, and the least and the largest one that the faster half of the runs allows.
 Increase = tuple[float, float, float]
 Grown = dict[int, Increase]
 
@@ -81,7 +81,7 @@ def main(arguments: list[str]) -> int:
         "Meshes smoothed by IMR to 95 % of the possible reduction; then 0, 5, 10, 25 and 50 % of the interior vertices "
         "are moved in a random direction by up to half of the distance at which an element would invert. PI = (T_max "
         f"- T_min) / T_min over these meshes, of CPU seconds with set-up, the fastest of {given.repeats} run(s); in "
-        "the table its range by all runs. '*' is a failure, '>' the time limit."
+        "the table its range by these. '*' is a failure, '>' the time limit."
     )
     for seed in report.seeds:
         for pde in given.pde or PDES:
