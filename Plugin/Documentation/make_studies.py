@@ -17,11 +17,12 @@ import sys
 from pathlib import Path
 
 from tautline.studies import _evidence, described
-from tautline.studies._page import page, study_in, study_of, summary_markdown
+from tautline.studies._page import pages, study_in, study_of, summary_markdown
 from tautline.studies.all import OPTIONS, studies
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 REPORT = ROOT / "Plugin" / "Documentation" / "studies.html"
+SECOND = REPORT.with_name("studies_more.html")
 SITE = ROOT / "Plugin" / "Site" / "studies.md"
 BEGIN, END = "<!-- summary: made by make_studies.py -->", "<!-- end of the summary -->"
 WIDTH = 860  # pixels, of a picture
@@ -40,7 +41,7 @@ def main() -> int:
     made.add_argument("results", nargs="?", type=Path, help="a folder of `study all`")
     made.add_argument("--write", action="store_true")
     given = made.parse_args()
-    report = REPORT.read_text(encoding="utf-8") if REPORT.is_file() else ""
+    report = "".join(file.read_text(encoding="utf-8") for file in (REPORT, SECOND) if file.is_file())
     files: dict[Path, str | bytes] = {}
     found = {}
 
@@ -57,7 +58,7 @@ def main() -> int:
             files[_evidence.FOLDER / f"{name}.json"] = json.dumps(found[name].record, indent=1) + "\n"
         else:
             found[name] = study_of(name, described(name), report)
-    files[REPORT] = page(found, small=False)
+    files[REPORT], files[SECOND] = pages(found, SECOND.name)
     text = SITE.read_text(encoding="utf-8")
     table = f"{BEGIN}\n{summary_markdown(found.values())}\n{END}"
     files[SITE] = re.sub(rf"{re.escape(BEGIN)}.*{re.escape(END)}", lambda _: table, text, flags=re.DOTALL)
@@ -68,7 +69,7 @@ def main() -> int:
         if given.write:
             file.parent.mkdir(exist_ok=True)
             file.write_bytes(files[file])
-    shown = set(re.findall(r'src="(study_[^"]+)"', files[REPORT].decode()))
+    shown = set(re.findall(r'src="(study_[^"]+)"', (files[REPORT] + files[SECOND]).decode()))
     for file in REPORT.parent.glob("study_*.png"):
         if file.name not in shown:
             wrong.append(file)

@@ -24,7 +24,11 @@ class Size:
     reduced: str = ""
 
 
-_SOLVERS = "the dissertation has 500,000 vertices: 16 combinations on each mesh take hours, elasticity the most"
+_SOLVERS = ("the dissertation has 500,000 vertices; this is the size of Table 2.4 whose run takes up to half an hour "
+            "of CPU time, elasticity the most")
+_ELASTICITY = ("elasticity is solved on up to 50,000 vertices, of 500,000: its systems take ten times as long "
+               "as scalar ones")
+_SHAPES = "the dissertation has 1,000,000 elements; the times of both studies are compared by their ratios"
 _SEEDS = ("--seeds", "3")
 #: By study, where it is not the full size without options.
 SIZES: dict[str, Size] = {
@@ -35,30 +39,26 @@ SIZES: dict[str, Size] = {
     "hydrocephalus": Size(_SEEDS),
     "local_coefficients": Size(("--seeds", "5")),
     "mesh_independence": Size(("--size", "100K"), _SOLVERS),
+    "shape_interpolation": Size(("--cells", "250000"), _SHAPES),
+    "shape_size": Size(("--cells", "250000"), _SHAPES),
     "shape_size_untangling": Size(_SEEDS),
     "shape_untangling": Size((*_SEEDS, "--no-large")),
-    "smoothing_times": Size(("--cells", "200000"), "the sweep over the shares of the reduction takes hours"),
+    "smoothing_times": Size(("--cells", "100000"), "the sweep over the shares of the reduction takes hours"),
     "solver_coefficients": Size(("--size", "20K"), _SOLVERS),
-    "solver_metrics": Size(("--size", "100K", "--elasticity-size", "20K"), _SOLVERS),
-    "solver_orders": Size(("--size", "100K", "--elasticity-size", "50K"), _SOLVERS),
-    "solver_perturbation": Size(("--size", "100K", "--elasticity-size", "20K"), _SOLVERS),
-    "solver_restart": Size(("--size", "100K", "--elasticity-size", "20K"), _SOLVERS),
+    "solver_metrics": Size(("--size", "200K", "--elasticity-size", "100K"), _SOLVERS),
+    "solver_orders": Size(("--elasticity-size", "50K"), _ELASTICITY),
+    "solver_perturbation": Size(("--size", "100K", "--elasticity-size", "50K"), _SOLVERS),
+    "solver_restart": Size(("--elasticity-size", "50K"), _ELASTICITY),
     "target_matrices": Size(("--seeds", "5")),
     "time_stepping": Size(("--size", "20K"), "100 time steps by 8 combinations on 500,000 vertices take hours"),
 }
 
 
-_LARGE = "its statements are about 500,000 vertices, which no run within half an hour has had yet"
-_ALONE = "it was not run yet alone on a machine, which its times need"
 _LATER = "it was not run yet"
 #: Studies that are not in the committed report, and why.
-PENDING: dict[str, str] = {
-    **dict.fromkeys(("mesh_independence", "smoothing_times", "solver_coefficients", "solver_meshes", "solver_metrics",
-                     "solver_orders", "solver_perturbation", "solver_restart"), _LARGE),
-    **dict.fromkeys(("nonlocal_preconditioner", "shape_interpolation", "shape_size", "solution_error", "thread_scaling",
-                     "time_stepping"), _ALONE),
-    **dict.fromkeys(("bore", "box_rotation", "deformation_methods", "hydrocephalus", "shapes", "state_based"), _LATER),
-}
+PENDING: dict[str, str] = dict.fromkeys(
+    ("box_rotation", "deformation_methods", "hydrocephalus", "rank_scaling", "shape_interpolation", "shape_size", "shapes",
+     "smoothing_times", "solver_meshes", "solver_metrics", "thread_scaling", "time_stepping"), _LATER)
 
 
 def size_of(study: str) -> Size:

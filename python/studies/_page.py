@@ -80,18 +80,39 @@ def study_of(name: str, text: str, report: str) -> Study:
 
 def page(studies: dict[str, Study], small: bool) -> str:
     """The report."""
-    parts = [f"<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Tautline: studies</title>"
-             f"<style>{_STYLE}</style></head><body><h1>Studies of the dissertation</h1>", _introduction(studies, small),
-             _summary(studies), _runs(studies), _overview(studies), "<h2>Tables and figures</h2>"]
+    return "".join([*_parts(studies, small), _END])
+
+
+def pages(studies: dict[str, Study], second: str) -> tuple[str, str]:
+    """The report in two files: what is beyond tables and figures is in the second one, of this name."""
+    parts = _parts(studies, small=False, second=second)
+    return "".join([*parts[:1], *parts[2:], _END]), "".join([_head("methods and further tables"), parts[1], _END])
+
+
+_END = "\n</body></html>\n"
+
+
+def _head(title: str) -> str:
+    return (f"<!DOCTYPE html><html lang='en'><head><meta charset='utf-8'><title>Tautline: studies</title>"
+            f"<style>{_STYLE}</style></head><body><h1>Studies of the dissertation: {title}</h1>")
+
+
+def _parts(studies: dict[str, Study], small: bool, second: str = "") -> tuple[str, str, str]:
+    """The summary, tables and figures; what the studies have beyond; the lists at the end.
+
+    second: the file of what is beyond.
+    """
+    parts = [_head("what holds"), _introduction(studies, small), _summary(studies), _runs(studies), _overview(studies),
+             "<h2>Tables and figures</h2>"]
     shown: dict[str, set[str]] = {name: set() for name in studies}
     pictures: dict[tuple[str, str], str] = {}
     listed: dict[tuple[str, str], str] = {}
     for entry in ENTRIES:
         if entry.study in studies and studies[entry.study].record:
-            parts.append(_entry(entry, studies, shown[entry.study], pictures, listed))
-    parts.append("<h2>Methods, further findings and tables, by study</h2>")
-    parts += [_rest(study, shown[name], pictures) for name, study in studies.items() if study.record or study.error]
-    return "\n".join([*parts, _not_made(), _sections(), "</body></html>\n"])
+            parts.append(_entry(entry, studies, shown[entry.study], pictures, listed, second))
+    rest = [_rest(study, shown[name], pictures) for name, study in studies.items() if study.record or study.error]
+    beyond = "\n".join(["", "<h2>Methods, further findings and tables, by study</h2>", *rest])
+    return "\n".join(parts), beyond, "\n".join(["", _not_made(), _sections()])
 
 
 def chapter(source: str) -> int:
@@ -219,7 +240,7 @@ def _findings_of(entry: Entry, studies: dict[str, Study]) -> list[Finding]:
 
 
 def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: dict[tuple[str, str], str],
-           listed: dict[tuple[str, str], str]) -> str:
+           listed: dict[tuple[str, str], str], second: str) -> str:
     """A table or figure; findings and pictures that stand at an earlier one are not repeated."""
     study = studies[entry.study]
     findings = _findings_of(entry, studies)
@@ -228,7 +249,7 @@ def _entry(entry: Entry, studies: dict[str, Study], shown: set[str], pictures: d
     listed.update((finding.key, entry.name) for finding in new)
     links = ", ".join(f"<a href='#{_anchor(name)}'>{name}</a>" for name in places)
     parts = [f"<h3 id='{_anchor(entry.name)}'>{entry.name}: {escape(entry.caption)}</h3>"
-             f"<p class='small'>Study <a href='#study-{entry.study}'>{entry.study}</a></p>",
+             f"<p class='small'>Study <a href='{second}#study-{entry.study}'>{entry.study}</a></p>",
              _table(new), f"<p class='small'>Further findings: {links}.</p>" if links else ""]
     for part in study.parts:
         file = part.get("file", "")
@@ -252,7 +273,7 @@ def _rest(study: Study, shown: set[str], pictures: dict[tuple[str, str], str]) -
     findings = [finding for finding in study.findings if finding not in there]
     texts = [_part(part) for part in study.parts if part.get("file", "") not in shown]
     images = [picture for file, picture in study.pictures.items() if (study.name, file) not in pictures]
-    parts = [f"<h3 id='study-{study.name}'>{study.name}</h3><p>{escape(study.text)}</p>",
+    parts = [f"<h3><a name='study-{study.name}'></a>{study.name}</h3><p>{escape(study.text)}</p>",
              f"<p class='no'>{escape(study.error)}</p>" if study.error else "",
              _table([finding for finding in findings if not finding.own])]
     own = [finding for finding in findings if finding.own]
