@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from tautline.studies import _deformed, _report, _verdicts
 
+WAYS = 6  # in which an array may change
 TRIALS = 1000  # sets of wrong numbers, each with a seed of its own, unless fewer change all verdicts
 FAR = 1e12  # a factor by which numbers change that are near 0, or above a tolerance of rounding errors
 DECIDED = {_verdicts.HOLDS, _verdicts.DOES_NOT_HOLD, _verdicts.VARIES}
@@ -46,10 +47,11 @@ class Recorder:
         return call
 
 
-def wrong(value, random: np.random.Generator, count: str = ""):
-    """A copy of data whose numbers are others: as large, larger, smaller, 0 or exchanged; meshes and texts stay.
+def wrong(value, random: np.random.Generator, count: str = "", way: int = -1):
+    """A copy of data whose numbers are others: as large, larger, smaller, 0, exchanged or reversed; meshes, texts stay.
 
     count: what all counts of a part of the data become, "none" or "many"; "": each one something else.
+    way: how all arrays change; -1: each one in a way of its own.
     """
     if isinstance(value, (bool, np.bool_)):
         return bool(random.integers(2))
@@ -64,13 +66,14 @@ def wrong(value, random: np.random.Generator, count: str = ""):
     if isinstance(value, np.ndarray) and value.dtype.kind in "fi":
         factors = 10.0 ** random.uniform(-1, 1, value.shape)
         shuffled = random.permutation(value.ravel()).reshape(value.shape)
-        made = [value, shuffled * factors, value * LARGE, np.full_like(value, value.max(initial=1))]
+        made = [value, shuffled * factors, value * LARGE, np.full_like(value, value.max(initial=1)), value[::-1]]
         if np.array_equal(value, np.round(value)):
             made.append(np.zeros_like(value))  # a count
-        return np.asarray(made[random.integers(len(made))], value.dtype)
+        return np.asarray(made[random.integers(len(made)) if way < 0 else way % len(made)], value.dtype)
     if isinstance(value, dict):
         counts = {key: count or str(random.choice(["", "none", "many"])) for key in value}
-        made = {key: part if key in IDENTITIES else wrong(part, random, counts[key]) for key, part in value.items()}
+        made = {key: part if key in IDENTITIES else wrong(part, random, counts[key], way)
+                for key, part in value.items()}
         for key in made:
             if str(key).startswith("iterations ") and random.integers(2):
                 made[key] = np.full_like(made[key], np.nan)  # not within the limit
@@ -78,7 +81,7 @@ def wrong(value, random: np.random.Generator, count: str = ""):
     if isinstance(value, tuple) and len(value) > 2 and all(type(part) is int for part in value):
         return value  # what was varied
     if isinstance(value, (list, tuple)):
-        parts = [wrong(part, random, count) for part in value]
+        parts = [wrong(part, random, count, way) for part in value]
         return type(value)(parts) if not hasattr(value, "_fields") else type(value)(*parts)
     if isinstance(value, _deformed.Example):
         return value  # the dissertation's numbers
@@ -89,7 +92,7 @@ def wrong(value, random: np.random.Generator, count: str = ""):
         made = copy.copy(value)
         for entry in dataclasses.fields(value):
             if entry.name not in IDENTITIES:
-                object.__setattr__(made, entry.name, wrong(getattr(value, entry.name), random, count))
+                object.__setattr__(made, entry.name, wrong(getattr(value, entry.name), random, count, way))
         return made
     return value
 
@@ -97,9 +100,10 @@ def wrong(value, random: np.random.Generator, count: str = ""):
 def verdicts(calls, directory: Path, random=None) -> dict:
     """The verdicts by finding, of the recorded numbers or of wrong ones, as on meshes of full size."""
     report = _report.Report("wrong_data", "wrong data", Namespace(out=directory, small=False, format=[]))
+    way = -1 if random is None else max(-1, int(random.integers(-WAYS, WAYS)))
     for function, arguments, named in calls:
         if random is not None:
-            arguments = [wrong(argument, random) for argument in arguments]
+            arguments = [wrong(argument, random, way=way) for argument in arguments]
         function(report, *arguments, **named)
     return {finding.key: finding.verdict for finding in report.findings}
 
