@@ -67,7 +67,7 @@ def remembered(function: F) -> F:
         result = function(*arguments, **options)
         make_folder(file.parent)
         replace_bytes(file, _packed(Kept(result, time.process_time() - began + _saved[0] - before)))
-        return result
+        return _read(file).result  # as it is read later, so that what is made of it has the same name then
 
     return call  # type: ignore[return-value]
 
