@@ -28,6 +28,7 @@ constexpr MenuName Names[] = {
   { "vtkMeshComparison", "Compare Meshes" },
   { "vtkMeshCurving", "Curve Mesh" },
   { "vtkMeshImprover", "Improve Mesh" },
+  { "vtkMeshMetric", "Metric Tensor" },
   { "vtkMeshOptimizer", "Optimize Mesh" },
   { "vtkMeshPerturbation", "Perturb Mesh" },
   { "vtkMeshUntangler", "Untangle Mesh" },

@@ -308,6 +308,20 @@ def curve_mesh():
     return side_by_side(*views)
 
 
+def metric_tensor():
+    """A front across a rectangle, and the sizes that it needs."""
+    mesh = simple.MeshDomain(Domain="Rectangle, Structured", NumberOfCells=3200)
+    front = simple.Calculator(Input=mesh, Function="tanh(8*(coordsX-0.5*coordsY-0.3))", ResultArrayName="front")
+    metric = simple.MetricTensor(
+        Input=front, Source="Hessian", Field=["POINTS", "front"], TargetValue=1500, LargestSize=0.12,
+        MaximumEllipsoids=250, EllipsoidScale=0.4,
+    )  # fmt: skip
+    left, right = new_view(), new_view()
+    draw(front, left, "front", POINTS, edges=False)
+    draw(output(metric, 1), right, "Size", POINTS, edges=False)
+    return side_by_side(fit(left, 1.3), fit(right, 1.3))
+
+
 def compare_meshes():
     plate = sample("plate.vtu")
     changes = simple.CompareMeshes(Input=plate, Other=simple.OptimizeMesh(Input=plate))
@@ -589,7 +603,7 @@ def tetgen_files():
 
 PICTURES = (
     element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, untangle_mesh, warp_mesh, perturb_mesh,
-    curve_mesh, compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde,
+    curve_mesh, metric_tensor, compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde,
     condition_estimator, solver_study, peridynamic_condition, interaction_layer, horizon_neighbors,
     silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list, abaqus_files, nastran_files, fluent_files,
     gmsh_files, medit_files, mfem_files, off_files, openfoam_files, tetgen_files, nonpositive_jacobian_1,

@@ -699,6 +699,21 @@ def ring_curved():
 
 
 @check
+def metric_shown():
+    """An ellipsoid per point, and the mesh as lines; the size on the inner circle is that of its radius."""
+    metric = find("MeshMetric")
+    metric.UpdatePropertyInformation()
+    assert simple.GetDisplayProperties(metric).Representation == "Wireframe"
+    ellipsoids = simple.OutputPort(metric, 1)
+    assert simple.GetDisplayProperties(ellipsoids).Visibility
+    glyphs = servermanager.Fetch(metric, idx=1)
+    points = servermanager.Fetch(metric).GetNumberOfPoints()
+    assert len(set(vtk_to_numpy(glyphs.GetPointData().GetArray("PointId")))) == points, metric.Summary
+    chord = numpy.linalg.norm((4, 4)) / 1000
+    assert numpy.isclose(metric.SmallestFound, (8 * chord) ** 0.5), metric.SmallestFound
+
+
+@check
 def ring_untangled():
     """All nodes move, and each cell is valid everywhere in it."""
     untangled = find("MeshUntangler")

@@ -118,6 +118,8 @@ def motions(name, cut, **given):
     results[f"tangle {name}"] = [values(moved, ["points", "Displacement"]), moved.Summary]
     curved = update(CurveMesh(source, Order=3))
     results[f"curve {name}"] = [values(curved, ["Validity", "cell"], "cell"), int(curved.AddedNodes), curved.Summary]
+    metric = update(MetricTensor(source, Source="Distance", TangentialRatio=4))
+    results[f"metric {name}"] = [values(metric, ["Metric"]), metric.Elements, metric.Summary]
     pieces = update(PerturbMesh(source, **{**options, "TangledFraction": 0}))
     results[f"perturb {name}"] = [values(pieces, ["points", "Displacement"]), pieces.Summary]
     graded = update(ElementQuality(source, Metrics=["Mean ratio"], Criteria=CRITERIA))

@@ -79,6 +79,12 @@ TOGETHER = {
         ({"limits": 0.5}, {"MaximumDisplacement": 0.5}),
         ({"limits": "P"}, {"LimitArray": "P"}),
     ],
+    "metric": [
+        ({"sizes": "P"}, {"Source": 0, "SizeArray": "P"}),
+        ({"field": "P"}, {"Source": 1, "Field": "P"}),
+        ({"distance": "P"}, {"Source": 3, "DistanceArray": "P"}),
+        ({"source": "distance"}, {"Source": 3}),
+    ],
     "improve": [
         ({"metric": "Radius ratio"}, {"Objective": 3, "Metric": 2}),
         ({"objective": "sum"}, {"Objective": 4}),

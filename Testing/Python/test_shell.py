@@ -97,7 +97,8 @@ def test_json_and_quiet():
         "--combinations", "1"], "peridynamics": ["square.vtu"], "interaction-layer": ["triangles.vtu", "-o", "l.vtu"],
         "domain": ["rectangle", "--cells", "100", "-o", "d.vtu"], "convert": ["plate.vtu", "c.vtk"],
         "triangle-mesh": ["plate.poly", "-o", "t.vtu"], "tet-mesh": ["cube.smesh", "-o", "te.vtu"],
-        "horizon-neighbors": ["square.vtu"], "run": ["steps.toml"], "formats": [], "info": ["plate.vtu"],
+        "horizon-neighbors": ["square.vtu"], "metric": ["plate.vtu", "-o", "m.vtu"],
+        "run": ["steps.toml"], "formats": [], "info": ["plate.vtu"],
     }  # fmt: skip
     for command in COMMANDS:
         arguments = lines[command]

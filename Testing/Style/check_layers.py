@@ -31,7 +31,7 @@ FLOORS = (
     ("Quality", "Shapes", "Domains", "Perturbation", "Ranks"),
     ("FiniteVolume", "Objectives", "Patches", "Solvers"),
     ("Boundary", "Elliptic", "Peridynamics"),
-    ("Sliding",),
+    ("Adaptation", "Sliding"),
     ("Untangling",),
     ("Optimization",),
     ("Curved", "Curving", "Deformation", "Polyhedral", "Reconnection"),

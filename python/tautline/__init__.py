@@ -69,6 +69,10 @@ if _vtk.available("_curving"):
     from ._curving import curve
     from ._curving_parts import CurveResult
     __all__ += ["CurveResult", "curve"]
+if _vtk.available("_adaptation"):
+    from ._adaptation import metric
+    from ._adaptation_parts import MetricResult
+    __all__ += ["MetricResult", "metric"]
 if _vtk.available("_reconnection"):
     from ._reconnection import improve
     from ._reconnection_parts import ImproveResult

@@ -33,7 +33,7 @@ def _program() -> str:
 #: The groups of the commands in the help.
 _GROUPS = {
     "main commands": ("info", "quality", "untangle", "optimize", "convert"),
-    "measure": ("report", "compare", "metrics", "criteria", "metric-field"),
+    "measure": ("report", "compare", "metrics", "criteria", "metric-field", "metric"),
     "change": ("improve", "warp", "perturb"),
     "make and read meshes": ("domain", "triangle-mesh", "tet-mesh", "formats"),
     "equations": ("solve", "condition", "solver-study", "peridynamics", "interaction-layer", "horizon-neighbors"),

@@ -30,6 +30,7 @@ from ._vtk import vtkMeshDecomposition as vtkMeshDecomposition
 from ._vtk import vtkMeshFileReader as vtkMeshFileReader
 from ._vtk import vtkMeshFileWriter as vtkMeshFileWriter
 from ._vtk import vtkMeshImprover as vtkMeshImprover
+from ._vtk import vtkMeshMetric as vtkMeshMetric
 from ._vtk import vtkMeshMotionAlgorithm as vtkMeshMotionAlgorithm
 from ._vtk import vtkMeshOptimizer as vtkMeshOptimizer
 from ._vtk import vtkMeshPerturbation as vtkMeshPerturbation

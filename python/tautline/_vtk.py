@@ -33,6 +33,7 @@ CAPABILITIES = {
     "_optimization": "TautlineOptimization",
     "_untangling": "TautlineUntangling",
     "_curving": "TautlineCurving",
+    "_adaptation": "TautlineAdaptation",
     "_reconnection": "TautlineReconnection",
     "_deformation": "TautlineDeformation",
     "_shapes": "TautlineShapes",

@@ -3,36 +3,6 @@
 
 namespace tautline
 {
-namespace
-{
-EdgeMetric metricOf(double length)
-{
-  const double m = 1.0 / (length * length);
-  return { m, m, m, 0.0, 0.0, 0.0 };
-}
-
-bool isPositiveDefinite(const EdgeMetric& m)
-{
-  const double minor = m[0] * m[1] - m[3] * m[3];
-  const double determinant =
-    m[2] * minor - m[4] * (m[0] * m[4] - m[3] * m[5]) + m[5] * (m[3] * m[4] - m[1] * m[5]);
-  return std::isfinite(determinant) && m[0] > 0.0 && minor > 0.0 && determinant > 0.0;
-}
-}
-
-EdgeMetric turned(const EdgeMetric& m, const std::array<Vec3, 3>& axes)
-{
-  const auto product = [&](int i, int j)
-  {
-    const Vec3 &a = axes[i], &b = axes[j];
-    return m[0] * a[0] * b[0] + m[1] * a[1] * b[1] + m[2] * a[2] * b[2] +
-      m[3] * (a[0] * b[1] + a[1] * b[0]) + m[4] * (a[1] * b[2] + a[2] * b[1]) +
-      m[5] * (a[0] * b[2] + a[2] * b[0]);
-  };
-  return { product(0, 0), product(1, 1), product(2, 2), product(0, 1), product(1, 2),
-    product(0, 2) };
-}
-
 std::vector<EdgeMetric> edgeMetrics(
   const ReconnectionInput& input, const ReconnectionOptions& options)
 {
@@ -53,12 +23,12 @@ std::vector<EdgeMetric> edgeMetrics(const std::vector<Vec3>& points, int exponen
   if (options.size == ReconnectionSize::Input)
   {
     std::vector<EdgeMetric> metrics(lengths.size());
-    std::transform(lengths.begin(), lengths.end(), metrics.begin(), metricOf);
+    std::transform(lengths.begin(), lengths.end(), metrics.begin(), isotropicMetric);
     return metrics;
   }
   if (options.size == ReconnectionSize::Length)
   {
-    return std::vector<EdgeMetric>(count, metricOf(converted(options.edgeLength)));
+    return std::vector<EdgeMetric>(count, isotropicMetric(converted(options.edgeLength)));
   }
   if (!options.sizes)
   {
@@ -70,7 +40,7 @@ std::vector<EdgeMetric> edgeMetrics(const std::vector<Vec3>& points, int exponen
   {
     if (options.size == ReconnectionSize::Lengths)
     {
-      metrics[v] = metricOf(converted(options.sizes[v]));
+      metrics[v] = isotropicMetric(converted(options.sizes[v]));
       invalid += !(options.sizes[v] > 0.0) || !std::isfinite(options.sizes[v]);
       continue;
     }

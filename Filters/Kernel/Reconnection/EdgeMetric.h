@@ -8,19 +8,11 @@
 #define tautline_EdgeMetric_h
 
 #include "ReconnectionInput.h"
+#include "tautline/Adaptation/MetricTensor.h"
 
 namespace tautline
 {
-/// xx yy zz xy yz xz of a positive definite tensor.
-using EdgeMetric = std::array<double, 6>;
-
-/// The square of the length of an edge in the mean of two metrics.
-inline double squaredLength(const Vec3& e, const EdgeMetric& a, const EdgeMetric& b)
-{
-  const auto m = [&](int k) { return 0.5 * (a[k] + b[k]); };
-  return m(0) * e[0] * e[0] + m(1) * e[1] * e[1] + m(2) * e[2] * e[2] +
-    2.0 * (m(3) * e[0] * e[1] + m(4) * e[1] * e[2] + m(5) * e[0] * e[2]);
-}
+using EdgeMetric = MetricTensor;
 
 /**
  * @brief The metrics that the options ask for, in the units of the input as converted; empty for
@@ -60,8 +52,5 @@ std::vector<double> meanEdgeLengths(const std::vector<Vec3>& points, const Cells
   }
   return sums;
 }
-
-/// A metric in other coordinates: of points x with x . axes[i].
-EdgeMetric turned(const EdgeMetric& m, const std::array<Vec3, 3>& axes);
 }
 #endif

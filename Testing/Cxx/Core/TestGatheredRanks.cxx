@@ -9,6 +9,7 @@
 #include "vtkInteractionLayer.h"
 #include "vtkMeshComparison.h"
 #include "vtkMeshImprover.h"
+#include "vtkMeshMetric.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshWarp.h"
 #include "vtkMovingBoundary.h"
@@ -168,6 +169,7 @@ void testMeshes()
   testFilter<vtkMeshWarp>("Warp Mesh", square(), false, warp);
   testFilter<vtkMeshPerturbation>("Perturb Mesh", square(), false, one);
   testFilter<vtkMeshImprover>("Improve Mesh", cube(), false, one);
+  testFilter<vtkMeshMetric>("Metric Tensor", cube(), false, one);
   testFilter<vtkInteractionLayer>("Interaction Layer", square(), false, one);
   testFilter<vtkHorizonNeighbors>("Horizon Neighbors", square(), true,
     [](vtkHorizonNeighbors* filter, vtkDataObject* data)

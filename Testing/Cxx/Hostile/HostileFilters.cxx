@@ -15,6 +15,7 @@
 #include "vtkMeshComparison.h"
 #include "vtkMeshCurving.h"
 #include "vtkMeshImprover.h"
+#include "vtkMeshMetric.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
@@ -251,6 +252,20 @@ void addFilters(std::vector<HostileFilter>& list)
     false);
   // The input is the geometry of a tetrahedral mesh.
   add("geometry", triangles, MADE(vtkMeshCurving, SetInputDataObject(0, tetrahedra())), 1, false);
+  module = "Adaptation";
+  using Tensors = vtkMeshMetric;
+  add("", triangles, MADE(vtkMeshMetric, SetTimeLimit(Seconds)));
+  add("hessian", tetrahedra,
+    TIMED(
+      vtkMeshMetric, SetSource(Tensors::HESSIAN), SetInputArrayToProcess(1, 0, 0, points, "V")));
+  add("projection", triangles,
+    TIMED(vtkMeshMetric, SetSource(Tensors::HESSIAN), SetRecovery(Tensors::DOUBLE_PROJECTION),
+      SetInputArrayToProcess(1, 0, 0, points, "T"), SetTarget(Tensors::INTERPOLATION_ERROR)));
+  add("sizes", triangles,
+    TIMED(vtkMeshMetric, SetSource(Tensors::SIZES), SetInputArrayToProcess(0, 0, 0, points, "T"),
+      SetInputArrayToProcess(4, 0, 0, points, "T")));
+  add("distance", tetrahedra, TIMED(vtkMeshMetric, SetSource(Tensors::DISTANCE)));
+  add("curvature", tetrahedra, TIMED(vtkMeshMetric, SetFeatureAngle(180)));
   module = "Reconnection";
   add("", tetrahedra, MADE(vtkMeshImprover, SetTimeLimit(Seconds)), 0, false, 1);
   add("flat", tetrahedra,

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file AdaptationMesh.h
+ * @brief The elements of a mesh and what fields of metrics at their points need: neighbors, shares
+ * of the volume, normals.
+ *
+ * Points and elements are numbered by their coordinates, so that sums and the order of neighbors,
+ * and with them the results, do not depend on how the mesh lists them (those of the curvature: but
+ * for rounding).
+ */
+#ifndef tautline_AdaptationMesh_h
+#define tautline_AdaptationMesh_h
+
+#include "MetricTensor.h"
+#include "tautline/Mesh/Mesh.h"
+
+#include <memory>
+
+namespace tautline
+{
+class TAUTLINE_KERNEL_EXPORT AdaptationMesh
+{
+public:
+  /**
+   * @param mesh its cells of the highest dimension are the elements; of cells of higher order the
+   * corners count. May be destroyed afterwards.
+   * @param representative one per point, of points that are one the first; empty: each is itself
+   * @param skip one flag per cell: it does not count in volumes, as a ghost; may be null
+   *
+   * Throws Error if there is no element, or an element has a point that is not finite.
+   */
+  explicit AdaptationMesh(const Mesh& mesh, const std::vector<Index>& representative = {},
+    const unsigned char* skip = nullptr, int threads = 0);
+  AdaptationMesh(const AdaptationMesh&) = delete;
+  AdaptationMesh& operator=(const AdaptationMesh&) = delete;
+
+  /// The elements at the points of elements.
+  const Mesh& mesh() const { return *this->Elements; }
+  /// 3, or 2 for planar meshes and surfaces.
+  int dimension() const { return this->Dim; }
+  int threads() const { return this->Threads; }
+  Index numberOfPoints() const { return static_cast<Index>(this->Origins.size()); }
+  Vec3 point(Index p) const { return pointOf(this->Elements->view(), p); }
+  /// The diagonal of the bounding box.
+  double diagonal() const { return diagonalOf(this->Elements->view()); }
+
+  /// Indices that follow each other in memory.
+  struct List
+  {
+    const Index *first, *last;
+    const Index* begin() const { return this->first; }
+    const Index* end() const { return this->last; }
+  };
+  /// The other points of the elements at a point, in increasing order.
+  List neighbors(Index p) const
+  {
+    const Index* all = this->Neighbors.data();
+    return { all + this->NeighborStarts[p], all + this->NeighborStarts[p + 1] };
+  }
+  /// The elements at a point, in increasing order.
+  List elements(Index p) const
+  {
+    const Index* all = this->Around.cells.data();
+    return { all + this->Around.offsets[p], all + this->Around.offsets[p + 1] };
+  }
+
+  /// Per element its area or volume, at least 0, whatever its orientation.
+  const std::vector<double>& sizes() const { return this->Sizes; }
+  /// Per point its share of the area or volume: each element is divided equally among its points.
+  const std::vector<double>& volumes() const { return this->Volumes; }
+  /// The same with each element divided by the area or volume of the ideal one with edges of
+  /// length 1: sqrt(3)/4 for triangles, sqrt(2)/12 for tetrahedra, 1 for quadrilaterals and
+  /// hexahedra, sqrt(3)/4 for wedges, sqrt(2)/6 for pyramids.
+  const std::vector<double>& idealVolumes() const { return this->IdealVolumes; }
+  /// Per point the unit normal of a planar mesh or surface; empty for a volume.
+  const std::vector<Vec3>& normals() const { return this->Normals; }
+
+  /// Values per point of the mesh as given, `components` each, as values per point here.
+  std::vector<double> taken(const double* values, int components) const;
+  /// Metrics per point here as 6 numbers per point of the mesh as given.
+  /// @param other of points without an element
+  std::vector<double> given(
+    const std::vector<MetricTensor>& metrics, const MetricTensor& other) const;
+  /// Per point here its number in the mesh as given.
+  const std::vector<Index>& origins() const { return this->Origins; }
+  /// Per point of the mesh as given its number here; -1: none.
+  const std::vector<Index>& places() const { return this->Places; }
+
+private:
+  void takePoints(const Mesh& mesh, const std::vector<Index>& representative);
+  void takeElements(const Mesh& mesh, const unsigned char* skip);
+  void measure();
+  void findNeighbors();
+  void findNormals();
+
+  int Dim, Threads;
+  std::vector<Index> Places, Origins;
+  std::vector<double> Coordinates;
+  std::vector<unsigned char> Types, Skip;
+  std::vector<Index> Offsets, Connectivity;
+  std::unique_ptr<Mesh> Elements;
+  VertexCells Around;
+  std::vector<Index> NeighborStarts, Neighbors;
+  std::vector<double> Sizes, Volumes, IdealVolumes;
+  std::vector<Vec3> Normals;
+};
+}
+#endif

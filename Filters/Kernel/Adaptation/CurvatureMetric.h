@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file CurvatureMetric.h
+ * @brief Sizes by the curvature of a surface, so that edges stay close to it.
+ */
+#ifndef tautline_CurvatureMetric_h
+#define tautline_CurvatureMetric_h
+
+#include "AdaptationMesh.h"
+
+namespace tautline
+{
+/**
+ * @brief At points of the boundary of a volume, of a surface, or of the border of a planar mesh,
+ * the size along each principal direction of curvature is sqrt(8 chordError R), with the radius R:
+ * then the middle of an edge is chordError away from the circle through its ends. Elsewhere, and in
+ * other directions, it is the largest size.
+ *
+ * The curvature of a surface is that of a quadric fitted to rings of neighbors over their tangent
+ * plane. Where facets meet at more than featureAngle degrees, the neighbors on each side of the
+ * sharp edge have a fit of their own, and the metric is the intersection() of theirs. On the border
+ * of a planar mesh it is that of the circle through a point and its two neighbors; corners, which
+ * bend by more than the angle, have none.
+ * @param chordError above 0
+ * @param featureAngle 0 to 180
+ * @param largest size, above 0
+ */
+TAUTLINE_KERNEL_EXPORT std::vector<MetricTensor> curvatureMetrics(
+  const AdaptationMesh& mesh, double chordError, double featureAngle, double largest);
+}
+#endif

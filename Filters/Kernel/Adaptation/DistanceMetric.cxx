@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "DistanceMetric.h"
+
+#include "FieldDerivatives.h"
+#include "tautline/Boundary/SurfaceProjection.h"
+#include "tautline/Core/Parallel.h"
+#include "tautline/Mesh/FacetTable.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace tautline
+{
+namespace
+{
+constexpr Index pointsPerSearch = 256; // in a chunk
+/// The gradient of a distance has length 1; shorter ones are the mean of several directions.
+constexpr double clearGradient = 0.5;
+
+/// The walls as triangles, or as edges with the last corner twice.
+SurfacePart wallsOf(const AdaptationMesh& mesh, const std::vector<unsigned char>& marks)
+{
+  SurfacePart part;
+  part.curve = mesh.dimension() == 2;
+  FacetTable facets(mesh.mesh());
+  facets.forEachFacet(
+    [&](Index first, const FacetUse* uses, Index count)
+    {
+      // In order around the facet: the first point, its neighbor, the opposite one of four, the
+      // other neighbor.
+      const auto& others = uses->others;
+      const std::array<Index, MaxFaceNodes> nodes = { first, others[0],
+        others[2] >= 0 ? others[2] : others[1], others[2] >= 0 ? others[1] : -1 };
+      const auto isWall = [&](Index p) { return p < 0 || marks.empty() || marks[p]; };
+      if (count != 1 || !std::all_of(nodes.begin(), nodes.end(), isWall))
+      {
+        return;
+      }
+      const auto at = [&](int k) { return mesh.point(nodes[k]); };
+      part.pieces.push_back({ at(0), at(1), nodes[2] < 0 ? at(1) : at(2) });
+      if (nodes[3] >= 0)
+      {
+        part.pieces.push_back({ at(0), at(2), at(3) });
+      }
+    });
+  return part;
+}
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> wallDistances(
+  const AdaptationMesh& mesh, const std::vector<unsigned char>& marks)
+{
+  const SurfacePart walls = wallsOf(mesh, marks);
+  if (walls.pieces.empty())
+  {
+    throw Error(marks.empty()
+        ? "The mesh is closed and has no boundary to measure the distance from: choose an array "
+          "with the distance."
+        : "No facet of the boundary has all its points marked as wall: mark those of whole "
+          "facets.");
+  }
+  const SurfaceProjection projection(walls, nullptr);
+  std::vector<double> result(mesh.numberOfPoints());
+  parallelFor(mesh.numberOfPoints(), pointsPerSearch, mesh.threads(),
+    [&](Index p)
+    {
+      std::int32_t piece = 0;
+      result[p] =
+        projection.distanceOf(mesh.point(p), 0.0, std::numeric_limits<double>::infinity(), piece);
+    });
+  return result;
+}
+
+//------------------------------------------------------------------------------
+std::vector<MetricTensor> distanceMetrics(
+  const AdaptationMesh& mesh, const std::vector<double>& distances, const LayerSizes& sizes)
+{
+  std::vector<double> absolute(distances.size());
+  std::transform(distances.begin(), distances.end(), absolute.begin(),
+    [](double distance) { return std::abs(distance); });
+  const std::vector<Vec3> gradients = recoverGradients(mesh, absolute);
+  std::vector<MetricTensor> result(absolute.size());
+  parallelFor(mesh.numberOfPoints(), ChunkSize, mesh.threads(),
+    [&](Index p)
+    {
+      const double across = sizes.first + (sizes.growth - 1.0) * absolute[p];
+      const double along = std::max(sizes.ratio * sizes.first, across);
+      const double length = norm(gradients[p]);
+      const double difference = 1.0 / (across * across) - 1.0 / (along * along);
+      if (!(length > clearGradient) || !(difference > 0.0))
+      {
+        result[p] = isotropicMetric(across);
+        return;
+      }
+      const Vec3 d = (1.0 / length) * gradients[p];
+      MetricTensor m = isotropicMetric(along);
+      const MetricTensor square = { d[0] * d[0], d[1] * d[1], d[2] * d[2], d[0] * d[1], d[1] * d[2],
+        d[0] * d[2] };
+      for (std::size_t k = 0; k < m.size(); ++k)
+      {
+        m[k] += difference * square[k];
+      }
+      result[p] = m;
+    });
+  return result;
+}
+}

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The result of metric(), and its source, which follows from the arrays given."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
+
+from . import _commands
+from ._arguments import picked, sets
+from ._arrays import POINTS, Array, InputArrays, Values, point_array
+from ._choices import METRIC_SOURCES, MetricSource
+from ._errors import Error
+from ._results import Result
+
+_SIZES, _FIELD, _DISTANCE = 0, 1, 2  # input arrays of vtkMeshMetric
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class MetricResult(Result):
+    """The result of metric(). For composite data, complexity and elements are sums, sizes extremes.
+
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The mesh with the point array `Metric`; shares the rest with the input.
+    tensors : Array
+        The metric tensors, n x 6: xx, yy, zz, xy, yz, xz.
+    ellipsoids : vtkPolyData
+        Ellipsoids at up to 500 points with the sizes as diameters; point arrays `Size`, `Anisotropy`, `PointId`.
+    complexity : float
+        The area or volume as the metric measures it.
+    elements : float
+        The number of elements with edges of length 1: the complexity times 2.31 for triangles, 8.49 for tetrahedra, 1
+        for quadrilaterals and hexahedra.
+    smallest_size, largest_size : float
+        Extremes of the sizes, in the mesh's unit.
+    anisotropy : float
+        The largest quotient of two sizes at a point.
+    summary : str
+        The result in words.
+    """
+
+    _per_element: ClassVar[tuple[str, ...]] = ("tensors",)
+    mesh: vtkDataObject
+    tensors: Array
+    ellipsoids: vtkPolyData
+    complexity: float
+    elements: float
+    smallest_size: float
+    largest_size: float
+    anisotropy: float
+    summary: str
+
+
+@sets("metric", "Source", "SizeArray", "Field", "DistanceArray")
+def set_metric_source(
+    filter_: Any,
+    inputs: InputArrays,
+    source: MetricSource | None = None,
+    sizes: Values | None = None,
+    field: Values | None = None,
+    distance: Values | None = None,
+) -> None:
+    """Set where the tensors come from.
+
+    source: "sizes" (an array of sizes or metric tensors), "hessian" (the least interpolation error of a field),
+        "curvature" (of the boundary of a volume, of a surface, or of the border of a planar mesh) or "distance" (layers
+        at a wall). None: as the array given says, without one "curvature".
+    sizes: for "sizes", a point array (its name, or one row per point): the size at each point, or a metric tensor of
+        six or nine components.
+    field: for "hessian", a point array (its name, or one row per point): the field whose interpolation error is
+        minimized; of several components, that of all.
+    distance: for "distance", a point array (its name, or one row per point): the distance from the wall. None: it is
+        computed.
+    """
+    given = {"sizes": sizes, "hessian": field, "distance": distance}
+    implied = [name for name, values in given.items() if values is not None]
+    chosen = picked("source", source, METRIC_SOURCES) if source is not None else (*implied, "curvature")[0]
+    wrong = [name for name in implied if name != chosen]
+    if wrong:
+        raise Error(f"the source is {chosen!r}, and an array for the source {wrong[0]!r} is given: give one of them")
+    if chosen in ("sizes", "hessian") and not implied:
+        argument = "sizes" if chosen == "sizes" else "field"
+        raise Error(f"the source is {chosen!r}: give {argument}, a point array")
+    filter_.SetSource(METRIC_SOURCES.index(picked("source", chosen, METRIC_SOURCES)))
+    inputs.use(_SIZES, sizes, "sizes", POINTS)
+    inputs.use(_FIELD, field, "field", POINTS)
+    inputs.use(_DISTANCE, distance, "distance", POINTS, scalar=True)
+
+
+def metric_result(filter_: Any, output: vtkDataObject) -> MetricResult:
+    """The result of a filter that has run."""
+    return MetricResult(
+        mesh=output,
+        tensors=point_array(output, filter_.GetArrayName()),
+        ellipsoids=filter_.GetEllipsoids(),
+        complexity=filter_.GetComplexity(),
+        elements=filter_.GetElements(),
+        smallest_size=filter_.GetSmallestFound(),
+        largest_size=filter_.GetLargestFound(),
+        anisotropy=filter_.GetAnisotropyFound(),
+        summary=filter_.GetSummary(),
+    )
+
+
+# --- the shell ----------------------------------------------------------------------------------------------
+
+
+def add_metric_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of these arguments."""
+    parser.add_argument("--source", choices=METRIC_SOURCES,
+                        help="where tensors come from (default: that of the array given, or curvature)")  # fmt: skip
+    parser.add_argument("--sizes", metavar="ARRAY", help="point array with sizes or metric tensors")
+    parser.add_argument("--field", metavar="ARRAY", help="point array whose interpolation error is minimized")
+    parser.add_argument("--distance", metavar="ARRAY", help="point array with the distance from the wall")
+
+
+def metric_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The values of these options."""
+    return _commands.given(arguments, ("source", "sizes", "field", "distance"))
+
+
+def finish_metric(arguments: argparse.Namespace, result: MetricResult) -> None:
+    """Print the result of the command."""
+    _commands.finish(arguments, result, result.summary)
