@@ -213,7 +213,8 @@ def draw(metric: dict, path: Path) -> None:
 
 def wrong_pictures(metrics: list):
     wanted = {f"metric_{m['name']}.png" for m in metrics}
-    found = {path.name: path.stat().st_size for path in HERE.glob("metric_*.png")}
+    found = {path.name: path.stat().st_size for path in HERE.glob("metric_*.png")
+             if not path.with_suffix(".html").is_file()}  # of a help page
     yield from (f"{name}: there is no such picture" for name in sorted(wanted - set(found)))
     yield from (f"{name}: of no metric" for name in sorted(set(found) - wanted))
     yield from (f"{name}: {size} bytes, at most {MOST_BYTES}" for name, size in found.items() if size > MOST_BYTES)

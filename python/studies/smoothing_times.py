@@ -212,8 +212,8 @@ def sweep_findings(report: Report, domain: str, found: dict[str, Swept]) -> None
             shown.append(f"{metric}: least at {least:.0%}" if times else f"{metric}: failed")
         report.finding(f"2.4, {domain}", f"The total time with {COMBINATION[n]} is minimal at 95 % of the possible "
                        "reduction", all_of(verdicts), "; ".join(shown),
-                       criterion="with each metric, less total time than without smoothing and than with the other shares "
-                       "that take another number of sweeps, by more than the noise", stated="95 %")
+                       criterion="with each metric, less total time than without smoothing and than with the other "
+                       "shares that take another number of sweeps, by more than the noise", stated="95 %")
         report.finding(f"2.4, {domain}", f"Smoothing to 95 % takes less total time with {COMBINATION[n]} than no "
                        "smoothing", all_of(none), "; ".join(
                            f"{m}: {row[REDUCTION][1][n]} and {row[0.0][1][n]}" for m, row in found.items()

@@ -185,9 +185,9 @@ ExtremeEigenvalues slepcExtremeEigenvalues(Mat matrix, const LinearSystem& syste
         petsc(STGetKSP(transformation, &inner));
         petsc(KSPSetType(inner, KSPPREONLY));
         petsc(KSPGetPC(inner, &pc));
-        petsc(EPSSetTolerances(solver,
-          std::max(FactoredTolerance * options.tolerance, LeastTolerance),
-          options.maximumIterations));
+        petsc(
+          EPSSetTolerances(solver, std::max(FactoredTolerance * options.tolerance, LeastTolerance),
+            options.maximumIterations));
         const std::string package = chooseFactorization(pc, symmetric, ranks, optionSet, "st_");
         optionSet.setDefault("-st_mat_mumps_icntl_13", "1"); // or several ranks do not count
         low.method = "Krylov-Schur, shift-invert (Cholesky by " + package + ")";
