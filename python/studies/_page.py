@@ -273,7 +273,8 @@ def _rest(study: Study, shown: set[str], pictures: dict[tuple[str, str], str]) -
     findings = [finding for finding in study.findings if finding not in there]
     texts = [_part(part) for part in study.parts if part.get("file", "") not in shown]
     images = [picture for file, picture in study.pictures.items() if (study.name, file) not in pictures]
-    parts = [f"<h3><a name='study-{study.name}'></a>{study.name}</h3><p>{escape(study.text)}</p>",
+    anchor = f"study-{study.name}"
+    parts = [f"<h3 id='{anchor}'><a name='{anchor}'></a>{study.name}</h3><p>{escape(study.text)}</p>",
              f"<p class='no'>{escape(study.error)}</p>" if study.error else "",
              _table([finding for finding in findings if not finding.own])]
     own = [finding for finding in findings if finding.own]
