@@ -126,7 +126,7 @@ def check_verdicts(study: str, calls, directory: Path, others=()) -> None:
 
     add(verdicts(others, directory))
     for seed in range(TRIALS):
-        if all(len(words & DECIDED) > 1 for words in seen.values()):
+        if not missing():
             break
         for made in filter(None, (calls, others)):
             add(verdicts(made, directory, np.random.default_rng(seed)))
