@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from typing import Sequence
 
 import numpy as np
@@ -169,7 +170,7 @@ def brain_findings(report: Report, found: dict[str, list[float]], inverted: dict
           BOTH, ["untangle"], LARGEST, TABLE_3_8)
     least(report, "Table 3.8", "Exponential and equal sum need fewer iterations than untangling alone", found, BOTH,
           ["untangle"], COUNT, TABLE_3_8)
-    part = 1 - found["exponential-sum"][CONDITION] / found["untangle"][CONDITION]
+    part = 1 - found["exponential-sum"][CONDITION] / (found["untangle"][CONDITION] or math.nan)
     report.finding("3.5.1", "The exponential sum has a 19 % smaller condition number than untangling alone",
                    gain(part, SMALLER), percent(part), stated=f"{percent(SMALLER)}; 905 against 1,079 are 16.1 %",
                    criterion=GAIN_RULE)
