@@ -44,7 +44,7 @@
  * @par Limitations:
  * Each block of composite data has a metric of its own, and the target holds for each. Cells of
  * higher order are refused. Lengths are in double precision; where sizes squared leave its range,
- * as those of meshes of 1e-160, it is an error.
+ * as in meshes of 1e-160, it is an error.
  *
  * @par Several processes:
  * The pieces are gathered on the first process; results do not depend on how the mesh is cut.
@@ -177,7 +177,7 @@ public:
   ///@}
 
   ///@{
-  /// With DISTANCE: the thickness of a layer over that of the one before, at least 1. The default
+  /// With DISTANCE: the growth factor of the layers, at least 1. The default
   /// is 1.2.
   vtkTautlineSetRangeMacro(WallGrowth, double, 1.0, VTK_DOUBLE_MAX);
   vtkGetMacro(WallGrowth, double);

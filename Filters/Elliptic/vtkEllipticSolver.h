@@ -297,7 +297,7 @@ private:
     const tautline::EllipticInput& input, tautline::LocalMesh& mesh);
   /// The times of the steps.
   std::vector<double> Times() const;
-  /// Adds the errors of a solution to those of other blocks. Collective.
+  /// Adds the errors of a block to the totals. Collective.
   void Compare(const tautline::EllipticSystem& system, const std::vector<double>& unknowns,
     tautline::RankGroup& processes);
   /// Adds the arrays. @return the number of points in no element

@@ -2,10 +2,10 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Makes the committed findings of the studies, their report and its summary.
 
-make_studies.py DIR --write takes the results of `python3 -m tautline study all --record --out DIR`. Of studies without
-results there, and without DIR of all, it keeps the committed findings and the pictures of the report: after a reason
-was added to python/studies/evidence/reasons.json, for instance. Without --write nothing is written; the code is 1 if a
-file is not what this program makes.
+make_studies.py DIR --write takes the results of `python3 -m tautline study all --record --out DIR`. Where a study
+has no results there, and without DIR everywhere, it keeps the committed findings and pictures: after a reason was added
+to python/studies/evidence/reasons.json, for instance. Without --write nothing is written; the code is 1 if a file is
+not what this program makes.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ WIDTH = 860  # pixels, of a picture
 
 
 def check(name: str, folder: Path) -> None:
-    """Refuse results that were made with other options than those of the record."""
+    """Reject results of a run whose options are not the record's."""
     expected = list(_evidence.size_of(name).options)
     options = (folder / OPTIONS).read_text(encoding="utf-8").split()
     if options[: len(expected)] != expected or set(options[len(expected) :: 2]) - {"--data"}:

@@ -217,6 +217,9 @@ def check_angles():
         # In the plane SI is 1 / (4 sqrt(3) IMR), so that both have the same best mesh.
         assert np.allclose(rows["imr"], rows["si"], atol=0.5)
     assert float(studies.rows("smoothing_times", "table_2_6")[0]["IMR dissertation"]) == 55
+    shares = [r for r in studies.rows("smoothing_times", "shares_wrench") if r["metric"] == "imr"]
+    sweeps = [int(r["sweeps"]) for r in shares]
+    assert sweeps == sorted(sweeps) and sweeps[0] == 0 < sweeps[1] < sweeps[-1], sweeps
 
 
 if __name__ == "__main__":

@@ -117,7 +117,7 @@ def test_threads():
 
 
 def test_rank_scaling():
-    """Results on two ranks are those of one; with other numbers they are not."""
+    """Two ranks reproduce the result of one; other numbers do not pass."""
     if not shutil.which("mpirun") or not shutil.which("pvbatch"):
         print("not run, without mpirun or pvbatch")
         return

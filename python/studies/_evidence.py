@@ -24,8 +24,8 @@ class Size:
     reduced: str = ""
 
 
-_SOLVERS = ("the dissertation has 500,000 vertices; this is the size of Table 2.4 whose run takes up to half an hour "
-            "of CPU time, elasticity the most")
+_SOLVERS = ("the dissertation has 500,000 vertices; many combinations, or elasticity, take hours there: for statements "
+            "about large systems, see solver_orders and solver_restart")
 _ELASTICITY = ("elasticity is solved on up to 50,000 vertices, of 500,000: its systems take ten times as long "
                "as scalar ones")
 _SHAPES = "the dissertation has 1,000,000 elements; the times of both studies are compared by their ratios"

@@ -48,7 +48,7 @@ FULL, SMALL = 500_000, 1_000
 REPEATS = 3  # runs of each combination, for their times
 #: CPU seconds from which a combination is run once: the noise is a smaller part of longer times.
 LONG = 2.0
-#: Shorter ones are run until they have taken so many CPU seconds, or so many times.
+#: Shorter ones are repeated until their runs have taken this many CPU seconds, or this many times.
 ENOUGH, MOST_RUNS = 1.0, 10
 #: Why ours does not fail where the printed one does.
 POSITIVE = ("without inverted elements the matrix, Jacobi's preconditioner and SSOR are positive definite, so that CG "

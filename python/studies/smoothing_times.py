@@ -124,7 +124,7 @@ def study(report: Report, given: argparse.Namespace, seed: int) -> None:
             seconds[domain, metric], newton[domain, metric] = run.times(), other.times()
             shares[domain][metric] = angles(run.mesh)
             boundary[domain, metric] = poor_at_boundary(run.mesh)
-            steps.append([metric, *(len(r.seconds) - 1 for r in (run, other)), best[metric]])
+            steps.append([metric, *(int(r.iterations[-1]) for r in (run, other)), best[metric]])
         report.table(f"iterations_{domain}", f"Sweeps to {100 * REDUCTION:g} %, {domain}",
                      ["metric", "NLCG", "Newton", "best objective"], steps)
         swept[domain] = sweep(report, domain, mesh, best, given)
@@ -156,7 +156,7 @@ def own(report: Report, given: argparse.Namespace) -> None:
             best = best_objective(mesh, metric, given.threads)
             run, other = (smoothing(mesh, metric, given.threads, given.repeats, o, best=best)
                           for o in ("nlcg", "newton"))
-            rows.append([metric, *(v for r in (run, other) for v in (r.times().best, len(r.seconds) - 1)),
+            rows.append([metric, *(v for r in (run, other) for v in (r.times().best, int(r.iterations[-1]))),
                          run.first("objective"), run.last("objective")])
             series[metric] = run.mesh
         report.table(f"smoothing_{name}", f"{name}, {mesh.GetNumberOfCells():,} cells: smoothing to "
@@ -188,7 +188,7 @@ def sweep(report: Report, domain: str, mesh: vtkDataSet, best: dict[str, float],
                 run = smoothing(mesh, metric, given.threads, given.repeats, share=share, best=best[metric])
             times = run.times() if run else Times((0.0,))
             solves = solve(run.mesh if run else mesh, PDES["poisson"], setup)
-            found[metric][share] = (len(run.seconds) - 1 if run else 0,
+            found[metric][share] = (int(run.iterations[-1]) if run else 0,
                                     {n: times + s.times for n, s in solves.items() if s.converged})
     report.table(f"shares_{domain}", f"Total time (CPU s) by the share of the reduction, Poisson's equation, {domain}",
                  ["metric", "share", "sweeps", *(COMBINATION[n] for n in SWEPT)],

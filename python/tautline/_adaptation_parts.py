@@ -73,7 +73,7 @@ def set_metric_source(
     sizes: for "sizes", a point array (its name, or one row per point): the size at each point, or a metric tensor of
         six or nine components.
     field: for "hessian", a point array (its name, or one row per point): the field whose interpolation error is
-        minimized; of several components, that of all.
+        minimized; all components count.
     distance: for "distance", a point array (its name, or one row per point): the distance from the wall. None: it is
         computed.
     """
@@ -113,7 +113,7 @@ def metric_result(filter_: Any, output: vtkDataObject) -> MetricResult:
 def add_metric_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of these arguments."""
     parser.add_argument("--source", choices=METRIC_SOURCES,
-                        help="where tensors come from (default: that of the array given, or curvature)")  # fmt: skip
+                        help="where tensors come from (default: by the array given, or curvature)")  # fmt: skip
     parser.add_argument("--sizes", metavar="ARRAY", help="point array with sizes or metric tensors")
     parser.add_argument("--field", metavar="ARRAY", help="point array whose interpolation error is minimized")
     parser.add_argument("--distance", metavar="ARRAY", help="point array with the distance from the wall")

@@ -5,8 +5,8 @@
  * of the volume, normals.
  *
  * Points and elements are numbered by their coordinates, so that sums and the order of neighbors,
- * and with them the results, do not depend on how the mesh lists them (those of the curvature: but
- * for rounding).
+ * and with them the results, do not depend on how the mesh lists them (the curvature up to
+ * rounding).
  */
 #ifndef tautline_AdaptationMesh_h
 #define tautline_AdaptationMesh_h

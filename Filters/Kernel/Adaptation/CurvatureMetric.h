@@ -16,10 +16,10 @@ namespace tautline
  * then the middle of an edge is chordError away from the circle through its ends. Elsewhere, and in
  * other directions, it is the largest size.
  *
- * The curvature of a surface is that of a quadric fitted to rings of neighbors over their tangent
+ * The curvature of a surface comes from a quadric fitted to rings of neighbors over their tangent
  * plane. Where facets meet at more than featureAngle degrees, the neighbors on each side of the
  * sharp edge have a fit of their own, and the metric is the intersection() of theirs. On the border
- * of a planar mesh it is that of the circle through a point and its two neighbors; corners, which
+ * of a planar mesh it comes from the circle through a point and its two neighbors; corners, which
  * bend by more than the angle, have none.
  * @param chordError above 0
  * @param featureAngle 0 to 180

@@ -57,7 +57,7 @@ std::vector<double> wallDistances(
     throw Error(marks.empty()
         ? "The mesh is closed and has no boundary to measure the distance from: choose an array "
           "with the distance."
-        : "No facet of the boundary has all its points marked as wall: mark those of whole "
+        : "No facet of the boundary has all its points marked as wall: mark the points of whole "
           "facets.");
   }
   const SurfaceProjection projection(walls, nullptr);

@@ -61,7 +61,7 @@ struct MetricOptions
   HessianRecovery recovery = HessianRecovery::QuadraticFit;
   double norm = 2.0; ///< p, at least 1; infinity: the largest error
   MetricTarget target = MetricTarget::Elements;
-  double targetValue = 10000.0; ///< above 0; of the final metric, but for an error
+  double targetValue = 10000.0; ///< above 0; of the final metric, except for an error
 
   double chordError = 1.0;    ///< MetricSource::Curvature, above 0
   double featureAngle = 40.0; ///< degrees, 0 to 180

@@ -105,7 +105,7 @@ private:
     return next;
   }
 
-  /// The metric of a point with what those of its neighbors have grown to.
+  /// The metric of a point with what its neighbors have grown to.
   MetricTensor graded(Index p) const
   {
     const bool flat = this->TheMesh.dimension() == 2;
@@ -135,14 +135,14 @@ private:
   }
 
   /**
-   * Intersections of metrics with different axes have smaller sizes than both, and those of many
-   * rounds would become ever smaller. Between these two functions, which keep the order of metrics
+   * Intersections of metrics with different axes have smaller sizes than both, and after many
+   * rounds sizes would become ever smaller. Between these two functions, which keep the order of metrics
    * (what exceeds another one does so after them), an intersection stays below the highest
    * eigenvalue allowed.
    */
   MetricTensor raised(const MetricTensor& m) const
   {
-    constexpr double least = 1e-6; // at the highest eigenvalue, but for rounding
+    constexpr double least = 1e-6; // at the highest eigenvalue, up to rounding
     return functionOf(
       m, [&](double value) { return value / std::max(1.0 - value / this->Highest, least); });
   }

@@ -45,7 +45,7 @@ struct MetricExtremes
 TAUTLINE_KERNEL_EXPORT MetricExtremes extremesOf(
   const AdaptationMesh& mesh, const std::vector<MetricTensor>& metrics);
 
-/// Changes the metrics to limited() ones; flattens those of planar meshes and surfaces.
+/// Changes the metrics to limited() ones; flattens them in planar meshes and on surfaces.
 TAUTLINE_KERNEL_EXPORT void limitMetrics(
   const AdaptationMesh& mesh, const MetricLimits& limits, std::vector<MetricTensor>& metrics);
 
@@ -61,11 +61,11 @@ struct GradationResult
 constexpr int MaximumGradationRounds = 2000;
 
 /**
- * @brief Reduces sizes until those of neighbors differ at most by the growth of grownMetric(), to
- * 1e-7: at each point the metric is the intersection() with what those of its neighbors have grown
+ * @brief Reduces sizes until neighbors differ at most by the growth of grownMetric(), to
+ * 1e-7: at each point the metric is the intersection() with what its neighbors have grown
  * to. Isotropic sizes then grow at most by log(growth) times the distance.
  *
- * No size grows, but for rounding, and none becomes smaller than 0.9 times the smallest one given:
+ * No size grows, except by rounding, and none becomes smaller than 0.9 times the smallest one given:
  * intersections of metrics with different axes would reduce it further from round to round. The
  * result depends neither on the threads nor on the order of the points; a second call changes
  * nothing.

@@ -56,7 +56,7 @@ inline double squaredLength(const Vec3& e, const MetricTensor& a, const MetricTe
   return squaredLength(e, { m(0), m(1), m(2), m(3), m(4), m(5) });
 }
 
-/// The length of an edge whose size varies geometrically from that of one metric to that of
+/// The length of an edge whose size varies geometrically from one metric to
 /// another: the logarithmic mean of the lengths in both.
 TAUTLINE_KERNEL_EXPORT double edgeLength(
   const Vec3& e, const MetricTensor& a, const MetricTensor& b);
