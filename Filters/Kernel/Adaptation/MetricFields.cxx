@@ -136,9 +136,9 @@ private:
 
   /**
    * Intersections of metrics with different axes have smaller sizes than both, and after many
-   * rounds sizes would become ever smaller. Between these two functions, which keep the order of metrics
-   * (what exceeds another one does so after them), an intersection stays below the highest
-   * eigenvalue allowed.
+   * rounds sizes would become ever smaller. Between these two functions, which keep the order
+   * of metrics (what exceeds another one does so after them), an intersection stays below the
+   * highest eigenvalue allowed.
    */
   MetricTensor raised(const MetricTensor& m) const
   {

@@ -65,7 +65,7 @@ constexpr int MaximumGradationRounds = 2000;
  * 1e-7: at each point the metric is the intersection() with what its neighbors have grown
  * to. Isotropic sizes then grow at most by log(growth) times the distance.
  *
- * No size grows, except by rounding, and none becomes smaller than 0.9 times the smallest one given:
+ * No size grows, except by rounding, and none falls below 0.9 times the smallest one given:
  * intersections of metrics with different axes would reduce it further from round to round. The
  * result depends neither on the threads nor on the order of the points; a second call changes
  * nothing.
