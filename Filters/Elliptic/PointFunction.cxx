@@ -13,8 +13,8 @@
 #include "vtkPolyData.h"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
+#include <memory>
 #include <sstream>
 
 namespace tautline
@@ -231,31 +231,12 @@ private:
   Evaluator Values;
   bool Known = false; ///< whether the result has the components
 };
-}
 
-//------------------------------------------------------------------------------
-std::vector<double> evaluate(const std::string& expression, const std::string& what,
-  vtkDataSet* data, int components, bool finite)
+/// The expression at any place, which is the one point of a data set.
+class ExpressionAtPlace
 {
-  Expression evaluated(expression, what, data, components);
-  if (!finite)
-  {
-    evaluated.allowInvalid();
-  }
-  const vtkIdType count = data->GetNumberOfPoints();
-  std::vector<double> values(static_cast<std::size_t>(components) * count);
-  for (vtkIdType i = 0; i < count; ++i)
-  {
-    evaluated.evaluate(i, values.data() + components * i);
-  }
-  return values;
-}
-
-//------------------------------------------------------------------------------
-/// The place is the one point of a data set.
-struct PlaceFunction::Implementation
-{
-  Implementation(const std::string& expression, const std::string& what, int components)
+public:
+  ExpressionAtPlace(const std::string& expression, const std::string& what, int components)
     : Evaluated(expression, what, this->singlePoint(), components)
   {
   }
@@ -279,31 +260,49 @@ private:
   vtkNew<vtkPolyData> Data;
   Expression Evaluated;
 };
+}
+
+//------------------------------------------------------------------------------
+std::vector<double> evaluate(const std::string& expression, const std::string& what,
+  vtkDataSet* data, int components, bool finite)
+{
+  Expression evaluated(expression, what, data, components);
+  if (!finite)
+  {
+    evaluated.allowInvalid();
+  }
+  const vtkIdType count = data->GetNumberOfPoints();
+  std::vector<double> values(static_cast<std::size_t>(components) * count);
+  for (vtkIdType i = 0; i < count; ++i)
+  {
+    evaluated.evaluate(i, values.data() + components * i);
+  }
+  return values;
+}
 
 //------------------------------------------------------------------------------
 PlaceFunction::PlaceFunction(
   const std::string& expression, const std::string& what, int components, double step)
   : Components(components)
   , Step(step)
-  , Inside(std::make_unique<Implementation>(expression, what, components))
 {
+  const auto evaluated = std::make_shared<ExpressionAtPlace>(expression, what, components);
+  this->Values = [evaluated](const Vec3& place, double* values)
+  { evaluated->evaluate(place, values); };
 }
-
-//------------------------------------------------------------------------------
-PlaceFunction::~PlaceFunction() = default;
 
 //------------------------------------------------------------------------------
 void PlaceFunction::evaluate(const Vec3& place, double* values, double* gradients)
 {
-  this->Inside->evaluate(place, values);
+  this->Values(place, values);
   for (int k = 0; k < VectorSize; ++k)
   {
     double before[VectorSize], after[VectorSize];
     Vec3 moved = place;
     moved[k] = place[k] - this->Step;
-    this->Inside->evaluate(moved, before);
+    this->Values(moved, before);
     moved[k] = place[k] + this->Step;
-    this->Inside->evaluate(moved, after);
+    this->Values(moved, after);
     for (int c = 0; c < this->Components; ++c)
     {
       gradients[VectorSize * c + k] = (after[c] - before[c]) / (2.0 * this->Step);

@@ -8,7 +8,7 @@
 
 #include "tautline/Core/Types.h"
 
-#include <memory>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -65,17 +65,14 @@ public:
   /// @param step of the central differences, in the unit of length
   PlaceFunction(
     const std::string& expression, const std::string& what, int components, double step);
-  ~PlaceFunction();
 
   /// Writes `components` values, and their gradients by central differences, 3 each.
   void evaluate(const Vec3& place, double* values, double* gradients);
 
 private:
-  struct Implementation;
-
   int Components;
   double Step;
-  std::unique_ptr<Implementation> Inside;
+  std::function<void(const Vec3& place, double* values)> Values;
 };
 }
 #endif
