@@ -31,6 +31,62 @@ struct WallPlanes
 };
 }
 
+void keepBorders(const TetrahedronMesh& mesh, const std::vector<std::int32_t>& classes,
+  double tolerance, std::vector<PointFreedom>& freedoms)
+{
+  if (!mesh.hasLabels())
+  {
+    return;
+  }
+  // The walls at each edge, by their third points; those inside are there from both sides.
+  using Entry = std::array<std::int32_t, 4>;
+  std::vector<Entry> walls;
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    pollInterruption(t);
+    for (int i = 0; i < 4 && mesh.alive(t); ++i)
+    {
+      if (mesh.isWall(t, i))
+      {
+        TriangleVertices f = mesh.face(t, i);
+        std::sort(f.begin(), f.end());
+        const std::int32_t kind = mesh.label(t, i) == NoLabel ? 0 : classes[mesh.label(t, i)];
+        walls.insert(walls.end(),
+          { { f[0], f[1], f[2], kind }, { f[0], f[2], f[1], kind }, { f[1], f[2], f[0], kind } });
+      }
+    }
+  }
+  std::sort(walls.begin(), walls.end());
+  walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
+  const auto restrict = [&](PointId v, const Vec3& direction)
+  {
+    PointFreedom& freedom = freedoms[v];
+    if (freedom.kind == PointFreedom::InPlane && !freedom.isCurved())
+    {
+      freedom = { PointFreedom::OnLine, direction };
+    }
+    else if (freedom.isCurved() || norm(cross(freedom.direction, direction)) > tolerance)
+    {
+      freedom.fix();
+    }
+  };
+  for (auto first = walls.begin(); first != walls.end();)
+  {
+    const auto [a, b, third, kind] = *first;
+    const auto last = std::find_if(
+      first, walls.end(), [a = a, b = b](const Entry& e) { return e[0] != a || e[1] != b; });
+    const bool differs =
+      std::any_of(first, last, [kind = kind](const Entry& e) { return e[3] != kind; });
+    if (differs || last - first == 1)
+    {
+      const Vec3 e = mesh.point(b) - mesh.point(a);
+      restrict(a, (1.0 / norm(e)) * e);
+      restrict(b, (1.0 / norm(e)) * e);
+    }
+    first = last;
+  }
+}
+
 void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms)
 {
   std::vector<std::int32_t> uses(mesh.pointSlots(), 0);

@@ -22,6 +22,15 @@ namespace tautline
 TAUTLINE_RECONNECTIONKERNEL_EXPORT std::vector<PointFreedom> findFreedoms(
   TetrahedronMesh& mesh, bool slide, double tolerance);
 
+/**
+ * @brief Keeps the edges at which labeled walls of different classes meet, or the only wall ends:
+ * points of straight parts of these move along them, others stay.
+ * @param classes by label
+ * @param tolerance sine of the largest angle between directions that are the same
+ */
+TAUTLINE_RECONNECTIONKERNEL_EXPORT void keepBorders(const TetrahedronMesh& mesh,
+  const std::vector<std::int32_t>& classes, double tolerance, std::vector<PointFreedom>& freedoms);
+
 /// Fixes points whose tetrahedra are not one fan, so that moving one would not take all along.
 void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms);
 }

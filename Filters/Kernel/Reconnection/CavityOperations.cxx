@@ -171,6 +171,10 @@ bool CavityOperations::smooth(PointId v, int steps)
   {
     return this->improveSum(v);
   }
+  if (this->field)
+  {
+    return this->smoothInMetric(v, steps);
+  }
   if (!this->loadStar(v, this->Smoothing))
   {
     return false;
@@ -237,34 +241,29 @@ bool CavityOperations::keepsLengths(
   PointId v, const std::vector<PointId>& others, bool isInsertion) const
 {
   const double factor = this->edgeFactor * this->edgeFactor;
-  return this->metrics.empty() ||
+  return !this->Mesh.hasMetrics() ||
     std::all_of(others.begin(), others.end(),
       [&](PointId u)
       {
         const double length = u == v ? 1.0
                                      : squaredLength(this->Mesh.point(u) - this->Mesh.point(v),
-                                         this->metrics[u], this->metrics[v]);
+                                         this->Mesh.metric(u), this->Mesh.metric(v));
         return isInsertion ? length * factor >= 1.0 : length <= factor;
       });
 }
 
-/// The metric of an inserted point: the mean of those around.
-void CavityOperations::setMetric(PointId p, const std::vector<PointId>& around)
+/// The mean of the metrics of points.
+EdgeMetric CavityOperations::meanMetric(const std::vector<PointId>& points) const
 {
-  if (this->metrics.empty())
-  {
-    return;
-  }
-  this->metrics.resize(this->Mesh.pointSlots());
   EdgeMetric mean = {};
-  for (PointId u : around)
+  for (PointId u : points)
   {
     for (std::size_t k = 0; k < mean.size(); ++k)
     {
-      mean[k] += this->metrics[u][k] / static_cast<double>(around.size());
+      mean[k] += this->Mesh.metric(u)[k] / static_cast<double>(points.size());
     }
   }
-  this->metrics[p] = mean;
+  return mean;
 }
 
 /// Whether moving v into its neighbour w leaves walls and fixed points as they are.

@@ -15,6 +15,7 @@
 
 #include "BoundarySurface.h"
 #include "EdgeMetric.h"
+#include "InputMetric.h"
 #include "StarSmoothing.h"
 #include "tautline/ReconnectionKernelExport.h"
 
@@ -44,9 +45,7 @@ struct OperationRules
 {
   /// One per point slot of the mesh; those of new points are free.
   std::vector<PointFreedom> freedoms;
-  /// One per point slot, in which target lengths of edges are 1; empty: any length.
-  std::vector<EdgeMetric> metrics;
-  /// How much longer or shorter new edges may be.
+  /// How much longer or shorter new edges may be, where the points have metrics.
   double edgeFactor = 2.0;
   bool inserts = true;                 ///< whether repairs may insert points
   bool contracts = true, moves = true; ///< whether facets may be improved by these
@@ -59,6 +58,11 @@ struct OperationRules
   double flatTolerance = 0;
   /// Of BoundaryMotion::OnSurface, else null.
   std::shared_ptr<const BoundarySurface> surface;
+  /// With qualities in the metric: the metric at any place; else null.
+  std::shared_ptr<const InputMetric> field;
+  /// The class of each facet that may be labeled, from 1 on, by its label; others have class 0.
+  /// Edges between facets of different classes stay.
+  std::vector<std::int32_t> classes;
 };
 
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT CavityOperations : public OperationRules
@@ -92,6 +96,16 @@ public:
   /// of a cavity; point and cavity are the best found before the mesh is changed.
   bool insert(TetId t);
 
+  ///@{ With qualities in the metric: operations for the lengths of edges.
+  /// Divides the edge of vertices i and j of a tetrahedron in two of the same length.
+  bool splitEdge(TetId t, int i, int j);
+  /// Moves one of the vertices i and j into the other one, where no edge becomes too long.
+  bool contractEdge(TetId t, int i, int j);
+  /// Moves a point so that the sum over the tetrahedra around of the inverse mean ratios, and of
+  /// the squared logarithms of the lengths of its edges, decreases.
+  bool relax(PointId v);
+  ///@}
+
   /**
    * @brief Improves a facet of the outer boundary: swaps or contracts one of its edges, or moves
    * one of its points. The smallest mean ratio of the facets that change becomes larger. The
@@ -124,6 +138,7 @@ public:
   {
     this->Stamps.resize(this->Mesh.pointSlots(), 0);
     this->SmoothedAt.resize(this->Mesh.pointSlots(), 0);
+    this->RelaxedAt.resize(this->Mesh.pointSlots(), 0);
   }
 
 private:
@@ -182,6 +197,20 @@ private:
   bool aboveFloor(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, double q) const;
   bool loadStar(PointId v, StarSmoothing& star);
   void touch(const std::vector<TetId>& tets);
+  // In the metric.
+  std::int32_t classOf(std::int32_t label) const
+  {
+    return label == NoLabel ? 0 : this->classes[label];
+  }
+  bool smoothInMetric(PointId v, int steps);
+  bool acceptMotion(PointId v, const Vec3& p, double least);
+  TetId cellNear(PointId v) const;
+  bool splitAt(PointId a, PointId b, const Vec3& x, const PointFreedom& freedom);
+  bool freedomOfSplit(PointId a, PointId b, PointFreedom& freedom) const;
+  bool curvedSplit(PointId a, PointId b, Vec3& x, PointFreedom& freedom) const;
+  bool canContractInMetric(TetId t, int i, int j);
+  double prepareContractionInMetric(PointId v, PointId w);
+  bool labelBoundarySwap(const EdgeRing& ring);
   bool isFlat(const EdgeRing& ring) const;
   bool canSwapBoundary(const EdgeRing& ring);
   double triangulate(const EdgeRing& ring, double above);
@@ -207,7 +236,7 @@ private:
   PointFreedom freedomOnEdge(const EdgeRing& ring) const;
   bool isOuter(const EdgeRing& ring) const;
   bool keepsLengths(PointId v, const std::vector<PointId>& others, bool isInsertion) const;
-  void setMetric(PointId p, const std::vector<PointId>& around);
+  EdgeMetric meanMetric(const std::vector<PointId>& points) const;
   bool canContract(PointId v, PointId w, const EdgeRing& ring);
   // On a curved boundary.
   PointFreedom freedomAt(PointId v) const;
@@ -226,9 +255,12 @@ private:
   OperationCounts Counts;
   std::vector<std::uint32_t> Stamps;
   std::vector<std::uint32_t> SmoothedAt; ///< clock at the last motion in vain, per point
+  std::vector<std::uint32_t> RelaxedAt;  ///< the same of relax()
   std::uint32_t Clock = 0;
   Replacement Change;
-  std::vector<TetId> Created, Star, OtherStar;
+  std::vector<TetId> Created, Star, OtherStar, Fan;
+  std::vector<std::int32_t> Walls;
+  std::vector<TetId> Cells; ///< of the input, per point slot: near it; NoId: not known
   std::vector<double> Before, After;
   StarSmoothing Smoothing;
   EdgeRing Ring;

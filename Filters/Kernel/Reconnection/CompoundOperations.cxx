@@ -128,9 +128,9 @@ void CavityOperations::restorePoint(const Step& step)
 {
   this->Mesh.movePoint(step.point, step.position, {}, nullptr);
   this->freedoms[step.point] = step.freedom;
-  if (!this->metrics.empty())
+  if (this->Mesh.hasMetrics())
   {
-    this->metrics[step.point] = step.metric;
+    this->Mesh.setMetric(step.point, step.metric);
   }
 }
 

@@ -20,6 +20,9 @@ inline double radians(double degrees)
 constexpr double AtBound = 1e-3;
 /// Two qualities that differ by less are the same: rounding must not decide.
 constexpr double SameQuality = 1e-9;
+/// With ReconnectionOptions::adapt, tetrahedra below this quality are below the target: a mean
+/// ratio in the metric of 0.5.
+constexpr double AdaptedQuality = 0.35;
 /// A smaller part of the volume of a tetrahedron, or of the area of a triangle, is rounding.
 constexpr double RoundingFraction = 1e-12;
 /// Rounding in the distance from a flat patch, relative to the diagonal.

@@ -44,7 +44,7 @@ private:
   bool merge(Index from, Index to);
   bool divide(const Simplex& face, Index by);
   template <class Marks>
-  static void divideMarks(const Simplex& face, Index by, Marks& marks);
+  static void divideMarks(const Simplex& face, Index by, Marks& marks, std::vector<Index>& origins);
   bool isOpen(Simplex facet) const;
   bool dropFlat(Index cell, const Simplex& edge);
   bool treat(Index cell);
@@ -67,6 +67,7 @@ private:
   std::vector<Index> MergedInto;
   std::vector<std::array<Index, 2>> Edges;
   std::vector<std::array<Index, 3>> Facets;
+  std::vector<Index> EdgeOrigins, FacetOrigins;
   std::deque<Index> Waiting;
 };
 
@@ -92,7 +93,11 @@ CellRemover::CellRemover(const Mesh& mesh, const DegenerateOptions& options)
   , MergedInto(mesh.view().numberOfPoints)
   , Edges(options.edges)
   , Facets(options.facets)
+  , EdgeOrigins(options.edges.size())
+  , FacetOrigins(options.facets.size())
 {
+  std::iota(this->EdgeOrigins.begin(), this->EdgeOrigins.end(), Index(0));
+  std::iota(this->FacetOrigins.begin(), this->FacetOrigins.end(), Index(0));
   std::iota(this->MergedInto.begin(), this->MergedInto.end(), Index(0));
   const MeshView& view = mesh.view();
   for (Index cell = 0; cell < view.numberOfCells; ++cell)
@@ -310,14 +315,15 @@ bool CellRemover::divide(const Simplex& face, Index by)
     }
     this->remove(cell);
   }
-  divideMarks(face, by, this->Edges);
-  divideMarks(face, by, this->Facets);
+  divideMarks(face, by, this->Edges, this->EdgeOrigins);
+  divideMarks(face, by, this->Facets, this->FacetOrigins);
   return true;
 }
 
 /// Marked edges or facets follow a division.
 template <class Marks>
-void CellRemover::divideMarks(const Simplex& face, Index by, Marks& marks)
+void CellRemover::divideMarks(
+  const Simplex& face, Index by, Marks& marks, std::vector<Index>& origins)
 {
   const std::size_t count = marks.size();
   for (std::size_t i = 0; i < count; ++i)
@@ -340,6 +346,7 @@ void CellRemover::divideMarks(const Simplex& face, Index by, Marks& marks)
       else
       {
         marks.push_back(part);
+        origins.push_back(origins[i]);
       }
     }
   }
@@ -544,6 +551,8 @@ void CellRemover::collect(DegenerateRemoval& result)
   result.mergedInto = std::move(this->MergedInto);
   result.edges = std::move(this->Edges);
   result.facets = std::move(this->Facets);
+  result.originalEdges = std::move(this->EdgeOrigins);
+  result.originalFacets = std::move(this->FacetOrigins);
 }
 
 DegenerateRemoval CellRemover::run()

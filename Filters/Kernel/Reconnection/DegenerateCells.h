@@ -39,6 +39,8 @@ struct DegenerateRemoval
   std::vector<Index> mergedInto;
   std::vector<std::array<Index, 2>> edges;  ///< the marked edges, divided as the cells are
   std::vector<std::array<Index, 3>> facets; ///< the marked facets, likewise
+  /// Per one of these the one of the options that it is, or is a part of.
+  std::vector<Index> originalEdges, originalFacets;
 };
 
 /**

@@ -1,8 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "EdgeMetric.h"
 
+#include "tautline/Core/Memory.h"
+
+#include <limits>
+#include <sstream>
+
 namespace tautline
 {
+void requireRoom(double elements, const char* kind, double bytesPerElement)
+{
+  constexpr double most =
+    std::numeric_limits<std::int32_t>::max() / 8; // faces are coded in 31 bits
+  std::ostringstream text;
+  text << "an adaptation to about " << elements << " " << kind;
+  if (!(elements < most))
+  {
+    throw Error(text.str() + " is too large: choose larger target lengths");
+  }
+  requireMemory(bytesPerElement * elements, text.str(), "choose larger target lengths");
+}
+
 std::vector<EdgeMetric> edgeMetrics(
   const ReconnectionInput& input, const ReconnectionOptions& options)
 {

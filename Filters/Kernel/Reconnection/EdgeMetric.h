@@ -29,6 +29,9 @@ std::vector<EdgeMetric> edgeMetrics(
 std::vector<EdgeMetric> edgeMetrics(const std::vector<Vec3>& points, int exponent,
   const std::vector<double>& lengths, const ReconnectionOptions& options);
 
+/// Throws Error where an adaptation would make more elements than there is memory for.
+void requireRoom(double elements, const char* kind, double bytesPerElement);
+
 /// The mean length of the edges at each point, 1 where there are none; edges count once per cell.
 template <class Cells>
 std::vector<double> meanEdgeLengths(const std::vector<Vec3>& points, const Cells& cells)

@@ -79,10 +79,6 @@ MeshBlock::MeshBlock(const TetrahedronMesh& whole, const OperationRules& rules,
   }
   for (std::size_t v = 0; v < this->Points.size(); ++v)
   {
-    if (!rules.metrics.empty())
-    {
-      this->Operations.metrics.push_back(rules.metrics[this->Points[v]]);
-    }
     this->Operations.freedoms.push_back(rules.freedoms[this->Points[v]]);
     if (this->Shared[v])
     {
@@ -119,6 +115,10 @@ void MeshBlock::addOutside(
     arrays.quality.push_back(whole.quality(t));
     arrays.region.push_back(OutsideRegion);
     arrays.origin.push_back(NoId);
+    if (whole.hasLabels())
+    {
+      arrays.labels.push_back(whole.labels(t));
+    }
   }
   for (SharedFace& f : this->Faces)
   {
@@ -151,16 +151,9 @@ void MeshBlock::numberPoints(const TetrahedronMesh& whole, TetrahedronArrays& ar
   for (PointId v : this->Points)
   {
     arrays.points.push_back(whole.point(v));
-  }
-  // The numbers are in the same order, and so are the faces.
-  for (TriangleVertices f : whole.keptFaces())
-  {
-    if (std::all_of(f.begin(), f.end(),
-          [&](PointId v)
-          { return std::binary_search(this->Points.begin(), this->Points.end(), v); }))
+    if (whole.hasMetrics())
     {
-      std::transform(f.begin(), f.end(), f.begin(), localOf);
-      arrays.kept.push_back(f);
+      arrays.metrics.push_back(whole.metric(v));
     }
   }
   arrays.inputPoints = localOf(whole.inputPoints());
@@ -189,6 +182,10 @@ TetrahedronArrays MeshBlock::extract(
     arrays.quality.push_back(whole.quality(t));
     arrays.region.push_back(whole.region(t));
     arrays.origin.push_back(whole.origin(t));
+    if (whole.hasLabels())
+    {
+      arrays.labels.push_back(whole.labels(t));
+    }
   }
   this->addOutside(whole, blocks, arrays);
   this->numberPoints(whole, arrays);
@@ -239,6 +236,14 @@ public:
     this->Arrays.region.resize(tets, 0);
     this->Arrays.origin.resize(tets, NoId);
     this->Arrays.points.resize(points);
+    if (!this->Arrays.labels.empty())
+    {
+      this->Arrays.labels.resize(tets, { NoLabel, NoLabel, NoLabel, NoLabel });
+    }
+    if (!this->Arrays.metrics.empty())
+    {
+      this->Arrays.metrics.resize(points);
+    }
   }
 
   /// Which face the outer side of each face between blocks is now: after all blocks were changed.
@@ -286,12 +291,21 @@ public:
       this->Arrays.quality[id] = block.Mesh.quality(t);
       this->Arrays.region[id] = block.Mesh.region(t);
       this->Arrays.origin[id] = block.Mesh.origin(t);
+      if (block.Mesh.hasLabels())
+      {
+        this->Arrays.labels[id] = block.Mesh.labels(t);
+      }
     }
     for (PointId v = 0; v < block.Mesh.pointSlots(); ++v)
     {
       if (v >= static_cast<PointId>(block.Points.size()) || !block.Shared[v])
       {
-        this->Arrays.points[this->pointOf(b, v)] = block.Mesh.point(v);
+        const PointId p = this->pointOf(b, v);
+        this->Arrays.points[p] = block.Mesh.point(v);
+        if (block.Mesh.hasMetrics())
+        {
+          this->Arrays.metrics[p] = block.Mesh.metric(v);
+        }
       }
     }
   }
@@ -313,10 +327,6 @@ public:
   void finish(TetrahedronMesh& whole, CavityOperations& operations)
   {
     operations.freedoms.resize(this->Arrays.points.size());
-    if (!operations.metrics.empty())
-    {
-      operations.metrics.resize(this->Arrays.points.size());
-    }
     for (std::size_t b = 0; b < this->Blocks.size(); ++b)
     {
       CavityOperations& own = this->Blocks[b]->Operations;
@@ -325,10 +335,6 @@ public:
       {
         const PointId p = this->pointOf(b, static_cast<PointId>(v));
         operations.freedoms[p] = own.freedoms[v];
-        if (!operations.metrics.empty())
-        {
-          operations.metrics[p] = own.metrics[v];
-        }
       }
     }
     whole = TetrahedronMesh(std::move(this->Arrays));

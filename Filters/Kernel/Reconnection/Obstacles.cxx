@@ -2,6 +2,7 @@
 #include "Obstacles.h"
 
 #include "FacetBound.h"
+#include "ReconnectionInput.h"
 #include "tautline/Core/Interruption.h"
 
 namespace tautline
@@ -42,7 +43,7 @@ Walls findWalls(const TetrahedronMesh& mesh, const TetrahedronPasses& passes)
         continue;
       }
       const TriangleVertices f = mesh.face(t, i);
-      const bool outer = mesh.tet(t).neighbors[i] == NoId && !mesh.isKept(t, i);
+      const bool outer = mesh.tet(t).neighbors[i] == NoId;
       for (PointId v : f)
       {
         (outer ? walls.atSurface : walls.atInterface)[v] = 1;
@@ -50,13 +51,17 @@ Walls findWalls(const TetrahedronMesh& mesh, const TetrahedronPasses& passes)
       const Vec3 &a = mesh.point(f[0]), &b = mesh.point(f[1]), &c = mesh.point(f[2]);
       const double meanRatio = facetMeanRatio(a, b, c);
       walls.meanRatio = std::min(walls.meanRatio, meanRatio);
+      if (mesh.weights().inMetric)
+      {
+        continue;
+      }
       // Only a facet on which the tetrahedron is that bad can force more.
       if (mesh.quality(t) < walls.quality)
       {
         walls.quality = std::min(walls.quality, facetQuality(a, b, c, mesh.weights(), smoothing));
       }
     }
-    if (own)
+    if (own && !mesh.weights().inMetric)
     {
       walls.quality = std::min(walls.quality, passes.bound(t));
     }
@@ -87,7 +92,7 @@ void findObstacles(const TetrahedronMesh& mesh, const TetrahedronPasses& passes,
   const ReconnectionOptions& options, const std::vector<char>& fixedPoints,
   ReconnectionResult& result)
 {
-  const double target = std::sin(options.targetAngle * (Pi / 180.0));
+  const double target = targetQuality(options);
   const Walls walls = findWalls(mesh, passes);
   result.forcedQuality = walls.quality;
   result.forcedInverseMeanRatio = std::pow(walls.meanRatio, -2.0 / 3.0);
@@ -111,7 +116,8 @@ void findObstacles(const TetrahedronMesh& mesh, const TetrahedronPasses& passes,
     double bound = 1.0;
     if (quality < target)
     {
-      bound = boundOf(mesh, passes, t, smoothing);
+      // No bound is known in a metric.
+      bound = options.adapt ? 1.0 : boundOf(mesh, passes, t, smoothing);
       obstacle = bound <= quality * (1.0 + NearBound) ? Obstacle::Facets
         : any(fixedPoints)                            ? Obstacle::FixedPoints
         : any(walls.atInterface)                      ? Obstacle::Interface

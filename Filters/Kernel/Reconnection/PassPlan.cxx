@@ -131,9 +131,11 @@ void applyPreset(ReconnectionPreset preset, ReconnectionOptions& options)
   }
   const bool all =
     preset == ReconnectionPreset::RemoveSlivers || preset == ReconnectionPreset::Aggressive;
+  options.adapt = preset == ReconnectionPreset::Adapt;
   options.swap = true;
   options.smooth = preset != ReconnectionPreset::SwapOnly;
-  options.contract = options.insert = options.compound = all;
+  options.contract = options.insert = all || options.adapt;
+  options.compound = all;
   options.targetAngle =
     preset == ReconnectionPreset::RemoveSlivers ? SliverAngle : ReconnectionOptions().targetAngle;
 }

@@ -262,7 +262,7 @@ bool CavityOperations::applyInsertion(const Insertion& best)
   {
     former.position = this->Mesh.point(p);
     former.freedom = this->freedoms[p];
-    former.metric = this->metrics.empty() ? EdgeMetric{} : this->metrics[p];
+    former.metric = this->Mesh.hasMetrics() ? this->Mesh.metric(p) : EdgeMetric{};
   }
   this->Mesh.addPoint(best.point);
   this->freedoms.resize(this->Mesh.pointSlots());
@@ -288,7 +288,10 @@ bool CavityOperations::applyInsertion(const Insertion& best)
   kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
   std::vector<PointId> around = kept;
   around.erase(std::find(around.begin(), around.end(), p));
-  this->setMetric(p, around);
+  if (this->Mesh.hasMetrics())
+  {
+    this->Mesh.setMetric(p, this->meanMetric(around));
+  }
   bool valid = this->keepsLengths(p, around, true);
   for (TetId s : best.tets)
   {

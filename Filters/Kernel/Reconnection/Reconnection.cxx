@@ -8,6 +8,7 @@
 #include "PassPlan.h"
 #include "ReconnectionOutput.h"
 #include "ReconnectionProgress.h"
+#include "TetrahedronAdaptation.h"
 #include "TetrahedronPasses.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/LoopInterruption.h"
@@ -36,11 +37,19 @@ constexpr double BlockFraction = 0.1;
 /// Progress when all blocks are done.
 constexpr double BlockProgress = 0.9;
 
+/// With ReconnectionOptions::adapt, how long a contraction may make edges: somewhat longer
+/// than what is split again, or many short edges could not be contracted.
+constexpr double AdaptedFactor = 1.6;
 /// So much one of the sine and the mean ratio counts where the other is the objective.
 constexpr double IgnoredWeight = 1e3;
 
-QualityWeights weightsOf(ReconnectionObjective objective, const MetricQuality* metric)
+QualityWeights weightsOf(const ReconnectionOptions& options, const MetricQuality* metric)
 {
+  const ReconnectionObjective objective = options.objective;
+  if (options.adapt)
+  {
+    return { IgnoredWeight, 1.0, nullptr, true };
+  }
   if (metric)
   {
     return { IgnoredWeight, IgnoredWeight, metric };
@@ -53,7 +62,8 @@ QualityWeights weightsOf(ReconnectionObjective objective, const MetricQuality* m
 std::unique_ptr<MetricQuality> metricOf(
   const Mesh& mesh, const ReconnectionInput& input, const ReconnectionOptions& options)
 {
-  if (options.objective != ReconnectionObjective::Metric || mesh.view().numberOfCells == 0)
+  if (options.objective != ReconnectionObjective::Metric || options.adapt ||
+    mesh.view().numberOfCells == 0)
   {
     return nullptr;
   }
@@ -68,6 +78,18 @@ std::unique_ptr<MetricQuality> metricOf(
     sum += value / static_cast<double>(values.size());
   }
   return std::make_unique<MetricQuality>(options.metric, input.exponent, sum);
+}
+
+/// The class of each label; that of none is 0.
+std::vector<std::int32_t> classesOf(const ReconnectionOptions& options)
+{
+  std::vector<std::int32_t> classes(options.markedFacets.size() + 1, 1);
+  classes[NoLabel] = 0;
+  for (std::size_t i = 0; i < options.markedClasses.size() && i < options.markedFacets.size(); ++i)
+  {
+    classes[i + 1] = options.markedClasses[i];
+  }
+  return classes;
 }
 
 /// Adds the worst values of some tetrahedra to the record; only those that may be worse than those
@@ -102,6 +124,10 @@ void addWorst(
     // power is above q.
     // (Of a metric of the registry nothing follows for these: the weights are large.)
     const QualityWeights& w = mesh.weights();
+    if (w.inMetric)
+    {
+      continue;
+    }
     sufficient = std::max(
       { w.meanRatio * meanRatio, w.sine * std::sin(radians(std::min(record.smallestAngle, 90.0))),
         w.sine * std::sin(radians(std::max(record.largestAngle, 90.0))) });
@@ -213,8 +239,8 @@ public:
   {
   }
 
-  void run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics,
-    std::shared_ptr<const BoundarySurface> surface);
+  void run(const std::vector<PointFreedom>& freedoms,
+    std::shared_ptr<const BoundarySurface> surface, std::shared_ptr<const InputMetric> field);
   const TetrahedronPasses& passes() const { return this->Passes; }
 
 private:
@@ -222,6 +248,7 @@ private:
   void setFloor(const ReconnectionRecord& record);
   bool improveMean();
   void setBounds();
+  bool adapt();
   bool runStages();
   bool runStage(const std::vector<PassOptions>& stage, double end);
   bool runPasses(std::vector<PassOptions> passes, double end);
@@ -245,9 +272,9 @@ private:
 bool Run::record(int pass, double fraction)
 {
   ReconnectionRecord record;
-  measureWorst(
-    this->Mesh, std::sin(radians(this->Options.targetAngle)), this->Options.threads, record);
+  measureWorst(this->Mesh, targetQuality(this->Options), this->Options.threads, record);
   copyCounts(this->Operations.counts(), record);
+  record.edgesInRange = this->Options.adapt ? shareOfEdges(this->Mesh).share() : 0.0;
   return this->Progress.record(record, pass, fraction);
 }
 
@@ -267,6 +294,11 @@ void Run::setBounds()
 {
   const double size = static_cast<double>(this->Mesh.size());
   const bool keepsCount = this->Options.smallestCount == 1.0 && this->Options.largestCount == 1.0;
+  if (this->Options.adapt)
+  {
+    this->Operations.largestSize = std::numeric_limits<std::int32_t>::max() / 8;
+    return;
+  }
   this->Operations.inserts = this->Options.insert && !keepsCount;
   this->Operations.contracts = this->Options.contract && !keepsCount;
   this->Operations.moves = this->Options.smooth;
@@ -278,13 +310,14 @@ void Run::setBounds()
         static_cast<double>(std::numeric_limits<std::int32_t>::max() / 4)));
 }
 
-void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric> metrics,
-  std::shared_ptr<const BoundarySurface> surface)
+void Run::run(const std::vector<PointFreedom>& freedoms,
+  std::shared_ptr<const BoundarySurface> surface, std::shared_ptr<const InputMetric> field)
 {
   this->Operations.surface = std::move(surface);
   this->Operations.freedoms = freedoms;
-  this->Operations.metrics = std::move(metrics);
-  this->Operations.edgeFactor = this->Options.edgeFactor;
+  this->Operations.field = std::move(field);
+  this->Operations.classes = classesOf(this->Options);
+  this->Operations.edgeFactor = this->Options.adapt ? AdaptedFactor : this->Options.edgeFactor;
   this->Operations.sums = this->Options.objective == ReconnectionObjective::Sum;
   this->Operations.swapsBoundary =
     this->Options.swap && this->Options.boundary != BoundaryMotion::Fixed;
@@ -293,15 +326,32 @@ void Run::run(const std::vector<PointFreedom>& freedoms, std::vector<EdgeMetric>
   this->setBounds();
   this->Result.reason = StopReason::NoProgress;
   const bool started = this->record(0, 0.0);
-  this->setFloor(this->Result.history.front());
+  if (!this->Options.adapt)
+  {
+    this->setFloor(this->Result.history.front());
+  }
   this->Passes.proceed = [this]() { return this->Progress.proceed(); };
   this->Passes.postponed = this->flagsOf(this->Options.postponed);
-  const bool stopped =
-    !started || !this->runStages() || (this->Options.improveMean && !this->improveMean());
+  const bool stopped = !started || !(this->Options.adapt ? this->adapt() : this->runStages()) ||
+    (this->Options.improveMean && !this->improveMean());
   if (!stopped && this->Result.history.back().belowTarget == 0)
   {
     this->Result.reason = StopReason::Reduction;
   }
+}
+
+/// Gives the edges their lengths, and improves the worst in the metric; false if stopped.
+bool Run::adapt()
+{
+  TetrahedronAdaptation adaptation(this->Mesh, this->Operations, this->Passes);
+  adaptation.swaps = this->Options.swap;
+  adaptation.moves = this->Options.smooth;
+  adaptation.contracts = this->Options.contract;
+  adaptation.splits = this->Options.insert;
+  adaptation.proceed = [this]() { return this->Progress.proceed(); };
+  adaptation.record = [this](double fraction)
+  { return this->record(this->Result.history.back().pass + 1, fraction); };
+  return adaptation.run();
 }
 
 /// Runs the stages until the target is reached; false if stopped. They do not depend on it but for
@@ -532,10 +582,10 @@ bool Run::runInBlocks(
   return true;
 }
 
-/// Cuts the mesh at the facets that are marked. @return per point of it whether it is on one
-std::vector<char> keepMarked(
-  const std::vector<std::array<Index, 3>>& marked, TetrahedronMesh& changing)
+/// Labels the facets that are marked. @return how many are kept inside the mesh
+Index labelMarked(const ReconnectionOptions& options, TetrahedronMesh& changing)
 {
+  const std::vector<std::array<Index, 3>>& marked = options.markedFacets;
   std::vector<TriangleVertices> faces;
   for (const std::array<Index, 3>& f : marked)
   {
@@ -547,11 +597,57 @@ std::vector<char> keepMarked(
     faces.push_back(
       { static_cast<PointId>(f[0]), static_cast<PointId>(f[1]), static_cast<PointId>(f[2]) });
   }
-  std::vector<char> points(changing.pointSlots(), 0);
-  changing.keepFaces(std::move(faces));
-  for (const TriangleVertices& f : changing.keptFaces())
+  return changing.labelFaces(faces, options.adapt);
+}
+
+/// Throws Error for target lengths that ask for more tetrahedra than there is memory for.
+void requireFeasible(const TetrahedronMesh& mesh)
+{
+  constexpr double idealVolume = 0.11785113019775792; // of edges of length 1: sqrt(2) / 12
+  constexpr double bytesPerTetrahedron = 500.0;       // of mesh, workspace and result
+  double expected = 0.0;
+  for (TetId t = 0; t < mesh.slots(); ++t)
   {
-    std::for_each(f.begin(), f.end(), [&](PointId v) { points[v] = 1; });
+    const TetVertices& v = mesh.tet(t).vertices;
+    const auto x = [&](int k) { return mesh.point(v[k]); };
+    const MetricTensor sum =
+      (mesh.metric(v[0]) + mesh.metric(v[1])) + (mesh.metric(v[2]) + mesh.metric(v[3]));
+    constexpr double corners = 4.0;
+    const double volume = std::abs(dot(x(1) - x(0), cross(x(2) - x(0), x(3) - x(0)))) / 6.0;
+    expected += volume * std::sqrt(determinantOf(sum) / (corners * corners * corners));
+  }
+  requireRoom(expected / idealVolume, "tetrahedra", bytesPerTetrahedron);
+}
+
+/// How many of the marked facets are no label of a face.
+Index countIgnored(const ReconnectionOptions& options, const TetrahedronMesh& mesh)
+{
+  std::vector<char> used(options.markedFacets.size() + 1, 0);
+  used[NoLabel] = 1;
+  for (TetId t = 0; t < mesh.slots() && mesh.hasLabels(); ++t)
+  {
+    for (std::int32_t label : mesh.labels(t))
+    {
+      used[label] = 1;
+    }
+  }
+  return std::count(used.begin(), used.end(), 0);
+}
+
+/// Per point whether it is on a labeled facet inside the mesh.
+std::vector<char> pointsOfMarked(const TetrahedronMesh& mesh)
+{
+  std::vector<char> points(mesh.pointSlots(), 0);
+  for (TetId t = 0; t < mesh.slots() && mesh.hasLabels(); ++t)
+  {
+    for (int i = 0; i < 4; ++i)
+    {
+      if (mesh.label(t, i) != NoLabel && mesh.tet(t).neighbors[i] != NoId)
+      {
+        const TriangleVertices f = mesh.face(t, i);
+        std::for_each(f.begin(), f.end(), [&](PointId v) { points[v] = 1; });
+      }
+    }
   }
   return points;
 }
@@ -590,20 +686,29 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   checkReconnectionOptions(options);
   ReconnectionInput input = convertInput(mesh, options);
   ReconnectionResult result;
+  result.adapted = options.adapt;
   const std::unique_ptr<MetricQuality> metric = metricOf(mesh, input, options);
   TetrahedronMesh changing(input.points, input.cells, input.regions,
-    weightsOf(options.objective, metric.get()), options.threads);
+    weightsOf(options, metric.get()), options.threads, edgeMetrics(input, options));
+  changing.orientFlat();
   checkFaces(changing, options.threads);
   const InputLocator locator(changing, input); // before the cut: it walks across marked facets
-  const std::vector<char> marked = keepMarked(options.markedFacets, changing);
-  result.markedFacets = static_cast<Index>(changing.keptFaces().size());
+  result.markedFacets = labelMarked(options, changing);
+  result.ignoredMarks = options.adapt ? countIgnored(options, changing) : 0;
+  std::vector<char> marked = pointsOfMarked(changing);
+  std::shared_ptr<const InputMetric> field;
+  if (options.adapt)
+  {
+    requireFeasible(changing);
+    std::vector<MetricTensor> metrics;
+    for (PointId v = 0; v < changing.pointSlots(); ++v)
+    {
+      metrics.push_back(changing.metric(v));
+    }
+    field = std::make_shared<InputMetric>(metrics, input, locator, options.threads);
+  }
   std::shared_ptr<const BoundarySurface> surface;
   std::vector<PointFreedom> freedoms;
-  if (result.markedFacets > 0 && options.boundary == BoundaryMotion::OnSurface)
-  {
-    throw Error("facets inside the mesh are marked, which works with a fixed or sliding boundary "
-                "only: choose one of these, or a region array instead of the marks");
-  }
   if (options.boundary == BoundaryMotion::OnSurface && changing.size() > 0)
   {
     MeshView scaled = mesh.view();
@@ -618,6 +723,16 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
     freedoms = findFreedoms(changing, options.boundary == BoundaryMotion::FlatParts,
       std::max(std::sin(radians(options.flatAngle)), 4.0 * std::numeric_limits<double>::epsilon()));
   }
+  if (options.adapt)
+  {
+    keepBorders(changing, classesOf(options),
+      std::max(std::sin(radians(options.flatAngle)), 4.0 * std::numeric_limits<double>::epsilon()),
+      freedoms);
+    if (options.boundary == BoundaryMotion::FlatParts)
+    {
+      marked.assign(marked.size(), 0); // their points move as those of the boundary do
+    }
+  }
   const std::vector<char> fixedPoints = fixPoints(changing, options, marked, freedoms);
   for (const PointFreedom& freedom : freedoms)
   {
@@ -628,7 +743,7 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
   if (changing.size() > 0)
   {
     result.meanBefore = meanRatioOf(changing, options.threads);
-    run.run(freedoms, edgeMetrics(input, options), surface);
+    run.run(freedoms, surface, field);
     result.meanAfter = meanRatioOf(changing, options.threads);
     findObstacles(changing, run.passes(), options, fixedPoints, result);
   }
@@ -643,6 +758,10 @@ ReconnectionResult improveConnectivity(const Mesh& mesh, const ReconnectionOptio
     result.boundaryDistance = std::ldexp(surface->distance(changing), input.exponent);
   }
   convertOutput(mesh, input, changing, locator, options.threads, result);
+  if (options.adapt)
+  {
+    convertFacets(input, options, mesh.mirrored(), changing, result);
+  }
   if (options.overlaps)
   {
     computeOverlaps(input, changing, locator, options.threads, result);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ReconnectionInput.h"
 
+#include "Constants.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 
@@ -71,6 +72,11 @@ std::vector<std::int32_t> renumberRegions(const Index* regions, Index count)
   return result;
 }
 
+double targetQuality(const ReconnectionOptions& options)
+{
+  return options.adapt ? AdaptedQuality : std::sin(radians(options.targetAngle));
+}
+
 void checkReconnectionOptions(const ReconnectionOptions& options)
 {
   const auto check = [](bool holds, const char* message)
@@ -99,6 +105,9 @@ void checkReconnectionOptions(const ReconnectionOptions& options)
   check(options.size != ReconnectionSize::Length ||
       (options.edgeLength > 0.0 && std::isfinite(options.edgeLength)),
     "the target length of edges must be above 0");
+  check(!options.adapt || options.size != ReconnectionSize::None,
+    "an adaptation needs target lengths of edges: give a length, or an array of lengths or metric "
+    "tensors");
   check(options.edgeFactor > 1.0, "the factor of the lengths of edges must be above 1");
   check(options.blockSize >= 1, "the size of blocks must be at least 1");
   check(!(options.maximumSeconds < 0.0), "the time limit must not be negative");
@@ -180,18 +189,6 @@ void checkFaces(const TetrahedronMesh& mesh, int threads)
       " faces are used by three or more tetrahedra: remove duplicate or overlapping cells first");
   }
   std::vector<Index> ofChunk(numberOfChunks(mesh.slots()), 0);
-  const auto isTurned = [&mesh](TetId t, int i)
-  {
-    const std::int32_t n = mesh.tet(t).neighbors[i];
-    if (n == NoId || n >> 2 < t)
-    {
-      return false;
-    }
-    // From the two sides a face has opposite senses.
-    const TriangleVertices own = mesh.face(t, i), other = mesh.face(n >> 2, n & 3);
-    const int at = other[0] == own[0] ? 0 : (other[1] == own[0] ? 1 : 2);
-    return other[(at + 1) % 3] == own[1];
-  };
   forEachChunk(mesh.slots(), threads,
     [&](Index chunk, Index begin, Index end)
     {
@@ -199,7 +196,9 @@ void checkFaces(const TetrahedronMesh& mesh, int threads)
       {
         for (int i = 0; i < 4; ++i)
         {
-          ofChunk[chunk] += isTurned(static_cast<TetId>(t), i);
+          const auto id = static_cast<TetId>(t);
+          const std::int32_t n = mesh.tet(id).neighbors[i];
+          ofChunk[chunk] += n >> 2 > id && mesh.isTurned(id, i);
         }
       }
     });

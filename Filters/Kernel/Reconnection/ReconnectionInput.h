@@ -26,6 +26,9 @@ struct ReconnectionInput
 /// The regions' numbers, from 0 in increasing order; empty for null.
 std::vector<std::int32_t> renumberRegions(const Index* regions, Index count);
 
+/// The quality below which tetrahedra are below the target.
+double targetQuality(const ReconnectionOptions& options);
+
 /// Throws Error for options out of range.
 void checkReconnectionOptions(const ReconnectionOptions& options);
 

@@ -24,7 +24,8 @@ enum class ReconnectionPreset : int
   RemoveSlivers = 1,
   SwapOnly = 2,      ///< edges and faces are removed, no point moves
   SwapAndSmooth = 3, ///< the same, and points move; none are inserted or removed
-  Aggressive = 4     ///< every operation, also those that pay only after the points around moved
+  Aggressive = 4,    ///< every operation, also those that pay only after the points around moved
+  Adapt = 5          ///< ReconnectionOptions::adapt, with every operation but compound ones
 };
 
 /// What the worst tetrahedra are improved for. The numbers are stable.
@@ -60,6 +61,8 @@ struct ReconnectionRecord
   double worstInverseMeanRatio = 0; ///< the largest inverse mean ratio
   double worstQuality = 0;          ///< the smallest quality, see ReconnectionObjective
   Index belowTarget = 0;            ///< tetrahedra whose quality is below that of the target
+  /// With ReconnectionOptions::adapt: part of the edges with lengths from 1 / sqrt(2) to sqrt(2).
+  double edgesInRange = 0;
   /// Accepted operations since the start.
   Index edgeRemovals = 0, faceRemovals = 0, boundarySwaps = 0, contractions = 0, insertions = 0;
   Index moves = 0; ///< of points
@@ -77,6 +80,17 @@ enum class ReconnectionSize : int
 
 struct ReconnectionOptions
 {
+  /**
+   * @brief First the edges get their target lengths (`size`, which is then required): edges longer
+   * than sqrt(2) times the target are split, edges shorter than 1 / sqrt(2) times it contracted,
+   * and points moved, in turn, until lengths are in between. Then the worst elements are improved
+   * as without it. All qualities are those in the metric: (mean ratio)^(3/2) of tetrahedra and the
+   * mean ratio of triangles, in coordinates in which the mean of the metrics of the corners is the
+   * identity. The metric of a new or moved point is interpolated at its place in the input
+   * (log-Euclidean). `objective`, `targetAngle`, `edgeFactor`, `smallestCount` and `largestCount`
+   * have no effect.
+   */
+  bool adapt = false;
   bool swap = true;     ///< removal of edges and of faces
   bool smooth = true;   ///< motion of points
   bool contract = true; ///< contraction of edges
@@ -138,10 +152,14 @@ struct ReconnectionOptions
   const Index* regions = nullptr;
   /**
    * @brief Triples of points: facets that are kept as those between regions are, and their points
-   * stay. Of tetrahedra; those that are not between two of these have no effect. Refused with
-   * BoundaryMotion::OnSurface.
+   * stay. Of tetrahedra; those that are not between two of these have no effect. With `adapt`, they
+   * are divided and contracted as the boundary is, also those on the boundary, and the output has
+   * their parts (ReconnectionResult::facets).
    */
   std::vector<std::array<Index, 3>> markedFacets;
+  /// With `adapt`: the class of each marked facet, at least 1; empty: all are of one. Where classes
+  /// meet, and where they end, edges stay edges.
+  std::vector<std::int32_t> markedClasses;
   /**
    * @brief Of a part of a mesh: one flag per cell, nonzero for those around it. They stay as they
    * are, so do their points and the facets between them and the part. The figures of the history

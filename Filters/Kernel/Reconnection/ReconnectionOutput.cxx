@@ -14,6 +14,8 @@ namespace
 /// Cells visited on the straight way to a point and in the search around, and the negative weight
 /// that is rounding.
 constexpr std::size_t MaxWalked = 400, MaxSearched = 20000;
+/// Cells visited around the end of the way, where any cell near the point will do.
+constexpr std::size_t MaxNear = 60;
 constexpr double WeightTolerance = -1e-12;
 }
 
@@ -54,36 +56,50 @@ std::array<double, 4> InputLocator::weights(const Vec3& x, TetId cell) const
   return w;
 }
 
-TetId InputLocator::locate(const Vec3& x, TetId start) const
+/// Straight on, over the face that x is farthest beyond, as long as there is a neighbour.
+/// @param crosses whether walls between regions are crossed
+/// @param found set to whether the cell contains x
+TetId InputLocator::walk(const Vec3& x, TetId start, bool crosses, bool& found) const
 {
-  // Straight on, over the face that x is farthest beyond, as long as there is a neighbour.
   TetId t = start;
+  found = false;
   for (std::size_t i = 0; i < MaxWalked; ++i)
   {
     const std::array<double, 4> w = this->weights(x, t);
     const auto least = std::min_element(w.begin(), w.end());
-    if (*least >= WeightTolerance)
-    {
-      return t;
-    }
+    found = *least >= WeightTolerance;
     const std::int32_t n = this->Neighbors[t][least - w.begin()];
-    if (this->isWall(n, t))
+    if (found || n == NoId || (!crosses && this->isWall(n, t)))
     {
       break;
     }
     t = n >> 2;
   }
-  return this->search(x, start);
+  return t;
 }
 
-/// Looks at the cells around in turn.
-TetId InputLocator::search(const Vec3& x, TetId start) const
+TetId InputLocator::locate(const Vec3& x, TetId start) const
+{
+  bool found;
+  const TetId t = this->walk(x, start, false, found);
+  return found ? t : this->search(x, start, false, MaxSearched);
+}
+
+TetId InputLocator::nearest(const Vec3& x, TetId start) const
+{
+  bool found;
+  const TetId t = this->walk(x, start, true, found);
+  return found ? t : this->search(x, t, true, MaxNear);
+}
+
+/// Looks at the cells around in turn, at most so many.
+TetId InputLocator::search(const Vec3& x, TetId start, bool crosses, std::size_t most) const
 {
   std::vector<TetId> queue = { start };
   std::unordered_set<TetId> known = { start };
   TetId nearest = start;
   double best = -std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < queue.size() && i < MaxSearched; ++i)
+  for (std::size_t i = 0; i < queue.size() && i < most; ++i)
   {
     const TetId t = queue[i];
     const std::array<double, 4> w = this->weights(x, t);
@@ -99,7 +115,7 @@ TetId InputLocator::search(const Vec3& x, TetId start) const
     }
     for (std::int32_t n : this->Neighbors[t])
     {
-      if (!this->isWall(n, t) && known.insert(n >> 2).second)
+      if (n != NoId && (crosses || !this->isWall(n, t)) && known.insert(n >> 2).second)
       {
         queue.push_back(n >> 2);
       }
@@ -141,7 +157,7 @@ std::vector<Index> writePoints(const Mesh& mesh, const ReconnectionInput& input,
       result.points.push_back(
         moved ? std::ldexp(changed.point(v)[k], input.exponent) : view.points[3 * v + k]);
     }
-    result.originalPoints.push_back(original ? v : -1);
+    result.originalPoints.push_back(original && !(moved && result.adapted) ? v : -1);
   }
   return numbers;
 }
@@ -194,7 +210,6 @@ void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const Tetra
 {
   const std::vector<TetId> originals = findOriginals(input, changed, locator, threads);
   const std::vector<Index> numbers = writePoints(mesh, input, changed, result);
-  const PointId inputPoints = static_cast<PointId>(mesh.view().numberOfPoints);
   for (TetId t = 0; t < changed.slots(); ++t)
   {
     pollInterruption(static_cast<Index>(t));
@@ -213,10 +228,10 @@ void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const Tetra
       result.tetrahedra.push_back(numbers[p]);
     }
   }
-  for (PointId p = inputPoints; p < changed.pointSlots(); ++p)
+  for (PointId p = 0; p < changed.pointSlots(); ++p)
   {
     pollInterruption(static_cast<Index>(p));
-    if (numbers[p] < 0)
+    if (numbers[p] < 0 || result.originalPoints[numbers[p]] >= 0)
     {
       continue;
     }
@@ -230,6 +245,60 @@ void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const Tetra
       std::swap(place.weights[2], place.weights[3]);
     }
     result.interpolations.push_back(place);
+  }
+}
+
+//------------------------------------------------------------------------------
+void convertFacets(const ReconnectionInput& input, const ReconnectionOptions& options,
+  bool mirrored, const TetrahedronMesh& changed, ReconnectionResult& result)
+{
+  if (!changed.hasLabels())
+  {
+    return;
+  }
+  // The corners of the cells of the output are those of the tetrahedra, in their order.
+  std::vector<Index> numbers(changed.pointSlots(), -1);
+  auto corner = result.tetrahedra.begin();
+  for (TetId t = 0; t < changed.slots(); ++t)
+  {
+    if (changed.alive(t))
+    {
+      TetVertices v = changed.tet(t).vertices;
+      if (mirrored)
+      {
+        std::swap(v[2], v[3]);
+      }
+      for (PointId p : v)
+      {
+        numbers[p] = *corner++;
+      }
+    }
+  }
+  for (TetId t = 0; t < changed.slots(); ++t)
+  {
+    for (int i = 0; i < 4 && changed.alive(t); ++i)
+    {
+      const std::int32_t n = changed.tet(t).neighbors[i], label = changed.label(t, i);
+      if (label == NoLabel || (n != NoId && n >> 2 < t))
+      {
+        continue;
+      }
+      TriangleVertices f = changed.face(t, i);
+      // On the same side as the facet of the input.
+      const std::array<Index, 3>& from = options.markedFacets[label - 1];
+      const auto x = [&](int k) { return input.points[from[k]]; };
+      const Vec3 former = cross(x(1) - x(0), x(2) - x(0));
+      const Vec3 &a = changed.point(f[0]), &b = changed.point(f[1]), &c = changed.point(f[2]);
+      if (dot(former, cross(b - a, c - a)) < 0.0)
+      {
+        std::swap(f[1], f[2]);
+      }
+      for (PointId p : f)
+      {
+        result.facets.push_back(numbers[p]);
+      }
+      result.originalFacets.push_back(label - 1);
+    }
   }
 }
 }

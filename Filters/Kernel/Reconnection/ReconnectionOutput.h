@@ -9,6 +9,7 @@
 
 #include "ReconnectionInput.h"
 #include "ReconnectionResult.h"
+#include "tautline/ReconnectionKernelExport.h"
 
 namespace tautline
 {
@@ -16,7 +17,7 @@ namespace tautline
 using OverlapRow = std::vector<std::pair<std::int32_t, double>>;
 
 /// Finds the tetrahedron of the input that contains a point, by walking from a nearby one.
-class InputLocator
+class TAUTLINE_RECONNECTIONKERNEL_EXPORT InputLocator
 {
 public:
   /// @param mesh the input, before any change
@@ -25,6 +26,9 @@ public:
   /// The cell of the same region as `start` that contains x; where none does (by rounding, outside
   /// the mesh), the nearest of those that were visited.
   TetId locate(const Vec3& x, TetId start) const;
+  /// The cell that contains x, of any region; where the way to it leaves the mesh, the nearest of
+  /// those that were visited.
+  TetId nearest(const Vec3& x, TetId start) const;
   /**
    * @brief The cells that a tetrahedron overlaps, and the volumes that they share, times 6. Empty
    * if there are none.
@@ -35,7 +39,8 @@ public:
   std::array<double, 4> weights(const Vec3& x, TetId cell) const;
 
 private:
-  TetId search(const Vec3& x, TetId start) const;
+  TetId walk(const Vec3& x, TetId start, bool crosses, bool& found) const;
+  TetId search(const Vec3& x, TetId start, bool crosses, std::size_t most) const;
   bool isWall(std::int32_t neighbor, TetId t) const;
 
   const ReconnectionInput& Input;
@@ -52,6 +57,10 @@ void takeOverlaps(std::vector<OverlapRow>& rows, ReconnectionResult& result);
 /// Sets ReconnectionResult::overlaps, and the original cells to those that overlap most.
 void computeOverlaps(const ReconnectionInput& input, const TetrahedronMesh& changed,
   const InputLocator& locator, int threads, ReconnectionResult& result);
+
+/// Sets ReconnectionResult::facets and originalFacets: after convertOutput().
+void convertFacets(const ReconnectionInput& input, const ReconnectionOptions& options,
+  bool mirrored, const TetrahedronMesh& changed, ReconnectionResult& result);
 
 /// Writes points, tetrahedra and their origins.
 void convertOutput(const Mesh& mesh, const ReconnectionInput& input, const TetrahedronMesh& changed,

@@ -65,13 +65,15 @@ struct CellOverlaps
 
 struct ReconnectionResult
 {
+  bool adapted = false;          ///< ReconnectionOptions::adapt
   std::vector<double> points;    ///< x y z per point
   std::vector<Index> tetrahedra; ///< four points per cell, in the order of VTK
   std::vector<Index> triangles;  ///< of improveTriangles(): three points per cell
   /// Per point of the output: the point of the input it is, or -1 for a point that was inserted.
-  /// Points of the input keep their order; those that no cell uses are kept.
+  /// Points of the input keep their order; those that no cell uses are kept. With
+  /// ReconnectionOptions::adapt also -1 for a point that moved: its data are those of its place.
   std::vector<Index> originalPoints;
-  /// Of the inserted points, in order.
+  /// Of the points with -1, in order.
   std::vector<PointInterpolation> interpolations;
   /**
    * @brief Per cell of the output the cell of the input that contains its centroid: itself if it is
@@ -79,8 +81,17 @@ struct ReconnectionResult
    * are not changed keep their order.
    */
   std::vector<Index> originalCells;
+  ///@{ Of improveTriangles(): the edges of the output that are marked edges or parts of these, as
+  /// pairs of points, and for each the number of the marked edge.
+  std::vector<Index> lines;
+  std::vector<Index> originalLines;
+  ///@}
   /// With ReconnectionOptions::overlaps, else empty.
   CellOverlaps overlaps;
+  /// With ReconnectionOptions::adapt: the parts of the marked facets, three points of the output
+  /// each, and per part the marked facet of the input that it is, or is next to.
+  std::vector<Index> facets, originalFacets;
+  Index ignoredMarks = 0; ///< with `adapt`: marked facets or edges that are none, or there twice
   std::vector<signed char> obstacles; ///< a ReconnectionObstacle per cell of the output
   /// Per cell of the output its quality (of triangles the sine of the smallest angle), and an upper
   /// bound for it: the best of a tetrahedron on any one of its facets on the boundary and on

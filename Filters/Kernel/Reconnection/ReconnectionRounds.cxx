@@ -640,6 +640,7 @@ std::string needsOneRank(const ReconnectionOptions& options)
   return options.boundary == BoundaryMotion::OnSurface   ? "a boundary on the surface"
     : options.objective == ReconnectionObjective::Metric ? "a metric as objective"
     : options.improveMean                                ? "the best shape at the end"
+    : options.adapt                                      ? "an adaptation"
     : options.overlaps                                   ? "a conservative transfer"
     : options.size != ReconnectionSize::None && options.size != ReconnectionSize::Length
     ? "lengths per point"

@@ -16,8 +16,6 @@ double CavityOperations::triangulate(const EdgeRing& ring, double above)
 {
   const int n = ring.vertices;
   const auto& r = ring.ring;
-  const Vec3 &a = this->Mesh.point(ring.a), &b = this->Mesh.point(ring.b);
-  const QualityWeights& weights = this->Mesh.weights();
   for (int i = 0; i + 1 < n; ++i)
   {
     this->Best[i][i + 1] = 1.0;
@@ -36,10 +34,8 @@ double CavityOperations::triangulate(const EdgeRing& ring, double above)
         {
           continue;
         }
-        const Vec3 &x = this->Mesh.point(r[i]), &y = this->Mesh.point(r[k]),
-                   &z = this->Mesh.point(r[j]);
-        q = std::min(q, roundedQuality(x, y, z, b, weights));
-        q = q > best ? std::min(q, roundedQuality(y, x, z, a, weights)) : q;
+        q = std::min(q, this->Mesh.computeQuality({ r[i], r[k], r[j], ring.b }));
+        q = q > best ? std::min(q, this->Mesh.computeQuality({ r[k], r[i], r[j], ring.a })) : q;
         if (q > best)
         {
           best = q;
@@ -111,6 +107,10 @@ bool CavityOperations::prepareEdgeRemoval(TetId t, int i, int j, double above)
   this->Change.clear();
   this->Change.before.assign(ring.tets.begin(), ring.tets.begin() + ring.size);
   this->Change.opensBoundary = !ring.closed;
+  if (!ring.closed && this->Mesh.hasLabels() && !this->labelBoundarySwap(ring))
+  {
+    return false;
+  }
   this->addTriangles(ring, 0, ring.vertices - 1);
   return true;
 }

@@ -5,6 +5,8 @@
 #include "tautline/Core/Parallel.h"
 
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace tautline
 {
@@ -30,9 +32,11 @@ void sortKey(TriangleVertices& k)
 
 //------------------------------------------------------------------------------
 TetrahedronMesh::TetrahedronMesh(std::vector<Vec3> points, const std::vector<TetVertices>& cells,
-  const std::vector<std::int32_t>& regions, const QualityWeights& weights, int threads)
+  const std::vector<std::int32_t>& regions, const QualityWeights& weights, int threads,
+  std::vector<MetricTensor> metrics)
   : Points(std::move(points))
   , Weights(weights)
+  , Metrics(std::move(metrics))
 {
   const std::size_t n = cells.size();
   this->Tets.resize(n);
@@ -75,7 +79,8 @@ TetrahedronMesh::TetrahedronMesh(TetrahedronArrays arrays)
   , PointTet(Points.size(), NoId)
   , InputPoints(arrays.inputPoints)
   , Weights(arrays.weights)
-  , Kept(std::move(arrays.kept))
+  , Labels(std::move(arrays.labels))
+  , Metrics(std::move(arrays.metrics))
 {
   for (TetId t = this->slots() - 1; t >= 0; --t) // the next to be used is the first
   {
@@ -109,43 +114,84 @@ TetrahedronArrays TetrahedronMesh::release()
   arrays.points = std::move(this->Points);
   arrays.inputPoints = this->InputPoints;
   arrays.weights = this->Weights;
-  arrays.kept = std::move(this->Kept);
+  arrays.labels = std::move(this->Labels);
+  arrays.metrics = std::move(this->Metrics);
   return arrays;
 }
 
-Index TetrahedronMesh::keepFaces(std::vector<TriangleVertices> faces)
+Index TetrahedronMesh::labelFaces(const std::vector<TriangleVertices>& faces, bool boundary)
 {
-  std::for_each(faces.begin(), faces.end(), sortKey);
-  std::sort(faces.begin(), faces.end());
-  faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-  for (TetId t = 0; t < this->slots() && !faces.empty(); ++t)
+  using Labeled = std::pair<TriangleVertices, std::int32_t>;
+  std::vector<Labeled> known;
+  for (std::size_t f = 0; f < faces.size(); ++f)
+  {
+    TriangleVertices key = faces[f];
+    sortKey(key);
+    known.emplace_back(key, static_cast<std::int32_t>(f + 1));
+  }
+  std::sort(known.begin(), known.end());
+  Index sides = 0;
+  for (TetId t = 0; t < this->slots() && !known.empty(); ++t)
   {
     pollInterruption(static_cast<Index>(t));
     for (int i = 0; i < 4; ++i)
     {
-      const std::int32_t n = this->Tets[t].neighbors[i];
+      const bool inside = this->Tets[t].neighbors[i] != NoId;
       TriangleVertices key = this->face(t, i);
       sortKey(key);
-      if (n != NoId && std::binary_search(faces.begin(), faces.end(), key))
+      const auto found = std::lower_bound(known.begin(), known.end(), Labeled(key, NoLabel));
+      if ((inside || boundary) && found != known.end() && found->first == key)
       {
-        this->Tets[t].neighbors[i] = this->Tets[n >> 2].neighbors[n & 3] = NoId;
-        this->Kept.push_back(key);
+        this->Labels.resize(this->Tets.size(), { NoLabel, NoLabel, NoLabel, NoLabel });
+        this->Labels[t][i] = found->second;
+        sides += inside;
       }
     }
   }
-  std::sort(this->Kept.begin(), this->Kept.end());
-  return static_cast<Index>(this->Kept.size());
+  return sides / 2;
 }
 
-bool TetrahedronMesh::isKept(TetId t, int i) const
+bool TetrahedronMesh::isTurned(TetId t, int i) const
 {
-  if (this->Kept.empty() || this->Tets[t].neighbors[i] != NoId)
+  const std::int32_t n = this->Tets[t].neighbors[i];
+  if (n == NoId)
   {
     return false;
   }
-  TriangleVertices key = this->face(t, i);
-  sortKey(key);
-  return std::binary_search(this->Kept.begin(), this->Kept.end(), key);
+  // From the two sides a face has opposite senses.
+  const TriangleVertices own = this->face(t, i), other = this->face(n >> 2, n & 3);
+  const int at = other[0] == own[0] ? 0 : (other[1] == own[0] ? 1 : 2);
+  return other[(at + 1) % 3] == own[1];
+}
+
+void TetrahedronMesh::orientFlat()
+{
+  for (TetId t = 0; t < this->slots(); ++t)
+  {
+    Tetrahedron& tet = this->Tets[t];
+    const auto turned = [this, t](int i) { return this->isTurned(t, i); };
+    if (this->Quality[t] > 0.0 || !(turned(0) || turned(1) || turned(2) || turned(3)))
+    {
+      continue;
+    }
+    // With the last two exchanged, the faces opposite them are, too.
+    std::swap(tet.vertices[2], tet.vertices[3]);
+    std::swap(tet.neighbors[2], tet.neighbors[3]);
+    for (int i = 2; i < 4; ++i)
+    {
+      if (tet.neighbors[i] != NoId)
+      {
+        this->Tets[tet.neighbors[i] >> 2].neighbors[tet.neighbors[i] & 3] = 4 * t + i;
+      }
+    }
+  }
+}
+
+double TetrahedronMesh::metricQuality(const TetVertices& v) const
+{
+  const std::vector<Vec3>& x = this->Points;
+  const std::vector<MetricTensor>& m = this->Metrics;
+  return metricShape(x[v[0]], x[v[1]], x[v[2]], x[v[3]], (m[v[0]] + m[v[1]]) + (m[v[2]] + m[v[3]]));
 }
 
 /// Finds the neighbours: faces are filed by their smallest vertex, then compared.
@@ -340,19 +386,71 @@ void TetrahedronMesh::ring(TetId t, int i, int j, EdgeRing& ring) const
   ring.vertices = ring.size + 1;
 }
 
-//------------------------------------------------------------------------------
-PointId TetrahedronMesh::addPoint(const Vec3& x)
+void TetrahedronMesh::fan(
+  TetId t, int i, int j, std::vector<TetId>& tets, std::vector<std::int32_t>& walls) const
 {
+  tets.clear();
+  walls.clear();
+  const Tetrahedron& first = this->Tets[t];
+  const PointId a = first.vertices[i], b = first.vertices[j];
+  int k = 0;
+  while (k == i || k == j)
+  {
+    ++k;
+  }
+  const int l = 6 - i - j - k;
+  tets.push_back(t);
+  // Over the face opposite one of the other vertices, on and on; then over that opposite the other
+  // one, unless the first way has come back to the start.
+  for (const auto& [start, other] : { std::array<int, 2>{ k, l }, std::array<int, 2>{ l, k } })
+  {
+    TetId current = t;
+    PointId leave = first.vertices[start], stay = first.vertices[other];
+    while (true)
+    {
+      const int face = this->Tets[current].indexOf(leave);
+      const std::int32_t n = this->Tets[current].neighbors[face];
+      if (this->isWall(current, face))
+      {
+        walls.push_back(4 * current + face);
+      }
+      if (n == NoId)
+      {
+        break;
+      }
+      current = n >> 2;
+      if (current == t)
+      {
+        return;
+      }
+      tets.push_back(current);
+      const TetVertices& v = this->Tets[current].vertices;
+      leave = std::exchange(stay, v[0] ^ v[1] ^ v[2] ^ v[3] ^ a ^ b ^ stay);
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+PointId TetrahedronMesh::addPoint(const Vec3& x, const MetricTensor& metric)
+{
+  PointId v = this->pointSlots();
   if (!this->FreePoints.empty())
   {
-    const PointId v = this->FreePoints.back();
+    v = this->FreePoints.back();
     this->FreePoints.pop_back();
     this->Points[v] = x;
-    return v;
   }
-  this->Points.push_back(x);
-  this->PointTet.push_back(NoId);
-  return this->pointSlots() - 1;
+  else
+  {
+    this->Points.push_back(x);
+    this->PointTet.push_back(NoId);
+  }
+  if (this->hasMetrics())
+  {
+    this->Metrics.resize(this->Points.size());
+    this->Metrics[v] = metric;
+  }
+  return v;
 }
 
 void TetrahedronMesh::releasePoint(PointId v)
@@ -390,7 +488,7 @@ void TetrahedronMesh::FaceTable::reset(std::size_t faces)
   }
   if (size > this->Entries.size())
   {
-    this->Entries.assign(size, { { NoId, NoId, NoId }, NoId, false });
+    this->Entries.assign(size, { { NoId, NoId, NoId }, NoId, NoLabel, false });
   }
   else
   {
@@ -422,7 +520,7 @@ TetrahedronMesh::FaceEntry& TetrahedronMesh::FaceTable::find(TriangleVertices& k
 }
 
 /// Finds the neighbour of each face of the new tetrahedra; those among themselves are coded as
-/// -2 - (4 * position + face).
+/// -2 - (4 * position + face). And the label of each.
 bool TetrahedronMesh::match(const Replacement& replacement)
 {
   const std::uint32_t mark = this->nextMark();
@@ -430,6 +528,7 @@ bool TetrahedronMesh::match(const Replacement& replacement)
   {
     this->Mark[t] = mark;
   }
+  const bool changesLabels = !replacement.labels.empty();
   this->Faces.reset(4 * (replacement.before.size() + replacement.after.size()));
   for (TetId t : replacement.before)
   {
@@ -438,6 +537,10 @@ bool TetrahedronMesh::match(const Replacement& replacement)
       const std::int32_t n = this->Tets[t].neighbors[i];
       if (n != NoId && this->Mark[n >> 2] == mark)
       {
+        if (this->label(t, i) != NoLabel && !changesLabels)
+        {
+          return false; // a face that is kept
+        }
         continue;
       }
       TriangleVertices key = this->face(t, i);
@@ -446,11 +549,12 @@ bool TetrahedronMesh::match(const Replacement& replacement)
       {
         return false; // a face that is not manifold
       }
-      entry = { key, n, false };
+      entry = { key, n, this->label(t, i), false };
     }
   }
   const std::size_t outer = this->Faces.filled().size();
   this->Links.resize(replacement.after.size());
+  this->LinkLabels.resize(replacement.after.size());
   for (std::size_t k = 0; k < replacement.after.size(); ++k)
   {
     const TetVertices& v = replacement.after[k];
@@ -460,9 +564,11 @@ bool TetrahedronMesh::match(const Replacement& replacement)
       TriangleVertices key = { v[f[0]], v[f[1]], v[f[2]] };
       FaceEntry& entry = this->Faces.find(key);
       const std::int32_t own = static_cast<std::int32_t>(4 * k) + i;
+      const std::int32_t given = changesLabels ? replacement.labels[k][i] : NoLabel;
+      this->LinkLabels[k][i] = given;
       if (entry.key[0] == NoId)
       {
-        entry = { key, -2 - own, false };
+        entry = { key, -2 - own, given, false };
         this->Links[k][i] = NoId;
         continue;
       }
@@ -472,6 +578,7 @@ bool TetrahedronMesh::match(const Replacement& replacement)
       }
       entry.matched = true;
       this->Links[k][i] = entry.code;
+      this->LinkLabels[k][i] = entry.label;
       if (entry.code <= -2)
       {
         const std::int32_t other = -2 - entry.code;
@@ -479,15 +586,38 @@ bool TetrahedronMesh::match(const Replacement& replacement)
       }
     }
   }
+  return this->matchBoundary(replacement, outer);
+}
+
+/// Whether the faces that have found no other one are of the boundary, and may be replaced. Sets
+/// the labels of the new ones.
+/// @param outer the number of faces of the cavity, which come first
+bool TetrahedronMesh::matchBoundary(const Replacement& replacement, std::size_t outer)
+{
   for (std::size_t i = 0; i < this->Faces.filled().size(); ++i)
   {
     const FaceEntry& entry = this->Faces.at(this->Faces.filled()[i]);
-    const bool boundary = i < outer
-      ? entry.code == NoId && !std::binary_search(this->Kept.begin(), this->Kept.end(), entry.key)
-      : true;
-    if (!entry.matched && !(replacement.opensBoundary && boundary))
+    if (entry.matched)
+    {
+      continue;
+    }
+    const bool removed = i < outer;
+    if (!replacement.opensBoundary || (removed && entry.code != NoId))
     {
       return false;
+    }
+    if (!replacement.labels.empty())
+    {
+      continue;
+    }
+    if (removed && entry.label != NoLabel && replacement.boundaryLabel == NoLabel)
+    {
+      return false; // a labeled face that would be lost
+    }
+    if (!removed)
+    {
+      const std::int32_t own = -2 - entry.code;
+      this->LinkLabels[own >> 2][own & 3] = replacement.boundaryLabel;
     }
   }
   return true;
@@ -504,6 +634,27 @@ void TetrahedronMesh::detachPoints(const Replacement& replacement)
   }
 }
 
+/// A slot for a tetrahedron: one that is free, or a new one.
+TetId TetrahedronMesh::takeSlot()
+{
+  if (!this->FreeTets.empty())
+  {
+    const TetId t = this->FreeTets.back();
+    this->FreeTets.pop_back();
+    return t;
+  }
+  this->Tets.emplace_back();
+  this->Quality.push_back(0.0);
+  this->Region.push_back(0);
+  this->Origin.push_back(NoId);
+  this->Mark.push_back(0);
+  if (this->hasLabels())
+  {
+    this->Labels.push_back({ NoLabel, NoLabel, NoLabel, NoLabel });
+  }
+  return this->slots() - 1;
+}
+
 bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>& created)
 {
   created.clear();
@@ -512,9 +663,24 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
   {
     return false;
   }
-  const TetId first = replacement.before[0];
-  const std::int32_t region = this->Region[first];
-  const TetId origin = this->Origin[first];
+  // Per region a cell of the input nearby.
+  std::vector<std::pair<std::int32_t, TetId>> origins;
+  for (TetId t : replacement.before)
+  {
+    const std::int32_t region = this->Region[t];
+    const auto known = [region](const auto& entry) { return entry.first == region; };
+    if (std::none_of(origins.begin(), origins.end(), known))
+    {
+      origins.emplace_back(region, this->Origin[t]);
+    }
+  }
+  const auto originOf = [&](std::size_t k)
+  {
+    return replacement.regions.empty()
+      ? origins.front()
+      : *std::find_if(origins.begin(), origins.end(),
+          [&](const auto& entry) { return entry.first == replacement.regions[k]; });
+  };
   this->detachPoints(replacement);
   // Ids that are free use again: those of the cavity first.
   for (std::size_t k = 0; k < after; ++k)
@@ -523,19 +689,9 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
     {
       created.push_back(replacement.before[k]);
     }
-    else if (!this->FreeTets.empty())
-    {
-      created.push_back(this->FreeTets.back());
-      this->FreeTets.pop_back();
-    }
     else
     {
-      created.push_back(this->slots());
-      this->Tets.emplace_back();
-      this->Quality.push_back(0.0);
-      this->Region.push_back(0);
-      this->Origin.push_back(NoId);
-      this->Mark.push_back(0);
+      created.push_back(this->takeSlot());
     }
   }
   // Points of the input that are lost are not used again: their ids stay theirs.
@@ -568,9 +724,12 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
   {
     const TetId id = created[k];
     this->Quality[id] = replacement.qualities[k];
-    this->Region[id] = region;
-    this->Origin[id] = origin;
+    std::tie(this->Region[id], this->Origin[id]) = originOf(k);
     this->Tets[id].vertices = replacement.after[k];
+    if (this->hasLabels())
+    {
+      this->Labels[id] = this->LinkLabels[k];
+    }
     for (int i = 0; i < 4; ++i)
     {
       const std::int32_t link = this->Links[k][i];
@@ -584,6 +743,69 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
   }
   this->Alive += static_cast<Index>(after) - static_cast<Index>(before);
   return true;
+}
+
+//------------------------------------------------------------------------------
+void TetrahedronMesh::splitEdge(PointId a, PointId b, PointId p, const std::vector<TetId>& fan,
+  const std::vector<double>& qualities, std::vector<TetId>& created)
+{
+  created.clear();
+  // The part with a takes the slot, that with b a new one.
+  for (TetId t : fan)
+  {
+    created.push_back(t);
+    created.push_back(this->takeSlot());
+  }
+  const auto otherOf = [&](TetId t)
+  { return created[2 * (std::find(fan.begin(), fan.end(), t) - fan.begin()) + 1]; };
+  std::vector<std::array<std::int32_t, 4>> former;
+  for (TetId t : fan)
+  {
+    former.push_back(this->Tets[t].neighbors);
+  }
+  for (std::size_t k = 0; k < fan.size(); ++k)
+  {
+    const TetId near = fan[k], far = created[2 * k + 1];
+    const int i = this->Tets[near].indexOf(a), j = this->Tets[near].indexOf(b);
+    this->Tets[far] = this->Tets[near];
+    this->Tets[near].vertices[j] = p;
+    this->Tets[far].vertices[i] = p;
+    for (int f = 0; f < 4; ++f)
+    {
+      const std::int32_t n = former[k][f];
+      if (f != i && f != j && n != NoId)
+      {
+        this->Tets[far].neighbors[f] = 4 * otherOf(n >> 2) + (n & 3);
+      }
+    }
+    // The face between both parts, and the face opposite a.
+    this->Tets[near].neighbors[i] = 4 * far + j;
+    this->Tets[far].neighbors[j] = 4 * near + i;
+    if (former[k][i] != NoId)
+    {
+      this->Tets[former[k][i] >> 2].neighbors[former[k][i] & 3] = 4 * far + i;
+    }
+    if (this->hasLabels())
+    {
+      this->Labels[far] = this->Labels[near];
+      this->Labels[near][i] = this->Labels[far][j] = NoLabel;
+    }
+    this->Quality[near] = qualities[2 * k];
+    this->Quality[far] = qualities[2 * k + 1];
+    this->Region[far] = this->Region[near];
+    this->Origin[far] = this->Origin[near];
+    this->PointTet[b] = far;
+    this->PointTet[p] = far;
+    this->PointTet[a] = near;
+  }
+  for (TetId t : fan) // corners that are in both parts
+  {
+    for (PointId v : this->Tets[t].vertices)
+    {
+      this->PointTet[v] = t;
+    }
+  }
+  this->Alive += static_cast<Index>(fan.size());
 }
 
 //------------------------------------------------------------------------------
@@ -622,7 +844,9 @@ std::string TetrahedronMesh::findViolation() const
       TriangleVertices own = this->face(t, i), other = this->face(n >> 2, n & 3);
       sortKey(own);
       sortKey(other);
-      if (!this->alive(n >> 2) || own != other || this->Tets[n >> 2].neighbors[n & 3] != 4 * t + i)
+      if (!this->alive(n >> 2) || own != other ||
+        this->Tets[n >> 2].neighbors[n & 3] != 4 * t + i ||
+        this->label(n >> 2, n & 3) != this->label(t, i))
       {
         return at("wrong neighbour of tetrahedron ", t);
       }

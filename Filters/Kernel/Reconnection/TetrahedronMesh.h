@@ -8,7 +8,7 @@
  * checked before anything is touched: a replacement that does not fit leaves the mesh as it was.
  * Ids of tetrahedra and points that are not involved stay; those that become free are used again,
  * except the ids of the points of the input.
- * Memory: 64 bytes per tetrahedron, 40 per point.
+ * Memory: 64 bytes per tetrahedron, 40 per point; 16 more with labels, 48 more with metrics.
  */
 #ifndef tautline_TetrahedronMesh_h
 #define tautline_TetrahedronMesh_h
@@ -30,6 +30,11 @@ constexpr std::int32_t OutsideRegion = -1;
 
 /// The vertices of the face opposite each vertex, so that (vertex, face) is a positive order.
 constexpr int OppositeFace[4][3] = { { 1, 2, 3 }, { 0, 3, 2 }, { 3, 0, 1 }, { 2, 1, 0 } };
+
+/// A face without a label. A label is the number of a facet that is kept, from 1 on.
+constexpr std::int32_t NoLabel = 0;
+/// One per face of a tetrahedron.
+using FaceLabels = std::array<std::int32_t, 4>;
 
 /// Vertices in VTK's order (positive volume).
 using TetVertices = std::array<PointId, 4>;
@@ -76,15 +81,26 @@ struct Replacement
   std::vector<TetId> before;
   std::vector<TetVertices> after;
   std::vector<double> qualities; ///< of `after`
+  /// Of `after`, where `before` are of several regions; else empty: all are of the first one's.
+  std::vector<std::int32_t> regions;
+  /// Of the faces of `after`, where labeled faces change; those of outer faces stay, whatever is
+  /// given. Empty: no labeled face may change, except on the boundary, see boundaryLabel.
+  std::vector<FaceLabels> labels;
   /// Whether faces of the boundary may be replaced by others.
   bool opensBoundary = false;
+  /// With opensBoundary and without `labels`: of the new faces of the boundary. Faces of the
+  /// boundary may be replaced that have this one, or none.
+  std::int32_t boundaryLabel = NoLabel;
 
   void clear()
   {
     this->before.clear();
     this->after.clear();
     this->qualities.clear();
+    this->regions.clear();
+    this->labels.clear();
     this->opensBoundary = false;
+    this->boundaryLabel = NoLabel;
   }
   void add(const TetVertices& vertices, double quality)
   {
@@ -103,7 +119,8 @@ struct TetrahedronArrays
   std::vector<Vec3> points;
   PointId inputPoints = 0; ///< the first points are the input's: their ids are not used again
   QualityWeights weights;
-  std::vector<TriangleVertices> kept; ///< see TetrahedronMesh::keepFaces()
+  std::vector<FaceLabels> labels;    ///< see TetrahedronMesh::labelFaces(); empty: none
+  std::vector<MetricTensor> metrics; ///< one per point; empty: none
 };
 
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT TetrahedronMesh
@@ -113,10 +130,11 @@ public:
    * @param cells positive tetrahedra
    * @param regions one per tetrahedron, or empty: one region
    * @param weights of all qualities
+   * @param metrics one per point, or empty
    */
   TetrahedronMesh(std::vector<Vec3> points, const std::vector<TetVertices>& cells,
     const std::vector<std::int32_t>& regions = {}, const QualityWeights& weights = {},
-    int threads = 1);
+    int threads = 1, std::vector<MetricTensor> metrics = {});
   /// Connected already: neighbours of all faces are as given.
   explicit TetrahedronMesh(TetrahedronArrays arrays);
 
@@ -142,24 +160,36 @@ public:
 
   PointId inputPoints() const { return this->InputPoints; }
 
+  /// Whether both tetrahedra at face i are on the same side of it, by the order of their vertices.
+  bool isTurned(TetId t, int i) const;
+  /// Gives flat tetrahedra, whose order of vertices means nothing, the order of those around.
+  void orientFlat();
   /// Faces that are used by three or more tetrahedra; these are walls on all sides.
   Index nonManifoldFaces() const { return this->NonManifoldFaces; }
   /**
-   * @brief Keeps faces between two tetrahedra, whatever is around them: both sides are boundary
-   * that no replacement opens. Others are ignored. To be called before any replacement.
-   * @return how many are kept
+   * @brief Labels faces with their number in the list plus 1, the first of equal ones. Labeled
+   * faces between two tetrahedra are walls, whatever is around them. Triples that are no faces are
+   * ignored. To be called before any replacement.
+   * @param boundary whether faces of the boundary are labeled, too
+   * @return how many between two tetrahedra
    */
-  Index keepFaces(std::vector<TriangleVertices> faces);
-  /// The faces that are kept, each with its vertices sorted, in increasing order.
-  const std::vector<TriangleVertices>& keptFaces() const { return this->Kept; }
-  /// Whether face i is kept.
-  bool isKept(TetId t, int i) const;
+  Index labelFaces(const std::vector<TriangleVertices>& faces, bool boundary);
+  bool hasLabels() const { return !this->Labels.empty(); }
+  std::int32_t label(TetId t, int i) const
+  {
+    return this->Labels.empty() ? NoLabel : this->Labels[t][i];
+  }
+  FaceLabels labels(TetId t) const
+  {
+    return this->Labels.empty() ? FaceLabels{ NoLabel, NoLabel, NoLabel, NoLabel }
+                                : this->Labels[t];
+  }
 
-  /// Whether face i is on the boundary or between two regions.
+  /// Whether face i is on the boundary, between two regions, or labeled.
   bool isWall(TetId t, int i) const
   {
     const std::int32_t n = this->Tets[t].neighbors[i];
-    return n == NoId || this->Region[n >> 2] != this->Region[t];
+    return n == NoId || this->Region[n >> 2] != this->Region[t] || this->label(t, i) != NoLabel;
   }
   TriangleVertices face(TetId t, int i) const
   {
@@ -170,22 +200,36 @@ public:
   double computeQuality(const TetVertices& v) const
   {
     const std::vector<Vec3>& x = this->Points;
-    return roundedQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]], this->Weights);
+    return this->Weights.inMetric
+      ? this->metricQuality(v)
+      : roundedQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]], this->Weights);
   }
   double computeExactQuality(const TetVertices& v) const
   {
     const std::vector<Vec3>& x = this->Points;
-    return exactQuality(x[v[0]], x[v[1]], x[v[2]], x[v[3]], this->Weights);
+    return exactSign(this->computeQuality(v), x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
   }
   const QualityWeights& weights() const { return this->Weights; }
 
+  ///@{ The metrics of the points, in which target lengths of edges are 1.
+  bool hasMetrics() const { return !this->Metrics.empty(); }
+  const MetricTensor& metric(PointId v) const { return this->Metrics[v]; }
+  void setMetric(PointId v, const MetricTensor& metric) { this->Metrics[v] = metric; }
+  ///@}
+
   /// The tetrahedra with vertex v that are connected with tetOf(v) through faces, walls included.
   void star(PointId v, std::vector<TetId>& tets);
-  /// The tetrahedra round the edge of vertices i and j of a tetrahedron.
+  /**
+   * @brief All tetrahedra at the edge of vertices i and j of a tetrahedron, across walls.
+   * @param walls set to those of their faces at the edge that are walls, as 4 t + i, each from one
+   * side, or from both
+   */
+  void fan(TetId t, int i, int j, std::vector<TetId>& tets, std::vector<std::int32_t>& walls) const;
+  /// The tetrahedra round the edge of vertices i and j of a tetrahedron, up to walls.
   void ring(TetId t, int i, int j, EdgeRing& ring) const;
 
   /// A point without tetrahedra. The next replacement may use it; else release it.
-  PointId addPoint(const Vec3& x);
+  PointId addPoint(const Vec3& x, const MetricTensor& metric = {});
   /// The id that addPoint() will return; below pointSlots() if it was used before.
   PointId nextPoint() const
   {
@@ -207,6 +251,16 @@ public:
    */
   bool replace(const Replacement& replacement, std::vector<TetId>& created);
 
+  /**
+   * @brief Divides an edge in two by a point, and each tetrahedron at it.
+   * @param p a new point, from addPoint()
+   * @param fan of the edge from a to b
+   * @param qualities of the parts of each tetrahedron, that with a and that with b, in turn
+   * @param created set to the ids of these
+   */
+  void splitEdge(PointId a, PointId b, PointId p, const std::vector<TetId>& fan,
+    const std::vector<double>& qualities, std::vector<TetId>& created);
+
   /// Checks adjacency, orientation and links of points; the first violation as text, or "".
   std::string findViolation() const;
 
@@ -215,6 +269,7 @@ private:
   {
     TriangleVertices key;
     std::int32_t code = NoId;
+    std::int32_t label = NoLabel;
     bool matched = false;
   };
   /// A small hash table of the faces of a cavity.
@@ -234,7 +289,10 @@ private:
 
   void connect(int threads);
   std::uint32_t nextMark();
+  double metricQuality(const TetVertices& v) const;
+  TetId takeSlot();
   bool match(const Replacement& replacement);
+  bool matchBoundary(const Replacement& replacement, std::size_t outer);
   void detachPoints(const Replacement& replacement);
 
   std::vector<Tetrahedron> Tets;
@@ -251,10 +309,12 @@ private:
   PointId InputPoints = 0;
   Index NonManifoldFaces = 0;
   QualityWeights Weights;
-  std::vector<TriangleVertices> Kept; ///< sorted
+  std::vector<FaceLabels> Labels;    ///< empty: none
+  std::vector<MetricTensor> Metrics; ///< empty: none
   // Of replace(), kept to save allocations.
   FaceTable Faces;
   std::vector<std::array<std::int32_t, 4>> Links;
+  std::vector<FaceLabels> LinkLabels;
 };
 }
 #endif

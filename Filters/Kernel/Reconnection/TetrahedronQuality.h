@@ -9,12 +9,13 @@
  * between faces with normals m and n (twice their areas long), and S the sum of the six squared
  * edges: sine = d l / (|m| |n|), (mean ratio)^(3/2) = 12 sqrt(3) d / S^(3/2). The sine alone
  * accepts flat shapes, the mean ratio alone small angles. Weights shift the balance. Or q is made
- * from a metric of the registry (MetricQuality).
+ * from a metric of the registry (MetricQuality), or is the shape in a metric tensor.
  */
 #ifndef tautline_TetrahedronQuality_h
 #define tautline_TetrahedronQuality_h
 
 #include "MetricQuality.h"
+#include "tautline/Adaptation/MetricTensor.h"
 #include "tautline/Core/Types.h"
 #include "tautline/Geometry/Predicates.h"
 
@@ -36,6 +37,8 @@ struct QualityWeights
   double sine = 1, meanRatio = 1;
   /// Instead of both; the weights are then large, so that bounds by them hold.
   const MetricQuality* metric = nullptr;
+  /// Instead of all these: metricShape() in the mean of the metric tensors of the corners.
+  bool inMetric = false;
 };
 
 /// What the quality is the smaller of, and the sign of the volume.
@@ -83,17 +86,48 @@ inline double roundedQuality(
                         : measure(p, a, b, c).quality(weights);
 }
 
-/// The quality; positive exactly if the volume is, by the exact predicate.
-inline double exactQuality(
-  const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const QualityWeights& weights = {})
+/// The sum of tensors.
+inline MetricTensor operator+(const MetricTensor& a, const MetricTensor& b)
 {
-  const double q = roundedQuality(p, a, b, c, weights);
+  return { a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3], a[4] + b[4], a[5] + b[5] };
+}
+
+inline double determinantOf(const MetricTensor& m)
+{
+  return m[0] * (m[1] * m[2] - m[4] * m[4]) - m[3] * (m[3] * m[2] - m[4] * m[5]) +
+    m[5] * (m[3] * m[4] - m[1] * m[5]);
+}
+
+/**
+ * @brief (mean ratio)^(3/2) in coordinates in which a metric tensor, or any multiple of it, is the
+ * identity: 12 sqrt(3) d sqrt(det M) / S^(3/2), with d = 6 V and the sum S of e . M e.
+ */
+inline double metricShape(
+  const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const MetricTensor& m)
+{
+  const Vec3 u = a - p, v = b - p, w = c - p;
+  const double sum = squaredLength(u, m) + squaredLength(v, m) + squaredLength(w, m) +
+    squaredLength(b - a, m) + squaredLength(c - b, m) + squaredLength(a - c, m);
+  const double volume = dot(u, cross(v, w)) * std::sqrt(std::max(determinantOf(m), 0.0));
+  return sum > 0.0 ? MeanRatioFactor * volume / (sum * std::sqrt(sum)) : 0.0;
+}
+
+/// A quality as computed, with the sign of the volume by the exact predicate.
+inline double exactSign(double q, const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c)
+{
   if (q > CertainQuality)
   {
     return q;
   }
   constexpr double tiny = 1e-300;
   return orientation(p, a, b, c) > 0 ? std::max(q, tiny) : std::min(q, 0.0);
+}
+
+/// The quality; positive exactly if the volume is, by the exact predicate.
+inline double exactQuality(
+  const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c, const QualityWeights& weights = {})
+{
+  return exactSign(roundedQuality(p, a, b, c, weights), p, a, b, c);
 }
 
 /// The six dihedral angles in degrees; those of an inverted tetrahedron are of its mirror image.

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "TetrahedronAdaptation.h"
+
+#include "tautline/Core/Interruption.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace tautline
+{
+namespace
+{
+/// Edges are split above this length in the metric, and contracted below its inverse.
+constexpr double LongestEdge = 1.4142135623730951;
+/// Rounds at most. A factor of 2 in size takes about one.
+constexpr int MostRounds = 24;
+/// Rounds end when fewer edges change than this part of all, or when the part of the edges in range
+/// has not grown by so much, nor the deviation of the lengths fallen by such a part of it, in so
+/// many rounds.
+constexpr double LeastChange = 2e-3, LeastGain = 3e-3, LeastFall = 0.03;
+constexpr int VainRounds = 2;
+/// In each round, tetrahedra below this quality are swapped; and points move so many times.
+constexpr double SwapTarget = 0.75;
+constexpr int SweepsOfRound = 2;
+/// At the end: so many rounds of swaps and motions, and the quality up to which the worst are
+/// improved.
+constexpr int LastRounds = 3, LastSweeps = 4;
+constexpr double LastTarget = 0.85;
+constexpr double LastGain = 1e-3;
+/// Operations between two calls of `proceed`.
+constexpr Index PollInterval = 256;
+}
+
+EdgeShare shareOfEdges(const TetrahedronMesh& mesh)
+{
+  std::vector<std::uint64_t> keys;
+  for (TetId t = 0; t < mesh.slots(); ++t)
+  {
+    if (!mesh.alive(t) || mesh.region(t) == OutsideRegion)
+    {
+      continue;
+    }
+    const TetVertices& v = mesh.tet(t).vertices;
+    for (int i = 0; i < 4; ++i)
+    {
+      for (int j = i + 1; j < 4; ++j)
+      {
+        const auto a = static_cast<std::uint64_t>(std::min(v[i], v[j]));
+        keys.push_back(a << 32 | static_cast<std::uint64_t>(std::max(v[i], v[j])));
+      }
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  EdgeShare result;
+  for (std::uint64_t key : keys)
+  {
+    const auto a = static_cast<PointId>(key >> 32), b = static_cast<PointId>(key & 0xffffffffu);
+    const double length = edgeLength(mesh.point(b) - mesh.point(a), mesh.metric(a), mesh.metric(b));
+    ++result.edges;
+    result.inRange += length >= 1.0 / LongestEdge && length <= LongestEdge;
+    result.deviation += std::abs(std::log(length));
+  }
+  result.deviation /= static_cast<double>(std::max<Index>(result.edges, 1));
+  return result;
+}
+
+//------------------------------------------------------------------------------
+bool TetrahedronAdaptation::isPoll()
+{
+  return ++this->Polls % PollInterval == 0;
+}
+
+//------------------------------------------------------------------------------
+/// The edges that are too long, the longest first, or too short, the shortest first.
+std::vector<TetrahedronAdaptation::SizedEdge> TetrahedronAdaptation::edges(bool tooLong) const
+{
+  std::vector<SizedEdge> found;
+  for (TetId t = 0; t < this->Mesh.slots(); ++t)
+  {
+    pollInterruption(t);
+    if (!this->Mesh.alive(t) || this->Mesh.region(t) == OutsideRegion)
+    {
+      continue;
+    }
+    const TetVertices& v = this->Mesh.tet(t).vertices;
+    for (int i = 0; i < 4; ++i)
+    {
+      for (int j = i + 1; j < 4; ++j)
+      {
+        const PointId a = std::min(v[i], v[j]), b = std::max(v[i], v[j]);
+        const double length = edgeLength(
+          this->Mesh.point(b) - this->Mesh.point(a), this->Mesh.metric(a), this->Mesh.metric(b));
+        if (tooLong ? length > LongestEdge : length < 1.0 / LongestEdge)
+        {
+          found.push_back({ tooLong ? -length : length, a, b });
+        }
+      }
+    }
+  }
+  std::sort(found.begin(), found.end(),
+    [](const SizedEdge& x, const SizedEdge& y)
+    { return std::tie(x.length, x.a, x.b) < std::tie(y.length, y.a, y.b); });
+  found.erase(std::unique(found.begin(), found.end(),
+                [](const SizedEdge& x, const SizedEdge& y) { return x.a == y.a && x.b == y.b; }),
+    found.end());
+  return found;
+}
+
+//------------------------------------------------------------------------------
+/// Splits the long edges, or contracts the short ones. @return false if stopped
+bool TetrahedronAdaptation::changeEdges(bool tooLong, Index& changed)
+{
+  std::vector<TetId> star;
+  for (const SizedEdge& edge : this->edges(tooLong))
+  {
+    if (this->isPoll() && this->proceed && !this->proceed())
+    {
+      return false;
+    }
+    if (!this->Mesh.used(edge.a) || !this->Mesh.used(edge.b))
+    {
+      continue;
+    }
+    // Points may have moved meanwhile, and the edge be another one's.
+    const double length = edgeLength(this->Mesh.point(edge.b) - this->Mesh.point(edge.a),
+      this->Mesh.metric(edge.a), this->Mesh.metric(edge.b));
+    if (tooLong ? length <= LongestEdge : length >= 1.0 / LongestEdge)
+    {
+      continue;
+    }
+    this->Mesh.star(edge.a, star);
+    const auto at = std::find_if(
+      star.begin(), star.end(), [&](TetId t) { return this->Mesh.tet(t).indexOf(edge.b) != NoId; });
+    if (at == star.end())
+    {
+      continue;
+    }
+    const int i = this->Mesh.tet(*at).indexOf(edge.a), j = this->Mesh.tet(*at).indexOf(edge.b);
+    changed +=
+      tooLong ? this->Operations.splitEdge(*at, i, j) : this->Operations.contractEdge(*at, i, j);
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+bool TetrahedronAdaptation::swap(double target)
+{
+  if (!this->swaps)
+  {
+    return true;
+  }
+  PassOptions pass;
+  pass.target = target;
+  pass.smooth = false;
+  pass.skipsBound = false;
+  return this->Passes.run(pass) >= 0;
+}
+
+//------------------------------------------------------------------------------
+bool TetrahedronAdaptation::relax(int sweeps)
+{
+  for (int sweep = 0; sweep < sweeps && this->moves; ++sweep)
+  {
+    Index moved = 0;
+    for (PointId v = 0; v < this->Mesh.pointSlots(); ++v)
+    {
+      if (this->isPoll() && this->proceed && !this->proceed())
+      {
+        return false;
+      }
+      moved += this->Mesh.used(v) && this->Operations.relax(v);
+    }
+    if (moved == 0)
+    {
+      break;
+    }
+  }
+  return true;
+}
+
+//------------------------------------------------------------------------------
+/// @param busy set to whether many edges changed
+bool TetrahedronAdaptation::round(bool& busy)
+{
+  Index changed = 0;
+  if ((this->contracts && !this->changeEdges(false, changed)) ||
+    (this->splits && !this->changeEdges(true, changed)) || !this->swap(SwapTarget) ||
+    !this->relax(SweepsOfRound))
+  {
+    return false;
+  }
+  busy = static_cast<double>(changed) > LeastChange * static_cast<double>(this->Mesh.size());
+  return true;
+}
+
+//------------------------------------------------------------------------------
+/// The worst first, all points being where lengths are best.
+bool TetrahedronAdaptation::finish()
+{
+  for (int k = 0; k < LastRounds; ++k)
+  {
+    Index changed = 0;
+    if ((this->contracts && !this->changeEdges(false, changed)) || !this->swap(LastTarget) ||
+      !this->relax(LastSweeps))
+    {
+      return false;
+    }
+  }
+  PassOptions pass;
+  pass.target = LastTarget;
+  pass.swap = this->swaps;
+  pass.smooth = this->moves;
+  pass.skipsBound = false;
+  pass.leastGain = LastGain;
+  return this->Passes.run(pass) >= 0;
+}
+
+//------------------------------------------------------------------------------
+bool TetrahedronAdaptation::run()
+{
+  this->Operations.prepareStamps();
+  bool busy = true;
+  EdgeShare best = shareOfEdges(this->Mesh);
+  for (int k = 0, vain = 0; k < MostRounds && busy && vain < VainRounds; ++k)
+  {
+    const bool complete = this->round(busy);
+    if (!this->record(static_cast<double>(k + 1) / (MostRounds + 2)) || !complete)
+    {
+      return false;
+    }
+    const EdgeShare now = shareOfEdges(this->Mesh);
+    const bool better =
+      now.share() > best.share() + LeastGain || now.deviation < (1.0 - LeastFall) * best.deviation;
+    vain = better ? 0 : vain + 1;
+    best = better ? now : best;
+  }
+  const bool complete = this->finish();
+  return this->record(1.0) && complete;
+}
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+/**
+ * @file TetrahedronAdaptation.h
+ * @brief Gives the edges of a tetrahedral mesh their target lengths.
+ * Internal: not installed.
+ *
+ * Rounds of splits (the longest edges first), contractions (the shortest first), swaps and motions,
+ * see A. Loseille and F. Alauzet, "Optimal 3D highly anisotropic mesh adaptation based on the
+ * continuous mesh framework" (IMR 2009), until hardly an edge changes.
+ */
+#ifndef tautline_TetrahedronAdaptation_h
+#define tautline_TetrahedronAdaptation_h
+
+#include "TetrahedronPasses.h"
+
+#include <functional>
+
+namespace tautline
+{
+/// How many edges there are, and how many have a length in the metric from 1 / sqrt(2) to sqrt(2).
+struct EdgeShare
+{
+  Index edges = 0, inRange = 0;
+  double deviation = 0; ///< the mean of the absolute logarithms of the lengths
+  double share() const
+  {
+    return this->edges > 0 ? static_cast<double>(this->inRange) / static_cast<double>(this->edges)
+                           : 1.0;
+  }
+};
+
+/// Without those around a part of a mesh.
+EdgeShare shareOfEdges(const TetrahedronMesh& mesh);
+
+class TetrahedronAdaptation
+{
+public:
+  /// @param operations with `field`; have to live as long as this, as `passes`
+  TetrahedronAdaptation(
+    TetrahedronMesh& mesh, CavityOperations& operations, TetrahedronPasses& passes)
+    : Mesh(mesh)
+    , Operations(operations)
+    , Passes(passes)
+  {
+  }
+
+  /// Which operations are used.
+  bool swaps = true, moves = true, contracts = true, splits = true;
+  int threads = 0;
+  /// Called now and then; returns false to stop.
+  std::function<bool()> proceed;
+  /// Called after each round with the part of the work that is done, 0 to 1; returns false to stop.
+  std::function<bool(double fraction)> record;
+
+  /// Runs rounds until hardly an edge changes. @return false if stopped
+  bool run();
+
+private:
+  struct SizedEdge
+  {
+    double length;
+    PointId a, b;
+  };
+
+  bool round(bool& busy);
+  std::vector<SizedEdge> edges(bool tooLong) const;
+  bool changeEdges(bool tooLong, Index& changed);
+  bool swap(double target);
+  bool relax(int sweeps);
+  bool finish();
+  bool isPoll();
+
+  TetrahedronMesh& Mesh;
+  CavityOperations& Operations;
+  TetrahedronPasses& Passes;
+  Index Polls = 0;
+};
+}
+#endif
