@@ -171,7 +171,16 @@ TriangleInput convertTriangles(const Mesh& mesh, const TriangleOptions& options)
     }
   }
   input.regions = renumberRegions(options.regions, view.numberOfCells);
+  if (options.outside)
+  {
+    input.regions.resize(view.numberOfCells, 0);
+    for (Index c = 0; c < view.numberOfCells; ++c)
+    {
+      input.regions[c] = options.outside[c] ? OutsideRegion : input.regions[c];
+    }
+  }
   input.walls = options.markedEdges;
+  input.markedEdges = static_cast<std::int32_t>(options.markedEdges.size());
   const bool own = options.size == ReconnectionSize::Input;
   input.metrics = edgeMetrics(input.points, input.exponent,
     own ? meanEdgeLengths(input.points, input.cells) : std::vector<double>(), options);
@@ -238,7 +247,10 @@ std::vector<PointFreedom> findFreedoms(
         const Vec3 d = mesh.point(w) - mesh.point(v);
         directions[std::min(walls++, 1)] = (1.0 / norm(d)) * d;
       });
-    const bool kept = mesh.isNonManifold(v) || (!input.corners.empty() && input.corners[v]);
+    const bool beside = std::any_of(around.begin(), around.end(),
+      [&](TriId t) { return mesh.triangle(t).region == OutsideRegion; });
+    const bool kept =
+      beside || mesh.isNonManifold(v) || (!input.corners.empty() && input.corners[v]);
     const bool straight = walls == 2 && dot(directions[0], directions[1]) < 0.0 &&
       norm(cross(directions[0], directions[1])) <= tolerance;
     if (kept || (walls > 0 && !(slide && straight)))
@@ -288,14 +300,21 @@ double cornerBound(const TriangleMesh& mesh, TriId t, double angle, bool divides
 }
 }
 
+double targetQuality(const TriangleOptions& options)
+{
+  constexpr double targetInMetric = 0.7;
+  return options.adapt ? targetInMetric : std::sin(radians(options.targetAngle));
+}
+
 void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoints,
   const TriangleOptions& options, ReconnectionResult& result)
 {
-  const double target = std::sin(options.targetAngle * (Pi / 180.0));
+  const double target = targetQuality(options);
   const bool divides = options.boundary == BoundaryMotion::FlatParts && options.insert;
   std::vector<char> atBorder(mesh.pointSlots(), 0), atInterface(atBorder);
   double forced = 1.0, smallestCorner = Pi;
-  std::vector<double> bounds(mesh.slots(), RegularSine);
+  // Bounds of angles are none of mean ratios in a metric.
+  std::vector<double> bounds(mesh.slots(), options.adapt ? 1.0 : RegularSine);
   for (TriId t = 0; t < mesh.slots(); ++t)
   {
     for (int i = 0; mesh.alive(t) && i < 3; ++i)
@@ -306,7 +325,7 @@ void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoint
         std::vector<char>& flags = mesh.isBorder(t, i) ? atBorder : atInterface;
         flags[v[Next[i]]] = flags[v[Previous[i]]] = 1;
       }
-      const double angle = wallAngle(mesh, t, i);
+      const double angle = options.adapt ? Pi : wallAngle(mesh, t, i);
       if (angle < Pi)
       {
         bounds[t] = std::min(bounds[t], cornerBound(mesh, t, angle, divides));
@@ -315,7 +334,7 @@ void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoint
     }
     forced = std::min(forced, bounds[t]);
   }
-  result.forcedQuality = std::min(forced, RegularSine);
+  result.forcedQuality = options.adapt ? 1.0 : std::min(forced, RegularSine);
   // Of triangles with this angle that with two equal sides has the best mean ratio.
   const double angle = std::min(smallestCorner, Pi / 3.0);
   result.forcedInverseMeanRatio =

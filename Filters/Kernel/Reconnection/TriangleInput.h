@@ -26,6 +26,7 @@ struct TriangleInput
   std::vector<Corners> cells;              ///< positive in a plane, also those of a mirrored mesh
   std::vector<std::int32_t> regions;       ///< renumbered from 0; empty: one region
   std::vector<std::array<Index, 2>> walls; ///< edges that are kept
+  std::int32_t markedEdges = 0;            ///< the first of these, which are marked
   std::vector<char> corners;               ///< points that are kept; empty: none
   std::vector<int> patches;                ///< per cell; empty: planar
   TriangleSurface surface;
@@ -42,12 +43,17 @@ struct TriangleInput
 void checkTriangleOptions(const TriangleOptions& options);
 
 /// Converts. Throws Error for cells and points that reconnection cannot take.
-TriangleInput convertTriangles(const Mesh& mesh, const TriangleOptions& options);
+TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleInput convertTriangles(
+  const Mesh& mesh, const TriangleOptions& options);
 
 /// What the points may do: Free is within the plane or patch. Points of walls and non-manifold ones
 /// are fixed; with FlatParts, those within straight walls move along these.
-std::vector<PointFreedom> findFreedoms(
+TAUTLINE_RECONNECTIONKERNEL_EXPORT std::vector<PointFreedom> findFreedoms(
   const TriangleMesh& mesh, const TriangleInput& input, const TriangleOptions& options);
+
+/// The quality of the triangles that are not worked on: the sine of the target angle, with
+/// adaptation a mean ratio.
+double targetQuality(const TriangleOptions& options);
 
 /// Cells of the output that are below the target, why, and the bounds that the walls force.
 void findObstacles(const TriangleMesh& mesh, const std::vector<char>& fixedPoints,

@@ -91,7 +91,7 @@ double TriangleOperations::improveMean(VertexId v, double leastQuality)
   {
     return 0.0;
   }
-  const TriangleStar::Directions directions = this->directionsAt(v);
+  const TriangleStar::Directions directions = this->directionsAt(v, this->Around);
   const Vec3 start = this->Mesh.point(v);
   PlaneSum plane;
   for (TriId t : this->Around)

@@ -53,10 +53,12 @@ void TriangleMesh::connect(const std::vector<std::array<Index, 2>>& walls)
   const auto key = [](const Side& s) { return std::make_tuple(s.low, s.high, s.code); };
   std::sort(
     sides.begin(), sides.end(), [&](const Side& a, const Side& b) { return key(a) < key(b); });
-  std::vector<std::array<Index, 2>> kept = walls;
-  for (std::array<Index, 2>& edge : kept)
+  using Kept = std::pair<std::array<Index, 2>, std::int32_t>; // an edge and its number
+  std::vector<Kept> kept;
+  for (const std::array<Index, 2>& edge : walls)
   {
-    std::sort(edge.begin(), edge.end());
+    kept.push_back({ { std::min(edge[0], edge[1]), std::max(edge[0], edge[1]) },
+      static_cast<std::int32_t>(kept.size()) });
   }
   std::sort(kept.begin(), kept.end());
   for (std::size_t first = 0, end; first < sides.size(); first = end)
@@ -76,12 +78,15 @@ void TriangleMesh::connect(const std::vector<std::array<Index, 2>>& walls)
     }
     this->NonManifoldEdges += uses > 1 && !joined;
     const std::array<Index, 2> edge = { sides[first].low, sides[first].high };
-    if (!joined || this->Triangles[t].region != this->Triangles[other].region ||
-      std::binary_search(kept.begin(), kept.end(), edge))
+    const auto found = std::lower_bound(kept.begin(), kept.end(), Kept(edge, NoNumber));
+    const bool given = found != kept.end() && found->first == edge;
+    if (!joined || given || this->Triangles[t].region != this->Triangles[other].region)
     {
       for (std::size_t k = first; k < end; ++k)
       {
-        this->Triangles[sides[k].code >> 2].walls |= 1 << (sides[k].code & 3);
+        Triangle& side = this->Triangles[sides[k].code >> 2];
+        side.walls |= 1 << (sides[k].code & 3);
+        side.lines[sides[k].code & 3] = given ? found->second : NoNumber;
       }
     }
   }
@@ -115,22 +120,40 @@ void TriangleMesh::star(VertexId v, std::vector<TriId>& triangles) const
   triangles.clear();
   const TriId start = this->PointTriangle[v];
   TriId t = start;
-  // Clockwise to the border, or once around.
+  // Once around, the first one last; or at a border back to its end.
   while (t != NoNumber)
   {
+    const std::int32_t n = this->Triangles[t].neighbors[Next[this->indexOf(t, v)]];
+    t = n == NoNumber ? NoNumber : n >> 2;
+    if (t == NoNumber || t == start)
+    {
+      break;
+    }
+    triangles.push_back(t);
+  }
+  if (t == start)
+  {
+    if (start != NoNumber)
+    {
+      triangles.push_back(start);
+    }
+    return;
+  }
+  triangles.clear();
+  for (t = start;;)
+  {
     const std::int32_t n = this->Triangles[t].neighbors[Previous[this->indexOf(t, v)]];
-    if (n == NoNumber || n >> 2 == start)
+    if (n == NoNumber)
     {
       break;
     }
     t = n >> 2;
   }
-  const TriId first = t;
   while (t != NoNumber)
   {
     triangles.push_back(t);
     const std::int32_t n = this->Triangles[t].neighbors[Next[this->indexOf(t, v)]];
-    t = n == NoNumber || n >> 2 == first ? NoNumber : n >> 2;
+    t = n == NoNumber ? NoNumber : n >> 2;
   }
 }
 
@@ -182,12 +205,17 @@ void TriangleMesh::undo()
   {
     this->Points[saved.id] = saved.position;
     this->PointTriangle[saved.id] = saved.triangle;
+    if (this->hasMetrics())
+    {
+      this->Metrics[saved.id] = saved.metric;
+    }
   }
   this->Triangles.resize(this->OldSlots);
   this->TriangleSaved.resize(this->OldSlots);
   this->Points.resize(this->OldPointSlots);
   this->PointTriangle.resize(this->OldPointSlots);
   this->PointSaved.resize(this->OldPointSlots);
+  this->Metrics.resize(this->hasMetrics() ? this->OldPointSlots : 0);
   this->FreeTriangles.insert(
     this->FreeTriangles.end(), this->TakenTriangles.rbegin(), this->TakenTriangles.rend());
   this->FreePoints.insert(
@@ -244,7 +272,8 @@ void TriangleMesh::savePoint(VertexId v)
   if (this->Open && v < this->OldPointSlots && this->PointSaved[v] != this->Transaction)
   {
     this->PointSaved[v] = this->Transaction;
-    this->OldPoints.push_back({ v, this->Points[v], this->PointTriangle[v] });
+    this->OldPoints.push_back({ v, this->Points[v], this->PointTriangle[v],
+      this->hasMetrics() ? this->Metrics[v] : PointMetric() });
   }
 }
 
@@ -270,7 +299,7 @@ TriId TriangleMesh::addTriangle(const Triangle& triangle)
   return t;
 }
 
-VertexId TriangleMesh::addPoint(const Vec3& x)
+VertexId TriangleMesh::addPoint(const Vec3& x, const PointMetric* metric)
 {
   VertexId v = this->pointSlots();
   if (this->FreePoints.empty())
@@ -278,6 +307,10 @@ VertexId TriangleMesh::addPoint(const Vec3& x)
     this->Points.push_back(x);
     this->PointTriangle.push_back(NoNumber);
     this->PointSaved.push_back(0);
+    if (this->hasMetrics())
+    {
+      this->Metrics.push_back(metric ? *metric : PointMetric());
+    }
     return v;
   }
   v = this->FreePoints.back();
@@ -288,6 +321,10 @@ VertexId TriangleMesh::addPoint(const Vec3& x)
   }
   this->savePoint(v);
   this->Points[v] = x;
+  if (this->hasMetrics())
+  {
+    this->Metrics[v] = metric ? *metric : PointMetric();
+  }
   return v;
 }
 
@@ -359,11 +396,15 @@ bool TriangleMesh::flip(TriId t, int i)
   }
   const auto bit = [](const Triangle& from, int edge, int to)
   { return static_cast<std::uint8_t>((from.walls >> edge & 1) << to); };
+  const std::int32_t ab = up.lines[Previous[i]], ca = up.lines[Next[i]];
+  const std::int32_t bd = down.lines[Next[j]], dc = down.lines[Previous[j]];
   // (a, b, c) and (d, c, b) become (a, b, d) and (a, d, c).
   this->setVertices(t, { a, b, d });
   this->setVertices(n, { a, d, c });
   this->change(t).walls = bit(down, Next[j], 0) | bit(up, Previous[i], 2);
   this->change(n).walls = bit(down, Previous[j], 0) | bit(up, Next[i], 1);
+  this->change(t).lines = { bd, NoNumber, ab };
+  this->change(n).lines = { dc, ca, NoNumber };
   this->link(4 * t + 0, down.neighbors[Next[j]]);
   this->link(4 * t + 2, up.neighbors[Previous[i]]);
   this->link(4 * n + 0, down.neighbors[Previous[j]]);
@@ -372,11 +413,11 @@ bool TriangleMesh::flip(TriId t, int i)
   return true;
 }
 
-VertexId TriangleMesh::splitEdge(TriId t, int i, const Vec3& x)
+VertexId TriangleMesh::splitEdge(TriId t, int i, const Vec3& x, const PointMetric* metric)
 {
   const std::int32_t code = this->Triangles[t].neighbors[i];
   const bool wall = this->isWall(t, i);
-  const VertexId p = this->addPoint(x);
+  const VertexId p = this->addPoint(x, metric);
   // Each side (a, b, c) becomes (a, b, p) and (a, p, c), with p on its edge b-c.
   const auto divide = [&](TriId s, int k)
   {
@@ -387,6 +428,8 @@ VertexId TriangleMesh::splitEdge(TriId t, int i, const Vec3& x)
     first.neighbors = second.neighbors = { NoNumber, NoNumber, NoNumber };
     first.walls = static_cast<std::uint8_t>((wall ? 1 : 0) | ab << 2);
     second.walls = static_cast<std::uint8_t>((wall ? 1 : 0) | ca << 1);
+    first.lines = { old.lines[k], NoNumber, old.lines[Previous[k]] };
+    second.lines = { old.lines[k], old.lines[Next[k]], NoNumber };
     this->change(s) = first;
     const TriId added = this->addTriangle(second);
     this->setVertices(s, { a, b, p });
@@ -417,6 +460,7 @@ VertexId TriangleMesh::splitTriangle(TriId t, const Vec3& x)
     Triangle part = old;
     part.neighbors = { NoNumber, NoNumber, NoNumber };
     part.walls = old.walls >> k & 1;
+    part.lines = { old.lines[k], NoNumber, NoNumber };
     if (k == 0)
     {
       this->change(t) = part;
@@ -496,6 +540,7 @@ void TriangleMesh::close(TriId t, VertexId v, VertexId w)
   const int kv = this->indexOf(t, v), kw = this->indexOf(t, w);
   const std::int32_t sides[2] = { old.neighbors[kw], old.neighbors[kv] };
   const bool wall = ((old.walls >> kv | old.walls >> kw) & 1) != 0;
+  const std::int32_t line = std::max(old.lines[kv], old.lines[kw]);
   this->link(sides[0], sides[1]);
   this->link(sides[1], sides[0]);
   for (const std::int32_t side : sides)
@@ -503,6 +548,7 @@ void TriangleMesh::close(TriId t, VertexId v, VertexId w)
     if (side != NoNumber && wall)
     {
       this->change(side >> 2).walls |= 1 << (side & 3);
+      this->change(side >> 2).lines[side & 3] = line;
     }
   }
   this->removeTriangle(t);
@@ -545,10 +591,15 @@ bool TriangleMesh::contract(TriId t, int i, int j)
   return true;
 }
 
-void TriangleMesh::movePoint(VertexId v, const Vec3& x, const std::vector<TriId>& triangles)
+void TriangleMesh::movePoint(
+  VertexId v, const Vec3& x, const std::vector<TriId>& triangles, const PointMetric* metric)
 {
   this->savePoint(v);
   this->Points[v] = x;
+  if (metric)
+  {
+    this->Metrics[v] = *metric;
+  }
   for (TriId t : triangles)
   {
     this->change(t).quality = this->qualityOf(this->Triangles[t].vertices);
@@ -556,11 +607,43 @@ void TriangleMesh::movePoint(VertexId v, const Vec3& x, const std::vector<TriId>
 }
 
 //------------------------------------------------------------------------------
+void TriangleMesh::setMetrics(std::vector<PointMetric> metrics, bool measure)
+{
+  this->Metrics = std::move(metrics);
+  this->InMetrics = measure && this->hasMetrics();
+  for (Triangle& triangle : this->Triangles)
+  {
+    if (triangle.vertices[0] != NoNumber)
+    {
+      triangle.quality = this->qualityOf(triangle.vertices);
+    }
+  }
+}
+
+void TriangleMesh::setMetric(VertexId v, const PointMetric& metric)
+{
+  this->savePoint(v);
+  this->Metrics[v] = metric;
+}
+
 // Not inlined: with fused multiply-add, the last digit would depend on the place of the call.
-__attribute__((noinline)) double TriangleMesh::qualityOf(const Corners& v) const
+__attribute__((noinline)) double TriangleMesh::qualityOf(
+  const std::array<Vec3, 3>& x, const std::array<const MetricTensor*, 3>& metrics) const
+{
+  return this->InMetrics
+    ? metricQuality(x[0], x[1], x[2], *metrics[0], *metrics[1], *metrics[2], this->Planar)
+    : triangleQuality(x[0], x[1], x[2], this->Planar);
+}
+
+double TriangleMesh::qualityOf(const Corners& v) const
 {
   const std::vector<Vec3>& x = this->Points;
-  return triangleQuality(x[v[0]], x[v[1]], x[v[2]], this->Planar);
+  std::array<const MetricTensor*, 3> metrics = { nullptr, nullptr, nullptr };
+  for (int k = 0; this->InMetrics && k < 3; ++k)
+  {
+    metrics[k] = &this->Metrics[v[k]].tensor;
+  }
+  return this->qualityOf({ x[v[0]], x[v[1]], x[v[2]] }, metrics);
 }
 
 //------------------------------------------------------------------------------

@@ -17,12 +17,16 @@
  * A transaction keeps what it changes, and can be undone: begin(), changes, commit() or undo().
  * Ids of triangles and points that are not involved stay; those that become free are used again
  * after the transaction, except the ids of the points of the input.
- * Memory: 56 bytes per triangle, 32 per point.
+ *
+ * Points may have metrics, in which target lengths of edges are 1. Qualities are Euclidean, or the
+ * mean ratios in the metrics (setMetrics()).
+ * Memory: 64 bytes per triangle, 32 per point, and 56 per point with metrics.
  */
 #ifndef tautline_TriangleMesh_h
 #define tautline_TriangleMesh_h
 
 #include "TriangleQuality.h"
+#include "tautline/Adaptation/MetricTensor.h"
 #include "tautline/ReconnectionKernelExport.h"
 
 #include <cstdint>
@@ -47,8 +51,16 @@ struct Triangle
   std::array<std::int32_t, 3> neighbors = { NoNumber, NoNumber, NoNumber };
   TriId origin = NoNumber; ///< a triangle of the input nearby, of the same region and patch
   std::int32_t region = 0;
-  std::uint8_t walls = 0; ///< bit i: edge i is a wall
+  std::array<std::int32_t, 3> lines = { NoNumber, NoNumber, NoNumber }; ///< given walls, or -1
+  std::uint8_t walls = 0;                                               ///< bit i: edge i is a wall
   double quality = 0;
+};
+
+/// The metric at a point, in which target lengths of edges are 1.
+struct PointMetric
+{
+  MetricTensor tensor = {};
+  TriId place = NoNumber; ///< the triangle of the input that contains the point, or one near it
 };
 
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleMesh
@@ -56,7 +68,7 @@ class TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleMesh
 public:
   /**
    * @param regions one per triangle, or empty: one region
-   * @param walls pairs of points: edges that are kept
+   * @param walls pairs of points: edges that are kept; Triangle::lines are their numbers
    * @param planar whether the points are in the xy plane, and the triangles have signs
    *
    * Edges of three and more triangles, and of two with opposite orientations, are borders of each.
@@ -86,6 +98,26 @@ public:
     return v < static_cast<VertexId>(this->NonManifold.size()) && this->NonManifold[v] != 0;
   }
   double qualityOf(const Corners& v) const;
+  /// That of a triangle of any places, with metrics if qualities are measured in these.
+  double qualityOf(
+    const std::array<Vec3, 3>& x, const std::array<const MetricTensor*, 3>& metrics) const;
+
+  ///@{ Metrics of points.
+  /// @param metrics one per point, or none
+  /// @param measure whether qualities are mean ratios in them
+  void setMetrics(std::vector<PointMetric> metrics, bool measure);
+  bool measuresInMetrics() const { return this->InMetrics; }
+  bool hasMetrics() const { return !this->Metrics.empty(); }
+  const PointMetric& metric(VertexId v) const { return this->Metrics[v]; }
+  /// Of a point without triangles, or where qualities are not measured in the metrics.
+  void setMetric(VertexId v, const PointMetric& metric);
+  /// The length of an edge in the metrics of its ends, see edgeLength().
+  double length(VertexId v, VertexId w) const
+  {
+    return edgeLength(
+      this->Points[w] - this->Points[v], this->Metrics[v].tensor, this->Metrics[w].tensor);
+  }
+  ///@}
   /// Which vertex of the triangle it is, 0 to 2.
   int indexOf(TriId t, VertexId v) const
   {
@@ -110,14 +142,18 @@ public:
   ///@{ Changes. They return whether the connectivity allows them; nothing is changed if not.
   /// Replaces an edge by the other diagonal of its two triangles, which keep their ids.
   bool flip(TriId t, int i);
-  /// Divides an edge, also of a wall. @return the new point
-  VertexId splitEdge(TriId t, int i, const Vec3& x);
+  /// Divides an edge, also of a wall. @param metric null: none, or set later @return the new point
+  VertexId splitEdge(TriId t, int i, const Vec3& x, const PointMetric* metric = nullptr);
   /// Divides a triangle in three. @return the new point
   VertexId splitTriangle(TriId t, const Vec3& x);
   /// Moves vertex i of a triangle into the vertex j, which removes the triangles at their edge.
   bool contract(TriId t, int i, int j);
   /// @param triangles its star
-  void movePoint(VertexId v, const Vec3& x, const std::vector<TriId>& triangles);
+  /// @param metric null: it keeps its own
+  void movePoint(VertexId v, const Vec3& x, const std::vector<TriId>& triangles,
+    const PointMetric* metric = nullptr);
+  /// Sets Triangle::origin, to a triangle of the same region and patch.
+  void setOrigin(TriId t, TriId origin) { this->Triangles[t].origin = origin; }
   ///@}
 
   /// Checks adjacency, links of points, signs and stored qualities; the first violation, or "".
@@ -136,6 +172,7 @@ private:
     VertexId id;
     Vec3 position;
     TriId triangle;
+    PointMetric metric;
   };
 
   void connect(const std::vector<std::array<Index, 2>>& walls);
@@ -143,7 +180,7 @@ private:
   Triangle& change(TriId t);
   void savePoint(VertexId v);
   TriId addTriangle(const Triangle& triangle);
-  VertexId addPoint(const Vec3& x);
+  VertexId addPoint(const Vec3& x, const PointMetric* metric = nullptr);
   void removeTriangle(TriId t);
   void removePoint(VertexId v);
   void attach(TriId t);
@@ -158,6 +195,8 @@ private:
   std::vector<Triangle> Triangles;
   std::vector<Vec3> Points;
   std::vector<TriId> PointTriangle;
+  std::vector<PointMetric> Metrics; ///< per point, or empty
+  bool InMetrics = false;           ///< whether qualities are those in the metrics
   std::vector<char> NonManifold;
   std::vector<TriId> FreeTriangles;
   std::vector<VertexId> FreePoints;

@@ -2,6 +2,7 @@
 #include "TriangleOperations.h"
 
 #include "Constants.h"
+#include "UnitFrame.h"
 
 #include <limits>
 
@@ -14,6 +15,8 @@ constexpr int FlipRounds = 4, TidyRounds = 3;
 constexpr int TidySteps = 2;
 /// Triangles visited on the way to a place.
 constexpr int MaxWalk = 40;
+/// Below this, the length of an edge counts as the same in the metrics of both ends.
+constexpr double NearlyConstant = 1e-6;
 /// The mean ratio is at least so many times the quality.
 constexpr double LeastRatio = 1.1547005383792515; // 2 / sqrt(3)
 
@@ -32,7 +35,6 @@ Vec3 normalAround(const TriangleMesh& mesh, const std::vector<TriId>& triangles)
 }
 
 //------------------------------------------------------------------------------
-/// Whether a triangle may be in the mesh: positive, above the floor, and on the surface.
 bool TriangleOperations::accepts(const Corners& v, TriId origin) const
 {
   const double q = this->Mesh.qualityOf(v);
@@ -86,11 +88,22 @@ bool TriangleOperations::improves()
     { return this->accepts(this->Mesh.triangle(t).vertices, this->Mesh.triangle(t).origin); });
 }
 
+double TriangleOperations::squaredLengthOf(VertexId v, VertexId w) const
+{
+  if (this->field)
+  {
+    const double length = this->Mesh.length(v, w);
+    return length * length;
+  }
+  return squaredLength(this->Mesh.point(v) - this->Mesh.point(w), this->Mesh.metric(v).tensor,
+    this->Mesh.metric(w).tensor);
+}
+
 /// Whether the edges of the operation's point are not too short (insertion) or too long
 /// (contraction), after tidying up.
 bool TriangleOperations::keepsLengths()
 {
-  if (this->metrics.empty())
+  if (!this->Mesh.hasMetrics())
   {
     return true;
   }
@@ -101,9 +114,7 @@ bool TriangleOperations::keepsLengths()
   {
     for (VertexId v : this->Mesh.triangle(t).vertices)
     {
-      const double length = v == p ? 1.0
-                                   : squaredLength(this->Mesh.point(v) - this->Mesh.point(p),
-                                       this->metrics[v], this->metrics[p]);
+      const double length = v == p ? 1.0 : this->squaredLengthOf(v, p);
       if (this->IsInsertion ? length * factor < 1.0 : length > factor)
       {
         return false;
@@ -113,7 +124,7 @@ bool TriangleOperations::keepsLengths()
   return true;
 }
 
-/// What a new point may do; its metric is the mean of those around.
+/// What a new point may do; its metric is the mean of those around unless it has one.
 void TriangleOperations::setPoint(
   VertexId p, const PointFreedom& freedom, const std::vector<VertexId>& around)
 {
@@ -121,20 +132,19 @@ void TriangleOperations::setPoint(
   this->freedoms[p] = freedom;
   this->Centre = p;
   this->IsInsertion = true;
-  if (this->metrics.empty())
+  if (!this->Mesh.hasMetrics() || this->field)
   {
     return;
   }
-  this->metrics.resize(this->Mesh.pointSlots());
-  EdgeMetric mean = {};
+  PointMetric mean;
   for (VertexId v : around)
   {
-    for (std::size_t k = 0; k < mean.size(); ++k)
+    for (std::size_t k = 0; k < mean.tensor.size(); ++k)
     {
-      mean[k] += this->metrics[v][k] / static_cast<double>(around.size());
+      mean.tensor[k] += this->Mesh.metric(v).tensor[k] / static_cast<double>(around.size());
     }
   }
-  this->metrics[p] = mean;
+  this->Mesh.setMetric(p, mean);
 }
 
 /// Carries out an operation, tidies up around it, and keeps it only if that is an improvement.
@@ -162,7 +172,7 @@ bool TriangleOperations::attempt(const Operation& operation, Index& counter)
 //------------------------------------------------------------------------------
 bool TriangleOperations::isBetterFlip(TriId t, int i)
 {
-  if (this->Mesh.isWall(t, i))
+  if (this->Mesh.isWall(t, i) || this->Mesh.triangle(t).region == OutsideRegion)
   {
     return false;
   }
@@ -199,11 +209,11 @@ bool TriangleOperations::flip(TriId t, int i)
 }
 
 //------------------------------------------------------------------------------
-/// The directions in which a point moves; `Around` is its star.
-TriangleStar::Directions TriangleOperations::directionsAt(VertexId v) const
+TriangleStar::Directions TriangleOperations::directionsAt(
+  VertexId v, const std::vector<TriId>& star) const
 {
   TriangleStar::Directions directions;
-  const Vec3 up = this->Input.planar ? Vec3{ 0, 0, 1 } : normalAround(this->Mesh, this->Around);
+  const Vec3 up = this->Input.planar ? Vec3{ 0, 0, 1 } : normalAround(this->Mesh, star);
   const PointFreedom& freedom = this->freedoms[v];
   if (freedom.kind == PointFreedom::OnLine)
   {
@@ -227,6 +237,75 @@ TriangleStar::Directions TriangleOperations::directionsAt(VertexId v) const
   return directions;
 }
 
+/// Finds the place of a point for the largest smallest sine around; `Around` is its star.
+bool TriangleOperations::maximizeAround(VertexId v, int steps, Vec3& x, double& before)
+{
+  this->Star.clear();
+  for (TriId t : this->Around)
+  {
+    const Corners& c = this->Mesh.triangle(t).vertices;
+    const int k = this->Mesh.indexOf(t, v);
+    this->Star.addEdge(this->Mesh.point(c[Next[k]]), this->Mesh.point(c[Previous[k]]));
+  }
+  const TriangleStar::Directions directions = this->directionsAt(v, this->Around);
+  std::function<Vec3(const Vec3&)> project;
+  if (!this->Input.planar && this->freedoms[v].kind != PointFreedom::OnLine)
+  {
+    const int patch = this->patchOf(this->Around.front());
+    project = [this, patch](const Vec3& y) { return this->Input.surface.closest(y, patch); };
+  }
+  before = this->Star.evaluate(x, directions.normal());
+  return this->Star.maximize(x, steps, directions, project) > before + this->leastGain;
+}
+
+/// The same for the smallest mean ratio in the metrics, which stay as they are: in coordinates of
+/// the plane or tangent plane in which the metric of the point is the identity.
+bool TriangleOperations::maximizeInMetrics(VertexId v, int steps, Vec3& x, double& before)
+{
+  const TriangleStar::Directions frame = this->directionsAt(v, this->Around);
+  const UnitFrame unit(this->Mesh.metric(v).tensor, frame.first, frame.second);
+  this->Star.clear();
+  before = std::numeric_limits<double>::max();
+  for (TriId t : this->Around)
+  {
+    const Triangle& triangle = this->Mesh.triangle(t);
+    const Corners& c = triangle.vertices;
+    const int k = this->Mesh.indexOf(t, v);
+    MetricTensor mean = {};
+    for (std::size_t i = 0; i < mean.size(); ++i)
+    {
+      for (VertexId w : c)
+      {
+        mean[i] += this->Mesh.metric(w).tensor[i] / 3.0;
+      }
+    }
+    this->Star.addEdge(unit.leave(this->Mesh.point(c[Next[k]]) - x),
+      unit.leave(this->Mesh.point(c[Previous[k]]) - x), unit.turned(mean));
+    before = std::min(before, triangle.quality);
+  }
+  TriangleStar::Directions directions;
+  directions.count = frame.count;
+  if (frame.count == 1)
+  {
+    const Vec3 along = unit.leave(frame.first);
+    directions.first = (1.0 / norm(along)) * along;
+    directions.second = { -directions.first[1], directions.first[0], 0.0 };
+  }
+  Vec3 place = { 0, 0, 0 };
+  const double start = this->Star.evaluate(place, directions.normal());
+  if (!(this->Star.maximize(place, steps, directions) > start + this->leastGain))
+  {
+    return false;
+  }
+  const Vec3 step = unit.enter(place);
+  x = frame.count == 1 ? x + dot(step, frame.first) * frame.first : x + step;
+  if (!this->Input.planar && frame.count > 1)
+  {
+    x = this->Input.surface.closest(x, this->patchOf(this->Around.front()));
+  }
+  return true;
+}
+
 bool TriangleOperations::applyMotion(VertexId v, int steps)
 {
   if (!this->Mesh.used(v) || this->freedoms[v].kind == PointFreedom::Fixed)
@@ -234,29 +313,22 @@ bool TriangleOperations::applyMotion(VertexId v, int steps)
     return false;
   }
   this->Mesh.star(v, this->Around);
-  this->Star.clear();
   this->Star.leastGain = this->leastGain;
-  for (TriId t : this->Around)
-  {
-    const Corners& c = this->Mesh.triangle(t).vertices;
-    const int k = this->Mesh.indexOf(t, v);
-    this->Star.addEdge(this->Mesh.point(c[Next[k]]), this->Mesh.point(c[Previous[k]]));
-  }
-  const TriangleStar::Directions directions = this->directionsAt(v);
-  std::function<Vec3(const Vec3&)> project;
-  if (!this->Input.planar && this->freedoms[v].kind != PointFreedom::OnLine)
-  {
-    const int patch = this->patchOf(this->Around.front());
-    project = [this, patch](const Vec3& x) { return this->Input.surface.closest(x, patch); };
-  }
   const Vec3 start = this->Mesh.point(v);
   Vec3 x = start;
-  const double before = this->Star.evaluate(x, directions.normal());
-  if (!(this->Star.maximize(x, steps, directions, project) > before + this->leastGain))
+  double before = 0.0;
+  if (!(this->field ? this->maximizeInMetrics(v, steps, x, before)
+                    : this->maximizeAround(v, steps, x, before)))
   {
     return false;
   }
-  this->Mesh.movePoint(v, x, this->Around);
+  PointMetric formerMetric, metric;
+  if (this->field)
+  {
+    formerMetric = this->Mesh.metric(v);
+    metric = this->field->at(x, formerMetric.place);
+  }
+  this->Mesh.movePoint(v, x, this->Around, this->field ? &metric : nullptr);
   // The triangles of a transaction are compared with the surface at its end.
   const bool open = this->Mesh.inTransaction() && !this->Input.planar;
   const bool valid = std::all_of(this->Around.begin(), this->Around.end(),
@@ -268,7 +340,7 @@ bool TriangleOperations::applyMotion(VertexId v, int steps)
     });
   if (!valid)
   {
-    this->Mesh.movePoint(v, start, this->Around);
+    this->Mesh.movePoint(v, start, this->Around, this->field ? &formerMetric : nullptr);
   }
   this->Count.moves += valid;
   return valid;
@@ -361,6 +433,12 @@ bool TriangleOperations::contract(TriId t, int i, int j)
 
 bool TriangleOperations::mayDivide(TriId t, int i) const
 {
+  const std::int32_t n = this->Mesh.triangle(t).neighbors[i];
+  if (this->Mesh.triangle(t).region == OutsideRegion ||
+    (n != NoNumber && this->Mesh.triangle(n >> 2).region == OutsideRegion))
+  {
+    return false;
+  }
   if (!this->Mesh.isWall(t, i))
   {
     return true;
@@ -371,13 +449,28 @@ bool TriangleOperations::mayDivide(TriId t, int i) const
     !(this->Mesh.isNonManifold(v[Next[i]]) && this->Mesh.isNonManifold(v[Previous[i]]));
 }
 
+double TriangleOperations::middleOf(VertexId a, VertexId b) const
+{
+  if (!this->field)
+  {
+    return 0.5;
+  }
+  // The length changes from x to r x geometrically: the part s before the middle has r^s - 1 =
+  // (r - 1) / 2.
+  const Vec3 e = this->Mesh.point(b) - this->Mesh.point(a);
+  const double r = std::sqrt(
+    squaredLength(e, this->Mesh.metric(b).tensor) / squaredLength(e, this->Mesh.metric(a).tensor));
+  return std::abs(r - 1.0) < NearlyConstant ? 0.5 : std::log(0.5 * (1.0 + r)) / std::log(r);
+}
+
 /// Divides an edge at its middle.
 VertexId TriangleOperations::divide(TriId t, int i)
 {
   const Corners v = this->Mesh.triangle(t).vertices;
-  const Vec3 a = this->Mesh.point(v[Next[i]]), b = this->Mesh.point(v[Previous[i]]);
+  const VertexId first = v[Next[i]], last = v[Previous[i]];
+  const Vec3 a = this->Mesh.point(first), b = this->Mesh.point(last);
   PointFreedom freedom;
-  Vec3 x = 0.5 * (a + b);
+  Vec3 x = this->field ? a + this->middleOf(first, last) * (b - a) : 0.5 * (a + b);
   if (this->Mesh.isWall(t, i))
   {
     freedom = { PointFreedom::OnLine, (1.0 / norm(b - a)) * (b - a) };
@@ -386,8 +479,13 @@ VertexId TriangleOperations::divide(TriId t, int i)
   {
     x = this->Input.surface.closest(x, this->patchOf(t));
   }
-  const VertexId p = this->Mesh.splitEdge(t, i, x);
-  this->setPoint(p, freedom, { v[Next[i]], v[Previous[i]] });
+  PointMetric metric;
+  if (this->field)
+  {
+    metric = this->field->at(x, this->Mesh.metric(first).place);
+  }
+  const VertexId p = this->Mesh.splitEdge(t, i, x, this->field ? &metric : nullptr);
+  this->setPoint(p, freedom, { first, last });
   return p;
 }
 
@@ -434,7 +532,7 @@ bool TriangleOperations::insertAt(TriId t, const Vec3& x)
 
 bool TriangleOperations::insert(TriId t)
 {
-  if (this->Mesh.size() >= this->largestSize)
+  if (this->Mesh.size() >= this->largestSize || this->Mesh.triangle(t).region == OutsideRegion)
   {
     return false;
   }
@@ -443,7 +541,7 @@ bool TriangleOperations::insert(TriId t)
   const double lengths[3] = { norm(c - b), norm(a - c), norm(b - a) };
   const auto longest = static_cast<int>(std::max_element(lengths, lengths + 3) - lengths);
   const auto shortest = static_cast<int>(std::min_element(lengths, lengths + 3) - lengths);
-  if (this->Input.planar)
+  if (this->Input.planar && !this->field)
   {
     // Off-centre: the apex over the shortest edge that has the target angle (A. Ungor, 2004), or
     // the centre of the circumcircle if that is nearer.

@@ -15,6 +15,7 @@
 #include "StarSmoothing.h"
 #include "TriangleInput.h"
 #include "TriangleMesh.h"
+#include "TriangleMetrics.h"
 #include "TriangleStar.h"
 #include "tautline/ReconnectionKernelExport.h"
 
@@ -39,9 +40,10 @@ public:
   std::vector<PointFreedom> freedoms;
   double leastMeanRatio = 0;               ///< no operation makes a triangle with a smaller one
   Index smallestSize = 0, largestSize = 0; ///< bounds of the number of triangles
-  /// One per point slot, in which target lengths of edges are 1; empty: any length.
-  std::vector<EdgeMetric> metrics;
-  double edgeFactor = 2.0;   ///< how much longer or shorter new edges may be
+  /// Where qualities are those in the metrics of the points: the metrics of all places. Null:
+  /// qualities are Euclidean, and new points have the mean of the metrics of those around.
+  const TriangleMetrics* field = nullptr;
+  double edgeFactor = 2.0;   ///< how much longer or shorter new edges may be in the metrics
   bool dividesWalls = false; ///< whether edges of walls may be divided
   /// What insertions and contractions are followed by.
   bool flips = true, moves = true;
@@ -68,6 +70,24 @@ public:
   /// Inserts a point at one of several places in or near the triangle, then flips and moves around.
   bool insert(TriId t);
 
+  ///@{ What changes by others need; they report these by touch().
+  /// Whether a triangle may be in the mesh: positive, above the floor, and on the surface.
+  bool accepts(const Corners& v, TriId origin) const;
+  /// Whether edge i may be divided: of walls those with `dividesWalls`.
+  bool mayDivide(TriId t, int i) const;
+  /// The part of an edge before the point that halves its length in the metrics; 1/2 without.
+  double middleOf(VertexId a, VertexId b) const;
+  /// The patch of a triangle on a surface.
+  int patchOf(TriId t) const
+  {
+    return this->Input.planar ? 0 : this->Input.patches[this->Mesh.triangle(t).origin];
+  }
+  /// The directions in which a point with this star moves.
+  TriangleStar::Directions directionsAt(VertexId v, const std::vector<TriId>& star) const;
+  void touch(const std::vector<TriId>& triangles);
+  Counts& counters() { return this->Count; }
+  ///@}
+
   const std::vector<TriId>& changed() const { return this->Changed; }
   const Counts& counts() const { return this->Count; }
   /// Increases with each change near a point.
@@ -80,24 +100,19 @@ public:
 private:
   template <class Operation>
   bool attempt(const Operation& operation, Index& counter);
-  bool keepsLengths();
   void setPoint(VertexId p, const PointFreedom& freedom, const std::vector<VertexId>& around);
-  bool accepts(const Corners& v, TriId origin) const;
   bool improves();
   bool isBetterFlip(TriId t, int i);
   bool applyMotion(VertexId v, int steps);
   double sumAround(double leastQuality) const;
   Vec3 bentArea() const;
   void tidy();
-  bool mayDivide(TriId t, int i) const;
   VertexId divide(TriId t, int i);
   bool insertAt(TriId t, const Vec3& x);
-  int patchOf(TriId t) const
-  {
-    return this->Input.planar ? 0 : this->Input.patches[this->Mesh.triangle(t).origin];
-  }
-  TriangleStar::Directions directionsAt(VertexId v) const;
-  void touch(const std::vector<TriId>& triangles);
+  bool keepsLengths();
+  double squaredLengthOf(VertexId v, VertexId w) const;
+  bool maximizeAround(VertexId v, int steps, Vec3& x, double& before);
+  bool maximizeInMetrics(VertexId v, int steps, Vec3& x, double& before);
 
   TriangleMesh& Mesh;
   const TriangleInput& Input;

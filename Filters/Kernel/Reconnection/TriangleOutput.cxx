@@ -1,114 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TriangleInput.h"
 
-#include <limits>
-#include <queue>
-#include <set>
+#include "TriangleLocator.h"
 
 namespace tautline
 {
 namespace
 {
-/// Cells visited in the search for a point.
-constexpr int MaxVisited = 300;
-
-/// A place in a triangle: the weights of its corners, and the squared distance from the point.
-struct Place
-{
-  std::array<double, 3> weights = { 1, 0, 0 };
-  double distance2 = 0;
-};
-
-/// The point of a triangle closest to x (C. Ericson, "Real-time collision detection", 5.1.5).
-Place closestIn(const std::array<Vec3, 3>& p, const Vec3& x)
-{
-  const Vec3 u = p[1] - p[0], v = p[2] - p[0], w = x - p[0];
-  const Vec3 n = cross(u, v);
-  const double n2 = dot(n, n);
-  Place place;
-  place.weights[1] = dot(cross(w, v), n) / n2;
-  place.weights[2] = dot(cross(u, w), n) / n2;
-  place.weights[0] = 1.0 - place.weights[1] - place.weights[2];
-  if (std::min({ place.weights[0], place.weights[1], place.weights[2] }) < 0.0)
-  {
-    place.distance2 = std::numeric_limits<double>::max();
-    for (int i = 0; i < 3; ++i)
-    {
-      const Vec3 edge = p[Next[i]] - p[i];
-      const double s = std::clamp(dot(x - p[i], edge) / dot(edge, edge), 0.0, 1.0);
-      const Vec3 d = x - (p[i] + s * edge);
-      if (dot(d, d) < place.distance2)
-      {
-        place.distance2 = dot(d, d);
-        place.weights = { 0, 0, 0 };
-        place.weights[i] = 1.0 - s;
-        place.weights[Next[i]] = s;
-      }
-    }
-    return place;
-  }
-  const Vec3 d = dot(w, n) / n2 * n;
-  place.distance2 = dot(d, d);
-  return place;
-}
-
-/// Finds the triangle of the input that contains a point, or is closest to it.
-class TriangleLocator
-{
-public:
-  TriangleLocator(const TriangleMesh& mesh, const TriangleInput& input)
-    : Mesh(mesh)
-    , Input(input)
-  {
-  }
-
-  /// Looks at cells around `start`, of its region and patch, the closest ones first.
-  TriId locate(const Vec3& x, TriId start, Place& best) const
-  {
-    using Candidate = std::pair<double, TriId>;
-    std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> queue;
-    std::set<TriId> known = { start };
-    best = this->placeIn(start, x);
-    TriId nearest = start;
-    queue.push({ best.distance2, start });
-    for (int visited = 0; !queue.empty() && visited < MaxVisited; ++visited)
-    {
-      const TriId t = queue.top().second;
-      queue.pop();
-      const Place place = this->placeIn(t, x);
-      if (place.distance2 < best.distance2 || (place.distance2 == best.distance2 && t < nearest))
-      {
-        best = place;
-        nearest = t;
-      }
-      if (this->Input.planar && best.distance2 == 0.0)
-      {
-        break;
-      }
-      for (int i = 0; i < 3; ++i)
-      {
-        const std::int32_t n = this->Mesh.triangle(t).neighbors[i];
-        if (!this->Mesh.isWall(t, i) && known.insert(n >> 2).second)
-        {
-          queue.push({ this->placeIn(n >> 2, x).distance2, n >> 2 });
-        }
-      }
-    }
-    return nearest;
-  }
-
-private:
-  Place placeIn(TriId t, const Vec3& x) const
-  {
-    const Corners& v = this->Input.cells[t];
-    const std::vector<Vec3>& p = this->Input.points;
-    return closestIn({ p[v[0]], p[v[1]], p[v[2]] }, x);
-  }
-
-  const TriangleMesh& Mesh;
-  const TriangleInput& Input;
-};
-
 /// Numbers the points of the output and writes them; returns the new number per slot, or -1.
 std::vector<Index> writePoints(const Mesh& mesh, const TriangleInput& input,
   const TriangleMesh& before, const TriangleMesh& changed, ReconnectionResult& result)
@@ -125,7 +23,8 @@ std::vector<Index> writePoints(const Mesh& mesh, const TriangleInput& input,
     }
     numbers[v] = count++;
     Vec3 x = { 0, 0, 0 };
-    if (original && changed.point(v) == input.points[v])
+    const bool moved = original && changed.point(v) != input.points[v];
+    if (original && !moved)
     {
       x = pointOf(view, v);
     }
@@ -134,9 +33,38 @@ std::vector<Index> writePoints(const Mesh& mesh, const TriangleInput& input,
       x = input.leave(mesh, changed.point(v));
     }
     result.points.insert(result.points.end(), x.begin(), x.end());
-    result.originalPoints.push_back(original ? v : -1);
+    result.originalPoints.push_back(original && !(moved && result.adapted) ? v : -1);
   }
   return numbers;
+}
+
+/// The edges that are given walls of the options, each once.
+void writeLines(const TriangleInput& input, const TriangleMesh& changed,
+  const std::vector<Index>& numbers, ReconnectionResult& result)
+{
+  using Line = std::array<Index, 3>; // its ends, in increasing order, and what it is a part of
+  std::vector<Line> lines;
+  for (TriId t = 0; t < changed.slots(); ++t)
+  {
+    const Triangle& triangle = changed.triangle(t);
+    for (int i = 0; changed.alive(t) && i < 3; ++i)
+    {
+      const std::int32_t line = triangle.lines[i];
+      if (line != NoNumber && line < input.markedEdges)
+      {
+        const Index a = numbers[triangle.vertices[Next[i]]];
+        const Index b = numbers[triangle.vertices[Previous[i]]];
+        lines.push_back({ std::min(a, b), std::max(a, b), line });
+      }
+    }
+  }
+  std::sort(lines.begin(), lines.end());
+  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+  for (const Line& line : lines)
+  {
+    result.lines.insert(result.lines.end(), { line[0], line[1] });
+    result.originalLines.push_back(line[2]);
+  }
 }
 }
 
@@ -157,7 +85,10 @@ void convertOutput(const Mesh& mesh, const TriangleInput& input, const TriangleM
 {
   const std::vector<Index> numbers = writePoints(mesh, input, before, changed, result);
   const TriangleLocator locator(before, input);
-  Place place;
+  TrianglePlace place;
+  // Where qualities are measured in metrics, origins are up to date.
+  const int patience =
+    changed.measuresInMetrics() ? TriangleLocator::Patience : TriangleLocator::MaxVisited;
   for (TriId t = 0; t < changed.slots(); ++t)
   {
     if (!changed.alive(t))
@@ -170,7 +101,7 @@ void convertOutput(const Mesh& mesh, const TriangleInput& input, const TriangleM
     {
       const Vec3 centroid =
         (1.0 / 3.0) * (changed.point(v[0]) + changed.point(v[1]) + changed.point(v[2]));
-      original = locator.locate(centroid, changed.triangle(t).origin, place);
+      original = locator.nearest(centroid, changed.triangle(t).origin, place, patience);
     }
     result.originalCells.push_back(original);
     if (mesh.mirrored() && input.planar)
@@ -182,16 +113,19 @@ void convertOutput(const Mesh& mesh, const TriangleInput& input, const TriangleM
       result.triangles.push_back(numbers[p]);
     }
   }
-  for (auto p = static_cast<VertexId>(mesh.view().numberOfPoints); p < changed.pointSlots(); ++p)
+  writeLines(input, changed, numbers, result);
+  for (VertexId p = 0; p < changed.pointSlots(); ++p)
   {
-    if (numbers[p] < 0)
+    if (numbers[p] < 0 || result.originalPoints[numbers[p]] >= 0)
     {
       continue;
     }
     PointInterpolation added;
     added.point = numbers[p];
-    added.cell =
-      locator.locate(changed.point(p), changed.triangle(changed.triangleOf(p)).origin, place);
+    const TriId start = changed.measuresInMetrics()
+      ? changed.metric(p).place
+      : changed.triangle(changed.triangleOf(p)).origin;
+    added.cell = locator.nearest(changed.point(p), start, place, patience);
     std::copy(place.weights.begin(), place.weights.end(), added.weights.begin());
     if (mesh.mirrored() && input.planar)
     {

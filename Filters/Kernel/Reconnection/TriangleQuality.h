@@ -8,10 +8,13 @@
  * q = D / (u v). It is sqrt(3) / 2 for the regular triangle, 0 for a degenerate one, and negative
  * for an inverted one of a planar mesh. The mean ratio 2 sqrt(3) D / (u^2 + v^2 + w^2) is at least
  * 2 q / sqrt(3), so that it needs no place in the quality.
+ *
+ * In metrics it is the mean ratio of the triangle in the mean of the metrics of its corners.
  */
 #ifndef tautline_TriangleQuality_h
 #define tautline_TriangleQuality_h
 
+#include "tautline/Adaptation/MetricTensor.h"
 #include "tautline/Core/Types.h"
 #include "tautline/Geometry/Predicates.h"
 
@@ -24,6 +27,8 @@ constexpr double TriangleMeanRatioFactor = 3.4641016151377544;
 
 /// Below this quality the sign of the area in a plane is that of the exact predicate.
 constexpr double CertainTriangle = 1e-9;
+/// The same of the mean ratio in a metric, which may be much larger than that of the triangle.
+constexpr double CertainInMetric = 1e-6;
 
 struct TriangleMeasures
 {
@@ -60,6 +65,47 @@ inline double triangleQuality(const Vec3& a, const Vec3& b, const Vec3& c, bool 
   constexpr double tiny = 1e-300;
   const auto flat = [](const Vec3& x) { return Vec2{ x[0], x[1] }; };
   return orientation(flat(a), flat(b), flat(c)) > 0 ? std::max(q, tiny) : std::min(q, 0.0);
+}
+
+/// A symmetric tensor in the coordinates of two directions: xx, xy and yy.
+using PlaneTensor = std::array<double, 3>;
+
+/// The mean ratio in a metric of a triangle of a plane, with two edges u and v in their order.
+inline double planeMeanRatio(const Vec2& u, const Vec2& v, const PlaneTensor& m)
+{
+  const auto square = [&m](const Vec2& e)
+  { return m[0] * e[0] * e[0] + 2.0 * m[1] * e[0] * e[1] + m[2] * e[1] * e[1]; };
+  const double area2 = u[0] * v[1] - u[1] * v[0];
+  const double sum = square(u) + square(v) + square({ v[0] - u[0], v[1] - u[1] });
+  const double determinant = std::max(m[0] * m[2] - m[1] * m[1], 0.0);
+  return sum > 0.0 ? TriangleMeanRatioFactor * area2 * std::sqrt(determinant) / sum : 0.0;
+}
+
+/// The mean ratio in the mean of the metrics of the corners; in a plane it is positive exactly if
+/// the area is, by the exact predicate.
+inline double metricQuality(const Vec3& a, const Vec3& b, const Vec3& c, const MetricTensor& ma,
+  const MetricTensor& mb, const MetricTensor& mc, bool planar)
+{
+  const auto mean = [&](int k) { return (ma[k] + mb[k] + mc[k]) / 3.0; };
+  const Vec3 u = b - a, v = c - a;
+  if (planar)
+  {
+    const double q = planeMeanRatio({ u[0], u[1] }, { v[0], v[1] }, { mean(0), mean(3), mean(1) });
+    if (std::abs(q) > CertainInMetric)
+    {
+      return q;
+    }
+    constexpr double tiny = 1e-300;
+    const auto flat = [](const Vec3& x) { return Vec2{ x[0], x[1] }; };
+    return orientation(flat(a), flat(b), flat(c)) > 0 ? std::max(q, tiny) : std::min(q, 0.0);
+  }
+  const MetricTensor m = { mean(0), mean(1), mean(2), mean(3), mean(4), mean(5) };
+  // The matrix of the inner products of two edges.
+  const double uu = squaredLength(u, m), vv = squaredLength(v, m), ww = squaredLength(v - u, m);
+  const double uv = 0.5 * (uu + vv - ww);
+  const double sum = uu + vv + ww;
+  return sum > 0.0 ? TriangleMeanRatioFactor * std::sqrt(std::max(uu * vv - uv * uv, 0.0)) / sum
+                   : 0.0;
 }
 
 /// The smallest and the largest angle in degrees.

@@ -3,10 +3,12 @@
 
 #include "Constants.h"
 #include "ReconnectionProgress.h"
+#include "TriangleAdaptation.h"
 #include "TriangleInput.h"
 #include "TriangleOperations.h"
 
 #include <limits>
+#include <memory>
 
 namespace tautline
 {
@@ -21,13 +23,16 @@ constexpr double TrianglePassGain = 1e-3;
 constexpr double FirstGain = 1e-3, FineGain = 1e-4;
 /// Steps of a point, each time.
 constexpr int StepsOfPoint = 3;
+/// Attempts in a pass after adaptation, per triangle below its target: of flips and motions, and of
+/// all operations, which take a hundred times as long.
+constexpr Index MetricMotions = 8, MetricAttempts = 2;
+/// Rounds of adaptation, which end when the share of edges of the right length grows by less.
+constexpr int AdaptationRounds = 12;
+constexpr double LeastShareGain = 5e-4;
+/// How much of the progress adaptation takes.
+constexpr double AdaptationProgress = 0.8;
 /// Attempts between two checks of the clock.
 constexpr Index AttemptsBetweenChecks = 32;
-
-double sineOf(double degrees)
-{
-  return std::sin(degrees * (Pi / 180.0));
-}
 
 /// One pass: which triangles are improved, and how.
 struct TrianglePass
@@ -67,12 +72,13 @@ ReconnectionRecord measure(const TriangleMesh& mesh, double target)
 /// First flips everywhere, then flips and motions for ever better triangles, then all the rest.
 std::vector<TrianglePass> planPasses(const TriangleOptions& options)
 {
-  const double target = sineOf(options.targetAngle);
-  const bool keepsCount = options.smallestCount == 1.0 && options.largestCount == 1.0;
+  const double target = targetQuality(options);
+  const bool keepsCount =
+    !options.adapt && options.smallestCount == 1.0 && options.largestCount == 1.0;
   std::vector<TrianglePass> passes;
   TrianglePass pass;
   pass.swap = options.swap;
-  if (options.swap && options.swapEverywhere)
+  if (options.swap && options.swapEverywhere && !options.adapt)
   {
     passes.push_back(pass);
   }
@@ -106,10 +112,12 @@ std::vector<TrianglePass> planPasses(const TriangleOptions& options)
 class TriangleRun
 {
 public:
-  TriangleRun(TriangleMesh& mesh, const TriangleInput& input, const TriangleOptions& options,
-    ReconnectionResult& result)
+  /// @param field the metrics at all places, null without adaptation
+  TriangleRun(TriangleMesh& mesh, const TriangleInput& input, const TriangleMetrics* field,
+    const TriangleOptions& options, ReconnectionResult& result)
     : Mesh(mesh)
     , Input(input)
+    , Field(field)
     , Options(options)
     , Result(result)
     , Operations(mesh, input)
@@ -126,12 +134,15 @@ private:
   bool runPass(const TrianglePass& pass);
   bool improveMean();
   void keepVolume();
+  bool adapt();
+  void findOrigins();
   bool improve(TriId t, const TrianglePass& pass);
   void pushChanged(double target);
   bool isWaiting(const Queue::Entry& entry);
 
   TriangleMesh& Mesh;
   const TriangleInput& Input;
+  const TriangleMetrics* Field;
   const TriangleOptions& Options;
   ReconnectionResult& Result;
   TriangleOperations Operations;
@@ -144,7 +155,10 @@ private:
 
 bool TriangleRun::record(int pass, double fraction)
 {
-  ReconnectionRecord record = measure(this->Mesh, sineOf(this->Options.targetAngle));
+  ReconnectionRecord record = measure(this->Mesh, targetQuality(this->Options));
+  record.edgesInRange = this->Field
+    ? TriangleAdaptation(this->Mesh, this->Input, this->Operations).shareOfUnitEdges()
+    : 0.0;
   const TriangleOperations::Counts& counts = this->Operations.counts();
   record.edgeRemovals = counts.flips;
   record.contractions = counts.contractions;
@@ -222,15 +236,26 @@ bool TriangleRun::runPass(const TrianglePass& pass)
 {
   this->Tried.assign(this->Mesh.slots(), 0);
   this->Operations.leastGain = pass.leastGain;
+  Index below = 0;
   this->Waiting.fill(this->Mesh,
-    [&](TriId t) { return this->Mesh.alive(t) && this->Mesh.quality(t) < pass.target; });
-  while (!this->Waiting.empty())
+    [&](TriId t)
+    {
+      const bool waits = this->Mesh.alive(t) && this->Mesh.quality(t) < pass.target;
+      below += waits;
+      return waits;
+    });
+  // Where walls are much closer to each other than the target lengths, many triangles are below any
+  // target.
+  const Index attempts = pass.insert || pass.contract ? MetricAttempts : MetricMotions;
+  Index budget = this->Field ? attempts * below : -1;
+  while (!this->Waiting.empty() && budget != 0)
   {
     const Queue::Entry entry = this->Waiting.pop();
     if (!this->isWaiting(entry))
     {
       continue;
     }
+    --budget;
     if (++this->Attempts % AttemptsBetweenChecks == 0 && !this->Progress.proceed())
     {
       return false;
@@ -261,7 +286,7 @@ bool TriangleRun::improveMean()
 void TriangleRun::keepVolume()
 {
   const ReconnectionRecord& first = this->Result.history.front();
-  this->Operations.leastMeanRatio = 1.0 / first.worstInverseMeanRatio;
+  this->Operations.leastMeanRatio = this->Field ? 0.0 : 1.0 / first.worstInverseMeanRatio;
   this->Operations.keepVolume(this->Volume, first.worstQuality);
   const double unit = std::ldexp(1.0, 3 * this->Input.exponent);
   this->Result.volumeBefore = unit * this->Volume;
@@ -276,14 +301,74 @@ void TriangleRun::prepare(const std::vector<PointFreedom>& freedoms)
   operations.flips = this->Options.swap;
   operations.moves = this->Options.smooth;
   operations.dividesWalls = this->Options.boundary == BoundaryMotion::FlatParts;
-  operations.metrics = this->Input.metrics;
+  operations.field = this->Field;
   operations.edgeFactor = this->Options.edgeFactor;
-  operations.target = sineOf(this->Options.targetAngle);
+  operations.target = targetQuality(this->Options);
   operations.leastMeanRatio = 1.0 / this->Result.history.front().worstInverseMeanRatio;
   const double size = static_cast<double>(this->Mesh.size());
   operations.smallestSize = static_cast<Index>(std::ceil(this->Options.smallestCount * size));
   operations.largestSize = static_cast<Index>(std::min(this->Options.largestCount * size,
     static_cast<double>(std::numeric_limits<std::int32_t>::max() / 8)));
+  if (this->Field)
+  {
+    operations.edgeFactor = TriangleAdaptation::LongestEdge;
+    operations.leastMeanRatio = 0.0;
+    operations.smallestSize = 0;
+    operations.largestSize = std::numeric_limits<std::int32_t>::max() / 8;
+  }
+}
+
+/// Rounds of adaptation until the share of edges of the right length stays; false if stopped.
+bool TriangleRun::adapt()
+{
+  TriangleAdaptation adaptation(this->Mesh, this->Input, this->Operations);
+  adaptation.splits = this->Options.insert;
+  adaptation.contracts = this->Options.contract;
+  adaptation.flips = this->Options.swap;
+  adaptation.moves = this->Options.smooth;
+  adaptation.proceed = [this] { return this->Progress.proceed(); };
+  double share = adaptation.shareOfUnitEdges();
+  for (int round = 0; round < AdaptationRounds; ++round)
+  {
+    const bool complete = adaptation.runRound();
+    const double fraction = AdaptationProgress * (round + 1) / AdaptationRounds;
+    if (!this->record(this->Result.history.back().pass + 1, fraction) || !complete)
+    {
+      return false;
+    }
+    const double now = adaptation.shareOfUnitEdges();
+    if (now < share + LeastShareGain)
+    {
+      break;
+    }
+    share = now;
+  }
+  return true;
+}
+
+/// Sets the origins of triangles to those that contain their centroids.
+void TriangleRun::findOrigins()
+{
+  for (TriId t = 0; t < this->Mesh.slots(); ++t)
+  {
+    if (!this->Mesh.alive(t) || isUnchanged(this->Input, this->Mesh, t))
+    {
+      continue;
+    }
+    const Triangle& triangle = this->Mesh.triangle(t);
+    const Corners& v = triangle.vertices;
+    const Vec3 centroid =
+      (1.0 / 3.0) * (this->Mesh.point(v[0]) + this->Mesh.point(v[1]) + this->Mesh.point(v[2]));
+    const TriId found = this->Field->locate(
+      centroid, this->Input.planar ? this->Mesh.metric(v[0]).place : triangle.origin);
+    const bool sameRegion =
+      this->Input.regions.empty() || this->Input.regions[found] == triangle.region;
+    if (sameRegion &&
+      (this->Input.planar || this->Input.patches[found] == this->Input.patches[triangle.origin]))
+    {
+      this->Mesh.setOrigin(t, found);
+    }
+  }
 }
 
 void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
@@ -293,7 +378,8 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
   this->Volume = this->Options.keepVolume ? this->Operations.enclosedVolume() : 0.0;
   std::vector<TrianglePass> passes = planPasses(this->Options);
   const std::size_t planned = passes.size();
-  bool stopped = !started;
+  bool stopped = !started || (this->Field && !this->adapt());
+  const int firstPass = this->Result.history.back().pass;
   for (std::size_t i = 0; i < passes.size() && !stopped; ++i)
   {
     const ReconnectionRecord before = this->Result.history.back();
@@ -302,9 +388,10 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
       break;
     }
     const bool complete = this->runPass(passes[i]);
-    const double progress =
-      static_cast<double>(i + 1) / static_cast<double>(planned + TrianglePasses);
-    stopped = !this->record(static_cast<int>(i) + 1, progress) || !complete;
+    const double start = this->Field ? AdaptationProgress : 0.0;
+    const double progress = start +
+      (1.0 - start) * static_cast<double>(i + 1) / static_cast<double>(planned + TrianglePasses);
+    stopped = !this->record(firstPass + static_cast<int>(i) + 1, progress) || !complete;
     const double gain = this->Result.history.back().worstQuality - before.worstQuality;
     if (i + 1 == passes.size() && gain > TrianglePassGain &&
       passes.size() < planned + TrianglePasses)
@@ -312,10 +399,14 @@ void TriangleRun::run(const std::vector<PointFreedom>& freedoms)
       passes.push_back(passes[i]);
     }
   }
-  stopped = stopped || (this->Options.improveMean && !this->improveMean());
+  stopped = stopped || (this->Options.improveMean && !this->Field && !this->improveMean());
   if (this->Options.keepVolume)
   {
     this->keepVolume();
+  }
+  if (this->Field)
+  {
+    this->findOrigins();
   }
   if (!stopped && this->Result.history.back().belowTarget == 0)
   {
@@ -331,6 +422,32 @@ void checkEdges(const TriangleMesh& mesh)
       " edges of a planar mesh have three or more triangles, or two on the same side: remove "
       "duplicate or overlapping triangles first");
   }
+}
+
+/// Throws Error for target lengths that ask for more triangles than there is memory for.
+void requireFeasible(const TriangleInput& input)
+{
+  constexpr double idealArea = 0.4330127018922193; // of edges of length 1: sqrt(3) / 4
+  constexpr double bytesPerTriangle = 400.0;       // of mesh, workspace and result
+  double expected = 0.0;
+  for (const Corners& v : input.cells)
+  {
+    const auto sum = [&](const Vec3& e, const Vec3& f)
+    {
+      double product = 0.0;
+      for (VertexId p : v)
+      {
+        const MetricTensor& m = input.metrics[p];
+        product += (squaredLength(e + f, m) - squaredLength(e - f, m)) / (4.0 * 3.0);
+      }
+      return product;
+    };
+    const Vec3 e = input.points[v[1]] - input.points[v[0]],
+               f = input.points[v[2]] - input.points[v[0]];
+    const double squared = sum(e, e) * sum(f, f) - sum(e, f) * sum(e, f);
+    expected += 0.5 * std::sqrt(std::max(squared, 0.0));
+  }
+  requireRoom(expected / idealArea, "triangles", bytesPerTriangle);
 }
 
 /// Only a closed surface encloses a volume.
@@ -380,6 +497,7 @@ ReconnectionResult improveTriangles(const Mesh& mesh, const TriangleOptions& opt
   }
   const TriangleMesh before = changing;
   ReconnectionResult result;
+  result.adapted = options.adapt;
   const std::vector<PointFreedom> freedoms = findFreedoms(changing, input, options);
   std::vector<char> fixedPoints(freedoms.size(), 0);
   for (std::size_t v = 0; v < freedoms.size(); ++v)
@@ -390,7 +508,19 @@ ReconnectionResult improveTriangles(const Mesh& mesh, const TriangleOptions& opt
   }
   if (changing.size() > 0)
   {
-    TriangleRun(changing, input, options, result).run(freedoms);
+    std::unique_ptr<TriangleMetrics> field;
+    if (options.adapt)
+    {
+      requireFeasible(input);
+      field = std::make_unique<TriangleMetrics>(before, input);
+    }
+    std::vector<PointMetric> metrics;
+    for (const EdgeMetric& metric : input.metrics)
+    {
+      metrics.push_back({ metric, before.triangleOf(static_cast<VertexId>(metrics.size())) });
+    }
+    changing.setMetrics(std::move(metrics), options.adapt);
+    TriangleRun(changing, input, field.get(), options, result).run(freedoms);
     findObstacles(changing, fixedPoints, options, result);
   }
   convertOutput(mesh, input, before, changing, result);

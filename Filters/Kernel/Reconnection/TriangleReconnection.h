@@ -14,6 +14,9 @@
  * no inverse mean ratio exceeds the worst of the input. Triangles of a planar mesh stay positive by
  * an exact predicate.
  *
+ * With ReconnectionOptions::adapt, edges first get their target lengths (TriangleAdaptation.h), and
+ * the quality is the mean ratio in the metric.
+ *
  * Kept are borders, edges between regions, given edges, fixed points and, on a surface in space,
  * its sharp edges and corners (Mesh/Features.h). Other points of a surface stay on the smooth
  * surface through the points of the input (Boundary/SurfaceModel.h), and changed triangles close to

@@ -28,6 +28,15 @@ double signedArea2(const Vec3& c, const Vec3& normal)
 double TriangleStar::evaluate(const Vec3& p, const Vec3& normal) const
 {
   double smallest = std::numeric_limits<double>::max();
+  for (std::size_t k = 0; k < this->Metrics.size(); ++k)
+  {
+    const Vec3 u = this->Edges[k][0] - p, v = this->Edges[k][1] - p;
+    smallest = std::min(smallest, planeMeanRatio({ u[0], u[1] }, { v[0], v[1] }, this->Metrics[k]));
+  }
+  if (!this->Metrics.empty())
+  {
+    return smallest;
+  }
   for (const auto& [a, b] : this->Edges)
   {
     const Vec3 u = a - p, v = b - p, w = b - a;
@@ -41,16 +50,18 @@ double TriangleStar::evaluate(const Vec3& p, const Vec3& normal) const
   return smallest;
 }
 
-/// The sines of the angles near the smallest one: D / (u v), D twice the area.
-void TriangleStar::linearize(const Vec3& p, const Directions& directions)
+void TriangleStar::addFunction(double value, const Vec3& gradient, const Directions& directions)
 {
-  this->Functions.clear();
+  const double along = directions.count > 1 ? dot(gradient, directions.second) : 0.0;
+  this->Functions.push_back({ value, { dot(gradient, directions.first), along }, 0.0 });
+}
+
+/// The sines of the angles: D / (u v), D twice the area.
+void TriangleStar::linearizeSines(const Vec3& p, const Directions& directions)
+{
   const Vec3 up = directions.normal();
   const auto add = [&](double value, const Vec3& gradient)
-  {
-    const double along = directions.count > 1 ? dot(gradient, directions.second) : 0.0;
-    this->Functions.push_back({ value, { dot(gradient, directions.first), along }, 0.0 });
-  };
+  { this->addFunction(value, gradient, directions); };
   for (const auto& [a, b] : this->Edges)
   {
     const Vec3 u = a - p, v = b - p, w = b - a;
@@ -69,6 +80,44 @@ void TriangleStar::linearize(const Vec3& p, const Directions& directions)
     add(atP, (1.0 / (u1 * v1)) * gradD + atP * (toU + toV));
     add(atA, (1.0 / (u1 * w1)) * gradD + atA * toU);
     add(atB, (1.0 / (v1 * w1)) * gradD + atB * toV);
+  }
+}
+
+/// The mean ratios c D / S with the sum S of the squared edges in the metrics.
+void TriangleStar::linearizeMeanRatios(const Vec3& p, const Directions& directions)
+{
+  for (std::size_t k = 0; k < this->Metrics.size(); ++k)
+  {
+    const PlaneTensor& m = this->Metrics[k];
+    const Vec3 u = this->Edges[k][0] - p, v = this->Edges[k][1] - p, w = v - u;
+    const auto applied = [&m](const Vec3& e) {
+      return Vec3{ m[0] * e[0] + m[1] * e[1], m[1] * e[0] + m[2] * e[1], 0.0 };
+    };
+    const Vec3 mu = applied(u), mv = applied(v);
+    const double sum = dot(u, mu) + dot(v, mv) + dot(w, applied(w));
+    const double unit =
+      TriangleMeanRatioFactor * std::sqrt(std::max(m[0] * m[2] - m[1] * m[1], 0.0)) / sum;
+    if (!(sum > 0.0))
+    {
+      continue;
+    }
+    const double value = unit * (u[0] * v[1] - u[1] * v[0]);
+    const Vec3 gradient = unit * Vec3{ -w[1], w[0], 0.0 } + (2.0 * value / sum) * (mu + mv);
+    this->addFunction(value, gradient, directions);
+  }
+}
+
+/// The functions near the smallest one.
+void TriangleStar::linearize(const Vec3& p, const Directions& directions)
+{
+  this->Functions.clear();
+  if (this->Metrics.empty())
+  {
+    this->linearizeSines(p, directions);
+  }
+  else
+  {
+    this->linearizeMeanRatios(p, directions);
   }
   const auto less = [](const Function& f, const Function& g) { return f.value < g.value; };
   std::stable_sort(this->Functions.begin(), this->Functions.end(), less);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /**
  * @file TriangleStar.h
- * @brief The position of one point that maximizes the smallest angle of the triangles around.
+ * @brief The position of one point that maximizes the smallest quality of the triangles around.
  * Internal: not installed.
  */
 #ifndef tautline_TriangleStar_h
@@ -17,8 +17,9 @@ namespace tautline
 {
 /**
  * @brief Maximizes the smallest sine of an angle of the triangles that join a point to given edges,
- * by proximal bundle steps: the sines near the smallest one are linearized, and the step maximizes
- * the smallest of the linear functions less a multiple of its square.
+ * or their smallest mean ratio in given metrics, by proximal bundle steps: the values near the
+ * smallest one are linearized, and the step maximizes the smallest of the linear functions less a
+ * multiple of its square.
  */
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT TriangleStar
 {
@@ -34,9 +35,20 @@ public:
   /// A step has to gain this.
   double leastGain = 1e-4;
 
-  void clear() { this->Edges.clear(); }
+  void clear()
+  {
+    this->Edges.clear();
+    this->Metrics.clear();
+  }
   /// An edge, so that (point, a, b) is a triangle in its order.
   void addEdge(const Vec3& a, const Vec3& b) { this->Edges.push_back({ a, b }); }
+  /// The same in the xy plane, whose quality is the mean ratio in a metric instead. All edges of a
+  /// star have metrics, or none has.
+  void addEdge(const Vec3& a, const Vec3& b, const PlaneTensor& metric)
+  {
+    this->Edges.push_back({ a, b });
+    this->Metrics.push_back(metric);
+  }
 
   /// The smallest quality with the point at p; negative for triangles turned against the normal.
   double evaluate(const Vec3& p, const Vec3& normal) const;
@@ -60,9 +72,13 @@ private:
     double weight;
   };
   void linearize(const Vec3& p, const Directions& directions);
+  void linearizeSines(const Vec3& p, const Directions& directions);
+  void linearizeMeanRatios(const Vec3& p, const Directions& directions);
+  void addFunction(double value, const Vec3& gradient, const Directions& directions);
   Vec2 solve(double weight);
 
   std::vector<std::array<Vec3, 2>> Edges;
+  std::vector<PlaneTensor> Metrics; ///< per edge, or empty
   std::vector<Function> Functions;
 };
 }
