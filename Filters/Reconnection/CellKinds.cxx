@@ -113,11 +113,19 @@ CellKinds::CellKinds(std::map<int, Index> counts)
       ", but no tetrahedron or triangle: Improve Mesh takes one of these; run a mesher (or "
       "Delaunay 2D or 3D) first.");
   }
-  if (!counts.empty())
+  if (counts.empty())
   {
-    this->leftOut = listOf(counts) + " beside the " + cells + " are left out of the output. " +
-      (this->dimension == 2 ? "Edges of the mesh that lines join are kept."
-                            : "Facets inside the mesh that triangles mark are kept.");
+    return;
   }
+  const std::string besides = " beside the " + cells + " are left out of the output.";
+  this->leftOut = listOf(counts) + besides +
+    (this->dimension == 2 ? " Edges of the mesh that lines join are kept."
+                          : " Facets inside the mesh that triangles mark are kept.");
+  for (const int mark : this->dimension == 2 ? std::vector<int>{ VTK_LINE, VTK_POLY_LINE }
+                                             : std::vector<int>{ VTK_TRIANGLE })
+  {
+    counts.erase(mark);
+  }
+  this->leftOutBesideMarks = counts.empty() ? "" : listOf(counts) + besides;
 }
 }

@@ -30,6 +30,8 @@ struct CellKinds
   int dimension = 3;   ///< 3: tetrahedra, 2: triangles
   Index taken = 0;     ///< their number
   std::string leftOut; ///< a sentence on cells of lower dimension, or ""
+  /// The same where lines beside triangles, and triangles beside tetrahedra, are in the output.
+  std::string leftOutBesideMarks;
 };
 }
 #endif

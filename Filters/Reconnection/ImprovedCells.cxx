@@ -117,6 +117,22 @@ ImprovedCells writePoints(RankGroup* group, const Simplices& simplices,
 }
 
 //------------------------------------------------------------------------------
+ImprovedCells measureMarks(
+  const Simplices& marks, const std::vector<double>& coordinates, int threads)
+{
+  constexpr double idealAngle = 60.0, idealRatio = 1.0;
+  constexpr int cornersOfTriangle = 3;
+  ImprovedCells measured;
+  if (marks.corners == cornersOfTriangle && marks.cells() > 0)
+  {
+    measure(marks, coordinates, false, threads, measured);
+  }
+  measured.smallestAngles.resize(marks.cells(), idealAngle);
+  measured.inverseMeanRatios.resize(marks.cells(), idealRatio);
+  return measured;
+}
+
+//------------------------------------------------------------------------------
 void copyCellData(vtkCellData* from, const std::vector<Index>& originals, vtkCellData* to)
 {
   const auto count = static_cast<vtkIdType>(originals.size());

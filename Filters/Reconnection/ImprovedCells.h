@@ -49,6 +49,9 @@ struct Simplices
 ImprovedCells writePoints(RankGroup* group, const Simplices& simplices,
   const std::vector<double>& coordinates, bool mirrored, const ReconnectionRecord& before,
   int threads, vtkPointSet* input, vtkPointSet* output);
+/// Measures triangles in space, or gives lines the ideal values: 60 degrees and 1.
+ImprovedCells measureMarks(
+  const Simplices& marks, const std::vector<double>& coordinates, int threads);
 /// Gives each cell of an output the data of the cell of the input that it comes from.
 void copyCellData(vtkCellData* from, const std::vector<Index>& originals, vtkCellData* to);
 /// Gives the cells of an output their numbers in the input, `min_angle` and `imr`.

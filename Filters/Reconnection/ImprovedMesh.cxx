@@ -11,9 +11,11 @@
 #include "vtkNew.h"
 #include "vtkPointData.h"
 #include "vtkPolyData.h"
+#include "vtkUnsignedCharArray.h"
 #include "vtkUnstructuredGrid.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace tautline
 {
@@ -25,6 +27,9 @@ struct Geometry
   std::vector<Index> points; ///< of the result, in the order of the output
   std::vector<double> coordinates;
   Simplices cells;
+  /// Lines beside triangles, or triangles beside tetrahedra, and their cells of the input.
+  Simplices marks;
+  std::vector<Index> markOrigins;
 };
 
 /// The result without the points that were merged into another one.
@@ -43,10 +48,26 @@ Geometry geometryOf(const ReconnectableMesh& input, const ReconnectionResult& re
       geometry.coordinates.insert(geometry.coordinates.end(), x, x + 3);
     }
   }
+  const auto renumbered = [&numbers](const std::vector<Index>& points)
+  {
+    std::vector<Index> ids(points.size());
+    std::transform(
+      points.begin(), points.end(), ids.begin(), [&numbers](Index p) { return numbers[p]; });
+    return ids;
+  };
   const std::vector<Index>& cells = input.isTriangles() ? result.triangles : result.tetrahedra;
-  geometry.cells = { std::vector<Index>(cells.size()), input.corners() };
-  std::transform(cells.begin(), cells.end(), geometry.cells.connectivity.begin(),
-    [&numbers](Index p) { return numbers[p]; });
+  geometry.cells = { renumbered(cells), input.corners() };
+  geometry.marks.corners = input.corners() - 1;
+  if (!result.adapted)
+  {
+    return geometry;
+  }
+  geometry.marks.connectivity = renumbered(input.isTriangles() ? result.lines : result.facets);
+  geometry.markOrigins = input.isTriangles() ? result.originalLines : result.originalFacets;
+  for (Index& origin : geometry.markOrigins)
+  {
+    origin = input.markCells()[origin];
+  }
   return geometry;
 }
 
@@ -82,20 +103,22 @@ void writePointData(const ReconnectableMesh& input, const ReconnectionResult& re
 }
 
 /// Averages the arrays of real numbers over the cells of the input that each cell overlaps.
-void averageCellData(
-  const ReconnectableMesh& input, const CellOverlaps& overlaps, vtkCellData* from, vtkCellData* to)
+/// @param first the number of the first one in the output
+void averageCellData(const ReconnectableMesh& input, const CellOverlaps& overlaps,
+  std::size_t first, vtkCellData* from, vtkCellData* to)
 {
+  const auto count = static_cast<vtkIdType>(overlaps.offsets.size()) - 1;
   for (int a = 0; a < from->GetNumberOfArrays(); ++a)
   {
     vtkDataArray* source = from->GetArray(a);
     const bool real =
       source && (source->GetDataType() == VTK_DOUBLE || source->GetDataType() == VTK_FLOAT);
     vtkDataArray* target = real && source->GetName() ? to->GetArray(source->GetName()) : nullptr;
-    for (vtkIdType cell = 0; target && cell < target->GetNumberOfTuples(); ++cell)
+    for (vtkIdType cell = 0; target && cell < count; ++cell)
     {
       for (int k = 0; k < source->GetNumberOfComponents(); ++k)
       {
-        target->SetComponent(cell, k,
+        target->SetComponent(static_cast<vtkIdType>(first) + cell, k,
           overlaps.average(
             cell, [&](Index c) { return source->GetComponent(input.inputCell(c), k); }));
       }
@@ -103,20 +126,28 @@ void averageCellData(
   }
 }
 
+/// @param marksFirst whether the marks come before the other cells, as lines do in poly data
 void writeCellData(const ReconnectableMesh& input, const ReconnectionResult& result,
-  const ImprovedCells& improved, vtkPointSet* output)
+  const Geometry& geometry, const ImprovedCells& improved, bool marksFirst, vtkPointSet* output)
 {
   std::vector<Index> originals(result.originalCells.size());
   std::transform(result.originalCells.begin(), result.originalCells.end(), originals.begin(),
     [&input](Index cell) { return input.inputCell(cell); });
+  originals.insert(marksFirst ? originals.begin() : originals.end(), geometry.markOrigins.begin(),
+    geometry.markOrigins.end());
   vtkCellData* from = input.input()->GetCellData();
   vtkCellData* to = output->GetCellData();
   copyCellData(from, originals, to);
   if (!result.overlaps.offsets.empty())
   {
-    averageCellData(input, result.overlaps, from, to);
+    averageCellData(input, result.overlaps, marksFirst ? geometry.marks.cells() : 0, from, to);
   }
-  addCellArrays(output, originals, 0, improved);
+  ImprovedCells all = measureMarks(geometry.marks, geometry.coordinates, 1);
+  const auto join = [marksFirst](std::vector<double>& marks, const std::vector<double>& cells)
+  { marks.insert(marksFirst ? marks.end() : marks.begin(), cells.begin(), cells.end()); };
+  join(all.smallestAngles, improved.smallestAngles);
+  join(all.inverseMeanRatios, improved.inverseMeanRatios);
+  addCellArrays(output, originals, 0, all);
 }
 }
 
@@ -124,21 +155,38 @@ void writeCellData(const ReconnectableMesh& input, const ReconnectionResult& res
 ImprovedCells writeImproved(const ReconnectableMesh& input, const ReconnectionResult& result,
   int threads, vtkPointSet* output)
 {
+  ReconnectionRecord floor = result.history.front();
+  if (result.adapted)
+  {
+    // The elements have another shape on purpose: any valid one will do.
+    floor.smallestAngle = 0.0;
+    floor.worstInverseMeanRatio = std::numeric_limits<double>::infinity();
+  }
   const Geometry geometry = geometryOf(input, result);
   output->Initialize();
   const ImprovedCells improved = writePoints(nullptr, geometry.cells, geometry.coordinates,
-    input.mesh().mirrored(), result.history.front(), threads, input.input(), output);
+    input.mesh().mirrored(), floor, threads, input.input(), output);
   const auto cells = makeCells(geometry.cells.connectivity, geometry.cells.corners);
-  if (auto* grid = vtkUnstructuredGrid::SafeDownCast(output))
+  const auto marks = makeCells(geometry.marks.connectivity, geometry.marks.corners);
+  auto* surface = vtkPolyData::SafeDownCast(output);
+  if (surface)
   {
-    grid->SetCells(input.isTriangles() ? VTK_TRIANGLE : VTK_TETRA, cells);
+    surface->SetPolys(cells);
+    surface->SetLines(marks);
   }
   else
   {
-    vtkPolyData::SafeDownCast(output)->SetPolys(cells);
+    vtkNew<vtkUnsignedCharArray> types;
+    types->SetNumberOfValues(cells->GetNumberOfCells() + marks->GetNumberOfCells());
+    std::fill_n(types->GetPointer(0), cells->GetNumberOfCells(),
+      static_cast<unsigned char>(input.isTriangles() ? VTK_TRIANGLE : VTK_TETRA));
+    std::fill_n(types->GetPointer(cells->GetNumberOfCells()), marks->GetNumberOfCells(),
+      static_cast<unsigned char>(input.isTriangles() ? VTK_LINE : VTK_TRIANGLE));
+    cells->Append(marks);
+    vtkUnstructuredGrid::SafeDownCast(output)->SetCells(types, cells);
   }
   writePointData(input, result, geometry, output);
-  writeCellData(input, result, improved, output);
+  writeCellData(input, result, geometry, improved, surface != nullptr, output);
   output->GetFieldData()->ShallowCopy(input.input()->GetFieldData());
   return improved;
 }

@@ -18,9 +18,11 @@ namespace tautline
  * arrays `min_angle`, `imr` and `OriginalCellId`. Points that were merged into another one are not
  * in the output.
  *
- * Points of the input keep their data; inserted ones interpolate. Cells have the data of the cell
- * in OriginalCellId; with ReconnectionResult::overlaps, real numbers are averages over the cells of
- * the input that they overlap. Global ids are left out, as they would not be unique. Points in
+ * Points of the input keep their data; inserted ones interpolate, after an adaptation also those
+ * that moved. Marked edges and facets of an adaptation (ReconnectionResult::lines, facets) become
+ * lines and triangles with the data of the cell that they are a part of. Cells have the data of the
+ * cell in OriginalCellId; with ReconnectionResult::overlaps, real numbers are averages over the
+ * cells of the input that they overlap. Global ids are left out, as they would not be unique. Points in
  * single precision stay so unless a tetrahedron would not be valid, or the worst one worse than
  * before.
  */

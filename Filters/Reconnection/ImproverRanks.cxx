@@ -108,7 +108,10 @@ std::string vtkMeshImprover::FindReasonToGather(vtkDataObject* input)
   this->LeftOut = kinds.leftOut;
   tautline::ReconnectionOptions options;
   this->SetOptions(options);
-  const std::string setting = tautline::needsOneRank(options);
+  tautline::applyPreset(static_cast<tautline::ReconnectionPreset>(this->Preset), options);
+  const bool partly =
+    this->Selected == CHANGES || this->IsArrayChosen(tautline::ImproverArrays::Changing);
+  const std::string setting = partly ? "a part that changes" : tautline::needsOneRank(options);
   const bool unnamed = piece->GetNumberOfPoints() > 0 && !piece->GetPointData()->GetGlobalIds();
   if (kinds.dimension < VolumeDimension)
   {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <sstream>
 #include <utility>
 
@@ -114,6 +115,15 @@ const char* reasonText(StopReason reason)
 }
 
 //------------------------------------------------------------------------------
+double inverseMeanRatioOf(const ReconnectionRecord& record, bool isTriangles)
+{
+  // The quality of tetrahedra is (mean ratio)^(3/2), that of triangles the mean ratio.
+  constexpr double largest = 1e30; // of a flat element
+  const double q = record.worstQuality;
+  return q > 0.0 ? std::min(isTriangles ? 1.0 / q : 1.0 / std::cbrt(q * q), largest) : largest;
+}
+
+//------------------------------------------------------------------------------
 std::vector<RemainingElement> remainingOf(const std::vector<signed char>& obstacles,
   const std::vector<double>& qualities, const std::vector<double>& bounds,
   const ImprovedCells& improved, Index first)
@@ -144,8 +154,8 @@ void sortWorstFirst(std::vector<RemainingElement>& remaining)
 }
 
 //------------------------------------------------------------------------------
-void addHistory(
-  TableRows& rows, const std::vector<ReconnectionRecord>& history, const std::string& block)
+void addHistory(TableRows& rows, const std::vector<ReconnectionRecord>& history,
+  const std::string& block, bool adapted)
 {
   for (const ReconnectionRecord& record : history)
   {
@@ -163,6 +173,11 @@ void addHistory(
     add("N contractions", record.contractions);
     add("N insertions", record.insertions);
     add("N moves", record.moves);
+    if (adapted)
+    {
+      add("Edges in range", record.edgesInRange);
+      add("Worst quality in metric", record.worstQuality);
+    }
     add("Time (s)", record.seconds);
   }
 }
@@ -208,7 +223,10 @@ std::string describeResult(const ReconnectionResult& result, bool isTriangles)
   const Words& words = wordsOf(isTriangles);
   const ReconnectionRecord &first = result.history.front(), &last = result.history.back();
   std::ostringstream text;
-  text << reasonText(result.reason) << "\n"
+  text << (result.adapted && result.reason == StopReason::NoProgress
+              ? "The lengths of the edges no longer improve."
+              : reasonText(result.reason))
+       << "\n"
        << words.title << ": " << first.tetrahedra << " to " << last.tetrahedra << ". Smallest "
        << words.angle << ": " << first.smallestAngle << " to " << last.smallestAngle
        << " degrees; largest: " << first.largestAngle << " to " << last.largestAngle
@@ -218,11 +236,26 @@ std::string describeResult(const ReconnectionResult& result, bool isTriangles)
   {
     text << " Mean: " << result.meanBefore << " to " << result.meanAfter << ".";
   }
+  if (result.adapted)
+  {
+    constexpr double percent = 100.0;
+    text << "\nEdges with lengths from 0.71 to 1.41 times the target: "
+         << percent * first.edgesInRange << " to " << percent * last.edgesInRange
+         << " %. Worst inverse mean ratio in the metric: " << inverseMeanRatioOf(first, isTriangles)
+         << " to " << inverseMeanRatioOf(last, isTriangles) << ".";
+  }
   text << "\nOperations: " << describeOperations(last) << ".";
   if (result.markedFacets > 0)
   {
     text << "\nFacets inside the mesh that triangles mark, and that are kept: "
          << result.markedFacets << ".";
+  }
+  if (result.ignoredMarks > 0)
+  {
+    text << "\n"
+         << result.ignoredMarks << (isTriangles ? " lines" : " triangles")
+         << " beside the mesh are left out: they are none of its "
+         << (isTriangles ? "edges" : "facets") << ", or there twice.";
   }
   if (result.volumeBefore != 0.0)
   {
@@ -243,20 +276,28 @@ std::string describeRemaining(const std::vector<RemainingElement>& remaining, bo
 {
   const Reasons& helps = remediesFor(isTriangles, boundary);
   const Words& words = wordsOf(isTriangles);
-  std::ostringstream text;
+  std::ostringstream text, target;
+  if (targetAngle > 0.0)
+  {
+    target << " of " << targetAngle << " degrees";
+  }
+  else
+  {
+    target << " in the metric";
+  }
   if (remaining.empty())
   {
-    text << "No " << words.one << " remains below the target of " << targetAngle << " degrees.";
+    text << "No " << words.one << " remains below the target" << target.str() << ".";
     return text.str();
   }
   text << remaining.size() << " " << (remaining.size() == 1 ? words.one : words.many)
-       << (remaining.size() == 1 ? " remains" : " remain") << " below the target of " << targetAngle
-       << " degrees";
+       << (remaining.size() == 1 ? " remains" : " remain") << " below the target" << target.str();
   const auto byShape = std::count_if(remaining.begin(), remaining.end(),
     [targetAngle](const RemainingElement& one) { return one.smallestAngle >= targetAngle; });
   // The quality of an element is also that of its largest angle and, by objective, of its shape.
-  text << (byShape == 0 ? ""
-                        : ", " + std::to_string(byShape) + " of them by a large angle or shape")
+  text << (byShape == 0 || targetAngle == 0.0
+              ? ""
+              : ", " + std::to_string(byShape) + " of them by a large angle or shape")
        << ":";
   std::array<Index, obstacles.size()> counts = {};
   for (const RemainingElement& element : remaining)

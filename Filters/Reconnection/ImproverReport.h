@@ -17,7 +17,7 @@ namespace tautline
 /// The input arrays of Improve Mesh.
 namespace ImproverArrays
 {
-constexpr int Fixed = 0, Region = 1, Size = 2;
+constexpr int Fixed = 0, Region = 1, Size = 2, Changing = 3;
 }
 
 class TableRows;
@@ -53,12 +53,15 @@ struct ImproverRemarks
   double targetAngle;
 };
 
+/// The largest inverse mean ratio in the metric, after an adaptation: of the smallest quality.
+double inverseMeanRatioOf(const ReconnectionRecord& record, bool isTriangles);
+
 /// Why a run ended.
 const char* reasonText(StopReason reason);
 
-/// Adds the rows of output History.
-void addHistory(
-  TableRows& rows, const std::vector<ReconnectionRecord>& history, const std::string& block);
+/// Adds the rows of output History. @param adapted whether they are of an adaptation
+void addHistory(TableRows& rows, const std::vector<ReconnectionRecord>& history,
+  const std::string& block, bool adapted);
 /// Adds the rows of output Remaining. @param isTriangles whether the elements are; else tetrahedra
 void addRemaining(TableRows& rows, const std::vector<RemainingElement>& remaining, bool isTriangles,
   const std::string& block);
@@ -66,6 +69,7 @@ void addRemaining(TableRows& rows, const std::vector<RemainingElement>& remainin
 /// Before and after, in words.
 std::string describeResult(const ReconnectionResult& result, bool isTriangles);
 /// What remains below the target, why, and which are the worst.
+/// @param targetAngle in degrees; 0 after an adaptation, whose target is a quality in the metric
 std::string describeRemaining(const std::vector<RemainingElement>& remaining, bool isTriangles,
   BoundaryMotion boundary, double targetAngle);
 /// What the boundary forces on any mesh, if something remains.

@@ -2,10 +2,12 @@
 #include "ReconnectableMesh.h"
 
 #include "CellKinds.h"
+#include "ImprovedCells.h"
 #include "PointMerge.h"
 
 #include "tautline/Core/Interruption.h"
 #include "tautline/Reconnection/DegenerateCells.h"
+#include "vtkCellData.h"
 #include "vtkCellType.h"
 #include "vtkDataArray.h"
 #include "vtkDataSetAttributes.h"
@@ -21,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 namespace tautline
 {
@@ -41,6 +44,26 @@ void refuseGhosts(vtkDataSet* grid)
       " ghost or hidden cells: the connectivity of a part of a mesh cannot change on its own; "
       "gather the mesh in one process and run Remove Ghost Information first.");
   }
+}
+}
+
+namespace
+{
+/// The number of the values that some arrays have on each cell, from 0 on as they occur.
+std::vector<Index> numbersOf(
+  const std::vector<vtkDataArray*>& arrays, const std::vector<Index>& cells)
+{
+  std::map<std::vector<double>, Index> numbers;
+  std::vector<Index> result;
+  std::vector<double> values(arrays.size());
+  for (Index cell : cells)
+  {
+    pollInterruption(cell);
+    std::transform(arrays.begin(), arrays.end(), values.begin(),
+      [cell](vtkDataArray* array) { return array->GetComponent(cell, 0); });
+    result.push_back(numbers.emplace(values, static_cast<Index>(numbers.size())).first->second);
+  }
+  return result;
 }
 }
 
@@ -96,6 +119,7 @@ void ReconnectableMesh::findKind()
   const int type = kinds.dimension == 3 ? VTK_TETRA : VTK_TRIANGLE;
   this->Corners = kinds.dimension + 1;
   this->LeftOut = kinds.leftOut;
+  this->LeftOutBesideMarks = kinds.leftOutBesideMarks;
   if (this->LeftOut.empty())
   {
     return;
@@ -136,6 +160,7 @@ void ReconnectableMesh::takeLines()
     for (vtkIdType i = 0; i + 1 < points->GetNumberOfIds(); ++i)
     {
       this->Lines.push_back({ id(i), id(i + 1) });
+      this->MarkCells.push_back(cell);
     }
   }
 }
@@ -157,6 +182,7 @@ void ReconnectableMesh::takeFacets()
       const auto id = [&](vtkIdType i)
       { return one.empty() ? points->GetId(i) : one[points->GetId(i)]; };
       this->Facets.push_back({ id(0), id(1), id(2) });
+      this->MarkCells.push_back(cell);
     }
   }
 }
@@ -184,6 +210,107 @@ void ReconnectableMesh::fixCells(vtkDataArray* ofCells)
     }
   }
   unite(this->Fixed, this->Representative);
+}
+
+//------------------------------------------------------------------------------
+void ReconnectableMesh::keepOthers(vtkDataArray* ofCells)
+{
+  const Index count = this->mesh().view().numberOfCells;
+  const bool any = !this->Outside.empty();
+  this->Outside.resize(ofCells ? count : this->Outside.size(), 0);
+  for (Index cell = 0; ofCells && cell < count; ++cell)
+  {
+    const bool stays = ofCells->GetComponent(this->inputCell(cell), 0) == 0.0;
+    this->Outside[cell] = any ? this->Outside[cell] || stays : stays;
+  }
+}
+
+//------------------------------------------------------------------------------
+std::vector<vtkDataArray*> ReconnectableMesh::tagArrays(
+  const std::vector<Index>& cells, std::size_t repeats) const
+{
+  std::vector<vtkDataArray*> found;
+  vtkCellData* data = this->Input->GetCellData();
+  for (int a = 0; a < data->GetNumberOfArrays(); ++a)
+  {
+    vtkDataArray* array = data->GetArray(a);
+    // The numbers of the cells of an input before, which several cells may share, are no tags.
+    const bool ids = array &&
+      (array == data->GetGlobalIds() || array == data->GetPedigreeIds() ||
+        (array->GetName() && std::string(array->GetName()) == OriginalCellArray));
+    if (!array || ids || array->GetNumberOfComponents() != 1 ||
+      array == this->Input->GetCellGhostArray() || array->GetDataType() == VTK_DOUBLE ||
+      array->GetDataType() == VTK_FLOAT)
+    {
+      continue;
+    }
+    std::set<double> values;
+    for (std::size_t i = 0; i < cells.size() && repeats * values.size() <= cells.size(); ++i)
+    {
+      pollInterruption(static_cast<Index>(i));
+      values.insert(array->GetComponent(cells[i], 0));
+    }
+    if (repeats * values.size() <= cells.size())
+    {
+      found.push_back(array);
+    }
+  }
+  return found;
+}
+
+//------------------------------------------------------------------------------
+std::vector<std::int32_t> ReconnectableMesh::facetClasses() const
+{
+  constexpr std::size_t facetsPerValue = 2;
+  const std::vector<vtkDataArray*> arrays = this->tagArrays(this->MarkCells, facetsPerValue);
+  std::vector<std::int32_t> classes;
+  for (Index number : numbersOf(arrays, this->MarkCells))
+  {
+    classes.push_back(static_cast<std::int32_t>(number + 1));
+  }
+  return classes;
+}
+
+//------------------------------------------------------------------------------
+void ReconnectableMesh::fixLineBorders()
+{
+  constexpr std::size_t linesPerValue = 2;
+  const std::vector<Index> classes =
+    numbersOf(this->tagArrays(this->MarkCells, linesPerValue), this->MarkCells);
+  std::vector<Index> ofPoint(this->Fixed.size(), -1);
+  for (std::size_t i = 0; i < this->Lines.size(); ++i)
+  {
+    for (Index p : this->Lines[i])
+    {
+      this->Fixed[p] |= ofPoint[p] >= 0 && ofPoint[p] != classes[i];
+      ofPoint[p] = classes[i];
+    }
+  }
+}
+
+//------------------------------------------------------------------------------
+std::string ReconnectableMesh::setRegionsByTags()
+{
+  constexpr std::size_t cellsPerValue = 4;
+  std::vector<Index> cells(this->mesh().view().numberOfCells);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+  {
+    cells[c] = this->inputCell(static_cast<Index>(c));
+  }
+  const std::vector<vtkDataArray*> arrays = this->tagArrays(cells, cellsPerValue);
+  std::vector<Index> regions = numbersOf(arrays, cells);
+  if (std::all_of(regions.begin(), regions.end(), [](Index region) { return region == 0; }))
+  {
+    return "";
+  }
+  this->Regions = std::move(regions);
+  std::string names;
+  for (vtkDataArray* array : arrays)
+  {
+    names += (names.empty() ? "" : ", ") + std::string(array->GetName() ? array->GetName() : "");
+  }
+  return "Regions that are kept are those of the tags " + names +
+    ": choose an array under Regions for others.";
 }
 
 //------------------------------------------------------------------------------
@@ -247,7 +374,8 @@ void ReconnectableMesh::removeDegenerate()
   grid->SetPoints(
     makePoints(std::vector<double>(view.points, view.points + 3 * view.numberOfPoints), nullptr));
   grid->AllocateExact(count, this->Corners * count);
-  std::vector<Index> cells, regions;
+  std::vector<Index> cells, regions, marks;
+  std::vector<unsigned char> outside;
   for (vtkIdType cell = 0; cell < count; ++cell)
   {
     std::array<vtkIdType, 4> nodes = {};
@@ -260,6 +388,10 @@ void ReconnectableMesh::removeDegenerate()
     {
       regions.push_back(this->Regions[original]);
     }
+    if (!this->Outside.empty())
+    {
+      outside.push_back(this->Outside[original]);
+    }
   }
   const bool mirrored = this->mesh().mirrored();
   this->Taken = grid;
@@ -267,6 +399,12 @@ void ReconnectableMesh::removeDegenerate()
   this->Adapter->mesh().setMirrored(mirrored);
   this->Cells = std::move(cells);
   this->Regions = std::move(regions);
+  this->Outside = std::move(outside);
+  for (Index mark : this->isTriangles() ? removal.originalEdges : removal.originalFacets)
+  {
+    marks.push_back(this->MarkCells[mark]);
+  }
+  this->MarkCells = std::move(marks);
   this->Lines = removal.edges;
   this->Facets = removal.facets;
   if (this->Representative.empty())

@@ -11,6 +11,7 @@
 
 #include "vtkSmartPointer.h"
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -54,6 +55,15 @@ public:
   const std::vector<std::array<Index, 2>>& lines() const { return this->Lines; }
   /// Of tetrahedra: the points of triangles of the input.
   const std::vector<std::array<Index, 3>>& facets() const { return this->Facets; }
+  /// The cell of the input that each of lines(), or of facets(), is, or is a part of.
+  const std::vector<Index>& markCells() const { return this->MarkCells; }
+  /**
+   * @brief The class of each of facets(), from 1 on: that of the values of the arrays of tags, see
+   * tagArrays(), of which at most half as many values as facets occur on these.
+   */
+  std::vector<std::int32_t> facetClasses() const;
+  /// Marks the points where lines() of different classes meet, which are found likewise.
+  void fixLineBorders();
   const Mesh& mesh() const { return this->Adapter->mesh(); }
   /// The cell of the input that a cell of mesh() is.
   Index inputCell(Index cell) const { return this->Cells.empty() ? cell : this->Cells[cell]; }
@@ -67,11 +77,21 @@ public:
   void fixPoints(vtkDataArray* ofPoints);
   /// Marks the points of cells with a value other than 0; the array may be null.
   void fixCells(vtkDataArray* ofCells);
+  /// Of cells with the value 0, everything stays; the array may be null.
+  void keepOthers(vtkDataArray* ofCells);
+  /// One flag per cell of mesh(), nonzero: it stays as it is. Empty: all may change.
+  const std::vector<unsigned char>& outside() const { return this->Outside; }
+
   /// One flag per point.
   const std::vector<unsigned char>& fixed() const { return this->Fixed; }
 
   /// The regions of the cells; null: one region. Throws Error for values that are no regions.
   void setRegions(vtkDataArray* ofCells);
+  /**
+   * @brief Regions by the values of the arrays of tags, see tagArrays(): of which at most a quarter
+   * as many values as cells occur on these. @return a sentence that names these arrays, or ""
+   */
+  std::string setRegionsByTags();
   /// One per cell of mesh(); empty for one region.
   const std::vector<Index>& regions() const { return this->Regions; }
 
@@ -85,9 +105,20 @@ public:
   /// Remarks for the user on how the mesh is interpreted, as sentences, or "".
   const std::string& notice() const { return this->Notice; }
   /// A sentence on cells that the output does not have, or "".
-  const std::string& leftOut() const { return this->LeftOut; }
+  /// @param marks whether it has lines beside triangles, and triangles beside tetrahedra
+  const std::string& leftOut(bool marks = false) const
+  {
+    return marks ? this->LeftOutBesideMarks : this->LeftOut;
+  }
 
 private:
+  /**
+   * @brief The cell arrays that may be tags: of whole numbers with one component, no ids and no
+   * ghost flags, of which the values on some cells repeat.
+   * @param cells of the input
+   * @param repeats the least number of cells per value
+   */
+  std::vector<vtkDataArray*> tagArrays(const std::vector<Index>& cells, std::size_t repeats) const;
   void findKind();
   void takeLines();
   void takeFacets();
@@ -98,12 +129,13 @@ private:
   std::vector<Index> Cells;           ///< empty if all cells are taken
   std::vector<std::array<Index, 2>> Lines;
   std::vector<std::array<Index, 3>> Facets;
+  std::vector<Index> MarkCells;
   std::unique_ptr<MeshAdapter> Adapter;
   std::vector<Index> Representative; ///< per point; empty if none was merged
   int Threads;
-  std::vector<unsigned char> Fixed;
+  std::vector<unsigned char> Fixed, Outside;
   std::vector<Index> Regions;
-  std::string Notice, LeftOut;
+  std::string Notice, LeftOut, LeftOutBesideMarks;
 };
 }
 #endif

@@ -15,6 +15,7 @@
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkInformation.h"
 #include "vtkInformationVector.h"
 #include "vtkObjectFactory.h"
 #include "vtkPointData.h"
@@ -138,6 +139,7 @@ void vtkMeshImprover::ClearResult()
   this->SmallestAngleBefore = this->SmallestAngleAfter = 0.0;
   this->WorstBefore = this->WorstAfter = this->BoundaryDistance = 0.0;
   this->WorstMetricBefore = this->WorstMetricAfter = 0.0;
+  this->EdgesInRangeBefore = this->EdgesInRangeAfter = this->WorstInMetric = 0.0;
 }
 
 //------------------------------------------------------------------------------
@@ -186,12 +188,35 @@ void vtkMeshImprover::SetOptions(tautline::ReconnectionOptions& options) const
 }
 
 //------------------------------------------------------------------------------
+bool vtkMeshImprover::IsArrayChosen(int index)
+{
+  vtkInformation* choice = this->GetInputArrayInformation(index);
+  const char* name = choice ? choice->Get(vtkDataObject::FIELD_NAME()) : nullptr;
+  return name && *name && std::string(name) != "None";
+}
+
+//------------------------------------------------------------------------------
+/// Whether target lengths are in an array: an adaptation takes one that is chosen.
+bool vtkMeshImprover::TakesSizeArray()
+{
+  return this->Size == SIZE_ARRAY ||
+    (this->Preset == ADAPT && this->Size == ANY_LENGTH &&
+      this->IsArrayChosen(tautline::ImproverArrays::Size));
+}
+
+//------------------------------------------------------------------------------
 /// Sets all options of tetrahedra or triangles but those of a mesh.
 template <class Options>
 void vtkMeshImprover::PrepareOptions(Options& options, double block, double blocks)
 {
   this->SetOptions(options);
   tautline::applyPreset(static_cast<tautline::ReconnectionPreset>(this->Preset), options);
+  if (options.adapt && this->Size == ANY_LENGTH && !this->TakesSizeArray())
+  {
+    throw tautline::Error(
+      "the preset Adapt needs target lengths: set Edge Lengths to a length or to "
+      "an array of lengths or metric tensors, as Metric Tensor makes it");
+  }
   if (this->TargetAngle > 0)
   {
     options.targetAngle = this->TargetAngle;
@@ -216,9 +241,10 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
   const auto prepare = [&](auto& options)
   {
     this->PrepareOptions(options, block.number, blocks);
-    targetAngle = options.targetAngle;
+    targetAngle = options.adapt ? 0.0 : options.targetAngle;
     options.fixed = mesh.fixed().data();
     options.regions = mesh.regions().empty() ? nullptr : mesh.regions().data();
+    options.outside = mesh.outside().empty() ? nullptr : mesh.outside().data();
   };
   std::vector<double> sizes;
   if (!mesh.isTriangles())
@@ -228,6 +254,10 @@ tautline::ReconnectionResult vtkMeshImprover::Run(const tautline::ReconnectableM
     sizes = this->SetSize(block.input, options);
     options.sizes = sizes.data();
     options.markedFacets = mesh.facets();
+    if (options.adapt)
+    {
+      options.markedClasses = mesh.facetClasses();
+    }
     return tautline::improveConnectivity(mesh.mesh(), options);
   }
   if (this->Objective != ANGLES_AND_SHAPE)
@@ -251,7 +281,7 @@ std::vector<double> vtkMeshImprover::SetSize(
 {
   using tautline::ReconnectionSize;
   std::vector<double> sizes;
-  if (this->Size != SIZE_ARRAY)
+  if (!this->TakesSizeArray())
   {
     return sizes;
   }
@@ -283,14 +313,30 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
   tautline::ReconnectableMesh mesh(block.input, this->MergeCoincidentPoints, this->Threads);
   mesh.fixPoints(tautline::chosenArray(this, tautline::ImproverArrays::Fixed, block.input,
     "of fixed points", tautline::ArrayOf::Points));
-  if (block.selected)
+  const bool changes = this->Selected == CHANGES;
+  if (block.selected && changes)
+  {
+    mesh.keepOthers(block.selected->GetCellData()->GetArray(tautline::SelectedArray));
+  }
+  else if (block.selected)
   {
     mesh.fixPoints(block.selected->GetPointData()->GetArray(tautline::SelectedArray));
     mesh.fixCells(block.selected->GetCellData()->GetArray(tautline::SelectedArray));
   }
-  mesh.setRegions(tautline::chosenArray(
-    this, tautline::ImproverArrays::Region, block.input, "of regions", tautline::ArrayOf::Cells));
+  vtkDataArray* regions = tautline::chosenArray(
+    this, tautline::ImproverArrays::Region, block.input, "of regions", tautline::ArrayOf::Cells);
+  mesh.setRegions(regions);
+  if (!regions && this->Preset == ADAPT)
+  {
+    this->AddToSummary(mesh.setRegionsByTags());
+  }
+  mesh.keepOthers(tautline::chosenArray(this, tautline::ImproverArrays::Changing, block.input,
+    "of cells that change", tautline::ArrayOf::Cells));
   mesh.removeDegenerate();
+  if (this->Preset == ADAPT && mesh.isTriangles())
+  {
+    mesh.fixLineBorders();
+  }
 
   double targetAngle = 0.0;
   const bool triangles = mesh.isTriangles();
@@ -302,7 +348,8 @@ void vtkMeshImprover::Improve(const tautline::InputBlock& block, int blocks,
     tautline::remainingOf(result.obstacles, result.qualities, result.bounds, improved);
   this->Remaining += static_cast<vtkIdType>(left.size());
   this->Report(result, std::move(left),
-    { block.name, "", improved.note, mesh.leftOut(), mesh.notice(), triangles, targetAngle },
+    { block.name, "", improved.note, mesh.leftOut(result.adapted), mesh.notice(), triangles,
+      targetAngle },
     history, remaining);
 }
 
@@ -314,14 +361,17 @@ void vtkMeshImprover::Report(const tautline::ReconnectionResult& result,
   const auto boundary = static_cast<tautline::BoundaryMotion>(this->Boundary);
   const bool triangles = remarks.triangles;
   tautline::sortWorstFirst(left);
-  tautline::addHistory(history, result.history, remarks.block);
+  tautline::addHistory(history, result.history, remarks.block, result.adapted);
   tautline::addRemaining(remaining, left, triangles, remarks.block);
   this->AddToSummary((remarks.block.empty() ? "" : "In " + remarks.block + ": ") +
     tautline::describeResult(result, triangles));
-  this->TakeResult(result);
+  this->TakeResult(result, triangles);
   this->AddToSummary(remarks.rounds);
   this->AddToSummary(tautline::describeRemaining(left, triangles, boundary, remarks.targetAngle));
-  this->AddToSummary(tautline::describeForced(left, triangles, result.forcedInverseMeanRatio));
+  if (!result.adapted)
+  {
+    this->AddToSummary(tautline::describeForced(left, triangles, result.forcedInverseMeanRatio));
+  }
   for (const std::string& sentence : { remarks.precision, remarks.leftOut, remarks.notice })
   {
     this->AddToSummary(sentence);
@@ -330,7 +380,7 @@ void vtkMeshImprover::Report(const tautline::ReconnectionResult& result,
 }
 
 //------------------------------------------------------------------------------
-void vtkMeshImprover::TakeResult(const tautline::ReconnectionResult& result)
+void vtkMeshImprover::TakeResult(const tautline::ReconnectionResult& result, bool triangles)
 {
   const tautline::ReconnectionRecord &first = result.history.front(), &last = result.history.back();
   const bool none = this->ElementsBefore == 0;
@@ -341,7 +391,14 @@ void vtkMeshImprover::TakeResult(const tautline::ReconnectionResult& result)
   this->WorstBefore = std::max(this->WorstBefore, first.worstInverseMeanRatio);
   this->WorstAfter = std::max(this->WorstAfter, last.worstInverseMeanRatio);
   this->BoundaryDistance = std::max(this->BoundaryDistance, result.boundaryDistance);
-  if (this->Objective == METRIC)
+  if (result.adapted)
+  {
+    smaller(this->EdgesInRangeBefore, first.edgesInRange);
+    smaller(this->EdgesInRangeAfter, last.edgesInRange);
+    this->WorstInMetric =
+      std::max(this->WorstInMetric, tautline::inverseMeanRatioOf(last, triangles));
+  }
+  else if (this->Objective == METRIC)
   {
     const tautline::MetricInfo& info =
       tautline::metricInfo(static_cast<tautline::Metric>(this->Metric));
@@ -375,7 +432,8 @@ void vtkMeshImprover::ExchangeResult(tautline::ResultStream& stream)
   this->Superclass::ExchangeResult(stream);
   stream(this->Reason, this->ElementsBefore, this->ElementsAfter, this->SmallestAngleBefore,
     this->SmallestAngleAfter, this->WorstBefore, this->WorstAfter, this->Remaining,
-    this->BoundaryDistance, this->WorstMetricBefore, this->WorstMetricAfter);
+    this->BoundaryDistance, this->WorstMetricBefore, this->WorstMetricAfter,
+    this->EdgesInRangeBefore, this->EdgesInRangeAfter, this->WorstInMetric);
 }
 
 //------------------------------------------------------------------------------
@@ -402,6 +460,7 @@ void vtkMeshImprover::PrintSelf(ostream& os, vtkIndent indent)
   os << indent << "Size: " << this->Size << "\n";
   os << indent << "EdgeLength: " << this->EdgeLength << "\n";
   os << indent << "EdgeFactor: " << this->EdgeFactor << "\n";
+  os << indent << "Selected: " << this->Selected << "\n";
   os << indent << "ThenBestShape: " << this->ThenBestShape << "\n";
   os << indent << "CellTransfer: " << this->CellTransfer << "\n";
   os << indent << "MergeCoincidentPoints: " << this->MergeCoincidentPoints << "\n";

@@ -18,17 +18,20 @@
  * of each region stays.
  *
  * Other cells of volume (of area, where there are none of volume), ghost cells and inverted
- * elements are refused (run vtkMeshUntangler first); cells of lower dimension are left out with a
- * warning, and keep what they mark: lines edges between triangles, triangles facets between
- * tetrahedra (not with a boundary ON_SURFACE). A mesh reversed throughout is treated as its mirror
- * image; in one of mixed orientation, the cells in the opposite order are listed in that of the
- * others. vtkMeshOptimizer improves the
- * average element and keeps the connectivity.
+ * elements are an error (run vtkMeshUntangler first); cells of lower dimension are left out with a
+ * warning (but see ADAPT), and keep what they mark: lines edges between triangles, triangles facets
+ * between tetrahedra. A mesh reversed throughout is treated as its mirror image; in one of mixed
+ * orientation, the cells in the opposite order are listed in the order of the others.
+ * vtkMeshOptimizer improves the average element and keeps the connectivity.
  *
  * @par Input ports:
  * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay. The points also stay where
  * the point array at index 0 (SetInputArrayToProcess) is not 0. The cell array at index 1 has the
- * region of each cell: facets between regions are kept as the boundary is.
+ * region of each cell: facets between regions are kept as the boundary is. ADAPT keeps the facets
+ * that triangles beside tetrahedra are, and the edges that lines beside triangles are: they are
+ * divided as the mesh is, and the output has their parts, with their data. Where two facets meet
+ * that differ in an array of tags (whole numbers, at most half as many values as facets), or one
+ * ends, the edge stays.
  *
  * @par Output port 0 `Mesh`:
  * The new mesh. Points of the input keep their data; new ones interpolate theirs in the cell of the
@@ -123,16 +126,21 @@ public:
     REMOVE_SLIVERS = 1,
     SWAP_ONLY = 2,
     SWAP_AND_SMOOTH = 3,
-    AGGRESSIVE = 4
+    AGGRESSIVE = 4,
+    ADAPT = 5
   };
   ///@{
   /**
    * The operations and the target: REMOVE_SLIVERS works only around tetrahedra with dihedral angles
    * below 15 or above 165 degrees, by every operation; SWAP_ONLY moves no point; SWAP_AND_SMOOTH
    * moves points, but inserts and removes none; AGGRESSIVE uses every operation everywhere; CUSTOM
-   * those of the switches below. The default is REMOVE_SLIVERS.
+   * those of the switches below. ADAPT gives the edges the target lengths of SetSize(), which it
+   * needs: edges longer than sqrt(2) times the target are split, edges shorter than 1 / sqrt(2)
+   * times it contracted, points moved and edges swapped in turn; then the worst elements are
+   * improved in the metric. As many elements come or go as that takes: SmallestCount, LargestCount,
+   * TargetAngle, Objective and EdgeFactor have no effect. The default is REMOVE_SLIVERS.
    */
-  vtkTautlineSetRangeMacro(Preset, int, CUSTOM, AGGRESSIVE);
+  vtkTautlineSetRangeMacro(Preset, int, CUSTOM, ADAPT);
   vtkGetMacro(Preset, int);
   ///@}
 
@@ -285,10 +293,26 @@ public:
    * none shorter than it divided by EdgeFactor. ANY_LENGTH, the default: no target. EDGE_LENGTH:
    * EdgeLength. SIZE_ARRAY: the point array at index 2 (SetInputArrayToProcess), lengths (one
    * component) or metric tensors in which edges of the target length have length 1 (six components
-   * in the order of VTK, or nine). LENGTH_OF_INPUT: the mean length of the edges at each point.
+   * in the order of VTK, or nine); ADAPT takes that array with ANY_LENGTH, too, where it is chosen.
+   * LENGTH_OF_INPUT: the mean length of the edges at each point.
    */
   vtkTautlineSetRangeMacro(Size, int, ANY_LENGTH, LENGTH_OF_INPUT);
   vtkGetMacro(Size, int);
+  ///@}
+
+  enum SelectedRoles
+  {
+    STAYS = 0,
+    CHANGES = 1
+  };
+  ///@{
+  /**
+   * What the selection of input port 1 is: STAYS, the default, points and cells whose points stay;
+   * CHANGES, the cells that may change, all others being kept as they are. The cell array at index
+   * 3 (SetInputArrayToProcess) does the same by its values: cells with 0 are kept.
+   */
+  vtkTautlineSetRangeMacro(Selected, int, STAYS, CHANGES);
+  vtkGetMacro(Selected, int);
   ///@}
 
   ///@{
@@ -388,6 +412,16 @@ public:
    */
   double GetBoundaryDistance() const { return this->BoundaryDistance; }
 
+  ///@{
+  /**
+   * With ADAPT: the part of the edges, 0 to 1, whose lengths are from 1 / sqrt(2) to sqrt(2) times
+   * the target; and the largest inverse mean ratio in the metric, at least 1. Else 0.
+   */
+  double GetEdgesInRangeBefore() const { return this->EdgesInRangeBefore; }
+  double GetEdgesInRangeAfter() const { return this->EdgesInRangeAfter; }
+  double GetWorstInMetric() const { return this->WorstInMetric; }
+  ///@}
+
 protected:
   vtkMeshImprover();
   ~vtkMeshImprover() override;
@@ -414,6 +448,8 @@ private:
     RemainingPort = 2  // output
   };
 
+  bool IsArrayChosen(int index);
+  bool TakesSizeArray();
   void SetOptions(tautline::ReconnectionOptions& options) const;
   template <class Options>
   void PrepareOptions(Options& options, double block, double blocks);
@@ -423,7 +459,7 @@ private:
   void CheckSeams(vtkDataObject* input);
   void Improve(const tautline::InputBlock& block, int blocks, tautline::TableRows& history,
     tautline::TableRows& remaining);
-  void TakeResult(const tautline::ReconnectionResult& result);
+  void TakeResult(const tautline::ReconnectionResult& result, bool triangles);
   void Report(const tautline::ReconnectionResult& result,
     std::vector<tautline::RemainingElement> left, const tautline::ImproverRemarks& remarks,
     tautline::TableRows& history, tautline::TableRows& remaining);
@@ -455,6 +491,7 @@ private:
   double SurfaceTolerance = 5e-3;
   bool KeepVolume = false;
   int Size = ANY_LENGTH;
+  int Selected = STAYS;
   double EdgeLength = 1.0;
   double EdgeFactor = 2.0;
   bool ThenBestShape = false;
@@ -474,6 +511,9 @@ private:
   double BoundaryDistance = 0.0;
   double WorstMetricBefore = 0.0;
   double WorstMetricAfter = 0.0;
+  double EdgesInRangeBefore = 0.0;
+  double EdgesInRangeAfter = 0.0;
+  double WorstInMetric = 0.0;
 };
 
 #endif

@@ -34,8 +34,8 @@ class ImproveResult(Result):
         The new mesh with the data of the input, `OriginalCellId`, `min_angle` and `imr`.
     history : dict[str, Any]
         Per pass (0 is the input): smallest_angle, largest_angle, worst_imr, elements, below_target, edge_removals (of
-        triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; of composite data
-        also block.
+        triangles: flips), face_removals, boundary_swaps, contractions, insertions, moves, seconds; with "adapt" also
+        edges_in_range and worst_quality_in_metric; of composite data also block.
     remaining : dict[str, Any]
         The elements that are still below the target, the worst first: cell, smallest_angle, imr, x, y, z, quality (of
         the objective; of triangles the sine of the smallest angle), quality_bound (what facets or angles on the
@@ -54,6 +54,11 @@ class ImproveResult(Result):
         Worst value of the metric before and after; 0 without one.
     boundary_distance : float
         Largest distance between the boundary and that of the input; 0 unless it is "on surface".
+    edges_in_range_before, edges_in_range : float
+        With "adapt", the part of the edges, 0 to 1, that are 0.71 to 1.41 times as long as the target, before and
+        after; else 0.
+    worst_in_metric : float
+        With "adapt", the largest inverse mean ratio in the metric; else 0.
     reason : str
         The stopping criterion that ended the run.
     summary : str
@@ -76,6 +81,9 @@ class ImproveResult(Result):
     worst_metric_before: float
     worst_metric: float
     boundary_distance: float
+    edges_in_range_before: float
+    edges_in_range: float
+    worst_in_metric: float
     reason: str
     summary: str
 
@@ -86,8 +94,9 @@ def choose_preset(filter_: Any, preset: ImprovePreset = "remove slivers", *, cus
 
     preset: "remove slivers" (changes only neighbourhoods of elements with dihedral angles below 15 or above 165
         degrees, of triangles with angles below 15), "swap only" (no point moves), "swap and smooth" (no point is
-        inserted or removed), "aggressive" (every operation everywhere) or "custom" (the operations given: swap, smooth,
-        contract, insert, compound; all by default).
+        inserted or removed), "aggressive" (every operation everywhere), "adapt" (edges get the lengths of edge_length,
+        with as many elements as that takes, and the worst elements are improved in this metric) or "custom" (the
+        operations given: swap, smooth, contract, insert, compound; all by default).
     """
     preset = picked("preset", preset, IMPROVE_PRESETS)
     operations = [name for name, value in custom.items() if value is not None]
@@ -155,6 +164,9 @@ def improve_result(filter_: Any, output: vtkDataObject) -> ImproveResult:
         worst_metric_before=filter_.GetWorstMetricBefore(),
         worst_metric=filter_.GetWorstMetricAfter(),
         boundary_distance=filter_.GetBoundaryDistance(),
+        edges_in_range_before=filter_.GetEdgesInRangeBefore(),
+        edges_in_range=filter_.GetEdgesInRangeAfter(),
+        worst_in_metric=filter_.GetWorstInMetric(),
         reason=filter_.GetReason(),
         summary=filter_.GetSummary(),
     )
@@ -163,7 +175,8 @@ def improve_result(filter_: Any, output: vtkDataObject) -> ImproveResult:
 def _named(table: Any) -> dict[str, Any]:
     """The columns of a table by names of Python; ids and counts are integers."""
     renamed = {"Time (s)": "seconds"}
-    real = ("seconds", "smallest_angle", "largest_angle", "worst_imr", "imr", "x", "y", "z", "quality", "quality_bound")
+    real = ("seconds", "smallest_angle", "largest_angle", "worst_imr", "imr", "x", "y", "z", "quality", "quality_bound",
+            "edges_in_range", "worst_quality_in_metric")  # fmt: skip
     found = columns(table)  # once: texts of many rows take a while
     names = {name: name.removeprefix("N ").lower().replace(" ", "_") for name in found} | renamed
     result = {names[name]: column for name, column in found.items()}
