@@ -19,6 +19,7 @@ constexpr MenuName Names[] = {
   { "vtkDomainSource", "Mesh Domain" },
   { "vtkElementQuality", "Element Quality" },
   { "vtkEllipticSolver", "Solve PDE" },
+  { "vtkFieldTransfer", "Transfer" },
   { "vtkFluentMeshReader", "Fluent Mesh Reader" },
   { "vtkFoamMeshReader", "OpenFOAM Mesh Reader" },
   { "vtkGmshReader", "Gmsh Reader" },

@@ -5,6 +5,7 @@
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "tautline/Shapes/ShapeRetrieval.h"
+#include "vtkFieldTransfer.h"
 #include "vtkHorizonNeighbors.h"
 #include "vtkInteractionLayer.h"
 #include "vtkMeshComparison.h"
@@ -170,6 +171,14 @@ void testMeshes()
   testFilter<vtkMeshPerturbation>("Perturb Mesh", square(), false, one);
   testFilter<vtkMeshImprover>("Improve Mesh", cube(), false, one);
   testFilter<vtkMeshMetric>("Metric Tensor", cube(), false, one);
+  testFilter<vtkFieldTransfer>("Transfer", cube(), false,
+    [](vtkFieldTransfer* filter, vtkDataObject* data)
+    {
+      const auto source = part(cube(), rank(), ranks());
+      source->GetPointData()->AddArray(filledArray<vtkDoubleArray>(
+        "x", source->GetNumberOfPoints(), [&](vtkIdType i) { return source->GetPoint(i)[0]; }));
+      TAUTLINE_SET(filter, SetInputDataObject(0, data), SetInputDataObject(1, source));
+    });
   testFilter<vtkInteractionLayer>("Interaction Layer", square(), false, one);
   testFilter<vtkHorizonNeighbors>("Horizon Neighbors", square(), true,
     [](vtkHorizonNeighbors* filter, vtkDataObject* data)

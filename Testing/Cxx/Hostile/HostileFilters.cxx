@@ -5,6 +5,7 @@
 #include "vtkConditionEstimator.h"
 #include "vtkElementQuality.h"
 #include "vtkEllipticSolver.h"
+#include "vtkFieldTransfer.h"
 #include "vtkFoamMeshReader.h"
 #include "vtkFoamPointsWriter.h"
 #include "vtkGmshWriter.h"
@@ -103,6 +104,22 @@ Data tetrahedra()
   const auto grid = toGrid(blockMesh(CellType::Tetrahedron, 3, 3, 3));
   addArrays(grid);
   return grid;
+}
+
+/** The same with other names of arrays. */
+Data renamed(const Data& data)
+{
+  auto* mesh = vtkDataSet::SafeDownCast(data);
+  for (vtkDataSetAttributes* arrays : { static_cast<vtkDataSetAttributes*>(mesh->GetPointData()),
+         static_cast<vtkDataSetAttributes*>(mesh->GetCellData()) })
+  {
+    for (int i = 0; i < arrays->GetNumberOfArrays(); ++i)
+    {
+      vtkAbstractArray* array = arrays->GetAbstractArray(i);
+      array->SetName((std::string("other ") + array->GetName()).c_str());
+    }
+  }
+  return data;
 }
 
 #ifdef TAUTLINE_MESHING
@@ -266,6 +283,17 @@ void addFilters(std::vector<HostileFilter>& list)
       SetInputArrayToProcess(4, 0, 0, points, "T")));
   add("distance", tetrahedra, TIMED(vtkMeshMetric, SetSource(Tensors::DISTANCE)));
   add("curvature", tetrahedra, TIMED(vtkMeshMetric, SetFeatureAngle(180)));
+  using Transfer = vtkFieldTransfer;
+  add("", triangles, TIMED(vtkFieldTransfer, SetInputDataObject(1, renamed(triangles()))));
+  add("solid", tetrahedra,
+    TIMED(vtkFieldTransfer, SetCellOrder(Transfer::LINEAR),
+      SetInputDataObject(1, renamed(tetrahedra()))));
+  add("source", triangles,
+    TIMED(vtkFieldTransfer, SetCellOrder(Transfer::LINEAR), SetInputDataObject(0, triangles())), 1,
+    false);
+  add("interpolate", triangles,
+    TIMED(vtkFieldTransfer, SetMethod(Transfer::INTERPOLATE), SetInputDataObject(0, triangles())),
+    1, false);
   module = "Reconnection";
   add("", tetrahedra, MADE(vtkMeshImprover, SetTimeLimit(Seconds)), 0, false, 1);
   add("flat", tetrahedra,
