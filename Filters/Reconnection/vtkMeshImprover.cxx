@@ -196,12 +196,29 @@ bool vtkMeshImprover::IsArrayChosen(int index)
 }
 
 //------------------------------------------------------------------------------
-/// Whether target lengths are in an array: an adaptation takes one that is chosen.
-bool vtkMeshImprover::TakesSizeArray()
+/// The array of target lengths, or null. An adaptation without other lengths takes one that is
+/// chosen, or else the only array of metric tensors.
+vtkDataArray* vtkMeshImprover::FindSizeArray(vtkDataSet* input)
 {
-  return this->Size == SIZE_ARRAY ||
-    (this->Preset == ADAPT && this->Size == ANY_LENGTH &&
-      this->IsArrayChosen(tautline::ImproverArrays::Size));
+  constexpr int componentsOfTensor = 6;
+  const bool adapts = this->Preset == ADAPT && this->Size == ANY_LENGTH;
+  if (this->Size == SIZE_ARRAY || (adapts && this->IsArrayChosen(tautline::ImproverArrays::Size)))
+  {
+    return tautline::chosenArray(
+      this, tautline::ImproverArrays::Size, input, "of target lengths", tautline::ArrayOf::Points);
+  }
+  vtkDataArray* only = nullptr;
+  int tensors = 0;
+  for (int a = 0; adapts && a < input->GetPointData()->GetNumberOfArrays(); ++a)
+  {
+    vtkDataArray* array = input->GetPointData()->GetArray(a);
+    if (array && array->GetNumberOfComponents() == componentsOfTensor)
+    {
+      only = array;
+      ++tensors;
+    }
+  }
+  return tensors == 1 ? only : nullptr;
 }
 
 //------------------------------------------------------------------------------
@@ -211,21 +228,17 @@ void vtkMeshImprover::PrepareOptions(Options& options, double block, double bloc
 {
   this->SetOptions(options);
   tautline::applyPreset(static_cast<tautline::ReconnectionPreset>(this->Preset), options);
-  if (options.adapt && this->Size == ANY_LENGTH && !this->TakesSizeArray())
-  {
-    throw tautline::Error(
-      "the preset Adapt needs target lengths: set Edge Lengths to a length or to "
-      "an array of lengths or metric tensors, as Metric Tensor makes it");
-  }
   if (this->TargetAngle > 0)
   {
     options.targetAngle = this->TargetAngle;
   }
   options.observer = [=](const tautline::ReconnectionRecord& record, double progress)
   {
+    const bool adapts = this->Preset == ADAPT;
     this->ShowIteration(FilterName, record.pass,
       { { "below target", static_cast<double>(record.belowTarget) },
-        { "worst", record.worstInverseMeanRatio } });
+        { adapts ? "edges in range" : "worst",
+          adapts ? record.edgesInRange : record.worstInverseMeanRatio } });
     return this->Proceed((block + progress) / blocks);
   };
 }
@@ -281,12 +294,17 @@ std::vector<double> vtkMeshImprover::SetSize(
 {
   using tautline::ReconnectionSize;
   std::vector<double> sizes;
-  if (!this->TakesSizeArray())
+  vtkDataArray* array = this->FindSizeArray(input);
+  if (!array && options.adapt && this->Size == ANY_LENGTH)
+  {
+    throw tautline::Error(
+      "the preset Adapt needs target lengths: set Edge Lengths to a length or to "
+      "an array of lengths or metric tensors, as Metric Tensor makes it");
+  }
+  if (!array && this->Size != SIZE_ARRAY)
   {
     return sizes;
   }
-  vtkDataArray* array = tautline::chosenArray(
-    this, tautline::ImproverArrays::Size, input, "of target lengths", tautline::ArrayOf::Points);
   const int components = array ? array->GetNumberOfComponents() : 0;
   if (components != 1 && components != 6 && components != 9)
   {

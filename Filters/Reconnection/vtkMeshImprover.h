@@ -98,6 +98,7 @@
 #include <string> // for Reason
 #include <vector> // for SetSize
 
+class vtkDataArray;
 class vtkDataSet;
 
 namespace tautline
@@ -293,8 +294,8 @@ public:
    * none shorter than it divided by EdgeFactor. ANY_LENGTH, the default: no target. EDGE_LENGTH:
    * EdgeLength. SIZE_ARRAY: the point array at index 2 (SetInputArrayToProcess), lengths (one
    * component) or metric tensors in which edges of the target length have length 1 (six components
-   * in the order of VTK, or nine); ADAPT takes that array with ANY_LENGTH, too, where it is chosen.
-   * LENGTH_OF_INPUT: the mean length of the edges at each point.
+   * in the order of VTK, or nine); with ANY_LENGTH, ADAPT takes that array, too, or the only one of
+   * six components if none is chosen. LENGTH_OF_INPUT: the mean length of the edges at each point.
    */
   vtkTautlineSetRangeMacro(Size, int, ANY_LENGTH, LENGTH_OF_INPUT);
   vtkGetMacro(Size, int);
@@ -449,7 +450,7 @@ private:
   };
 
   bool IsArrayChosen(int index);
-  bool TakesSizeArray();
+  vtkDataArray* FindSizeArray(vtkDataSet* input);
   void SetOptions(tautline::ReconnectionOptions& options) const;
   template <class Options>
   void PrepareOptions(Options& options, double block, double blocks);
