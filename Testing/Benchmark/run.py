@@ -10,7 +10,8 @@ and .csv of stretched meshes (see stiff.py), peers.json and .csv of meshes that 
 peers.py), hexes.json and .csv of meshes of hexahedra with a boundary that slides (see hexes.py), surfaces.json and
 .csv of surfaces in space next to VTK's smoother (see surfaces.py), user-metric.json
 and .csv of metrics of one's own, and curved.json and .csv of curved elements (see
-curved.py) to the output directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh
+curved.py), adaptation.json and .csv of adaptation to metrics, next to bamg and mmg3d where these are installed (see
+adaptation.py), to the output directory, by default DIR/benchmark. Prints how the preset Aggressive of Improve Mesh
 compares with the program gmsh, where that is installed (see gmsh_comparison.py). With --only calculix, repairs decks
 that CalculiX refuses, and gives them to CalculiX again (see calculix_decks.py).
 """
@@ -22,6 +23,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import adaptation
 import curved
 import deformation
 import hexes
@@ -262,11 +264,15 @@ def run_reconnection(build: Path, output: Path, repeats: int, quick: bool) -> No
     run_table(output, "reconnection", *reconnection.run(build / "bin" / "BenchmarkReconnection", unit, quick))
 
 
+def run_adaptation(build: Path, output: Path, quick: bool) -> None:
+    run_table(output, "adaptation", *adaptation.run(build / "bin" / "BenchmarkAdaptation", quick))
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--build", type=Path, required=True, help="the build directory")
-    parts = ("quality", "optimization", "deformation", "reconnection", "reconnection-aims", "stiff", "peers",
-             "hexes", "surfaces", "user-metric", "curved", "gmsh", "calculix")
+    parts = ("quality", "optimization", "deformation", "adaptation", "reconnection", "reconnection-aims", "stiff",
+             "peers", "hexes", "surfaces", "user-metric", "curved", "gmsh", "calculix")
     parser.add_argument("--only", choices=parts, help="one part; all but reconnection-aims and calculix otherwise")
     parser.add_argument("--size", type=int, default=55, help="quality: cubes along an edge; 6 tetrahedra each")
     parser.add_argument("--repeats", type=int, help="turns of which the best counts; 9, of the optimizer and warping 3")
@@ -286,6 +292,8 @@ def main() -> int:
         run_quality(options.build, output, options.size, options.repeats or 9)
     if options.only in (None, "deformation"):
         run_deformation(options.build, output, options.repeats or 3, options.quick)
+    if options.only in (None, "adaptation"):
+        run_adaptation(options.build, output, options.quick)
     if options.only in (None, "reconnection"):
         run_reconnection(options.build, output, options.repeats or 3, options.quick)
     if options.only == "reconnection-aims":  # minutes, and most of the meshes are not of the repository
