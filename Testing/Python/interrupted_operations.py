@@ -90,6 +90,9 @@ OPERATIONS = {
     "optimize l-bfgs": (lambda **k: optimize("l-bfgs", **k), BEST),
     "untangle": (lambda **k: tl.untangle(moved(90, 1.5), "thorough", **k), EITHER),
     "improve": (lambda **k: tl.improve(moved(50, 0.1), "aggressive", target_angle=50, **k), BEST),
+    "adapt": (
+        lambda **k: tl.adapt(cube(20), lambda mesh: np.tanh(20 * mesh.points[:, 0]), 10000, elements=50000, **k), BEST,
+    ),
     "warp hybrid": (lambda **k: tl.warp(cube(40), bending(40), **k), BEST),
     "warp factorization": (lambda **k: tl.warp(cube(40), bending(40), "biharmonic", solver="direct", **k), BEST),
     "warp radial basis": (lambda **k: tl.warp(cube(40), bending(40), "radial basis", fit_tolerance=1e-9, **k), BEST),

@@ -128,6 +128,8 @@ def motions(name, cut, **given):
     compared = update(CompareMeshes(Input=source, Other=moved, Metrics=["Mean ratio"]))
     arrays = ["Validity_after", "mean_ratio_difference", "Change"]
     results[f"compare {name}"] = [values(compared, arrays, "cell"), table(compared, 1), compared.Summary]
+    carried = update(Transfer(Input=source, Source=moved, PointArrays=["Displacement"], CellArrays=["along"]))
+    results[f"transfer {name}"] = [values(carried, ["Displacement"]), table(carried, 1), carried.Summary]
     worse = PerturbMesh(source, Percentage=100, Fraction=0.9)
     improved = update(ImproveMesh(worse, Preset="Aggressive"))
     cells = np.concatenate([arrays["smallest"] for arrays in parts(quality_of(improved), sys.argv[1])])

@@ -13,7 +13,8 @@ from vtkmodules.vtkCommonDataModel import vtkMultiBlockDataSet, vtkTable, vtkUns
 
 FUNCTIONS = {name: value for name, value in vars(tl).items() if isfunction(value) and not name.startswith("_")}
 #: Arguments without a default, beside the mesh.
-NEEDED = {"domain": ("square",), "write": (OUT / "arguments.vtu",), "compare": (square(2),), "warp": ()}
+NEEDED = {"domain": ("square",), "write": (OUT / "arguments.vtu",), "compare": (square(2),),
+          "transfer": (square(2),), "warp": (), "adapt": ({}, 1)}
 #: What these functions take first is not a mesh.
 NO_MESH = ("domain", "domains", "metrics", "metric_field", "from_arrays", "read", "read_silhouettes", "retrieval",
            "silhouette", "match", "solver_combinations", "load_metrics", "register_metric",
@@ -124,6 +125,7 @@ WRONG = (None, object(), "text", 1.5, -3, [], {}, b"x", float("nan"), [1, "a"], 
 FIRST = {"domain": ("square",), "silhouette": (DATA / "fish.png",), "match": (DATA / "fish.png",) * 2,
          "retrieval": ([DATA / "fish.png", DATA / "fish-bent.png"],), "read": (DATA / "plate.vtu",),
          "times": (DATA / "plate.vtu",), "write": (square(2), "wrong.vtu"), "compare": (square(2),) * 2,
+         "transfer": (square(2),) * 2, "adapt": (square(2), {}, 1),
          "triangle_mesh": (DATA / "plate.poly",), "tet_mesh": (DATA / "cube.smesh",), "criteria": ("fem",),
          "from_arrays": ([[0, 0], [1, 0], [0, 1]], [[0, 1, 2]]), "load_metrics": ("absent.py",),
          "register_metric": ("wrong_value", lambda corners, kind: corners[:, 0, 0]), "run_state": ("absent.pvsm",),

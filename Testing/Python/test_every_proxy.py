@@ -23,10 +23,10 @@ DATA = Path(os.environ["TAUTLINE_DATA_DIR"])
 #: The empty data, where Input does not take any mesh; and required inputs besides it.
 EMPTY = {"SilhouetteToMesh": "vtkImageData", "MatchShape": "vtkImageData", "ShapeRetrieval": "vtkImageData",
          "TriangleMesher": "vtkPolyData", "TetGenMesher": "vtkPolyData"}  # fmt: skip
-SECOND = {"MatchShape": "Target", "MeshComparison": "Other"}
+SECOND = {"MatchShape": "Target", "MeshComparison": "Other", "FieldTransfer": "Source"}
 #: They find shapes in images, generate meshes, or compute on all blocks as one mesh: their summaries have no blocks.
 WITHOUT_BLOCKS = {"SilhouetteToMesh", "MatchShape", "ShapeRetrieval", "TriangleMesher", "TetGenMesher",
-                  "InteractionLayer", "HorizonNeighbors", "PeridynamicCondition"}  # fmt: skip
+                  "InteractionLayer", "HorizonNeighbors", "PeridynamicCondition", "FieldTransfer"}  # fmt: skip
 #: The sums over both blocks of 8140 elements.
 SUMS = {"ElementQuality": "16280 valid elements", "MeshComparison": "16280 equal", "MeshPerturbation": "of 16280"}
 

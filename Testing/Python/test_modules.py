@@ -24,7 +24,7 @@ FLOORS = (
     ("_errors",),
     ("_arrays", "_files", "_formats", "_tables"),
     ("_binary_coordinates", "_determinants", "_grid_checks", "_views"),
-    ("_packing",),
+    ("_error_estimate", "_packing"),
     ("_arguments", "_foam_case", "_groups", "_legacy", "_pictures", "_reading", "_surfaces", "_unv", "_vtk_readers",
      "_vtk_writers"),
     ("_array_templates", "_meshio", "_nastran", "_su2", "_template"),
@@ -35,13 +35,15 @@ FLOORS = (
     PARTS,
     ("_quality",),
 )
+#: What calls functions of several capabilities.
+ABOVE = ("_adapt",)
 TYPE_CHECKING = re.compile(r"^if TYPE_CHECKING:\n(    .*\n)+", re.MULTILINE)
 IMPORT = re.compile(r"^\s*from \.(\w*) import (.*)$", re.MULTILINE)
 
 
 def check_floors() -> None:
     floor = {file: number for number, files in enumerate(FLOORS) for file in files}
-    floor = {file: len(FLOORS) for file in _vtk.CAPABILITIES} | floor
+    floor = {file: len(FLOORS) for file in _vtk.CAPABILITIES} | floor | {file: len(FLOORS) + 1 for file in ABOVE}
     files = [path for path in PACKAGE.glob("_*.py") if not path.stem.startswith("__")]
     absent = {file for file in _vtk.CAPABILITIES if not _vtk.available(file)}  # which are generated with their modules
     assert {path.stem for path in files} == set(floor) - absent, "list new files in FLOORS or in CAPABILITIES"

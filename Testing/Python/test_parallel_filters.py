@@ -76,6 +76,7 @@ for case in CASES:
     grades = np.asarray(one[f"criteria {case}"])
     assert len(grades) == 162 and len(set(grades[:, 0])) > 1 and np.ptp(grades[:, 1]) > 0.1, grades
     assert len(one[f"compare {case}"][0]) == 162 and np.ptp(np.asarray(one[f"compare {case}"][0])[:, 2]) > 0
+    assert len(one[f"transfer {case}"][0]) == 64 and np.ptp(np.asarray(one[f"transfer {case}"][0])) > 0
     assert len(one[f"improve {case}"][0]) != 162 or one[f"improve {case}"][2] > 1
     assert one[f"condition {case}"][0] > 1 and len(one[f"rows {case}"][0]) == 81
     assert len(one[f"horizon {case}"][0]) > 20

@@ -187,6 +187,7 @@ def cases():
     yield "filters", "MeshUntangler", {"Input": tangled}, {}
     yield "filters", "MeshCurving", {"Input": cube}, {"Order": 3}
     yield "filters", "MeshMetric", {"Input": cube}, {"Source": "Distance"}
+    yield "filters", "FieldTransfer", {"Input": cube, "Source": cube}, {}
     yield "filters", "MeshImprover", {"Input": perturbed}, {"TargetAngle": 40}
     yield "filters", "MeshWarp", {"Input": read("plate.vtu")}, {"Transform": rotation()}
     yield "filters", "EllipticSolver", {"Input": cube}, {}

@@ -23,6 +23,7 @@ MESH, FISH = OUT / "properties.vtu", DATA / "fish.png"
 #: What comes first where it is not a mesh.
 INPUTS = {
     "compare": [MESH, MESH],
+    "transfer": [MESH, MESH],
     "silhouette": [FISH],
     "match": [FISH, DATA / "fish-bent.png"],
     "retrieval": [OUT / "properties.csv"],
@@ -84,6 +85,10 @@ TOGETHER = {
         ({"field": "P"}, {"Source": 1, "Field": "P"}),
         ({"distance": "P"}, {"Source": 3, "DistanceArray": "P"}),
         ({"source": "distance"}, {"Source": 3}),
+    ],
+    "transfer": [
+        ({"point_arrays": ["P", "V"]}, {"PointArrays": ["P", "V"]}),
+        ({"cell_arrays": ["C"]}, {"CellArrays": ["C"]}),
     ],
     "improve": [
         ({"metric": "Radius ratio"}, {"Objective": 3, "Metric": 2}),

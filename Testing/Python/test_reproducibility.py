@@ -347,6 +347,9 @@ OPERATIONS = {
     "perturb": lambda t: tl.perturb(tl.domain("wrench", CELLS), 0.8, 70, seed=11, threads=t),
     "perturb, tangled": lambda t: tl.perturb(barrier(), tangle=0.01, fixed=half(barrier()), threads=t),
     "compare": lambda t: tl.compare(tl.domain("barrier3d", CELLS), barrier(), ["imr", "rr", "size"], threads=t),
+    "transfer": lambda t: tl.transfer(
+        tl.domain("barrier3d", CELLS // 2), tl.quality(barrier(), ["imr"]), cell_order="linear", threads=t),
+    "adapt": lambda t: tl.adapt(barrier(), lambda mesh: np.tanh(9 * mesh.points[:, 0]), 2, threads=t),
     "metric field": lambda t: tl.metric_field(["imr", "si", "mu_shape"], threads=t),
     "metric field of a tetrahedron": lambda t: tl.metric_field(
         ["rr", "ss"], "tetrahedron", bounds=(-1, 2, -1, 2, 0.1, 2), dimensions=(40, 40, 30), threads=t),

@@ -28,8 +28,11 @@ def some_results():
     yield tl.metric_field(["imr", "si"], dimensions=(7, 4))
     yield tl.perturb(PLATE, seed=2)
     yield tl.compare(PLATE, tl.perturb(PLATE, seed=2))
+    yield tl.transfer(PLATE, tl.perturb(PLATE, seed=2))
     yield tl.quality(blocks)
     yield tl.optimize(blocks)
+    if hasattr(tl, "adapt"):
+        yield tl.adapt(tl.domain("rectangle", cells=100), lambda mesh: mesh.points[:, 0] ** 2, 1, elements=200)
     if hasattr(tl, "solve"):
         yield tl.solve(PLATE)
         yield tl.solver_study(square(5), combinations=[1, 3])

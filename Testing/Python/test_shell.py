@@ -98,6 +98,8 @@ def test_json_and_quiet():
         "domain": ["rectangle", "--cells", "100", "-o", "d.vtu"], "convert": ["plate.vtu", "c.vtk"],
         "triangle-mesh": ["plate.poly", "-o", "t.vtu"], "tet-mesh": ["cube.smesh", "-o", "te.vtu"],
         "horizon-neighbors": ["square.vtu"], "metric": ["plate.vtu", "-o", "m.vtu"],
+        "transfer": ["plate.vtu", "plate.vtu", "-o", "f.vtu"],
+        "adapt": ["triangles.vtu", "--iterations", "1", "-o", "a.vtu"],
         "run": ["steps.toml"], "formats": [], "info": ["plate.vtu"],
     }  # fmt: skip
     for command in COMMANDS:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parts for the examples: surfaces and meshes of a wing, a blade, a vessel and a terrain, from formulas."""
+"""Parts for the examples, from formulas: a wing, a blade, a vessel, a terrain, a corner and a channel."""
 
 import numpy as np
 import tautline as tl
@@ -94,3 +94,26 @@ def terrain(cells: int = 40) -> tuple[np.ndarray, np.ndarray]:
     a, b, c, d = number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]
     triangles = np.vstack([np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))])
     return np.column_stack([x, y, z]), triangles
+
+
+def corner(cells: int = 10):
+    """Right triangles in a square of side 2 without its lower right quarter; the inner corner is at the origin."""
+    at = np.linspace(-1, 1, 2 * (cells // 2) + 1)
+    columns = len(at)
+    first = (np.arange(columns - 1)[:, None] * columns + np.arange(columns - 1)).ravel()
+    triangles = np.stack([first, first + 1, first + columns + 1, first, first + columns + 1, first + columns], axis=1)
+    points = np.column_stack([each.ravel() for each in np.meshgrid(at, at)])
+    triangles = triangles.reshape(-1, 3)
+    middle = points[triangles].mean(axis=1)
+    triangles = triangles[(middle[:, 0] < 0) | (middle[:, 1] > 0)]
+    used = np.unique(triangles)
+    return tl.from_arrays(points[used], {"triangle": np.searchsorted(used, triangles)})
+
+
+def channel(cells: int = 8):
+    """Tetrahedra in a box of 2 x 1 x 1, with the point array `wall`, which is 1 on the lower side."""
+    points, hexahedra = block((2 * cells, cells, cells), lambda grid: grid * [2, 1, 1])
+    paths = [(0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6)]
+    made = tl.from_arrays(points, {"tetrahedron": np.concatenate([hexahedra[:, path] for path in paths])})
+    made.point_data["wall"] = (points[:, 2] == 0).astype(int)
+    return made

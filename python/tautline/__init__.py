@@ -70,13 +70,16 @@ if _vtk.available("_curving"):
     from ._curving_parts import CurveResult
     __all__ += ["CurveResult", "curve"]
 if _vtk.available("_adaptation"):
-    from ._adaptation import metric
-    from ._adaptation_parts import MetricResult
-    __all__ += ["MetricResult", "metric"]
+    from ._adaptation import metric, transfer
+    from ._adaptation_parts import MetricResult, TransferResult
+    __all__ += ["MetricResult", "TransferResult", "metric", "transfer"]
 if _vtk.available("_reconnection"):
     from ._reconnection import improve
     from ._reconnection_parts import ImproveResult
     __all__ += ["ImproveResult", "improve"]
+if _vtk.available("_adaptation") and _vtk.available("_adapt"):
+    from ._adapt import AdaptResult, adapt
+    __all__ += ["AdaptResult", "adapt"]
 if _vtk.available("_perturbation"):
     from ._perturbation import perturb
     from ._perturbation_parts import PerturbResult

@@ -34,7 +34,7 @@ def _program() -> str:
 _GROUPS = {
     "main commands": ("info", "quality", "untangle", "optimize", "convert"),
     "measure": ("report", "compare", "metrics", "criteria", "metric-field", "metric"),
-    "change": ("improve", "warp", "perturb"),
+    "change": ("improve", "adapt", "warp", "perturb"),
     "make and read meshes": ("domain", "triangle-mesh", "tet-mesh", "formats"),
     "equations": ("solve", "condition", "solver-study", "peridynamics", "interaction-layer", "horizon-neighbors"),
     "shapes": ("silhouette", "match", "retrieval"),

@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The result of metric(), and its source, which follows from the arrays given."""
+"""The results of metric() and transfer(), and arguments that are not one property each."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Sequence
 
 from vtkmodules.vtkCommonDataModel import vtkDataObject, vtkPolyData
 
 from . import _commands
-from ._arguments import picked, sets
-from ._arrays import POINTS, Array, InputArrays, Values, point_array
+from ._arguments import picked, sequence, sets, text
+from ._arrays import POINTS, Array, InputArrays, Values, columns, point_array, snake, table_rows
 from ._choices import METRIC_SOURCES, MetricSource
 from ._errors import Error
+from ._io import Mesh, as_mesh
 from ._results import Result
 
 _SIZES, _FIELD, _DISTANCE = 0, 1, 2  # input arrays of vtkMeshMetric
@@ -107,6 +108,87 @@ def metric_result(filter_: Any, output: vtkDataObject) -> MetricResult:
     )
 
 
+@dataclass(frozen=True, repr=False, eq=False)
+class TransferResult(Result):
+    """The result of transfer(). On several MPI ranks each has the arrays of its piece, the first one the totals.
+
+    Attributes
+    ----------
+    mesh : vtkDataObject
+        The target with the arrays of the source; shares the rest with the input.
+    totals : list[dict[str, Any]]
+        Per component that is averaged: array, data ("point" or "cell"), component, total_before, total_after (integrals
+        over the elements), minimum_before, maximum_before, minimum_after, maximum_after, beyond_bounds (how far a value
+        is outside of the values that it comes from).
+    total_error : float
+        The largest difference of a total, relative to the integral of the absolute value.
+    largest_excess : float
+        How far a value is beyond its bounds, relative to the largest absolute value of the field.
+    source_covered, target_covered : float
+        The part of each mesh that the other one covers, 0 to 1; 0 with "interpolate".
+    summary : str
+        The result in words.
+    """
+
+    mesh: vtkDataObject
+    totals: list[dict[str, Any]]
+    total_error: float
+    largest_excess: float
+    source_covered: float
+    target_covered: float
+    summary: str
+
+    def table(self) -> list[dict[str, Any]]:
+        """A row per component: what --csv writes."""
+        return self.totals
+
+
+def transfer_input(filter_: Any, target: Mesh, source: Mesh) -> None:
+    """Set the meshes.
+
+    target: the mesh that gets the arrays. A vtkDataSet, a composite data set, a file name or (points, cells). It is not
+        changed.
+    source: the mesh with the arrays, given in the same way. Both are planar, surfaces or volumes; all blocks of each
+        are one mesh.
+    """
+    filter_.SetInputDataObject(0, as_mesh(target))
+    filter_.SetInputDataObject(1, as_mesh(source))
+
+
+@sets("transfer", "PointArrays", "CellArrays")
+def choose_arrays(
+    filter_: Any, point_arrays: Sequence[str] | None = None, cell_arrays: Sequence[str] | None = None
+) -> None:
+    """Choose the arrays.
+
+    point_arrays, cell_arrays: the names of the arrays of the source to transfer. None for both: all arrays.
+    """
+    if point_arrays is None and cell_arrays is None:
+        return
+    names = [sequence("point_arrays", point_arrays or ()), sequence("cell_arrays", cell_arrays or ())]
+    if not any(names):
+        raise Error("point_arrays and cell_arrays have no name: give one, or leave both out for all arrays")
+    for add, chosen in zip((filter_.AddPointArray, filter_.AddCellArray), names):
+        for name in chosen:
+            add(text("the name of an array", name))
+
+
+def transfer_result(filter_: Any, output: vtkDataObject) -> TransferResult:
+    """The result of a filter that has run."""
+    found = {snake(name): column for name, column in columns(filter_.GetTotals()).items()}
+    found = {name: column if isinstance(column, list) else column.tolist() for name, column in found.items()}
+    found |= {"component": [int(number) for number in found.get("component", ())]}
+    return TransferResult(
+        mesh=output,
+        totals=table_rows(found),
+        total_error=filter_.GetTotalError(),
+        largest_excess=filter_.GetLargestExcess(),
+        source_covered=filter_.GetSourceCovered(),
+        target_covered=filter_.GetTargetCovered(),
+        summary=filter_.GetSummary(),
+    )
+
+
 # --- the shell ----------------------------------------------------------------------------------------------
 
 
@@ -127,3 +209,22 @@ def metric_options(arguments: argparse.Namespace) -> dict[str, Any]:
 def finish_metric(arguments: argparse.Namespace, result: MetricResult) -> None:
     """Print the result of the command."""
     _commands.finish(arguments, result, result.summary)
+
+
+def add_transfer_options(parser: argparse.ArgumentParser) -> None:
+    """Add the meshes, and the options of the arrays."""
+    parser.add_argument("target", metavar="TARGET")
+    parser.add_argument("source", metavar="SOURCE")
+    for name in ("point", "cell"):
+        parser.add_argument(f"--{name}-arrays", type=_commands.names, metavar="NAME,...",
+                            help=f"{name} arrays to transfer (default: all arrays)")  # fmt: skip
+
+
+def transfer_options(arguments: argparse.Namespace) -> dict[str, Any]:
+    """The values of these options."""
+    return _commands.given(arguments, ("point_arrays", "cell_arrays"))
+
+
+def finish_transfer(arguments: argparse.Namespace, result: TransferResult) -> None:
+    """Print the result of the command."""
+    _commands.finish(arguments, result, result.summary, result.totals)

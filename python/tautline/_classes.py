@@ -10,6 +10,7 @@ from ._vtk import vtkDomainSource as vtkDomainSource
 from ._vtk import vtkElementQuality as vtkElementQuality
 from ._vtk import vtkEllipticAlgorithm as vtkEllipticAlgorithm
 from ._vtk import vtkEllipticSolver as vtkEllipticSolver
+from ._vtk import vtkFieldTransfer as vtkFieldTransfer
 from ._vtk import vtkFluentMeshReader as vtkFluentMeshReader
 from ._vtk import vtkFoamMeshReader as vtkFoamMeshReader
 from ._vtk import vtkFoamPointsWriter as vtkFoamPointsWriter

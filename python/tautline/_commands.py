@@ -34,7 +34,7 @@ _HELP_WIDTH = 100
 #: Arguments that are meshes to read.
 _INPUTS = ("mesh", "input", "before", "after", "reference", "target", "geometry", "outline", "surface")
 _STANDARD_INPUT = "standard-input.vtu"
-_IMPROVE = "improve"  # the command that changes cells
+_CHANGING = ("improve", "adapt")  # the commands that change cells
 #: Commands that move points, and can write formats of which there are only copies with other coordinates.
 _MOVING = ("optimize", "untangle", "warp", "perturb")
 
@@ -52,6 +52,8 @@ BASIC = {
     "optimize": ("output", "csv", "preset", "objectives", "boundary", "fixed", "limits", "maximum_iterations"),
     "untangle": ("output", "csv", "preset", "boundary", "fixed"),
     "improve": ("output", "csv", "preset", "target_angle", "edge_length", "boundary", "fixed"),
+    "adapt": ("output", "csv", "iterations", "elements", "growth", "anisotropic", "boundary", "regions", "pde",
+              "source", "fixed", "given"),
     "warp": ("output", "csv", "displacement", "target", "rotate", "translate", "scale", "bend", "axis", "center",
              "moved", "method", "amount", "fixed"),
     "solve": ("output", "csv", "pde", "source", "fixed", "given", "solver", "preconditioner", "relative_tolerance"),
@@ -257,7 +259,7 @@ def add_output(parser: argparse.ArgumentParser, text: str = "mesh to write", req
 
 def add_metrics(parser: argparse.ArgumentParser) -> None:
     """Add the option of the metrics."""
-    parser.add_argument("--metrics", type=_names, default=["imr"], metavar="NAME,...",
+    parser.add_argument("--metrics", type=names, default=["imr"], metavar="NAME,...",
                         help="names of metrics, see the command metrics (default: imr)")  # fmt: skip
 
 
@@ -282,7 +284,8 @@ def add_flag(
         parser.add_argument(off, action="store_false", dest=name, help=argparse.SUPPRESS)
 
 
-def _names(text: str) -> list[str]:
+def names(text: str) -> list[str]:
+    """Names with commas between them, for argparse."""
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
@@ -396,7 +399,7 @@ def finish(
 def _write(arguments: argparse.Namespace, result: Any, options: dict[str, Any]) -> list[str]:
     """Write a mesh; after a motion of points, to the format that was read: the file itself with new coordinates."""
     source, output = getattr(arguments, "mesh", None), arguments.output
-    if isinstance(source, str) and arguments.command == _IMPROVE and can_be_template(source, output):
+    if isinstance(source, str) and arguments.command in _CHANGING and can_be_template(source, output):
         lost = losses(source)
         if lost:
             warnings.warn(f"{output}: points and cells changed, so it lacks {lost} of {source}", stacklevel=2)

@@ -76,6 +76,23 @@ def reporting(progress: Progress | bool | None) -> Iterator[None]:
 
 
 @contextmanager
+def part(begin: float, end: float) -> Iterator[None]:
+    """A block whose progress, 0 to 1, is reported as that from `begin` to `end` by the callback of the block around."""
+    outer = _progress.get()
+    if outer is None:
+        yield
+        return
+    report = outer
+    token = _progress.set(lambda fraction, text: report(begin + fraction * (end - begin), text))
+    try:
+        yield
+    finally:
+        _progress.reset(token)
+        if isinstance(outer, ProgressBar):
+            outer.erase()
+
+
+@contextmanager
 def updating(algorithm: Any) -> Iterator[None]:
     """A block in which Ctrl-C and the progress callback end the execution of a VTK algorithm.
 

@@ -38,6 +38,7 @@ CAPABILITIES = {
     "_deformation": "TautlineDeformation",
     "_shapes": "TautlineShapes",
     "_elliptic": "TautlineElliptic",
+    "_adapt": "TautlineReconnection",
     "_peridynamics": "TautlinePeridynamics",
     "_domains": "TautlineDomains",
     "_meshing": "TautlineMeshing",
