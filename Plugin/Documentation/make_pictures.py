@@ -254,6 +254,64 @@ def improve_mesh_plane():
     return side_by_side(*views, size=(FINE_WIDE, FINE_HEIGHT))
 
 
+def adapted_to(solved, field, elements, rounds=2, **options):
+    """The mesh after Metric Tensor of a field and Improve Mesh, preset Adapt; `solved` adds the field to a mesh."""
+    mesh = None
+    for _ in range(rounds):
+        metric = simple.MetricTensor(
+            Input=solved(mesh), Source="Hessian", Field=["POINTS", field], TargetValue=elements, **options)
+        adapted = simple.ImproveMesh(
+            Input=output(metric, 0), Preset="Adapt", EdgeLengths="Point array", SizeArray=["POINTS", "Metric"],
+            Boundary="Slide on flat parts")  # fmt: skip
+        mesh = output(adapted, 0)
+    return solved(mesh)
+
+
+def improve_mesh_adapt():
+    """A front across a rectangle, and the mesh that was adapted to it."""
+    start = simple.MeshDomain(Domain="Rectangle, Structured", NumberOfCells=800)
+
+    def front(mesh):
+        return simple.Calculator(
+            Input=mesh or start, Function="tanh(6*(coordsX-0.5*coordsY-0.7))", ResultArrayName="front")
+
+    left, right = new_view(), new_view()
+    draw(front(None), left, "front", POINTS)
+    draw(adapted_to(front, "front", 300, 4, LargestSize=0.4, LargestAnisotropy=8), right)
+    return side_by_side(fit(left, 1.95), fit(right, 1.95), size=(WIDE, 180))
+
+
+def corner_mesh():
+    return output(simple.TriangleMesher(Input=sample("corner.poly"), Size=0.2), 0)
+
+
+def solved_on(mesh):
+    return output(simple.SolvePDE(Input=mesh or corner_mesh()), 0)
+
+
+def refine_solution_1():
+    """The solution on the first mesh, and the ellipsoids of its metric."""
+    solved = solved_on(None)
+    metric = simple.MetricTensor(Input=solved, Source="Hessian", Field=["POINTS", "Solution"], TargetValue=700,
+                                 LargestSize=0.5, MaximumEllipsoids=300, EllipsoidScale=0.4)  # fmt: skip
+    left, right = new_view(), new_view()
+    draw(solved, left, "Solution", POINTS)
+    draw(output(metric, 1), right, "Size", POINTS, edges=False)
+    return side_by_side(fit(left, 1.3), fit(right, 1.3))
+
+
+def refine_solution_2():
+    """The adapted mesh, all of it and at the inner corner."""
+    adapted = adapted_to(solved_on, "Solution", 700, 4, LargestSize=0.5)
+    whole, near = new_view(), new_view()
+    for view in (whole, near):
+        draw(adapted, view, "Solution", POINTS)
+    fit(whole, 1.3)
+    fit(near, 3.5).CameraFocalPoint = [0, 0, 0]
+    near.CameraPosition = [0, 0, 5]
+    return side_by_side(whole, near)
+
+
 def untangle_mesh():
     bracket = sample("bracket-tangled.vtu")
     views = []
@@ -319,6 +377,21 @@ def metric_tensor():
     left, right = new_view(), new_view()
     draw(front, left, "front", POINTS, edges=False)
     draw(output(metric, 1), right, "Size", POINTS, edges=False)
+    return side_by_side(fit(left, 1.3), fit(right, 1.3))
+
+
+def transfer():
+    """A field with a jump on a fine mesh, and on a coarse one of quadrilaterals."""
+    mesh = simple.MeshDomain(Domain="Rectangle, Structured", NumberOfCells=3200)
+    jump = simple.Calculator(
+        Input=mesh, ResultArrayName="density",
+        Function="if((coordsX-0.7)^2+(coordsY-0.5)^2<0.1,1,0.2)+0.2*sin(6*coordsX)",
+    )  # fmt: skip
+    coarse = simple.Plane(Origin=[0, 0, 0], Point1=[2, 0, 0], Point2=[0, 1, 0], XResolution=30, YResolution=15)
+    moved = simple.Transfer(Input=coarse, Source=jump, PointArrays=["density"])
+    left, right = new_view(), new_view()
+    draw(jump, left, "density", POINTS)
+    draw(output(moved, 0), right, "density", POINTS)
     return side_by_side(fit(left, 1.3), fit(right, 1.3))
 
 
@@ -602,9 +675,10 @@ def tetgen_files():
 
 
 PICTURES = (
-    element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, untangle_mesh, warp_mesh, perturb_mesh,
-    curve_mesh, metric_tensor, compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher, solve_pde,
-    condition_estimator, solver_study, peridynamic_condition, interaction_layer, horizon_neighbors,
+    element_quality, optimize_mesh, improve_mesh, improve_mesh_plane, improve_mesh_adapt,
+    refine_solution_1, refine_solution_2, untangle_mesh, warp_mesh, perturb_mesh,
+    curve_mesh, metric_tensor, transfer, compare_meshes, field_of_metric, mesh_domain, triangle_mesher, tetgen_mesher,
+    solve_pde, condition_estimator, solver_study, peridynamic_condition, interaction_layer, horizon_neighbors,
     silhouette_to_mesh, match_shape, shape_retrieval, silhouette_list, abaqus_files, nastran_files, fluent_files,
     gmsh_files, medit_files, mfem_files, off_files, openfoam_files, tetgen_files, nonpositive_jacobian_1,
     nonpositive_jacobian_2, nonpositive_jacobian_3,
