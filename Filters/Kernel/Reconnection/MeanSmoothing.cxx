@@ -3,8 +3,7 @@
 #include "CavityOperations.h"
 
 #include "Constants.h"
-
-#include <Eigen/Dense>
+#include "NewtonStep.h"
 
 #include <limits>
 
@@ -20,11 +19,6 @@ constexpr double LeastSumDecrease = 1e-3;
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-Vector3d toEigen(const Vec3& v)
-{
-  return { v[0], v[1], v[2] };
-}
 
 /// Sum of the inverse mean ratios with its derivatives; infinite where a volume is not positive.
 struct RatioSum
@@ -58,29 +52,6 @@ struct RatioSum
     }
   }
 };
-
-/// Newton's step in the directions that a point has; along the gradient where that is no descent.
-Vec3 stepOf(const RatioSum& sum, const PointFreedom& freedom)
-{
-  Vector3d g = sum.gradient;
-  Matrix3d h = sum.hessian;
-  if (freedom.kind != PointFreedom::Free)
-  {
-    const Vector3d n = toEigen(freedom.direction);
-    const Matrix3d along = n * n.transpose();
-    const Matrix3d allowed =
-      freedom.kind == PointFreedom::OnLine ? along : Matrix3d(Matrix3d::Identity() - along);
-    g = allowed * g;
-    h = Matrix3d(allowed * h * allowed) +
-      h.trace() * (Matrix3d::Identity() - allowed); // no step in the other directions
-  }
-  Vector3d step = -h.ldlt().solve(g);
-  if (!step.allFinite() || step.dot(g) >= 0.0)
-  {
-    step = -g / h.trace();
-  }
-  return freedom.project({ step[0], step[1], step[2] });
-}
 }
 
 double CavityOperations::improveMean(PointId v, double least)
@@ -112,7 +83,7 @@ double CavityOperations::improveMean(PointId v, double least)
   {
     return 0.0;
   }
-  Vec3 step = stepOf(before, freedom);
+  Vec3 step = newtonStep(before.gradient, before.hessian, freedom);
   for (int k = 0; k < Halvings; ++k, step = 0.5 * step)
   {
     const Vec3 p =

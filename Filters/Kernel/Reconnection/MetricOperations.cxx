@@ -3,8 +3,7 @@
 #include "CavityOperations.h"
 
 #include "Constants.h"
-
-#include <Eigen/Dense>
+#include "NewtonStep.h"
 
 #include <limits>
 
@@ -21,7 +20,7 @@ constexpr double ContractionShare = 0.6, ContractionQuality = 0.2;
 /// tetrahedron.
 constexpr double LengthWeight = 1.0;
 /// The inverse mean ratio is S / (12 (d / 2)^(2/3)), see metricShape() for S and d.
-constexpr double RatioFactor = 12.0;
+constexpr double ShapeFactor = 12.0;
 /// A motion has to decrease the sum by this part of it.
 constexpr double LeastRelaxation = 1e-3;
 /// A motion for the sum may lower the smallest quality around to this part of it.
@@ -31,16 +30,6 @@ constexpr double LeastLength2 = 1e-200;
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-Vector3d toEigen(const Vec3& v)
-{
-  return { v[0], v[1], v[2] };
-}
-
-Vec3 fromEigen(const Vector3d& v)
-{
-  return { v[0], v[1], v[2] };
-}
 
 Matrix3d matrixOf(const MetricTensor& m)
 {
@@ -76,7 +65,7 @@ struct StarSum
     }
     const double s = squaredLength(u, m) + squaredLength(v, m) + squaredLength(w, m) +
       squaredLength(f[1] - f[0], m) + squaredLength(f[2] - f[1], m) + squaredLength(f[0] - f[2], m);
-    const double scale = 1.0 / (RatioFactor * std::cbrt(0.25 * d * d));
+    const double scale = 1.0 / (ShapeFactor * std::cbrt(0.25 * d * d));
     this->value += scale * s;
     if (!this->derivatives)
     {
@@ -108,28 +97,6 @@ struct StarSum
     this->hessian += 2.0 * LengthWeight * g * g.transpose(); // Gauss-Newton
   }
 };
-
-/// The step to the minimum of the sum's model in the directions that a point has.
-Vec3 stepOf(const StarSum& sum, const PointFreedom& freedom)
-{
-  Vector3d g = sum.gradient;
-  Matrix3d h = sum.hessian;
-  if (freedom.kind != PointFreedom::Free)
-  {
-    const Vector3d n = toEigen(freedom.direction);
-    const Matrix3d along = n * n.transpose();
-    const Matrix3d allowed =
-      freedom.kind == PointFreedom::OnLine ? along : Matrix3d(Matrix3d::Identity() - along);
-    g = allowed * g;
-    h = Matrix3d(allowed * h * allowed) + h.trace() * (Matrix3d::Identity() - allowed);
-  }
-  Vector3d step = -h.ldlt().solve(g);
-  if (!step.allFinite() || step.dot(g) >= 0.0)
-  {
-    step = -g / h.trace();
-  }
-  return freedom.project(fromEigen(step));
-}
 
 /// Where an edge is halved in the metric, as part of it from a: the length grows geometrically from
 /// that in the metric at a to that in the metric at b.
@@ -516,7 +483,7 @@ bool CavityOperations::relax(PointId v)
   {
     return false;
   }
-  Vec3 step = stepOf(before, freedom);
+  Vec3 step = newtonStep(before.gradient, before.hessian, freedom);
   for (int k = 0; k < Halvings; ++k, step = 0.5 * step)
   {
     const Vec3 p =

@@ -333,7 +333,7 @@ void Run::run(const std::vector<PointFreedom>& freedoms,
   this->Passes.proceed = [this]() { return this->Progress.proceed(); };
   this->Passes.postponed = this->flagsOf(this->Options.postponed);
   const bool stopped = !started || !(this->Options.adapt ? this->adapt() : this->runStages()) ||
-    (this->Options.improveMean && !this->improveMean());
+    (this->Options.improveMean && !this->Options.adapt && !this->improveMean());
   if (!stopped && this->Result.history.back().belowTarget == 0)
   {
     this->Result.reason = StopReason::Reduction;

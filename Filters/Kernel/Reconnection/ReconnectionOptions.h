@@ -84,11 +84,11 @@ struct ReconnectionOptions
    * @brief First the edges get their target lengths (`size`, which is then required): edges longer
    * than sqrt(2) times the target are split, edges shorter than 1 / sqrt(2) times it contracted,
    * and points moved, in turn, until lengths are in between. Then the worst elements are improved
-   * as without it. All qualities are those in the metric: (mean ratio)^(3/2) of tetrahedra and the
+   * in the metric. All qualities are those in the metric: (mean ratio)^(3/2) of tetrahedra and the
    * mean ratio of triangles, in coordinates in which the mean of the metrics of the corners is the
    * identity. The metric of a new or moved point is interpolated at its place in the input
-   * (log-Euclidean). `objective`, `targetAngle`, `edgeFactor`, `smallestCount` and `largestCount`
-   * have no effect.
+   * (log-Euclidean). `objective`, `targetAngle`, `edgeFactor`, `smallestCount`, `largestCount`,
+   * `compound` and `improveMean` have no effect. One thread.
    */
   bool adapt = false;
   bool swap = true;     ///< removal of edges and of faces
