@@ -684,6 +684,29 @@ def open_ring():
 
 
 @check
+def open_two_blocks():
+    """A block with values, and one of the same size with fewer cells, which is active."""
+    for name, step in (("fine", 1), ("coarse", 2)):
+        block = simple.Wavelet(registrationName=name, WholeExtent=[-4, 4] * 3, SubsampleRate=step)
+        simple.Show(block)
+    simple.SetActiveSource(block)
+
+
+@check
+def values_transferred():
+    """The coarse block has the values, with the total of the fine one."""
+    transfer = find("FieldTransfer")
+    fine, coarse = servermanager.Fetch(find_named("fine")), servermanager.Fetch(transfer)
+    assert coarse.GetNumberOfPoints() == 5**3, transfer.Summary
+    totals = servermanager.Fetch(transfer, idx=1)
+    before, after = (totals.GetColumnByName(name).GetValue(0) for name in ("TotalBefore", "TotalAfter"))
+    assert before > 0 and numpy.isclose(before, after, rtol=1e-12, atol=0), transfer.Summary
+    values = vtk_to_numpy(coarse.GetPointData().GetArray("RTData"))
+    low, high = fine.GetPointData().GetArray("RTData").GetRange()
+    assert values.min() >= low - 1e-9 and values.max() <= high + 1e-9
+
+
+@check
 def ring_curved():
     """The middle nodes are near the circles, and the cells are valid."""
     curved = find("MeshCurving")
