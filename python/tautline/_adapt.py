@@ -208,7 +208,7 @@ def _solver(solver: Any, threads: int) -> Solver:
             raise Error("solve() was not built: give a function as the solver")
         from ._elliptic import solve  # loads PETSc
 
-        options = {"threads": threads, **solver}
+        options: dict[str, Any] = {"threads": threads, **solver}
 
         def solved(mesh: Any) -> Any:
             found = solve(mesh, **options)
@@ -483,7 +483,7 @@ def _add_solve_options(parser: argparse.ArgumentParser, solve: argparse.Argument
     """Add the options of the command solve; returns their names."""
     group = parser.add_argument_group("options of the command solve")
     chosen = [action for action in solve._actions if action.option_strings and action.dest not in _NOT_OF_SOLVE]
-    for action in map(copy, chosen):  # as an option belongs to one parser
+    for action in [copy(one) for one in chosen]:  # as an option belongs to one parser
         action.option_strings = [name for name in action.option_strings if name not in parser._option_string_actions]
         group._add_action(action)
     return [action.dest for action in chosen]

@@ -53,7 +53,8 @@ def _averaged(cells: Array, volumes: Array, gradients: Array, points: int) -> Ar
     """The gradients of the elements, averaged at the points by volume."""
     corners, weights = cells.ravel(), np.repeat(volumes, cells.shape[1])
     sums = [np.bincount(corners, np.repeat(volumes * part, cells.shape[1]), points) for part in gradients.T]
-    return np.stack(sums, axis=1) / np.maximum(np.bincount(corners, weights, points), np.finfo(float).tiny)[:, None]
+    divisors = np.maximum(np.bincount(corners, weights, points), np.finfo(float).tiny)
+    return np.asarray(np.stack(sums, axis=1) / divisors[:, None])
 
 
 def _squares(cells: Array, corners: Array, gradients: Array) -> Array:
