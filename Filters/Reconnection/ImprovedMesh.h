@@ -22,9 +22,9 @@ namespace tautline
  * that moved. Marked edges and facets of an adaptation (ReconnectionResult::lines, facets) become
  * lines and triangles with the data of the cell that they are a part of. Cells have the data of the
  * cell in OriginalCellId; with ReconnectionResult::overlaps, real numbers are averages over the
- * cells of the input that they overlap. Global ids are left out, as they would not be unique. Points in
- * single precision stay so unless a tetrahedron would not be valid, or the worst one worse than
- * before.
+ * cells of the input that they overlap. Global ids are left out, as they would not be unique.
+ * Points in single precision stay so unless a tetrahedron would not be valid, or, without an
+ * adaptation, the worst one worse than before.
  */
 ImprovedCells writeImproved(const ReconnectableMesh& input, const ReconnectionResult& result,
   int threads, vtkPointSet* output);

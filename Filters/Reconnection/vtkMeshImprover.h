@@ -139,7 +139,8 @@ public:
    * needs: edges longer than sqrt(2) times the target are split, edges shorter than 1 / sqrt(2)
    * times it contracted, points moved and edges swapped in turn; then the worst elements are
    * improved in the metric. As many elements come or go as that takes: SmallestCount, LargestCount,
-   * TargetAngle, Objective and EdgeFactor have no effect. The default is REMOVE_SLIVERS.
+   * TargetAngle, Objective, EdgeFactor and ThenBestShape have no effect. The default is
+   * REMOVE_SLIVERS.
    */
   vtkTautlineSetRangeMacro(Preset, int, CUSTOM, ADAPT);
   vtkGetMacro(Preset, int);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Adaptation of tetrahedra to the analytic metrics of the Unstructured Grid Adaptation Working Group
-// (UGAWG/adapt-benchmarks), one thread: the metric is evaluated at the points, the mesh adapted, the
-// metric evaluated again, and so on. Prints the share of edges of length 1 / sqrt(2) to sqrt(2), the
-// smallest and mean mean ratio, all in the analytic metric, and CPU time.
+// Adaptation of tetrahedra to the analytic metrics of the Unstructured Grid Adaptation Working
+// Group (UGAWG/adapt-benchmarks), one thread: the metric is evaluated at the points, the mesh
+// adapted, the metric evaluated again, and so on. Prints the share of edges of length 1 / sqrt(2)
+// to sqrt(2), the smallest and mean mean ratio, all in the analytic metric, and CPU time.
 // Files are those of Medit (.mesh, .sol), so that other programs can do the same.
 //
 // usage: BenchmarkVolumeAdaptation cases                           the names of the cases

@@ -238,8 +238,8 @@ struct Tagged
   std::vector<std::int32_t> classes;
 };
 
-/// 1 to 6: the sides, 7: the part of the side z = 1 with x < 0.5, 8: the plane x = 0.75 for y < 0.5,
-/// 0: none.
+/// 1 to 6: the sides, 7: the part of the side z = 1 with x < 0.5, 8: the plane x = 0.75 for y below
+/// 0.5, 0: none.
 std::int32_t classAt(const std::array<Vec3, 3>& x)
 {
   const auto all = [&x](int axis, double value)
@@ -521,7 +521,8 @@ TAUTLINE_PART(testErrors)
   TAUTLINE_CHECK_THROWS(reconnect(data, options), wording("an-adaptation-to-about"));
   tensors[2] = -1.0;
   options.sizes = tensors.data();
-  TAUTLINE_CHECK_THROWS(reconnect(data, options), wording("metric-tensors-are-not-positive-definite"));
+  TAUTLINE_CHECK_THROWS(
+    reconnect(data, options), wording("metric-tensors-are-not-positive-definite"));
 }
 
 //------------------------------------------------------------------------------
