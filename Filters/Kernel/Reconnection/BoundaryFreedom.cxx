@@ -87,7 +87,7 @@ void keepBorders(const TetrahedronMesh& mesh, const std::vector<std::int32_t>& c
   }
 }
 
-void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms)
+std::vector<char> nonManifoldPoints(TetrahedronMesh& mesh)
 {
   std::vector<std::int32_t> uses(mesh.pointSlots(), 0);
   for (TetId t = 0; t < mesh.slots(); ++t)
@@ -98,17 +98,28 @@ void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms)
       ++uses[v];
     }
   }
+  std::vector<char> flags(mesh.pointSlots(), 0);
   std::vector<TetId> star;
   for (PointId v = 0; v < mesh.pointSlots(); ++v)
   {
     pollInterruption(v);
-    if (mesh.used(v) && freedoms[v].kind != PointFreedom::Fixed)
+    if (mesh.used(v))
     {
       mesh.star(v, star);
-      if (static_cast<std::int32_t>(star.size()) != uses[v])
-      {
-        freedoms[v].fix();
-      }
+      flags[v] = static_cast<std::int32_t>(star.size()) != uses[v];
+    }
+  }
+  return flags;
+}
+
+void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms)
+{
+  const std::vector<char> flags = nonManifoldPoints(mesh);
+  for (std::size_t v = 0; v < flags.size(); ++v)
+  {
+    if (flags[v] && freedoms[v].kind != PointFreedom::Fixed)
+    {
+      freedoms[v].fix();
     }
   }
 }

@@ -31,6 +31,9 @@ TAUTLINE_RECONNECTIONKERNEL_EXPORT std::vector<PointFreedom> findFreedoms(
 TAUTLINE_RECONNECTIONKERNEL_EXPORT void keepBorders(const TetrahedronMesh& mesh,
   const std::vector<std::int32_t>& classes, double tolerance, std::vector<PointFreedom>& freedoms);
 
+/// Per point whether its tetrahedra are not all connected with each other through faces at it.
+TAUTLINE_RECONNECTIONKERNEL_EXPORT std::vector<char> nonManifoldPoints(TetrahedronMesh& mesh);
+
 /// Fixes points whose tetrahedra are not one fan, so that moving one would not take all along.
 void fixNonManifold(TetrahedronMesh& mesh, std::vector<PointFreedom>& freedoms);
 }

@@ -63,6 +63,9 @@ struct OperationRules
   /// The class of each facet that may be labeled, from 1 on, by its label; others have class 0.
   /// Edges between facets of different classes stay.
   std::vector<std::int32_t> classes;
+  /// Per point of the input whether it is not manifold. An edge between two of these may have
+  /// tetrahedra that are not connected through faces, and is not split.
+  std::vector<char> nonManifold;
 };
 
 class TAUTLINE_RECONNECTIONKERNEL_EXPORT CavityOperations : public OperationRules
@@ -205,6 +208,10 @@ private:
   bool smoothInMetric(PointId v, int steps);
   bool acceptMotion(PointId v, const Vec3& p, double least);
   TetId cellNear(PointId v) const;
+  bool isNonManifold(PointId v) const
+  {
+    return v < static_cast<PointId>(this->nonManifold.size()) && this->nonManifold[v];
+  }
   bool splitAt(PointId a, PointId b, const Vec3& x, const PointFreedom& freedom);
   bool freedomOfSplit(PointId a, PointId b, PointFreedom& freedom) const;
   bool curvedSplit(PointId a, PointId b, Vec3& x, PointFreedom& freedom) const;

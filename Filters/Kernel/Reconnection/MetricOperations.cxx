@@ -267,7 +267,8 @@ bool CavityOperations::splitEdge(TetId t, int i, int j)
   PointFreedom freedom;
   const bool outside = std::any_of(this->Fan.begin(), this->Fan.end(),
     [this](TetId s) { return this->Mesh.region(s) == OutsideRegion; });
-  if (outside || !this->freedomOfSplit(a, b, freedom))
+  if (outside || (this->isNonManifold(a) && this->isNonManifold(b)) ||
+    !this->freedomOfSplit(a, b, freedom))
   {
     return false;
   }
@@ -383,7 +384,7 @@ bool CavityOperations::contractEdge(TetId t, int i, int j)
     this->canContractInMetric(t, i, j) ? this->prepareContractionInMetric(v, w) : -1.0;
   const double backward =
     this->canContractInMetric(t, j, i) ? this->prepareContractionInMetric(w, v) : -1.0;
-  // The better one first; the last one prepared is the second.
+  // The better one first.
   for (int attempt = 0; attempt < 2; ++attempt)
   {
     const bool first = (forward >= backward) == (attempt == 0);
@@ -449,13 +450,17 @@ bool CavityOperations::relax(PointId v)
   }
   const PointFreedom freedom = this->freedomAt(v);
   this->Mesh.star(v, this->Star);
+  // The faces opposite v, and the sum of the metrics of their corners.
+  std::vector<std::pair<std::array<Vec3, 3>, EdgeMetric>> faces;
   std::vector<PointId> neighbors;
   double least = 1.0;
   for (TetId t : this->Star)
   {
-    const TriangleVertices f = this->Mesh.face(t, this->Mesh.tet(t).indexOf(v));
-    neighbors.insert(neighbors.end(), f.begin(), f.end());
+    const auto [a, b, c] = this->Mesh.face(t, this->Mesh.tet(t).indexOf(v));
+    neighbors.insert(neighbors.end(), { a, b, c });
     least = std::min(least, this->Mesh.quality(t));
+    faces.push_back({ { this->Mesh.point(a), this->Mesh.point(b), this->Mesh.point(c) },
+      this->Mesh.metric(a) + this->Mesh.metric(b) + this->Mesh.metric(c) });
   }
   std::sort(neighbors.begin(), neighbors.end());
   neighbors.erase(std::unique(neighbors.begin(), neighbors.end()), neighbors.end());
@@ -463,13 +468,9 @@ bool CavityOperations::relax(PointId v)
   {
     StarSum sum;
     sum.derivatives = derivatives;
-    for (TetId t : this->Star)
+    for (const auto& [corners, metrics] : faces)
     {
-      const TriangleVertices f = this->Mesh.face(t, this->Mesh.tet(t).indexOf(v));
-      const EdgeMetric mean =
-        (own + this->Mesh.metric(f[0])) + (this->Mesh.metric(f[1]) + this->Mesh.metric(f[2]));
-      sum.addShape(
-        p, { this->Mesh.point(f[0]), this->Mesh.point(f[1]), this->Mesh.point(f[2]) }, mean);
+      sum.addShape(p, corners, own + metrics);
     }
     for (PointId u : neighbors)
     {

@@ -244,7 +244,7 @@ public:
   const TetrahedronPasses& passes() const { return this->Passes; }
 
 private:
-  bool record(int pass, double fraction);
+  bool record(int pass, double fraction, double share = 0.0);
   void setFloor(const ReconnectionRecord& record);
   bool improveMean();
   void setBounds();
@@ -269,12 +269,12 @@ private:
 };
 
 /// Adds a line to the history; false if the observer stops the run.
-bool Run::record(int pass, double fraction)
+bool Run::record(int pass, double fraction, double share)
 {
   ReconnectionRecord record;
   measureWorst(this->Mesh, targetQuality(this->Options), this->Options.threads, record);
   copyCounts(this->Operations.counts(), record);
-  record.edgesInRange = this->Options.adapt ? shareOfEdges(this->Mesh).share() : 0.0;
+  record.edgesInRange = share;
   return this->Progress.record(record, pass, fraction);
 }
 
@@ -325,7 +325,12 @@ void Run::run(const std::vector<PointFreedom>& freedoms,
     std::sin(radians(this->Options.flatAngle)), 4.0 * std::numeric_limits<double>::epsilon());
   this->setBounds();
   this->Result.reason = StopReason::NoProgress;
-  const bool started = this->record(0, 0.0);
+  const double share = this->Options.adapt ? shareOfEdges(this->Mesh).share() : 0.0;
+  const bool started = this->record(0, 0.0, share);
+  if (this->Options.adapt)
+  {
+    this->Operations.nonManifold = nonManifoldPoints(this->Mesh);
+  }
   if (!this->Options.adapt)
   {
     this->setFloor(this->Result.history.front());
@@ -349,8 +354,8 @@ bool Run::adapt()
   adaptation.contracts = this->Options.contract;
   adaptation.splits = this->Options.insert;
   adaptation.proceed = [this]() { return this->Progress.proceed(); };
-  adaptation.record = [this](double fraction)
-  { return this->record(this->Result.history.back().pass + 1, fraction); };
+  adaptation.record = [this](double fraction, double share)
+  { return this->record(this->Result.history.back().pass + 1, fraction, share); };
   return adaptation.run();
 }
 

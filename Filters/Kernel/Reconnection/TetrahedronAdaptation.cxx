@@ -225,17 +225,17 @@ bool TetrahedronAdaptation::run()
   for (int k = 0, vain = 0; k < MostRounds && busy && vain < VainRounds; ++k)
   {
     const bool complete = this->round(busy);
-    if (!this->record(static_cast<double>(k + 1) / (MostRounds + 2)) || !complete)
+    const EdgeShare now = shareOfEdges(this->Mesh);
+    if (!this->record(static_cast<double>(k + 1) / (MostRounds + 2), now.share()) || !complete)
     {
       return false;
     }
-    const EdgeShare now = shareOfEdges(this->Mesh);
     const bool better =
       now.share() > best.share() + LeastGain || now.deviation < (1.0 - LeastFall) * best.deviation;
     vain = better ? 0 : vain + 1;
     best = better ? now : best;
   }
   const bool complete = this->finish();
-  return this->record(1.0) && complete;
+  return this->record(1.0, shareOfEdges(this->Mesh).share()) && complete;
 }
 }

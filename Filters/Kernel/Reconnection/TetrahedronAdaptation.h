@@ -49,8 +49,9 @@ public:
   int threads = 0;
   /// Called now and then; returns false to stop.
   std::function<bool()> proceed;
-  /// Called after each round with the part of the work that is done, 0 to 1; returns false to stop.
-  std::function<bool(double fraction)> record;
+  /// Called after each round with the part of the work that is done, 0 to 1, and the share of edges
+  /// in range; returns false to stop.
+  std::function<bool(double fraction, double share)> record;
 
   /// Runs rounds until hardly an edge changes. @return false if stopped
   bool run();

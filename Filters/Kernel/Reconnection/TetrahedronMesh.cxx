@@ -663,24 +663,18 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
   {
     return false;
   }
-  // Per region a cell of the input nearby.
-  std::vector<std::pair<std::int32_t, TetId>> origins;
-  for (TetId t : replacement.before)
+  // Per region a cell of the input nearby; most replacements are of one region.
+  using Place = std::pair<std::int32_t, TetId>;
+  const TetId first = replacement.before[0];
+  const Place only = { this->Region[first], this->Origin[first] };
+  std::vector<Place> places;
+  for (std::size_t k = 0; k < replacement.regions.size(); ++k)
   {
-    const std::int32_t region = this->Region[t];
-    const auto known = [region](const auto& entry) { return entry.first == region; };
-    if (std::none_of(origins.begin(), origins.end(), known))
-    {
-      origins.emplace_back(region, this->Origin[t]);
-    }
+    const std::int32_t region = replacement.regions[k];
+    const TetId near = *std::find_if(replacement.before.begin(), replacement.before.end(),
+      [&](TetId t) { return this->Region[t] == region; });
+    places.emplace_back(region, this->Origin[near]);
   }
-  const auto originOf = [&](std::size_t k)
-  {
-    return replacement.regions.empty()
-      ? origins.front()
-      : *std::find_if(origins.begin(), origins.end(),
-          [&](const auto& entry) { return entry.first == replacement.regions[k]; });
-  };
   this->detachPoints(replacement);
   // Ids that are free use again: those of the cavity first.
   for (std::size_t k = 0; k < after; ++k)
@@ -724,7 +718,7 @@ bool TetrahedronMesh::replace(const Replacement& replacement, std::vector<TetId>
   {
     const TetId id = created[k];
     this->Quality[id] = replacement.qualities[k];
-    std::tie(this->Region[id], this->Origin[id]) = originOf(k);
+    std::tie(this->Region[id], this->Origin[id]) = places.empty() ? only : places[k];
     this->Tets[id].vertices = replacement.after[k];
     if (this->hasLabels())
     {

@@ -221,7 +221,7 @@ public:
   void star(PointId v, std::vector<TetId>& tets);
   /**
    * @brief All tetrahedra at the edge of vertices i and j of a tetrahedron, across walls.
-   * @param walls set to those of their faces at the edge that are walls, as 4 t + i, each from one
+   * @param walls set to the walls at the edge: faces i of tetrahedra t, as 4 t + i, each from one
    * side, or from both
    */
   void fan(TetId t, int i, int j, std::vector<TetId>& tets, std::vector<std::int32_t>& walls) const;

@@ -27,7 +27,7 @@ constexpr double TriangleMeanRatioFactor = 3.4641016151377544;
 
 /// Below this quality the sign of the area in a plane is that of the exact predicate.
 constexpr double CertainTriangle = 1e-9;
-/// The same of the mean ratio in a metric, which may be much larger than that of the triangle.
+/// The same of the mean ratio in a metric, which may be much larger than the Euclidean one.
 constexpr double CertainInMetric = 1e-6;
 
 struct TriangleMeasures

@@ -151,11 +151,11 @@ TAUTLINE_PART(testShape)
 }
 
 /// After a few steps, each with the metric at the points of the last mesh. The bounds are somewhat
-/// below what was measured: shares 0.96 and 0.91, ratios 0.69 and 0.54, means 0.88 and 0.85.
+/// below what was measured: shares 0.968 and 0.969, ratios 0.76 and 0.71, means 0.89 and 0.88.
 TAUTLINE_PART(testMetrics)
 {
   for (const auto& [metric, share] :
-    { std::pair<MetricAt, double>{ linearMetric, 0.93 }, { polarMetric, 0.86 } })
+    { std::pair<MetricAt, double>{ linearMetric, 0.95 }, { polarMetric, 0.95 } })
   {
     MeshData data = unitCube(4);
     for (int step = 0; step < 3; ++step)
@@ -167,8 +167,8 @@ TAUTLINE_PART(testMetrics)
     }
     const InMetric after = measureIn(data, metric);
     TAUTLINE_CHECK(after.share > share);
-    TAUTLINE_CHECK(after.smallest > 0.4);
-    TAUTLINE_CHECK(after.mean > 0.8);
+    TAUTLINE_CHECK(after.smallest > 0.6);
+    TAUTLINE_CHECK(after.mean > 0.87);
   }
 }
 
@@ -224,8 +224,8 @@ TAUTLINE_PART(testOnSurface)
   TAUTLINE_CHECK(result.boundaryDistance <= distance);
   TAUTLINE_CHECK(result.history.back().edgesInRange > 0.85);
   TAUTLINE_CHECK(output.numberOfCells() > 2 * data.numberOfCells());
-  // Nearer to the ball than the facets of the input.
-  TAUTLINE_CHECK_NEAR(volumeOf(output), 4.0 / 3.0 * Pi, 0.12);
+  // Measured: 0.6 % less.
+  TAUTLINE_CHECK_RELATIVE(volumeOf(output), volumeOf(data), 0.01);
 }
 
 //------------------------------------------------------------------------------
@@ -373,6 +373,33 @@ TAUTLINE_PART(testTags)
       std::sort(key.begin(), key.end());
       TAUTLINE_CHECK(faces.count(key) == 1);
     }
+  }
+}
+
+/// Two tetrahedra that have only an edge in common: it stays whole, as a point on it would be a
+/// point of one of them only.
+TAUTLINE_PART(testPinchedEdge)
+{
+  MeshData data;
+  data.addPoints({ { 0, 0, 0 }, { 0, 0, 1 }, { 1, -0.5, 0.5 }, { 1, 0.5, 0.5 }, { -1, 0.5, 0.5 },
+    { -1, -0.5, 0.5 } });
+  data.addCell(CellType::Tetrahedron, { 0, 1, 3, 2 });
+  data.addCell(CellType::Tetrahedron, { 0, 1, 5, 4 });
+  for (Index c = 0; c < 2; ++c)
+  {
+    if (volumeOf(data, c) < 0.0)
+    {
+      std::swap(data.connectivity[4 * c + 2], data.connectivity[4 * c + 3]);
+    }
+  }
+  const ReconnectionResult result = adapt(data, [](const Vec3&) { return isotropicMetric(0.3); });
+  const MeshData output = outputOf(result);
+  checkArrays(output, result);
+  TAUTLINE_CHECK(output.numberOfCells() > 10);
+  for (Index p = 0; p < output.numberOfPoints(); ++p)
+  {
+    const Vec3 x = output.point(p);
+    TAUTLINE_CHECK(x[0] != 0.0 || x[1] != 0.0 || x[2] == 0.0 || x[2] == 1.0);
   }
 }
 
