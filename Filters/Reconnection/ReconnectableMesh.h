@@ -58,8 +58,8 @@ public:
   /// The cell of the input that each of lines(), or of facets(), is, or is a part of.
   const std::vector<Index>& markCells() const { return this->MarkCells; }
   /**
-   * @brief The class of each of facets(), from 1 on: that of the values of the arrays of tags, see
-   * tagArrays(), of which at most half as many values as facets occur on these.
+   * @brief The class of each of facets(), from 1 on: facets with the same values in the arrays of
+   * tags have the same. At most half as many values as facets occur in these, see tagArrays().
    */
   std::vector<std::int32_t> facetClasses() const;
   /// Marks the points where lines() of different classes meet, which are found likewise.
@@ -88,8 +88,8 @@ public:
   /// The regions of the cells; null: one region. Throws Error for values that are no regions.
   void setRegions(vtkDataArray* ofCells);
   /**
-   * @brief Regions by the values of the arrays of tags, see tagArrays(): of which at most a quarter
-   * as many values as cells occur on these. @return a sentence that names these arrays, or ""
+   * @brief Regions by the values of the arrays of tags, in which at most a quarter as many values
+   * as cells occur, see tagArrays(). @return a sentence that names these arrays, or ""
    */
   std::string setRegionsByTags();
   /// One per cell of mesh(); empty for one region.

@@ -27,11 +27,14 @@
  * @par Input ports:
  * 0 the mesh; 1 (optional) a vtkSelection of points or cells that stay. The points also stay where
  * the point array at index 0 (SetInputArrayToProcess) is not 0. The cell array at index 1 has the
- * region of each cell: facets between regions are kept as the boundary is. ADAPT keeps the facets
- * that triangles beside tetrahedra are, and the edges that lines beside triangles are: they are
- * divided as the mesh is, and the output has their parts, with their data. Where two facets meet
- * that differ in an array of tags (whole numbers, at most half as many values as facets), or one
- * ends, the edge stays.
+ * region of each cell: facets between regions are kept as the boundary is. Without it, regions of
+ * ADAPT are those of the tags of the cells: arrays of whole numbers with at most a quarter as many
+ * values as cells.
+ *
+ * ADAPT also keeps the facets that triangles beside tetrahedra are, and the edges that lines beside
+ * triangles are: they are divided as the mesh is, and the output has their parts, with their data.
+ * Where two facets meet that differ in an array of tags (whole numbers, at most half as many values
+ * as facets), or one ends, the edge stays.
  *
  * @par Output port 0 `Mesh`:
  * The new mesh. Points of the input keep their data; new ones interpolate theirs in the cell of the
@@ -135,12 +138,12 @@ public:
    * The operations and the target: REMOVE_SLIVERS works only around tetrahedra with dihedral angles
    * below 15 or above 165 degrees, by every operation; SWAP_ONLY moves no point; SWAP_AND_SMOOTH
    * moves points, but inserts and removes none; AGGRESSIVE uses every operation everywhere; CUSTOM
-   * those of the switches below. ADAPT gives the edges the target lengths of SetSize(), which it
-   * needs: edges longer than sqrt(2) times the target are split, edges shorter than 1 / sqrt(2)
-   * times it contracted, points moved and edges swapped in turn; then the worst elements are
-   * improved in the metric. As many elements come or go as that takes: SmallestCount, LargestCount,
-   * TargetAngle, Objective, EdgeFactor and ThenBestShape have no effect. The default is
-   * REMOVE_SLIVERS.
+   * the operations of the switches below. ADAPT gives the edges the target lengths of SetSize(),
+   * which it needs: edges longer than sqrt(2) times the target are split, edges shorter than 1 /
+   * sqrt(2) times it contracted, points moved and edges swapped in turn; then the worst elements
+   * are improved in the metric. As many elements come or go as that takes: SmallestCount,
+   * LargestCount, TargetAngle, Objective, EdgeFactor and ThenBestShape have no effect. The default
+   * is REMOVE_SLIVERS.
    */
   vtkTautlineSetRangeMacro(Preset, int, CUSTOM, ADAPT);
   vtkGetMacro(Preset, int);

@@ -7,7 +7,7 @@ length 1/sqrt(2) to sqrt(2), the smallest and the mean mean ratio, all in the an
 thread. The metrics are those of BenchmarkAdaptation.cxx; bamg's smoothing of the metric is switched off.
 
 Tetrahedra: the same of BenchmarkVolumeAdaptation.cxx against mmg3d, where a program of this
-name, mmg3d_O3, is on the path; its gradation of the metric is switched off. Its time is that of the process.
+name, mmg3d_O3, is on the path; its gradation of the metric is switched off. Its time is the user time of the process.
 """
 
 import argparse

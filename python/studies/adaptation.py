@@ -26,7 +26,7 @@ CUBE_SIZES, SMALL_CUBE_SIZES = (4, 8, 12), (2, 4)
 ITERATIONS = 3
 LARGEST_SIZE = 0.5  # which leaves the coarsest meshes free
 TOLERANCE = 1e-10  # relative, of the linear systems
-#: Exponents are fitted to so many of the finest meshes.
+#: The number of finest meshes that an exponent is fitted to.
 FITTED = 3
 #: Difference from an exponent that counts as none.
 RATE_TOLERANCE = 0.1

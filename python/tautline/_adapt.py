@@ -453,7 +453,7 @@ def add_commands(commands: Any) -> None:
     parser.add_argument("--iterations", type=int, default=5, metavar="N", help="number of adaptations (default: 5)")
     parser.add_argument("--field", metavar="ARRAY", help="point array to adapt to (default: the solution)")
     parser.add_argument("--elements", type=_commands.numbers, metavar="N[,N...]",
-                        help="target number of elements, or one per iteration (default: that of the mesh)")  # fmt: skip
+                        help="number of elements, or one per iteration (default: as many as the mesh has)")  # fmt: skip
     parser.add_argument("--growth", type=float, default=1.0, metavar="X",
                         help="factor of the target from one iteration to the next (default: 1)")  # fmt: skip
     parser.add_argument("--error", type=float, metavar="X", help="target of the interpolation error, not of elements")
