@@ -2,8 +2,8 @@
 #include "FoamFileAdapter.h"
 
 #include "ArrayIndex.h"
-#include "MeshPart.h"
 #include "MeshFileAdapter.h"
+#include "MeshPart.h"
 #include "VtkCompatibility.h"
 
 #include "vtkCellArray.h"

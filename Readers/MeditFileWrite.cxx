@@ -2,8 +2,8 @@
 #include "MeditFile.h"
 
 #include "FileNames.h"
-#include "TextCursor.h"
 #include "FileSet.h"
+#include "TextCursor.h"
 
 #include <algorithm>
 #include <array>

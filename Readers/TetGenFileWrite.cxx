@@ -2,8 +2,8 @@
 #include "TetGenFile.h"
 
 #include "FileNames.h"
-#include "TextCursor.h"
 #include "FileSet.h"
+#include "TextCursor.h"
 
 #include <algorithm>
 #include <array>

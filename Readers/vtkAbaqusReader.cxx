@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkAbaqusReader.h"
 
-#include "FileNames.h"
 #include "AbaqusFile.h"
+#include "FileNames.h"
 #include "TextCursor.h"
 
 #include "vtkObjectFactory.h"

@@ -74,8 +74,8 @@
 #define vtkFieldTransfer_h
 
 #include "TautlineAdaptationModule.h" // for export macro
+#include "vtkTautlineSetRange.h"      // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
-#include "vtkTautlineSetRange.h" // for the setters
 
 #include <string> // for the names of arrays
 #include <vector> // for the names of arrays

@@ -68,8 +68,8 @@
 #define vtkMeshMetric_h
 
 #include "TautlineAdaptationModule.h" // for export macro
+#include "vtkTautlineSetRange.h"      // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
-#include "vtkTautlineSetRange.h" // for the setters
 
 #include <limits> // for the range of Norm
 #include <string> // for ArrayName

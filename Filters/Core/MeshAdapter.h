@@ -18,8 +18,8 @@
 #include "TautlineCoreModule.h" // for export macro
 
 #include "tautline/Mesh/CellOrder.h"
-#include "tautline/Mesh/CollapsedCells.h"
 #include "tautline/Mesh/CoincidentPoints.h"
+#include "tautline/Mesh/CollapsedCells.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Mesh/Mesh.h"
 #include "tautline/Mesh/PointCopies.h"

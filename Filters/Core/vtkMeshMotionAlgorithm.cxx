@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMeshMotionAlgorithm.h"
 
-#include "Blocks.h"
 #include "BlockSeams.h"
+#include "Blocks.h"
 #include "GatheredExecution.h"
 #include "LayerMesh.h"
 #include "MovableMesh.h"

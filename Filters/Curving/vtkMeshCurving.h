@@ -62,8 +62,8 @@
 #define vtkMeshCurving_h
 
 #include "TautlineCurvingModule.h" // for export macro
+#include "vtkTautlineSetRange.h"   // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
-#include "vtkTautlineSetRange.h" // for the setters
 
 #include <string> // for the notices
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WarpPieces.h"
 
-#include "Processes.h"
 #include "PieceMotion.h"
+#include "Processes.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Mesh/BoundaryParts.h"
 #include "tautline/Mesh/Ranks.h"

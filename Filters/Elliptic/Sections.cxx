@@ -7,23 +7,23 @@
 
 #include "vtkAppendPolyData.h"
 #include "vtkBoundingBox.h"
+#include "vtkCell.h"
 #include "vtkCellData.h"
 #include "vtkCellType.h"
-#include "vtkCell.h"
-#include "vtkIdList.h"
-#include "vtkPoints.h"
-#include "vtkTetra.h"
-#include "vtkUnsignedCharArray.h"
 #include "vtkCompositeDataIterator.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkCutter.h"
 #include "vtkDataArray.h"
 #include "vtkDataSet.h"
+#include "vtkIdList.h"
 #include "vtkNew.h"
 #include "vtkPlane.h"
 #include "vtkPointData.h"
+#include "vtkPoints.h"
 #include "vtkPolyData.h"
 #include "vtkSmartPointer.h"
+#include "vtkTetra.h"
+#include "vtkUnsignedCharArray.h"
 
 #include <algorithm>
 #include <array>

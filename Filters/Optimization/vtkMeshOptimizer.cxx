@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMeshOptimizer.h"
 
-#include "CurvedRun.h"
-#include "PolyhedralMesh.h"
 #include "BeforeAfter.h"
 #include "ContentStamp.h"
+#include "CurvedRun.h"
 #include "GatheredExecution.h"
 #include "IterationHistory.h"
 #include "OptimizerSetup.h"
+#include "PolyhedralMesh.h"
 #include "Processes.h"
 #include "ProgressStep.h"
 

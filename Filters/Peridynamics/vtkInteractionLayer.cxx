@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkInteractionLayer.h"
 
-#include "HorizonInput.h"
 #include "GatheredExecution.h"
+#include "HorizonInput.h"
 #include "ProgressStep.h"
 #include "ValidateInput.h"
 

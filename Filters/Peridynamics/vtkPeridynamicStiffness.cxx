@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkPeridynamicStiffness.h"
 
+#include "GatheredExecution.h"
 #include "HorizonInput.h"
 #include "PeridynamicOutput.h"
 #include "PointMerge.h"
-#include "GatheredExecution.h"
 #include "ProcessGroup.h"
 
 #include "tautline/Peridynamics/PeridynamicSolve.h"

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkMeshPerturbation.h"
 
+#include "BlockSeams.h"
 #include "Blocks.h"
 #include "CurvedPerturbation.h"
-#include "BlockSeams.h"
+#include "GatheredExecution.h"
 #include "MeshAdapter.h"
 #include "MovableMesh.h"
 #include "PointMerge.h"
-#include "GatheredExecution.h"
 #include "tautline/Mesh/CoordinateOrder.h"
 #include "tautline/Perturbation/Perturb.h"
 

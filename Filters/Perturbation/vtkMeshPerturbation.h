@@ -76,8 +76,8 @@
 #define vtkMeshPerturbation_h
 
 #include "TautlinePerturbationModule.h" // for export macro
+#include "vtkTautlineSetRange.h"        // for the setters
 #include "vtkTautlineTimedAlgorithm.h"
-#include "vtkTautlineSetRange.h" // for the setters
 
 #include <string> // for the notices
 

@@ -2,8 +2,8 @@
 #include "vtkMeshComparison.h"
 
 #include "Blocks.h"
-#include "GatheredExecution.h"
 #include "FaceQuality.h"
+#include "GatheredExecution.h"
 #include "MeshAdapter.h"
 #include "MetricSelection.h"
 #include "ProgressStep.h"

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "vtkSilhouetteMesher.h"
 
+#include "GatheredExecution.h"
 #include "Processes.h"
 #include "ProgressStep.h"
 #include "ShapeAdapter.h"
-#include "GatheredExecution.h"
 #include "ValidateInput.h"
 #include "tautline/Core/Memory.h"
 

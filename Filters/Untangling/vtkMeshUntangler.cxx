@@ -8,8 +8,8 @@
 #include "IterationHistory.h"
 #include "MovableMesh.h"
 #include "PolyhedralMesh.h"
-#include "ProgressStep.h"
 #include "Processes.h"
+#include "ProgressStep.h"
 #include "tautline/Curved/UntangleCurved.h"
 #include "tautline/Untangling/Untangle.h"
 

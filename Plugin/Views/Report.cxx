@@ -4,8 +4,8 @@
 #include "FetchOutput.h"
 
 #include "pqApplicationCore.h"
-#include "pqOutputPort.h"
 #include "pqDataRepresentation.h"
+#include "pqOutputPort.h"
 #include "pqPipelineSource.h"
 #include "pqProxy.h"
 #include "pqRenderView.h"

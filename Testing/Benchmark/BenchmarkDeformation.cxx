@@ -13,9 +13,9 @@
 //                          prescribed points by plain formulas, see Anchors.h
 
 #include "../../Filters/Core/MeshAdapter.h"
-#include "../Cxx/VtkMeshes.h"
 #include "../Cxx/Blocks.h"
 #include "../Cxx/Deformation/LayeredMeshes.h"
+#include "../Cxx/VtkMeshes.h"
 #include "Anchors.h"
 #include "Clocks.h"
 

@@ -4,8 +4,8 @@
 //
 // usage: BenchmarkPeridynamics [N [TURNS]]
 
-#include "tautline/Solvers/Lanczos.h"
 #include "tautline/Peridynamics/Peridynamics.h"
+#include "tautline/Solvers/Lanczos.h"
 
 #include <algorithm>
 #include <chrono>

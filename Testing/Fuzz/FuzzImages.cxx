@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Images of arbitrary bytes, lists of images, and the outline of arbitrary pixels.
 
-#include "Readers/MeshFileChecks.h"
 #include "FuzzTargets.h"
+#include "Readers/MeshFileChecks.h"
 
 #include "tautline/Shapes/Silhouette.h"
 

@@ -2,8 +2,8 @@
 // Elements and meshes of arbitrary numbers: finite metrics, statistics, points; no element becomes
 // inverted that was valid.
 
-#include "Meshes.h"
 #include "FuzzTargets.h"
+#include "Meshes.h"
 
 #include "tautline/Optimization/Optimize.h"
 #include "tautline/Quality/MetricField.h"

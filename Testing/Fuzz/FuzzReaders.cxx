@@ -2,8 +2,8 @@
 // Mesh files of arbitrary bytes: a reader returns a consistent mesh or throws FileError with the
 // name of the file; what it returns can be written, and reads back the same.
 
-#include "Readers/MeshFileChecks.h"
 #include "FuzzTargets.h"
+#include "Readers/MeshFileChecks.h"
 
 #include "AbaqusFile.h"
 #include "FoamCase.h"

@@ -4,8 +4,8 @@
 #include "Memory.h"
 
 #include <algorithm>
-#include <exception>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <numeric>
 

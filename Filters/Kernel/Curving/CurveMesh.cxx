@@ -4,10 +4,10 @@
 #include "CellPlans.h"
 #include "CurvedBoundary.h"
 #include "NodeNames.h"
-#include "tautline/Core/Interruption.h"
-#include "tautline/Mesh/CellOrder.h"
 #include "tautline/Boundary/GeometryMatch.h"
 #include "tautline/Boundary/SurfaceProjection.h"
+#include "tautline/Core/Interruption.h"
+#include "tautline/Mesh/CellOrder.h"
 
 #include <algorithm>
 #include <limits>

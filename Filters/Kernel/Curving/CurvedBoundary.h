@@ -7,8 +7,8 @@
 #ifndef tautline_CurvedBoundary_h
 #define tautline_CurvedBoundary_h
 
-#include "tautline/Mesh/Features.h"
 #include "tautline/Boundary/SurfaceModel.h"
+#include "tautline/Mesh/Features.h"
 
 #include <vector>
 

@@ -7,8 +7,8 @@
 #ifndef tautline_WarpBatches_h
 #define tautline_WarpBatches_h
 
-#include "tautline/Core/Parallel.h"
 #include "WarpControl.h"
+#include "tautline/Core/Parallel.h"
 
 namespace tautline
 {

@@ -7,8 +7,8 @@
 #ifndef tautline_WarpControl_h
 #define tautline_WarpControl_h
 
-#include "tautline/Core/Stopwatch.h"
 #include "WarpOptions.h"
+#include "tautline/Core/Stopwatch.h"
 #include "tautline/Mesh/Ranks.h"
 
 #include <algorithm>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "WarpStep.h"
 
-#include "tautline/Quality/Targets.h"
-#include "tautline/Untangling/Untangle.h"
 #include "WarpCoefficients.h"
 #include "WarpElastic.h"
 #include "WarpPointwise.h"
 #include "tautline/Optimization/Optimize.h"
+#include "tautline/Quality/Targets.h"
+#include "tautline/Untangling/Untangle.h"
 
 namespace tautline
 {

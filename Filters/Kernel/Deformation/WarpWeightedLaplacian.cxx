@@ -2,8 +2,8 @@
 #include "WarpPointwise.h"
 
 #include "WarpBatches.h"
-#include "WarpSystem.h"
 #include "WarpParts.h"
+#include "WarpSystem.h"
 #include "tautline/Core/EigenCompatibility.h"
 #include "tautline/Core/LineSearch.h"
 #include "tautline/Core/UnionFind.h"

@@ -3,9 +3,9 @@
 
 #include "FacetTable.h"
 
-#include <cmath>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string>
 
 namespace tautline

@@ -7,8 +7,8 @@
 #ifndef tautline_PointDivision_h
 #define tautline_PointDivision_h
 
-#include "tautline/Core/RankGroup.h"
 #include "tautline/Core/BisectionTree.h"
+#include "tautline/Core/RankGroup.h"
 
 namespace tautline
 {

@@ -17,8 +17,8 @@
 #define tautline_BlockJacobiMultigrid_h
 
 #include "Aggregation.h"
-#include "Multigrid.h"
 #include "MatrixRows.h"
+#include "Multigrid.h"
 
 namespace tautline
 {

@@ -7,8 +7,8 @@
 #ifndef tautline_ElementFunction_h
 #define tautline_ElementFunction_h
 
-#include "tautline/Quality/ElementSum.h"
 #include "Objective.h"
+#include "tautline/Quality/ElementSum.h"
 
 #include <limits>
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "LocalSweep.h"
 
-#include "tautline/Core/Parallel.h"
 #include "VertexOptimizer.h"
+#include "tautline/Core/Parallel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -8,9 +8,9 @@
 #ifndef tautline_OptimizationProblem_h
 #define tautline_OptimizationProblem_h
 
-#include "tautline/Core/Stopwatch.h"
 #include "FlatParts.h"
 #include "LocalSweep.h"
+#include "tautline/Core/Stopwatch.h"
 #include "tautline/Objectives/MatrixRows.h"
 
 #include <memory>

@@ -3,14 +3,14 @@
 
 #include "AutomaticMethod.h"
 #include "HoldingSweeps.h"
-#include "tautline/Mesh/CoordinateFrame.h"
 #include "ImproveWorst.h"
 #include "LeaveSurface.h"
 #include "OptionChecks.h"
 #include "QualityGuard.h"
 #include "SlideWorst.h"
-#include "tautline/Quality/JudgedValues.h"
 #include "SurfaceSlides.h"
+#include "tautline/Mesh/CoordinateFrame.h"
+#include "tautline/Quality/JudgedValues.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include <algorithm>

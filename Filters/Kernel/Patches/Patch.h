@@ -11,9 +11,9 @@
 #ifndef tautline_Patch_h
 #define tautline_Patch_h
 
+#include "SimplexMesh.h"
 #include "tautline/Core/Packet.h"
 #include "tautline/Core/SmallCholesky.h"
-#include "SimplexMesh.h"
 
 #include <limits>
 

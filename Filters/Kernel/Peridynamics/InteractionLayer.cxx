@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "InteractionLayer.h"
 
+#include "PeridynamicsGeometry.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Random.h"
-#include "PeridynamicsGeometry.h"
 #include "tautline/Geometry/PlanarDelaunay.h"
 #include "tautline/Geometry/SegmentDistance.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// The discretization of the dissertation, section 4.3: low-order rules, cut triangles by their
 /// chords.
-#include "TriangleAssembler.h"
 #include "PeridynamicsKernel.h"
+#include "TriangleAssembler.h"
 
 #include <algorithm>
 

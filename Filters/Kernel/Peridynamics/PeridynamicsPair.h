@@ -7,8 +7,8 @@
 #ifndef tautline_PeridynamicsPair_h
 #define tautline_PeridynamicsPair_h
 
-#include "TriangleAssembler.h"
 #include "PeridynamicsKernel.h"
+#include "TriangleAssembler.h"
 
 namespace tautline
 {

@@ -3,9 +3,9 @@
  * @file Angles.cxx
  * @brief The distribution of the angles of a mesh, counted in batches without a single arc cosine.
  */
-#include "tautline/Mesh/CellBatch.h"
-#include "tautline/Core/Parallel.h"
 #include "Statistics.h"
+#include "tautline/Core/Parallel.h"
+#include "tautline/Mesh/CellBatch.h"
 
 namespace tautline
 {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "tautline/Mesh/FacetTable.h"
 #include "PointNumbering.h"
+#include "tautline/Mesh/FacetTable.h"
 
 #include "RankExchange.h"
 

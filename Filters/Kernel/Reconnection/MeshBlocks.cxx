@@ -2,9 +2,9 @@
 #include "MeshBlocks.h"
 
 #include "CuttingFrames.h"
-#include "tautline/Core/Parallel.h"
 #include "tautline/Core/BisectionTree.h"
 #include "tautline/Core/Interruption.h"
+#include "tautline/Core/Parallel.h"
 
 #include <limits>
 #include <numeric>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "Reconnection.h"
 
-#include "Constants.h"
 #include "BoundaryFreedom.h"
+#include "Constants.h"
 #include "MeshBlocks.h"
 #include "Obstacles.h"
 #include "PassPlan.h"

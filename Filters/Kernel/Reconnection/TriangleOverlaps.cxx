@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Areas that triangles of the output share with those of the input.
-#include "ReconnectionOutput.h"
 #include "Constants.h"
+#include "ReconnectionOutput.h"
 #include "TriangleInput.h"
 
 #include "tautline/Core/Parallel.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ShapeDynamicProgram.h"
 
+#include "ShapeEnergy.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Parallel.h"
-#include "ShapeEnergy.h"
 
 #include <algorithm>
 

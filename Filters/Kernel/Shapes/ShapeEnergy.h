@@ -9,8 +9,8 @@
 #ifndef tautline_ShapeEnergy_h
 #define tautline_ShapeEnergy_h
 
-#include "tautline/Core/PacketFloat.h"
 #include "ShapeModel.h"
+#include "tautline/Core/PacketFloat.h"
 
 namespace tautline
 {

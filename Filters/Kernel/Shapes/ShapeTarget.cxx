@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "ShapeTarget.h"
 
+#include "ShapeEnergy.h"
 #include "tautline/Core/Interruption.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/PacketFloat.h"
 #include "tautline/Core/Parallel.h"
-#include "ShapeEnergy.h"
 
 #include <algorithm>
 #include <cmath>

@@ -7,8 +7,8 @@
 #ifndef tautline_ImproveSliding_h
 #define tautline_ImproveSliding_h
 
-#include "CornerShape.h"
 #include "ConstrainedPoints.h"
+#include "CornerShape.h"
 
 #include <functional>
 

@@ -3,11 +3,11 @@
 
 #include "SolverOptions.h"
 
+#include "Tridiagonal.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Core/Random.h"
 #include "tautline/Core/Stopwatch.h"
-#include "Tridiagonal.h"
 
 #include <algorithm>
 #include <limits>

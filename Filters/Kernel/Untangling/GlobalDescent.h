@@ -8,10 +8,10 @@
 #ifndef tautline_GlobalDescent_h
 #define tautline_GlobalDescent_h
 
+#include "TangledMesh.h"
 #include "tautline/Core/LimitedMemory.h"
 #include "tautline/Core/SmallCholesky.h"
 #include "tautline/Patches/Energies.h"
-#include "TangledMesh.h"
 
 namespace tautline
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "RotationContinuation.h"
 
-#include "tautline/Core/UnionFind.h"
 #include "HarmonicMap.h"
+#include "tautline/Core/UnionFind.h"
 
 namespace tautline
 {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "TangledMesh.h"
 
+#include "LinearProgram.h"
 #include "tautline/Core/LineSearch.h"
 #include "tautline/Patches/Energies.h"
-#include "LinearProgram.h"
 
 namespace tautline
 {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Data sets of VTK through MeshAdapter: what is copied, what becomes of the cells, the messages.
+#include "MeshAdapter.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
-#include "MeshAdapter.h"
 #include "vtkDataSetAttributes.h"
 #include "vtkRectilinearGrid.h"
 #include "vtkStructuredGrid.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Core: disjoint sets, Cholesky factors, sums of vectors, the memory of L-BFGS, the stopwatch.
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 #include "tautline/Core/LimitedMemory.h"
 #include "tautline/Core/SmallCholesky.h"
 #include "tautline/Core/Stopwatch.h"

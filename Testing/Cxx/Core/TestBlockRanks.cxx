@@ -10,8 +10,8 @@
 #include "vtkConditionEstimator.h"
 #include "vtkElementQuality.h"
 #include "vtkEllipticSolver.h"
-#include "vtkSolverStudy.h"
 #include "vtkMPIController.h"
+#include "vtkSolverStudy.h"
 
 using namespace tautline;
 

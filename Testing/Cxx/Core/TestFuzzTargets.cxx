@@ -2,8 +2,8 @@
 // The targets of the fuzzers on their corpus, which holds every input that once failed, and on
 // seeded mutations of it for TAUTLINE_FUZZ_SECONDS (0.3 by default) each.
 
-#include "Registry.h"
 #include "Mutator.h"
+#include "Registry.h"
 #include "vtkObject.h"
 
 #include <filesystem>

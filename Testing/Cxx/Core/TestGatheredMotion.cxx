@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What Optimize Mesh gathers on the first process: the points are those of one process, the summary
 // states the reason on all processes, and what one process refuses all refuse.
-#include "Registry.h"
 #include "MotionRanks.h"
 #include "MovableMesh.h"
+#include "Registry.h"
 #include "Surfaces.h"
 #include "vtkMeshOptimizer.h"
 

@@ -14,9 +14,9 @@
 #include "vtkInterruption.h"
 #include "vtkMeshOptimizer.h"
 
-#include <thread>
 #include <csignal>
 #include <ctime>
+#include <thread>
 
 using namespace tautline;
 

@@ -2,14 +2,14 @@
 // Filters that move points, of pieces whose copies of a point have the same global id and places
 // that differ by rounding: seams move as those of one mesh, on processes, gathered on the first
 // one, and in one data set on one process.
-#include "Registry.h"
 #include "MotionRanks.h"
+#include "Registry.h"
+#include "vtkAppendFilter.h"
 #include "vtkMeshImprover.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
 #include "vtkMeshWarp.h"
-#include "vtkAppendFilter.h"
 
 using namespace tautline;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimize Mesh and Untangle Mesh on processes: points, tables and summaries are those of one
 // process, however the mesh is cut.
-#include "Registry.h"
 #include "CollapsedMeshes.h"
 #include "MotionRanks.h"
+#include "Registry.h"
 #include "tautline/Optimization/Optimize.h"
 #include "vtkMeshOptimizer.h"
 #include "vtkMeshUntangler.h"

@@ -11,9 +11,9 @@
 #include <csignal>
 #include <functional>
 #include <numeric>
-#include <thread>
 #include <sys/resource.h>
 #include <sys/wait.h>
+#include <thread>
 #include <unistd.h>
 
 using namespace tautline;

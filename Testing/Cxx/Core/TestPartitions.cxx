@@ -4,6 +4,7 @@
 // blocks and partitions in messages. Python-partitions-on-ranks has several processes.
 #include "Registry.h"
 #include "Seams.h"
+#include "vtkCompositeDataIterator.h"
 #include "vtkElementQuality.h"
 #include "vtkMeshComparison.h"
 #include "vtkMeshImprover.h"
@@ -11,7 +12,6 @@
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
 #include "vtkMeshWarp.h"
-#include "vtkCompositeDataIterator.h"
 #include "vtkMultiPieceDataSet.h"
 #include "vtkPartitionedDataSet.h"
 #include "vtkPartitionedDataSetCollection.h"

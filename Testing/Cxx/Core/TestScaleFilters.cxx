@@ -3,6 +3,7 @@
 // ordinary size, or an error or a warning names the problem and the remedy.
 #include "Registry.h"
 #include "VtkMeshes.h"
+#include "tautline/Optimization/OptimizeOptions.h"
 #include "tautline/Perturbation/Perturb.h"
 #include "vtkConditionEstimator.h"
 #include "vtkElementQuality.h"
@@ -13,7 +14,6 @@
 #include "vtkMeshPerturbation.h"
 #include "vtkMeshUntangler.h"
 #include "vtkMeshWarp.h"
-#include "tautline/Optimization/OptimizeOptions.h"
 
 using namespace tautline;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Results are bitwise the same for any number of threads; sums over the mesh are what adding up its
 // cells gives, with the gradient that finite differences give.
-#include "Registry.h"
 #include "Blocks.h"
+#include "Registry.h"
 #include "tautline/Mesh/MeshElements.h"
 
 using namespace tautline;

@@ -2,9 +2,9 @@
 // What the check of VTK's data objects finds, and how it names it. What filters do with such data
 // is tested by TestHostileInput.
 #include "Registry.h"
-#include "VtkMeshes.h"
 #include "ValidateInput.h"
 #include "VtkCompatibility.h"
+#include "VtkMeshes.h"
 #include "tautline/Mesh/ArrayChecks.h"
 #include "vtkStructuredGrid.h"
 

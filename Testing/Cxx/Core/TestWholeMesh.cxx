@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One mesh of its pieces: the same whatever the pieces; with ghost cells, global ids, cracks and
 // points that only ghost cells have; images, surfaces; what cannot be put together.
-#include "Registry.h"
 #include "PointOrder.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 #include "WholeMesh.h"
 

@@ -2,8 +2,8 @@
 // Warp Mesh: the paths of transforms, steps along them, and which part of the boundary they move.
 #include "Registry.h"
 #include "WarpingMeshes.h"
-#include "tautline/Mesh/BoundaryParts.h"
 #include "tautline/Deformation/PointMotion.h"
+#include "tautline/Mesh/BoundaryParts.h"
 #include "vtkStreamingDemandDrivenPipeline.h"
 #include "vtkTransform.h"
 

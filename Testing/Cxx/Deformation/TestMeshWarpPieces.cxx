@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh on processes, each with its piece: every method and choice of coefficients moves the
 // points as one process does, however the mesh is cut, and nothing is put together.
-#include "Registry.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
+#include "Registry.h"
 #include "WarpingRanks.h"
 #include "tautline/Deformation/Warp.h"
 #include "tautline/Mesh/Ranks.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Warp Mesh on several processes: a distributed mesh moves as it does on one process.
-#include "Registry.h"
 #include "Processes.h"
+#include "Registry.h"
 #include "WarpingMeshes.h"
 #include "vtkMPIController.h"
 

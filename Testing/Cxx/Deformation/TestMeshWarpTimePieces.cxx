@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Motions over time of Warp Mesh on processes: each keeps its piece, and the points are those of
 // one process, from the first time step or from the one before, whatever the order of the requests.
-#include "Registry.h"
 #include "MovingPieces.h"
+#include "Registry.h"
 #include "vtkCommand.h"
 #include "vtkPassThrough.h"
 

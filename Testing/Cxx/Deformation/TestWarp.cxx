@@ -2,8 +2,8 @@
 // FEMWARP and its anisotropic forms: the propositions of section 4.9.1, the coefficients, the
 // limits in which they vanish, and what is kept for the next boundary position.
 
-#include "Registry.h"
 #include "../../Benchmark/KuhnMesh.h"
+#include "Registry.h"
 #include "Warping.h"
 #include "tautline/Elliptic/FiniteElements.h"
 

@@ -7,8 +7,8 @@
 #include "VtkMeshes.h"
 #include "vtkConditionEstimator.h"
 #include "vtkEllipticSolver.h"
-#include "vtkSolverStudy.h"
 #include "vtkMPIController.h"
+#include "vtkSolverStudy.h"
 
 using namespace tautline;
 

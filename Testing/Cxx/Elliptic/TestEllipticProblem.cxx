@@ -4,8 +4,8 @@
 // threads, whatever is refused.
 #include "Blocks.h"
 #include "Registry.h"
-#include "tautline/Elliptic/ErrorNorms.h"
 #include "tautline/Elliptic/EllipticSystem.h"
+#include "tautline/Elliptic/ErrorNorms.h"
 
 using namespace tautline;
 

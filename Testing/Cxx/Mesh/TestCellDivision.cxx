@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells that ranks send each other: each goes to one rank, with its points, and so do ghosts;
 // values go to the parts and back to the pieces.
-#include "Registry.h"
 #include "MovingRanks.h"
+#include "Registry.h"
 
 #include "tautline/Mesh/CellDivision.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points at the same place on the seams of meshes in pieces: which are one, and which stay apart.
 // Duplicate cells, and the boundary of meshes that have some.
-#include "Registry.h"
 #include "Pieces.h"
+#include "Registry.h"
 #include "tautline/Core/CountingSort.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Mesh/CoincidentPoints.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is derived from a mesh: dimension and plane, boundary, adjacency; rejected meshes.
-#include "Registry.h"
 #include "Blocks.h"
+#include "Registry.h"
 
 using namespace tautline;
 

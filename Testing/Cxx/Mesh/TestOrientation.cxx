@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Which way round the cells are listed: consistently, all reversed, or mixed, which tangled is not.
-#include "Registry.h"
 #include "Blocks.h"
+#include "Registry.h"
 #include "tautline/Mesh/CellOrder.h"
 
 using namespace tautline;

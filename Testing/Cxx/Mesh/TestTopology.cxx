@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The tables of the cell types, and every metric on the ideal cell of each.
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

@@ -2,8 +2,8 @@
 // Random meshes of all cell types through the filter Optimize Mesh, with every preset and boundary,
 // in single and double precision, listed in both orders, near and far from the origin: what is
 // written is not worse than the input, and the numbers reported are those of what is written.
-#include "Registry.h"
 #include "NeverWorse.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 #include "vtkMeshOptimizer.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points that slide on flat and straight parts of a boundary, moved all at once by Newton's method.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "tautline/Mesh/BoundaryShape.h"
 #include "tautline/Mesh/Features.h"
 #include "tautline/Optimization/FlatParts.h"

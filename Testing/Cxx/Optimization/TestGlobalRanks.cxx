@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimizers that move all points at once, on ranks: the result does not depend on how the mesh is
 // cut, and is as good as that of one process in its own order.
-#include "Registry.h"
 #include "OptimizingRanks.h"
+#include "Registry.h"
 #include "StretchedMeshes.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Untangling/Untangle.h"

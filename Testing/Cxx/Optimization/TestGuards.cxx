@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What became worse goes back to where it was, element by element: what that makes worse in turn
 // follows. After 20 rounds everything goes back.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Optimization/QualityGuard.h"
 

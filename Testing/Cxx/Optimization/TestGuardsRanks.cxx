@@ -2,8 +2,8 @@
 // Never worse on ranks: where an objective makes the worst element worse than all of the input, it
 // is improved, as on one process; where there is no time for that, points about it go back to the
 // input. The same however the mesh is cut.
-#include "Registry.h"
 #include "OptimizingRanks.h"
+#include "Registry.h"
 #include "tautline/Quality/UserMetric.h"
 
 using namespace tautline;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Meshes whose harmonic map, from which Automatic starts, is a saddle of the objective: the
 // gradient vanishes there by symmetry, and methods that start elsewhere get lower.
-#include "Registry.h"
 #include "../Blocks.h"
 #include "Optimizing.h"
+#include "Registry.h"
 
 using namespace tautline;
 

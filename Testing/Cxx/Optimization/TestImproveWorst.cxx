@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Rounds that improve the worst element: each that counts improves it, costs the mean no more than
 // allowed and inverts nothing; the points are those of the last such round.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "tautline/Core/Stopwatch.h"
 #include "tautline/Optimization/ImproveWorst.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Points on interfaces of regions slide on these: they keep their shape in one run and in several,
 // within the surface tolerance.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "SurfaceDistance.h"
 #include "VtkMeshes.h"
 #include "tautline/Mesh/Features.h"

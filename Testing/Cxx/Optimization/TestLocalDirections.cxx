@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The directions in which the local optimizers move a vertex.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 
 using namespace tautline;
 

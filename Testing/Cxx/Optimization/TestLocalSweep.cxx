@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // One sweep over the vertices: the objective it returns is that of the mesh, the gradient that of
 // the objective; after it only the vertices that moved and their neighbours are visited.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "tautline/Optimization/LocalSweep.h"
 #include "tautline/Patches/SimplexMesh.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Two thousand random meshes of all cell types, valid and tangled, with every preset and boundary:
 // neither the number of invalid elements, nor the worst element, nor the objective gets worse.
-#include "Registry.h"
 #include "NeverWorse.h"
+#include "Registry.h"
 #include "tautline/Mesh/BoundaryShape.h"
 
 using namespace tautline;

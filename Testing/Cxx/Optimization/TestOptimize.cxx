@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The optimizer: minima, invariances, objectives, stopping, faulty input.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "tautline/Optimization/SweepControl.h"
 
 #include <cstring>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the optimizer must keep: fixed points, limits, planes, lines, surfaces.
-#include "Registry.h"
 #include "Optimizing.h"
-#include "tautline/Patches/SimplexMesh.h"
+#include "Registry.h"
 #include "tautline/Boundary/SurfaceProjection.h"
+#include "tautline/Patches/SimplexMesh.h"
 
 #include <cstring>
 

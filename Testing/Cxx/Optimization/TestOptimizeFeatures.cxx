@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimization keeps the features of surfaces and the smooth shape between them.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "Surfaces.h"
 #include "tautline/Boundary/GeometryMatch.h"
 #include "tautline/Mesh/Features.h"

@@ -2,8 +2,8 @@
 // Where no point is held, neither the shape of the elements nor the objective depends on where the
 // mesh is: it stays where it was, by each method; and where it is does not depend on the number of
 // ranks.
-#include "Registry.h"
 #include "OptimizingRanks.h"
+#include "Registry.h"
 
 #include <cstdio>
 

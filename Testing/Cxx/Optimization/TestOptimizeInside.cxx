@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Hexahedra and wedges stay valid between their corners when a mesh is optimized, and become so
 // when it is untangled.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "tautline/Untangling/Untangle.h"
 
 using namespace tautline;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Limits on the way of points: kept, and no stop short of the minimum within them.
-#include "Registry.h"
 #include "OptimizingRanks.h"
+#include "Registry.h"
 #include "StretchedMeshes.h"
 
 #include "tautline/Mesh/BoundaryShape.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Optimization and untangling on ranks: the points do not depend on how the mesh is cut, and are as
 // good as those of one process in its own order.
-#include "Registry.h"
 #include "OptimizingRanks.h"
+#include "Registry.h"
 #include "tautline/Untangling/Untangle.h"
 
 using namespace tautline;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is prepared before an optimization and measured after it: the same for any number of
 // threads, and what is handed on is what would be measured anew.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "tautline/Core/CountingSort.h"
 #include "tautline/Mesh/BoundaryPoints.h"
 #include "tautline/Patches/SimplexMesh.h"

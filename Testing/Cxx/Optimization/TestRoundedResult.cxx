@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What rounded points of a result break is found on ranks as on one process, however the mesh is
 // cut.
-#include "Registry.h"
 #include "OptimizingRanks.h"
+#include "Registry.h"
 #include "tautline/Optimization/RoundedResult.h"
 
 using namespace tautline;

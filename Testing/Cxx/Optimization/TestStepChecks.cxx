@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Steps of one vertex that are shortened or refused: before an element inverts, and where the way
 // back to a surface would invert, fold, turn over or worsen the elements.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "tautline/Optimization/LocalSweep.h"
 #include "tautline/Patches/SimplexMesh.h"
 

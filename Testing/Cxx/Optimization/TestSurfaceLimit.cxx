@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A boundary whose points slide stays within a distance of where it was, and the other way round;
 // so does one whose points may leave it to improve the worst elements.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "SurfaceDistance.h"
 #include "Surfaces.h"
 #include "VtkMeshes.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The worst tetrahedron by its smallest dihedral angle: never worse whatever the preset, and better
 // with the preset for it, of the kernel and of the filter. The angles are computed here.
-#include "Registry.h"
 #include "Optimizing.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 #include "vtkMeshOptimizer.h"
 

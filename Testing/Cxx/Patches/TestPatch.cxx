@@ -2,10 +2,10 @@
 // Simplices, patches and energies against the metrics and against differences.
 #include "Blocks.h"
 #include "Registry.h"
-#include "tautline/Patches/Energies.h"
-#include "tautline/Mesh/BoundaryPoints.h"
-#include "tautline/Patches/SimplexMesh.h"
 #include "tautline/Boundary/SurfaceProjection.h"
+#include "tautline/Mesh/BoundaryPoints.h"
+#include "tautline/Patches/Energies.h"
+#include "tautline/Patches/SimplexMesh.h"
 
 using namespace tautline;
 

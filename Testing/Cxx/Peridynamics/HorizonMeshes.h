@@ -9,8 +9,8 @@
 
 #include "Meshes.h"
 
-#include "tautline/Solvers/Lanczos.h"
 #include "tautline/Peridynamics/Peridynamics.h"
+#include "tautline/Solvers/Lanczos.h"
 
 namespace tautline
 {

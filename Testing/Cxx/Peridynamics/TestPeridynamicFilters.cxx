@@ -5,8 +5,8 @@
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "vtkDomainSource.h"
-#include "vtkInteractionLayer.h"
 #include "vtkHorizonNeighbors.h"
+#include "vtkInteractionLayer.h"
 #include "vtkPeridynamicStiffness.h"
 
 using namespace tautline;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nonlocal matrix and the strains do not depend on the order of points, triangles and corners.
-#include "Registry.h"
 #include "HorizonMeshes.h"
+#include "Registry.h"
 #include "tautline/Peridynamics/Dilatation.h"
 
 using namespace tautline;

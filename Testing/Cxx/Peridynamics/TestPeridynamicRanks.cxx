@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Nonlocal matrices assembled by ranks that are threads: those of one rank, bitwise; what is wrong
 // on one rank, and what stops one, ends all.
-#include "Registry.h"
 #include "HorizonMeshes.h"
+#include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Core/Interruption.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Preconditioners of nonlocal systems: the local limit in numbers, what B is, the same solutions,
 // iterations bounded in h, delta and p in the range of Tables 4.1 to 4.3 and beyond.
-#include "Registry.h"
 #include "HorizonMeshes.h"
+#include "Registry.h"
 #include "tautline/Peridynamics/LocalLimit.h"
 #include "tautline/Peridynamics/PeridynamicSolve.h"
 

@@ -2,8 +2,8 @@
 // Condition numbers of Tables 4.1 to 4.3 (h = 0.1 and 0.05) in both discretizations, against the
 // printed values and against the columns and references of an independent prototype; what the
 // text's own rules give; that unstructured meshes converge to the same limits.
-#include "Registry.h"
 #include "HorizonMeshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

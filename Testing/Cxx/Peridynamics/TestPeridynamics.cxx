@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The nonlocal matrices: formulas, symmetry, definiteness, null spaces, the local limit, kernels,
 // threads, refusals; their interaction layer, disc, eigenvalues and solver.
-#include "Registry.h"
 #include "HorizonMeshes.h"
+#include "Registry.h"
 #include "tautline/Peridynamics/InteractionLayer.h"
 
 using namespace tautline;

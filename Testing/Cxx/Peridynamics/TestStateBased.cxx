@@ -2,8 +2,8 @@
 // The linear ordinary state-based model: patch tests with the moduli of Hooke's law, energy and
 // forces against a sum over points, the bond-based model at its Poisson's ratio, the local limit,
 // definiteness, scales, threads; bonds that are cut at holes and cracks.
-#include "Registry.h"
 #include "HorizonMeshes.h"
+#include "Registry.h"
 #include "tautline/Peridynamics/Dilatation.h"
 #include "tautline/Peridynamics/InteractionLayer.h"
 #include "tautline/Peridynamics/LocalLimit.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the plugin does when it is loaded, as far as it needs no ParaView.
-#include "Registry.h"
 #include "ColorMaps.h"
+#include "Registry.h"
 #include "VersionCheck.h"
 
 #include <limits>

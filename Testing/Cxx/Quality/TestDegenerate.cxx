@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Elements no metric is made for: flat, collapsed, not finite, enormous and tiny. Each is flagged,
 // its values and gradients are finite, and where a metric is singular its value is 0.
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

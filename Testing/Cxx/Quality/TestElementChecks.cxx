@@ -7,8 +7,8 @@
 
 #include "tautline/Quality/ElementChecks.h"
 
-#include "vtkCellType.h"
 #include "vtkCellData.h"
+#include "vtkCellType.h"
 #include "vtkElementQuality.h"
 
 #include <map>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Random cells with random, repeated, enormous, tiny and non-finite coordinates, and random views:
 // never a crash, never a NaN, and what a cell gets does not depend on the cells beside it.
-#include "Registry.h"
 #include "Blocks.h"
+#include "Registry.h"
 #include "Sanitized.h"
 #include "tautline/Quality/Statistics.h"
 

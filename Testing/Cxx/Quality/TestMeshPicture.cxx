@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 /// Pictures of meshes: where cells are, which are in front, which are seen through others.
-#include "Registry.h"
 #include "MeshPicture.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

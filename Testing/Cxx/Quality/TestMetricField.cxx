@@ -4,8 +4,8 @@
 #include "Registry.h"
 #include "VtkMeshes.h"
 #include "tautline/Quality/MetricField.h"
-#include "vtkMetricField.h"
 #include "vtkContourFilter.h"
+#include "vtkMetricField.h"
 
 using namespace tautline;
 

@@ -6,8 +6,8 @@
 // and so do the central ones with one and two steps. Where they do not, a kink (another edge, angle
 // or corner becomes the extreme one) lies within the stencil and differences mean nothing: that
 // component is skipped, and skips are counted and limited.
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Published values of particular elements, and identities that tie the metrics to each other.
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

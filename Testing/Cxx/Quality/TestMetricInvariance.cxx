@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What must not change a value: moving, turning, renumbering, scaling; and what a mirror must do.
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The facts of the registry, checked against the values of the metrics: names, ranges, direction,
 // barrier, differentiability, and the options that are refused.
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 #include <sstream>
 

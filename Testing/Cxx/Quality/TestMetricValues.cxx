@@ -2,9 +2,9 @@
 // A second evaluation of the metrics of whole cells, in plain double precision and as the
 // literature states them: circumcentres, signed sizes by quadrature, angles by arc cosine.
 // TestTargetValues has the metrics of T = A W^-1.
-#include "Registry.h"
 #include "Matrix.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cells of extreme size: metrics without a unit do not depend on it, to the last bit for powers of
 // two; those with a unit or relative to a target follow it, or are counted as beyond the range.
-#include "Registry.h"
 #include "Blocks.h"
+#include "Registry.h"
 #include "tautline/Mesh/CoordinateFrame.h"
 #include "tautline/Quality/Statistics.h"
 

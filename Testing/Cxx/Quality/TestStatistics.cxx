@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Summaries of a metric against sums done by hand and by brute force.
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 #include "tautline/Quality/Statistics.h"
 
 using namespace tautline;

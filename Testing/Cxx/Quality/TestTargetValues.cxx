@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A second evaluation of the metrics of T = A W^-1, one corner at a time in plain double precision,
 // from the matrix form the literature gives: |T - T^-t|^2 with an inverse, not with invariants.
-#include "Registry.h"
 #include "Matrix.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Targets: an element that is its target has every target metric's ideal value, and only then.
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 
 using namespace tautline;
 

@@ -3,10 +3,10 @@
 // every type, linear and of higher order. The wedge is the one to watch: in VTK's linear and
 // quadratic wedges the corners 0 1 2 are counter-clockwise seen from outside, in its Lagrange and
 // Bezier wedges from inside.
-#include "Registry.h"
-#include "VtkMeshes.h"
 #include "MeshAdapter.h"
+#include "Registry.h"
 #include "VtkCompatibility.h"
+#include "VtkMeshes.h"
 #include "vtkCellSizeFilter.h"
 #include "vtkCellTypeSource.h"
 #include "vtkCellValidator.h"

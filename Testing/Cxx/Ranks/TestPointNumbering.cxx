@@ -7,8 +7,8 @@
 #include "tautline/Elliptic/EllipticSystem.h"
 #include "tautline/Solvers/ConditionEstimate.h"
 
-#include <mpi.h>
 #include <limits>
+#include <mpi.h>
 #include <set>
 
 using namespace tautline;

@@ -2,8 +2,8 @@
 // Cases of OpenFOAM: whole, decomposed and in pieces, as data sets of VTK, and their points written
 // back.
 
-#include "Readers/FoamSamples.h"
 #include "FoamCase.h"
+#include "Readers/FoamSamples.h"
 #include "Registry.h"
 
 #include "vtkCellArray.h"

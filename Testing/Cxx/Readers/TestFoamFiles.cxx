@@ -2,10 +2,10 @@
 // Files of OpenFOAM's meshes: all forms give the same mesh, cells get the types of VTK, and what is
 // wrong is an error that names file and line.
 
-#include "Readers/FoamSamples.h"
 #include "FoamFileAdapter.h"
 #include "FoamMesh.h"
 #include "FoamPoints.h"
+#include "Readers/FoamSamples.h"
 #include "Registry.h"
 
 #include "vtkCell.h"

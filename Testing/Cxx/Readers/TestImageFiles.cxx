@@ -2,9 +2,9 @@
 // Image files: every format is read with the pixels that were written; a file that is cut anywhere,
 // damaged, of another kind or no file at all is an error that names it, also in a folder.
 
+#include "MeshFileChecks.h"
 #include "Registry.h"
 #include "VtkMeshes.h"
-#include "MeshFileChecks.h"
 #include "vtkCommand.h"
 #include "vtkImageFileReader.h"
 #include "vtkSilhouetteSetReader.h"

@@ -2,8 +2,8 @@
 // Malformed files: the message names file, line and problem. Sets with files of two writes are
 // refused. (Mutations of samples: TestFuzzTargets.)
 
-#include "Registry.h"
 #include "MeshFileChecks.h"
+#include "Registry.h"
 
 using namespace tautline;
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The parts that processes keep of a file make up the file, with the ghost cells around them.
 
-#include "Registry.h"
 #include "MeshFileChecks.h"
 #include "MeshPart.h"
+#include "Registry.h"
 #include "vtkCellData.h"
 #include "vtkDataArray.h"
 #include "vtkGmshReader.h"

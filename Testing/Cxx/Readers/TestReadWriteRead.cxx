@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Read-write-read is the identity, arrays and their types included, directly and through VTK.
 
-#include "Registry.h"
 #include "MeshFileAdapter.h"
 #include "MeshFileChecks.h"
+#include "Registry.h"
 #include "vtkCellArray.h"
 #include "vtkCellData.h"
 #include "vtkDataSetAttributes.h"

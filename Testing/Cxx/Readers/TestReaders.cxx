@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What is in the sample files arrives, with the documented array names.
 
-#include "Registry.h"
 #include "MeshFileChecks.h"
+#include "Registry.h"
 #include "tautline/Elements/JacobianCertifier.h"
 #include "tautline/Mesh/Mesh.h"
 #include "vtkCell.h"

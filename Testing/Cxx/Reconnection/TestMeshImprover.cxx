@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Improve Mesh: the kernel's result as a data set, data of points and cells, tables, refusals.
-#include "Registry.h"
 #include "Reconnecting.h"
+#include "Registry.h"
 #include "VtkMeshes.h"
 #include "vtkMeshImprover.h"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Reconnection of tetrahedra that are spread over ranks.
-#include "Registry.h"
 #include "Reconnecting.h"
+#include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Reconnection/ReconnectionRounds.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity(): what is kept, what improves, where the output follows from the input.
 
-#include "Registry.h"
 #include "Reconnecting.h"
+#include "Registry.h"
 #include "tautline/Optimization/Optimize.h"
 
 using namespace tautline;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What improveConnectivity() improves (objectives), what the boundary allows, and memory.
 
-#include "Registry.h"
 #include "Reconnecting.h"
+#include "Registry.h"
 #include "tautline/Core/Memory.h"
 #include "tautline/Core/Parallel.h"
 #include "tautline/Reconnection/FacetBound.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity() with input it refuses, and with input at the limits of what it takes.
 
-#include "Registry.h"
 #include "Reconnecting.h"
+#include "Registry.h"
 
 using namespace tautline;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity() for the worst values of a metric, and for the sum over all tetrahedra.
 
-#include "Registry.h"
 #include "Reconnecting.h"
+#include "Registry.h"
 
 using namespace tautline;
 

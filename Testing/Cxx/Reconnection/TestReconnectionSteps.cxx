@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // 200,000 accepted operations on changing meshes, all checked after each.
 
-#include "Registry.h"
 #include "ReconnectionSteps.h"
+#include "Registry.h"
 #include "tautline/Core/Random.h"
 
 using namespace tautline;

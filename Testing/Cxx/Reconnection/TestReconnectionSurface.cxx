@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // improveConnectivity() with a boundary that stays within a distance of that of the input.
 
-#include "Registry.h"
 #include "Reconnecting.h"
+#include "Registry.h"
 
 using namespace tautline;
 

@@ -2,8 +2,8 @@
 // The changing tetrahedral mesh and its operations: small known cases, brute force, and thousands
 // of random operations with all invariants checked after each.
 
-#include "Registry.h"
 #include "Reconnecting.h"
+#include "Registry.h"
 #include "tautline/Reconnection/CavityOperations.h"
 
 using namespace tautline;

@@ -2,8 +2,8 @@
 // Outlines: the same energy whatever the size, direction and mirroring; exact by comparison with a
 // program without bounds; a shape is nearest to itself; errors.
 
-#include "Registry.h"
 #include "Meshes.h"
+#include "Registry.h"
 #include "Shapes.h"
 #include "tautline/Shapes/OutlineMatch.h"
 

@@ -2,8 +2,8 @@
 // The filters of the module Shapes: the documented arrays and tables, images of all kinds, errors.
 
 #include "Registry.h"
-#include "VtkMeshes.h"
 #include "Shapes.h"
+#include "VtkMeshes.h"
 #include "vtkCommand.h"
 #include "vtkCompositeDataSet.h"
 #include "vtkFieldData.h"

@@ -7,8 +7,8 @@
 #include "tautline/Solvers/ConditionEstimate.h"
 
 #include <Eigen/Dense>
-#include <petscksp.h>
 #include <limits>
+#include <petscksp.h>
 
 using namespace tautline;
 

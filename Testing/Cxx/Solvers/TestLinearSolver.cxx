@@ -5,8 +5,8 @@
 #include "Systems.h"
 #include "tautline/Elliptic/EllipticSystem.h"
 
-#include <petscksp.h>
 #include <limits>
+#include <petscksp.h>
 #include <thread>
 
 using namespace tautline;

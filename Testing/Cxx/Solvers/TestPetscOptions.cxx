@@ -5,9 +5,9 @@
 #include "Systems.h"
 #include "tautline/Solvers/ConditionEstimate.h"
 
-#include <petscksp.h>
 #include <cstdio>
 #include <fstream>
+#include <petscksp.h>
 #include <unistd.h>
 
 using namespace tautline;

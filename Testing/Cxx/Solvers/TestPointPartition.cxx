@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // PT-Scotch divides the points of a mesh on MPI ranks: about as much work for each, short borders,
 // and owners that the ranks agree about.
-#include "Registry.h"
 #include "ProcessGroup.h"
 #include "Processes.h"
+#include "Registry.h"
 #include "ThreadRanks.h"
 #include "tautline/Solvers/GraphPartition.h"
 #include "vtkMPIController.h"

@@ -9,8 +9,8 @@
 #include "Surfaces.h"
 #include "VtkMeshes.h"
 #include "tautline/Core/Interruption.h"
-#include "tautline/Untangling/LinearProgram.h"
 #include "tautline/Perturbation/Perturb.h"
+#include "tautline/Untangling/LinearProgram.h"
 #include "tautline/Untangling/Untangle.h"
 
 #include <filesystem>

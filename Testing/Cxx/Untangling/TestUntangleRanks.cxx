@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Untangling on ranks: what fails on one rank only is an error on all of them, and none waits.
-#include "Registry.h"
 #include "Optimization/OptimizingRanks.h"
+#include "Registry.h"
 #include "tautline/Core/Memory.h"
 
 using namespace tautline;
