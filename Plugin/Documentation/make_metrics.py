@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """make_metrics.py [--write] [--pictures]: what is generated from the registry of metrics.
 
-The table of the help page metrics.html (from metrics.html.in) and the list of metrics that the panels include,
+The sections of the page metrics.md (from metrics.md.in, with the formulas of formulas.json) and the list of metrics that the panels include,
 ServerManager/Snippets/MetricDomain.xml. Without an option, compares and exits with 1 if they differ, if README.md
 has another number of metrics, or if a panel has a list of its own; --write writes them; --pictures draws
 metric_<name>.png with vtkMetricField.
@@ -9,6 +9,7 @@ Needs the package tautline: eval "$(./run env)" first.
 """
 
 import html
+import json
 import sys
 from pathlib import Path
 
@@ -34,11 +35,12 @@ def registry() -> list:
     return facts[: vtkElementQuality.GetNumberOfBuiltInMetrics()]
 
 
-# --- the help page ---------------------------------------------------------------------------------
+# --- the page --------------------------------------------------------------------------------------
 
 
 def text(value: str) -> str:
-    return html.escape(value, quote=False).replace("-inf", "&minus;&infin;").replace(" inf", " &infin;")
+    """A text in a cell of a table."""
+    return html.escape(value, quote=False).replace("-inf", "-∞").replace(" inf", " ∞").replace("|", "\\|")
 
 
 def by_dimension(metric: dict, name: str) -> str:
@@ -49,36 +51,60 @@ def by_dimension(metric: dict, name: str) -> str:
     return "<br>".join(f"{d}: {text(value)}" for d, value in values.items())
 
 
-def row(metric: dict) -> str:
+def table(head: list, rows: list) -> str:
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in [head, ["---"] * len(head), *rows]) + "\n"
+
+
+def overview(metrics: list) -> str:
+    """A row for each metric, with a link to its section."""
+    rows = [
+        [f"[{text(m['label'])}](#{m['name']})", f"`{m['name']}`", by_dimension(m, "acceptable"), by_dimension(m, "ideal"),
+         text(m["cell types"])]
+        for m in metrics
+    ]  # fmt: skip
+    return table(["Metric", "Array", "Acceptable", "Ideal", "Cells"], rows)
+
+
+def section(metric: dict, formula: str) -> str:
+    """Formula, source, picture and facts of a metric."""
     name = metric["name"]
-    also = f"<br>also {text(metric['aliases'].replace(',', ', '))}" if metric["aliases"] else ""
+    also = f", also {text(metric['aliases'].replace(',', ', '))}" if metric["aliases"] else ""
     unit = f", in {text(metric['unit'])}" if metric["unit"] else ""
-    facts = "<br>".join(
-        [
-            metric["direction"],
-            f"inverted: {metric['inverted']}",
-            f"barrier: {metric['barrier']}",
-            f"differentiable: {metric['differentiable']}",
-            f"scale-invariant: {metric['scale invariant']}",
-            f"rotation-invariant: {metric['rotation invariant']}",
-        ]
-    )
-    return f"""<tr>
-<td><a name="{name}"></a><img src="metric_{name}.png" alt="field of {name}"></td>
-<td><b>{text(metric["label"])}</b><br><code>{name}</code><br>{text(metric["symbol"])}{also}</td>
-<td>{text(metric["formula"])}<br><i>{text(metric["source"])}</i></td>
-<td>{metric["dimensions"]}<br>{metric["cell types"]}</td>
-<td>{by_dimension(metric, "full")}{unit}</td>
-<td>{by_dimension(metric, "acceptable")}</td>
-<td>{by_dimension(metric, "ideal")}</td>
-<td>{facts}</td>
-</tr>
-"""
+    facts = {
+        "Cells": f"{metric['cell types']} ({metric['dimensions']})",
+        "Full range": by_dimension(metric, "full") + unit,
+        "Acceptable": by_dimension(metric, "acceptable"),
+        "Ideal": by_dimension(metric, "ideal"),
+        "Better": metric["direction"].removesuffix(" is better"),
+        "Inverted": metric["inverted"],
+        "Barrier": metric["barrier"],
+        "Differentiable": metric["differentiable"],
+        "Scale-invariant": metric["scale invariant"],
+        "Rotation-invariant": metric["rotation invariant"],
+    }
+    return f"""<a name="{name}"></a>
+
+### {text(metric["label"])}
+
+`{name}`, symbol {text(metric["symbol"])}{also}
+
+<!-- formula: {metric["formula"]} -->
+$$
+{formula}
+$$
+
+*{text(metric["source"])}*
+
+![field of {name}](metric_{name}.png)
+
+{table(list(facts), [list(facts.values())])}"""
 
 
 def page(metrics: list) -> str:
-    template = (HERE / "metrics.html.in").read_text(encoding="utf-8")
-    return template.replace("@COUNT@", str(len(metrics))).replace("@ROWS@", "".join(map(row, metrics)))
+    formulas = json.loads((HERE / "formulas.json").read_text(encoding="utf-8"))
+    sections = "\n".join(section(metric, formulas[metric["name"]]) for metric in metrics)
+    made = (HERE / "metrics.md.in").read_text(encoding="utf-8").replace("@COUNT@", str(len(metrics)))
+    return made.replace("@OVERVIEW@", overview(metrics)).replace("@SECTIONS@", f"## The metrics\n\n{sections}")
 
 
 # --- the list of the panels --------------------------------------------------------------------------
@@ -214,7 +240,7 @@ def draw(metric: dict, path: Path) -> None:
 def wrong_pictures(metrics: list):
     wanted = {f"metric_{m['name']}.png" for m in metrics}
     found = {path.name: path.stat().st_size for path in HERE.glob("metric_*.png")
-             if not path.with_suffix(".html").is_file()}  # of a help page
+             if not path.with_suffix(".md").is_file()}  # of a help page
     yield from (f"{name}: there is no such picture" for name in sorted(wanted - set(found)))
     yield from (f"{name}: of no metric" for name in sorted(set(found) - wanted))
     yield from (f"{name}: {size} bytes, at most {MOST_BYTES}" for name, size in found.items() if size > MOST_BYTES)
@@ -227,7 +253,7 @@ def main(options: set) -> int:
     if "--pictures" in options:
         for metric in metrics:
             draw(metric, HERE / f"metric_{metric['name']}.png")
-    wanted = {HERE / "metrics.html": page(metrics), DOMAIN: domain(metrics)}
+    wanted = {HERE / "metrics.md": page(metrics), DOMAIN: domain(metrics)}
     complaints = [*wrong_pictures(metrics), *wrong_lists(metrics)]
     for path, content in wanted.items():
         if "--write" in options:

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Inserts the tables of properties in the help pages and the table of filters in Plugin/Site/filters.md, and makes the
-pages of ParaView's help with their table of contents.
+"""Makes the pages of ParaView's help, with their table of contents, from the Markdown pages of this directory.
 
-python3 make_pages.py BUILD [--write]    checks that the tables of the pages are those of the build tree's XML;
-                                         --write inserts them
-python3 make_pages.py --help-pages OUTPUT XML...    the pages for ParaView's help, with the tables of these XML files
-python3 make_pages.py --contents FILE XML...        the table of contents: the pages in the order of index.html
+python3 make_pages.py BUILD              checks the pages against the XML of the build tree: one page for each proxy,
+                                         the function and the class of each entry of filters.md, and the number of words
+python3 make_pages.py --help-pages OUTPUT XML...    the pages for ParaView's help, with tables of the XML's properties
+python3 make_pages.py --contents FILE XML...        the table of contents: the pages in the order of filters.md
 
-A page has a table between the comments <!-- properties: filters.ElementQuality --> and <!-- end of properties -->.
-ParaView's button ? opens the page named after the proxy, here filters.ElementQuality.html. So the help has each page
-under the names of its proxies, in place of the pages that ParaView generates, and links lead to these names.
+A page has the table of properties of a proxy at the comment <!-- properties: filters.ElementQuality -->. ParaView's
+button ? opens the page named after the proxy, here filters.ElementQuality.html. So the help has each page under the
+names of its proxies, in place of the pages that ParaView generates, and links lead to these names. The page
+filters.md is index.html there.
+
+The Markdown is CommonMark with tables. A formula stands between lines of $$; the comment <!-- formula: ... --> before
+it has the same as plain text, which the help shows.
 """
 
+import html
 import re
 import shutil
 import sys
@@ -20,101 +24,106 @@ from pathlib import Path
 from property_table import find_files, read_proxies, table_of
 
 HERE = Path(__file__).resolve().parent
-PLACE = re.compile(r"(<!-- properties: (\S+) -->\n)(.*?)(<!-- end of properties -->)", re.DOTALL)
-LINK = re.compile(r'(href=")([\w.]+\.html)')
-IN_TREE = re.compile(r'<a href="\.\./\.\./([^"]+)">[^<]*</a>')  # files that the help does not have
-MENU = re.compile(
-    r'<tr><td>(\w+) &gt; Tautline &gt; <a href="([^"]+)">([^<]+)</a></td>\n<td>(.*?)</td></tr>', re.DOTALL
-)
-TITLE = re.compile(r"<title>(.*?)(?: - Tautline)?</title>")
-FILTERS = HERE.parent / "Site" / "filters.md"
-ROWS = re.compile(r"(<!-- filters -->\n).*?(?=<!-- end of filters -->)", re.DOTALL)
-STYLE = '<link rel="stylesheet" href="style.css">'
+INDEX = "filters"
+MAX_WORDS = 1200  # of a page before its Details
+BEHIND = re.compile(r"^## (?:Details|Properties)$", re.MULTILINE)
+PLACE = re.compile(r"<!-- properties: (\S+) -->\n(?:\*.*\*\n)?")  # with the line that stands for the table
+FORMULA = re.compile(r"<!-- formula: (.*?) -->\n+\$\$\n.*?\n\$\$\n", re.DOTALL)
+LINK = re.compile(r'(href=")(\w+)\.(?:md|html)\b')
+HEADING = re.compile(r"<h([1-6])>(.*?)</h\1>")
+PICTURE = re.compile(r'src="([^"/]+)"')
+IN_TREE = re.compile(r'<a href="(?:\.\./)+([^"]+)">(.*?)</a>')  # files that the help does not have
+ENTRY = re.compile(r"^\| (?:\w+) > Tautline > \[.*?\]\((\w+)\.md\) \|.*\| `(\w+)` \| `(\w+)` \|$", re.MULTILINE)
+PAGE = """<!DOCTYPE html>
+<html>
+<head>
+<meta charset="utf-8">
+<title>{title}</title>
+<style>
+{style}</style>
+</head>
+<body>
+{body}
+</body>
+</html>
+"""
 
 
 def proxies_of(text: str) -> list:
-    return [match[2] for match in PLACE.finditer(text)]
+    return PLACE.findall(text)
 
 
-def with_tables(text: str, proxies: dict, page: Path) -> str:
-    """The page with the tables as they are in the XML."""
+def title_of(text: str) -> str:
+    """The first heading of a page."""
+    return re.search(r"^# (.*)$", text, re.MULTILINE)[1]
+
+
+def slug(heading: str) -> str:
+    """The anchor of a heading, as forges and Sphinx make it."""
+    words = re.sub(r"[^\w -]", "", html.unescape(re.sub(r"<[^>]+>", "", heading)))
+    return words.strip().lower().replace(" ", "-")
+
+
+def with_tables(text: str, proxies: dict, page: str) -> str:
+    """The page with the tables of properties, as HTML."""
 
     def fill(match) -> str:
-        if match[2] not in proxies:  # a module that was not built
-            print(f"{page.name}: the XML has no proxy {match[2]}; its table is kept")
-            return match[0]
-        return match[1] + table_of(proxies[match[2]]) + "\n" + match[4]
+        if match[1] not in proxies:  # a module that was not built
+            print(f"{page}: the XML has no proxy {match[1]}; its table is left out")
+            return ""
+        return table_of(proxies[match[1]]) + "\n"
 
     return PLACE.sub(fill, text)
 
 
-def check(proxies: dict, pages: list, write: bool) -> int:
-    """Every proxy has one page, whose table is that of the XML."""
-    wrong, found = 0, []
-    for page in pages:
-        text = page.read_text(encoding="utf-8")
-        found += proxies_of(text)
-        made = with_tables(text, proxies, page)
-        if made != text and write:
-            page.write_text(made, encoding="utf-8")
-        elif made != text:
-            wrong += 1
-            print(f"{page.name}: a table of properties is not that of the XML")
-    for name in proxies:
-        if found.count(name) != 1:
-            wrong += 1
-            print(f"{name} has {found.count(name)} pages instead of one")
-    wrong += check_filters(proxies, write)
-    if wrong:
-        print("Plugin/Documentation/make_pages.py BUILD --write inserts the tables")
-    print(f"{len(pages)} pages, {len(proxies)} proxies, {wrong} wrong")
-    return 1 if wrong or not proxies else 0
+def to_html(text: str) -> str:
+    """The body of a page of Markdown; its headings have anchors."""
+    from markdown_it import MarkdownIt  # not needed for the checks
+
+    plain = FORMULA.sub(lambda match: f"<p><code>{html.escape(match[1])}</code></p>\n", text)
+    body = MarkdownIt("commonmark", {"html": True}).enable("table").render(plain)
+    return HEADING.sub(lambda match: f'<h{match[1]}><a name="{slug(match[2])}"></a>{match[2]}</h{match[1]}>', body)
 
 
-def filter_rows(proxies: dict) -> str:
-    """The rows of filters.md: the entries of index.html with the class, the function and the command of each."""
-    rows = []
-    for menu, page, title, text in MENU.findall((HERE / "index.html").read_text(encoding="utf-8")):
-        proxy = proxies.get(proxies_of((HERE / page).read_text(encoding="utf-8"))[0])
-        if proxy is None:
-            return ""  # a module that was not built
-        function = proxy.find("Hints/Python").get("function")
-        rows.append(
-            f"| {menu} > Tautline > [{title}](../Documentation/{page}) | `{proxy.get('class')}` | `{function}` "
-            f"| `{function.replace('_', '-')}` | {' '.join(text.split())} |\n"
-        )
-    head = "| ParaView | C++ | Python | shell | what it does |\n|---|---|---|---|---|\n"
-    return head + "".join(rows)
+def pages_of(directory: Path) -> dict:
+    """The texts of the pages by their names without suffix."""
+    return {path.stem: path.read_text(encoding="utf-8") for path in sorted(directory.glob("*.md"))}
 
 
-def check_filters(proxies: dict, write: bool) -> int:
-    """Whether filters.md has the rows; 1 if it has not."""
-    rows, text = filter_rows(proxies), FILTERS.read_text(encoding="utf-8")
-    made = ROWS.sub(lambda match: match[1] + rows, text) if rows else text
-    if made == text:
-        return 0
-    if write:
-        FILTERS.write_text(made, encoding="utf-8")
-        return 0
-    print(f"{FILTERS.name}: the table of filters is not made from index.html and the XML")
-    return 1
+def check(proxies: dict, pages: dict) -> int:
+    """Every proxy has one page; filters.md has the names of the XML."""
+    wrong = []
+    found = [name for text in pages.values() for name in proxies_of(text)]
+    wrong += [f"{name} has {found.count(name)} pages instead of one" for name in proxies if found.count(name) != 1]
+    for page, text in pages.items():
+        words = len(BEHIND.split(text)[0].split())
+        if words > MAX_WORDS and page != "metrics":  # a table and a section for each metric
+            wrong.append(f"{page}.md has {words} words, {MAX_WORDS} are allowed: move some under Details")
+    listed = ENTRY.findall(pages[INDEX])
+    for page, function, type_name in listed:
+        proxy = proxies.get(proxies_of(pages[page])[0])
+        if proxy is None:  # a module that was not built
+            continue
+        expected = (proxy.find("Hints/Python").get("function"), proxy.get("class"))
+        if expected != (function, type_name):
+            wrong.append(f"{INDEX}.md: {page} is {' and '.join(expected)}, not {function} and {type_name}")
+    print("\n".join([*wrong, f"{len(pages)} pages, {len(proxies)} proxies, {len(listed)} entries, {len(wrong)} wrong"]))
+    return 1 if wrong or not proxies or not listed else 0
 
 
-def make_contents(file: Path, proxies: dict) -> int:
+def make_contents(file: Path, proxies: dict, pages: dict) -> int:
     """ParaView's table of contents; each page by the name that it has in the help."""
-    index = (HERE / "index.html").read_text(encoding="utf-8")
-    listed = dict.fromkeys(match[2] for match in LINK.finditer(index) if (HERE / match[2]).is_file())
     lines = []
-    for page in listed:
-        text = (HERE / page).read_text(encoding="utf-8")
-        names = [name for name in proxies_of(text) if name in proxies]
-        lines.append(f'    <section title="{TITLE.search(text)[1]}" ref="{names[0] if names else page[:-5]}.html"/>\n')
+    for page in dict.fromkeys(re.findall(r"\]\((\w+)\.md\)", pages[INDEX])):
+        names = [name for name in proxies_of(pages[page]) if name in proxies]
+        title = html.escape(title_of(pages[page]), quote=False)
+        lines.append(f'    <section title="{title}" ref="{names[0] if names else page}.html"/>\n')
     head = '<toc>\n  <section title="Tautline" ref="index.html">\n'
     file.write_text(f"{head}{''.join(lines)}  </section>\n</toc>\n", encoding="utf-8")
     return 0
 
 
-def make_help(output: Path, proxies: dict, pages: list) -> int:
+def make_help(output: Path, proxies: dict, pages: dict) -> int:
     """Pages named after their proxies, with links to these names, and the pictures.
 
     ParaView's help does not read style sheets: the style is in the pages.
@@ -122,26 +131,30 @@ def make_help(output: Path, proxies: dict, pages: list) -> int:
     style = (HERE / "style.css").read_text(encoding="utf-8")
     shutil.rmtree(output, ignore_errors=True)
     output.mkdir(parents=True)
-    texts = {page.name: with_tables(page.read_text(encoding="utf-8"), proxies, page) for page in pages}
-    names = {page: [f"{proxy}.html" for proxy in proxies_of(text)] or [page] for page, text in texts.items()}
-    for page, text in texts.items():
-        linked = LINK.sub(lambda match: match[1] + names.get(match[2], [match[2]])[0], text)
+    shown = set()
+    names = {page: proxies_of(text) or [page] for page, text in pages.items()} | {INDEX: ["index"]}
+    for page, text in pages.items():
+        body = to_html(with_tables(text, proxies, page))
+        body += '<p><a href="filters.md">All filters and pages</a></p>' if page != INDEX else ""
+        linked = LINK.sub(lambda match: f"{match[1]}{names.get(match[2], [match[2]])[0]}.html", body)
         linked = IN_TREE.sub(r"<code>\1</code>", linked)
-        linked = linked.replace(STYLE, f"<style>\n{style}</style>")
+        made = PAGE.format(title=html.escape(title_of(text), quote=False), style=style, body=linked.strip())
+        shown |= set(PICTURE.findall(made))
         for name in names[page]:
-            (output / name).write_text(linked, encoding="utf-8")
+            (output / f"{name}.html").write_text(made, encoding="utf-8")
     for path in HERE.glob("*.png"):
-        shutil.copyfile(path, output / path.name)
+        if path.name in shown:
+            shutil.copyfile(path, output / path.name)
     return 0
 
 
 def main(arguments: list) -> int:
-    pages = sorted(HERE.glob("*.html"))
+    pages = pages_of(HERE)
     if arguments[0] == "--help-pages":
         return make_help(Path(arguments[1]), read_proxies(arguments[2:]), pages)
     if arguments[0] == "--contents":
-        return make_contents(Path(arguments[1]), read_proxies(arguments[2:]))
-    return check(read_proxies(find_files(Path(arguments[0]))), pages, "--write" in arguments)
+        return make_contents(Path(arguments[1]), read_proxies(arguments[2:]), pages)
+    return check(read_proxies(find_files(Path(arguments[0]))), pages)
 
 
 if __name__ == "__main__":

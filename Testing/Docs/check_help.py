@@ -4,7 +4,7 @@
 The .qch file is an SQLite data base; a file's data are compressed, after four bytes with their length. ParaView's
 button ? opens the page group.name.html of a proxy: each proxy of the XML files has one, made from a page in
 DOCUMENTATION, with every property. HELP is the directory of the made pages, beside the table of contents toc.xml. No
-page of the help has a dead link, and each is in the table of contents, which lists what index.html links. QCH is -
+page of the help has a dead link, and each is in the table of contents, which lists what filters.md links. QCH is -
 where ParaView builds no help of plugins (Qt 6).
 """
 
@@ -18,8 +18,8 @@ from pathlib import Path
 QUERY = "SELECT Name, Data FROM FileNameTable JOIN FileDataTable ON Id = FileId WHERE Data IS NOT NULL"
 CONTENTS = "SELECT Data FROM ContentsTable"
 LINK = re.compile(r'(?:href|src)="([^"]+)"')
-SECTIONS = ("<b>Purpose.</b>", "<img ", "<!-- test: pvpython -->", "<!-- properties: ")  # of the page of a proxy
-WIDEST = 860  # pixels of a picture: a page is at most 900 wide
+SECTIONS = ("<strong>Purpose.</strong>", "<img ", "<!-- test: pvpython -->", "<table width=")  # of the page of a proxy
+WIDEST = 1200  # pixels of a picture; pages show wide ones scaled
 
 
 def width(png: bytes) -> int:
@@ -71,11 +71,11 @@ def main(documentation: Path, made: Path, help_file: Path, xmls: list) -> int:
     listed = {name for name in pages if name.encode("utf-16-be") in contents}
     same = {name: {other for other in pages if pages[other] == text} for name, text in pages.items()}
     unlisted = [name for name in pages if not same[name] & listed]
-    wrong += [f"{name} is not in the table of contents: index.html has no link to it" for name in unlisted]
+    wrong += [f"{name} is not in the table of contents: filters.md has no link to it" for name in unlisted]
     references = re.findall('ref="([^"]+)"', (made.parent / "toc.xml").read_text())
     wrong += [f"toc.xml: there is no {name}" for name in references if name not in files]
     wrong += [f"{name} is too wide" for name, data in files.items() if name.endswith(".png") and width(data) > WIDEST]
-    titles = {re.search("<title>(.*)</title>", path.read_text())[1] for path in documentation.glob("*.html")}
+    titles = {html.escape(title_of(path.read_text()), quote=False) for path in documentation.glob("*.md")}
     wrong += [f"{name} is none of our pages" for name, text in pages.items()
               if (found := re.search("<title>(.*)</title>", text)) is None or found[1] not in titles]  # fmt: skip
     print("\n".join(wrong + [f"{len(proxies)} proxies, {len(files)} files in the help, {len(wrong)} wrong"]))
@@ -85,6 +85,7 @@ def main(documentation: Path, made: Path, help_file: Path, xmls: list) -> int:
 if __name__ == "__main__":
     paths = [Path(argument).resolve() for argument in sys.argv[1:]]
     sys.path.insert(0, str(paths[0]))
+    from make_pages import title_of  # noqa: E402
     from property_table import is_listed, label_of, read_proxies  # noqa: E402
 
     sys.exit(main(paths[0], paths[1], paths[2], paths[3:]))

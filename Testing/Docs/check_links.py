@@ -6,10 +6,10 @@ import sys
 from pathlib import Path
 
 LINK = re.compile(r'\]\(([^)\s]+)\)|(?:href|src)="([^"]+)"')
-ANCHOR = re.compile(r'name="([^"]+)"')
+ANCHOR = re.compile(r"""(?:name|id)=["']([^"']+)["']""")
 OUTSIDE = re.compile(r"[a-z]+:")
 MOST_BYTES = 150_000  # of a picture
-WIDEST = 860  # pixels of a picture: a page is at most 900 wide
+WIDEST = 1200  # pixels of a picture; pages show wide ones scaled
 
 
 def anchors(path: Path) -> set:
@@ -37,7 +37,8 @@ def complaint(page: Path, link: str):
 
 def main(top: Path) -> int:
     pages = [*top.glob("*.md"), *(top / "Data").glob("*.md"), *(top / "Plugin/Site").glob("*.md"),
-             *(top / "Plugin/Packaging").glob("*.md"), *(top / "Plugin/Documentation").glob("*.html")]
+             *(top / "Plugin/Packaging").glob("*.md"), *(top / "Plugin/Documentation").glob("*.md"),
+             *(top / "Plugin/Documentation").glob("*.html")]
     links = [(page, a or b) for page in pages for a, b in LINK.findall(page.read_text(encoding="utf-8"))]
     wrong = [f"{page}: {link} {said}" for page, link in links if (said := complaint(page, link))]
     print("\n".join(wrong + [f"{len(pages)} pages, {len(links)} links, {len(wrong)} wrong"]))

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """run_examples.py KIND DOCUMENTATION WORK [--write]: runs the examples of the help pages and compares what they print.
 
-KIND is pvpython or python3, and so is the interpreter that runs this. An example is a <pre> after the comment
-<!-- test: KIND -->; the <pre> after "Output:" has what it prints. Numbers may differ by TOLERANCE. --write puts what is
+KIND is pvpython or python3, and so is the interpreter that runs this. An example is a block of code after the comment
+<!-- test: KIND -->; the block after "Output:" has what it prints. Numbers may differ by TOLERANCE. --write puts what is
 printed in the pages. Each example runs in WORK, which has the sample meshes in Data.
 """
 
 import contextlib
-import html
 import io
 import os
 import re
@@ -17,9 +16,9 @@ import traceback
 from pathlib import Path
 
 EXAMPLE = re.compile(
-    r"<!-- test: (?P<kind>\w+) -->\n<pre>\n(?P<code>.*?)</pre>"
-    r"(?P<between>\n<p>Output:</p>\n<pre>\n)?(?P<output>.*?</pre>)?",
-    re.DOTALL,
+    r"<!-- test: (?P<kind>\w+) -->\n```python\n(?P<code>.*?)^```\n"
+    r"(?:\nOutput:\n\n```text\n(?P<output>.*?)^```\n)?",
+    re.MULTILINE | re.DOTALL,
 )
 NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 TOLERANCE = 0.01  # relative
@@ -50,17 +49,17 @@ def run_page(page: Path, kind: str, write: bool) -> tuple:
             continue
         count += 1
         try:
-            printed = run(html.unescape(match["code"]), page.name)
+            printed = run(match["code"], page.name)
         except Exception:  # the other examples run, too
             traceback.print_exc()
             wrong += 1
             continue
-        expected = html.unescape((match["output"] or "").replace("</pre>", "")) if match["between"] else ""
+        expected = match["output"] or ""
         if not same(printed, expected):
             wrong += not write
             print(f"{page.name} prints\n{printed}instead of\n{expected}", flush=True)
-        if match["between"]:
-            pieces += [text[end : match.start("output")], html.escape(printed, quote=False), "</pre>"]
+        if match["output"] is not None:
+            pieces += [text[end : match.start("output")], printed]
             end = match.end("output")
     if write:
         page.write_text("".join(pieces) + text[end:], encoding="utf-8")
@@ -76,7 +75,7 @@ def main(kind: str, pages: Path, work: Path, write: bool) -> int:
     work.mkdir(parents=True)
     (work / "Data").symlink_to(data)
     os.chdir(work)
-    results = [run_page(page, kind, write) for page in sorted(pages.glob("*.html"))]
+    results = [run_page(page, kind, write) for page in sorted(pages.glob("*.md"))]
     count, wrong = (sum(column) for column in zip(*results))
     print(f"{count} examples for {kind}, {wrong} wrong")
     return 1 if wrong or not count else 0
