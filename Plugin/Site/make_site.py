@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""make_site.py SOURCE WORK OUTPUT VERSION: makes the site of all documents with Sphinx, and checks its links.
+"""make_site.py SOURCE WORK OUTPUT VERSION BUILD: makes the site of all documents with Sphinx, and checks its links.
 
-The pages are README.md, Plugin/Site, CONTRIBUTING.md, CHANGELOG.md, SECURITY.md and the help pages of the plugin, which
-are taken as they are. Links between them are those of the repository; in the site they lead to the pages made of these
-files.
+The pages are README.md, Plugin/Site, CONTRIBUTING.md, CHANGELOG.md, SECURITY.md, the help pages of the plugin with the
+tables of properties from the XML in the build tree BUILD, the gallery, the reference of Python and of C++, and the
+report of the studies. Links between files of the repository lead to the pages made of these files.
 """
 
 import html
-import inspect
-import json
 import os
 import re
 import shutil
@@ -18,191 +16,154 @@ from pathlib import Path
 from urllib.parse import unquote
 
 from cxx_pages import cxx_pages
+from gallery_pages import PICTURES, gallery_pages
+from python_pages import python_pages
 
 HELP = "Plugin/Documentation"
-#: Files outside Plugin/Site, and the names of their pages.
+SITE = "Plugin/Site"
+#: Files outside these two directories, and the names of their pages.
 PAGES = {
     "README.md": "index",
     "CONTRIBUTING.md": "contributing",
     "CHANGELOG.md": "changes",
     "SECURITY.md": "security",
+    "CODE_OF_CONDUCT.md": "conduct",
     "Plugin/Packaging/requirements.md": "requirements",
+    f"{HELP}/studies.html": "studies_report",
+    f"{HELP}/studies_more.html": "studies_more",
 }
-LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
-COMMENT = re.compile(r"^<!--.*?-->\n", re.MULTILINE)
-REFERENCE = re.compile(r'(?:href|src)="([^"]+)"')
-ANCHOR = re.compile(r'(?:id|name)="([^"]+)"')
-GALLERY = "python/examples"
-GALLERY_HEAD = """# Gallery
-
-Every example is a script in `python/examples`, which a test runs: `python3 02_untangle.py Data`. Pictures show the mesh
-before and after; blue is good, red is bad, and where nothing else is said the range of the colours is 1 to 3 of the
-inverse mean ratio. The seconds of processor time and the memory are those of the whole script on one machine, most of
-them for loading the libraries. Some examples are C++ programs, too, in `python/examples/cxx`; a test builds and runs
-these.
-"""
-LABEL = re.compile(r"^(Shell|Look at|State|Picture): (.*)$", re.MULTILINE)
-CONTINUED = re.compile(r"\\\n *")
-STATE = """# {title}
-from paraview.simple import *
-
-before = OpenDataFile("before.vtu")  # which the script below writes
-after = {call}
-Show(after)
-{last}Render()
-"""
-LAST_STEP = """GetAnimationScene().UpdateAnimationUsingDataTimeSteps()
-GetAnimationScene().GoToLast()
-"""
-WIDTH = 80  # of a signature in one line
+MATHJAX = Path("/usr/share/javascript/mathjax")  # Debian's package libjs-mathjax, version 2
+#: What the site uses of it.
+MATHJAX_PARTS = ("MathJax.js", "config/TeX-AMS_SVG.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/SVG")
+LINK = re.compile(r"(!?)\[((?:[^\[\]]|!\[[^\]]*\]\([^)]*\))*)\]\(([^)\s]+)\)")
+COMMENT = re.compile(r"^<!--.*?-->\n", re.MULTILINE | re.DOTALL)
+MATH = re.compile(r"^\$\$\n(.*?)\n\$\$$", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"(^```.*?^```$)", re.MULTILINE | re.DOTALL)
+REFERENCE = re.compile(r"""(?:href|src)=["']([^"']+)["']""")
+ANCHOR = re.compile(r"""(?:id|name)=["']([^"']+)["']""")
 OUTSIDE = re.compile(r"[a-z]+:|//")
+HEADING = re.compile(r"<h([1-4])(?: id=[\"']([^\"']+)[\"'])?>(?:<a name=\"([^\"]+)\"></a>)?(.*?)</h\1>", re.DOTALL)
+STYLE = re.compile(r"<style>(.*?)</style>", re.DOTALL)
 
 
 class Site:
     """The tree of Markdown that Sphinx reads."""
 
-    def __init__(self, source: Path, work: Path):
-        self.source, self.work = source, work
+    def __init__(self, source: Path, work: Path, proxies: dict):
+        self.source, self.work, self.proxies = source, work, proxies
         shutil.rmtree(work, ignore_errors=True)
         (work / "extra").mkdir(parents=True)
-        for directory in (HELP, "Data", f"{GALLERY}/pictures"):
-            names = shutil.ignore_patterns("*.py", "*.in", "*.cmake")
-            shutil.copytree(source / directory, work / "extra" / directory, ignore=names)
+        (work / "static").mkdir()
+        for directory, kinds in ((HELP, ("*.png",)), ("Data", ("*",)), (PICTURES, ("*.png",))):
+            target = work / "extra" / directory
+            target.mkdir(parents=True)
+            for path in (path for kind in kinds for path in (source / directory).glob(kind) if path.is_file()):
+                shutil.copyfile(path, target / path.name)
+        for part in MATHJAX_PARTS if MATHJAX.is_dir() else ():
+            target = work / "static/mathjax" / part
+            target.parent.mkdir(parents=True, exist_ok=True)
+            copy = shutil.copytree if (MATHJAX / part).is_dir() else shutil.copyfile
+            copy(MATHJAX / part, target)
 
     def target(self, page: Path, link: str) -> str:
-        """Where a link of a file leads in the site; pictures are relative to the repository, too."""
+        """Where a link of a file leads in the site; empty for a file that the site does not have."""
         path, mark, anchor = link.partition("#")
         if OUTSIDE.match(link) or not path:
             return link
         name = Path(os.path.relpath(page.parent / path, self.source)).as_posix()
         if name in PAGES:
             return f"{PAGES[name]}.html{mark}{anchor}"
-        if name.startswith("Plugin/Site/") and name.endswith(".md"):
+        if name.startswith((f"{SITE}/", f"{HELP}/")) and name.endswith(".md"):
             return f"{Path(name).stem}.html{mark}{anchor}"
-        if name.startswith((HELP, "Data/")):
+        if name.startswith((f"{HELP}/", "Data/", PICTURES)):
             return f"{name}{mark}{anchor}"
-        return ""  # a file of the sources, which the site does not have
+        return ""
 
-    def add(self, page: Path, name: str) -> None:
-        """A page of the site, with its links as raw HTML so that they are taken as they are."""
+    def linked(self, page: Path, text: str) -> str:
+        """Markdown with its links as raw HTML, so that they are taken as they are; not in blocks of code."""
 
         def fill(match) -> str:
-            target = self.target(page, match[2])
-            text = match[1][1:-2] if match[1].startswith("[") else match[1][2:-2]
-            if match[1].startswith("!"):
-                return f'<img src="{target}" alt="{html.escape(text)}">'
-            return f'<a href="{target}">{text}</a>' if target else f"`{text}`"
+            target = self.target(page, match[3])
+            if match[1]:
+                return f'<img src="{target}" alt="{html.escape(match[2])}">'
+            inner = LINK.sub(fill, match[2])
+            return f'<a href="{target}">{inner}</a>' if target else f"`{inner}`"
 
-        text = COMMENT.sub("", page.read_text(encoding="utf-8"))
-        parts = re.split(r"(^```.*?^```$)", text, flags=re.MULTILINE | re.DOTALL)
+        parts = FENCE.split(text)
         parts[::2] = [LINK.sub(fill, part) for part in parts[::2]]
-        (self.work / f"{name}.md").write_text("".join(parts), encoding="utf-8")
+        return "".join(parts)
+
+    def add(self, page: Path, name: str) -> None:
+        """A page of the site from a file in Markdown."""
+        text = page.read_text(encoding="utf-8")
+        text = with_tables(text, self.proxies, page.name)
+        text = MATH.sub(lambda match: f"```{{math}}\n{match[1]}\n```", COMMENT.sub("", text))
+        self.write(name, self.linked(page, text))
+
+    def add_report(self, page: Path, name: str) -> None:
+        """A page of the site from a report in HTML: its headings are headings of the site."""
+        text = page.read_text(encoding="utf-8")
+        for file, made in PAGES.items():
+            text = re.sub(rf"""(href=["']){re.escape(Path(file).name)}""", rf"\1{made}.html", text)
+        text = re.sub(r"""(src=["'])(?!data:)""", rf"\1{HELP}/", text)
+        style = "".join(f"<style>\n{re.sub(r'^body .*$', '', match, flags=re.MULTILINE)}</style>\n" for match in STYLE.findall(text))
+        body = text.split("<body>", 1)[1].split("</body>", 1)[0]
+        parts, end = [], 0
+        for match in HEADING.finditer(body):
+            anchor = match[2] or match[3]
+            parts += [raw(body[end : match.start()]), f'<a id="{anchor}"></a>\n\n' if anchor else "",
+                      f"{'#' * int(match[1])} {html.unescape(match[4])}\n\n"]  # fmt: skip
+            parts += [raw(style)] if match[1] == "1" else []
+            end = match.end()
+        self.write(name, "".join([*parts, raw(body[end:])]))
+
+    def write(self, name: str, text: str) -> None:
+        """Raises ValueError if there is a page of this name."""
+        page = self.work / f"{name}.md"
+        if page.exists():
+            raise ValueError(f"two pages have the name {name}")
+        page.write_text(text, encoding="utf-8")
 
     def add_all(self) -> None:
-        for page in (self.source / "Plugin/Site").glob("*.md"):
-            self.add(page, page.stem)
-        for name, page in PAGES.items():
-            self.add(self.source / name, page if page != "index" else "readme")
-        toctrees = (self.work / "index.md").read_text(encoding="utf-8").split("```{toctree}", 1)[1]
-        readme = (self.work / "readme.md").read_text(encoding="utf-8")
-        (self.work / "index.md").write_text(f"{readme}\n```{{toctree}}{toctrees}", encoding="utf-8")
-        (self.work / "readme.md").unlink()
-        (self.work / "python.md").write_text(python_page(), encoding="utf-8")
-        for name, text in cxx_pages(self.source).items():
-            (self.work / f"{name}.md").write_text(text, encoding="utf-8")
-        (self.work / "tutorial.md").write_text(help_page("Tutorial", "tutorial.html", "index.html", "jobs.html"))
-        (self.work / "gallery.md").write_text(gallery_page(self.source), encoding="utf-8")
-        shutil.copyfile(self.source / "Plugin/Site/conf.py", self.work / "conf.py")
-        (self.work / "static").mkdir()
-        shutil.copyfile(self.source / "Plugin/Site/style.css", self.work / "static/style.css")
+        for directory in (SITE, HELP):
+            for page in sorted((self.source / directory).glob("*.md")):
+                if page.stem != "index":  # its lists of pages follow the text of README.md
+                    self.add(page, page.stem)
+        for file, name in PAGES.items():
+            page = self.source / file
+            if page.suffix == ".html":
+                self.add_report(page, name)
+            elif page.is_file():
+                self.add(page, name)
+        toctrees = (self.source / SITE / "index.md").read_text(encoding="utf-8").split("```{toctree}", 1)[1]
+        with (self.work / "index.md").open("a", encoding="utf-8") as file:
+            file.write(f"\n```{{toctree}}{toctrees}")
+        placed = set(re.findall(r"^[\w-]+$", toctrees, re.MULTILINE))
+        rest = "\n".join(page.stem for page in sorted((self.source / HELP).glob("*.md")) if page.stem not in placed)
+        with (self.work / "filters.md").open("a", encoding="utf-8") as file:
+            file.write(f"\n```{{toctree}}\n:hidden:\n{rest}\n```\n")
+        made = python_pages() | cxx_pages(self.source) | gallery_pages(self.source)
+        for name, text in made.items():
+            self.write(name, text)
+        shutil.copyfile(self.source / SITE / "conf.py", self.work / "conf.py")
+        shutil.copyfile(self.source / SITE / "style.css", self.work / "static/style.css")
 
 
-def signature_of(name: str, value) -> str:
-    """As in a call, an argument a line where there are many."""
-    try:
-        signature = str(inspect.signature(value))
-    except ValueError:  # a class made of C
-        return name
-    if len(signature) <= WIDTH:
-        return name + signature
-    return name + re.sub(r"(^\(|, (?=\w+: |\*))", lambda match: f"{match[0].strip()}\n    ", signature)
-
-
-def python_page() -> str:
-    """Every public function and class of results of the package, with its docstring as it is."""
-    import tautline
-
-    parts = [f"# Python\n\n```text\n{inspect.getdoc(tautline)}\n```\n"]
-    for name, value in sorted(vars(tautline).items()):
-        if callable(value) and not name.startswith(("_", "vtk")):
-            text = inspect.getdoc(value) or ""
-            parts.append(f"## {name}\n\n```python\n{signature_of(name, value)}\n```\n\n```text\n{text}\n```\n")
-    return "\n".join(parts)
-
-
-def help_page(title: str, *pages: str) -> str:
-    links = "\n".join(f'- <a href="{HELP}/{page}">{Path(page).stem}</a>' for page in pages)
-    return f"# {title}\n\nThe pages of ParaView's help:\n\n{links}\n"
-
-
-def parts_of(script: str) -> tuple[str, str, dict[str, list[str]]]:
-    """The title, the text and the labelled lines of an example; a backslash continues a line."""
-    title, _, rest = script.split('"""')[1].partition("\n")
-    joined = CONTINUED.sub("", rest)
-    lines: dict[str, list[str]] = {}
-    for key, value in LABEL.findall(joined):
-        lines.setdefault(key, []).append(value)
-    return title, LABEL.sub("", joined).strip(), lines
-
-
-def state_of(title: str, call: str) -> str:
-    """The Python state file of an example, which Testing/Docs/gallery_states.py runs."""
-    return STATE.format(title=title, call=call, last=LAST_STEP if "TimeScheme" in call else "")
-
-
-def gallery_page(source: Path) -> str:
-    """The examples: title, picture and text of the docstring, cost, and the script. A test runs each of them."""
-    folder = source / GALLERY
-    facts = json.loads((folder / "measured.json").read_text(encoding="utf-8"))
-    parts = [GALLERY_HEAD]
-    for script in sorted(folder.glob("[0-9]*.py")):
-        text = script.read_text(encoding="utf-8")
-        title, rest, lines = parts_of(text)
-        code = text.split('"""', 2)[2].strip()
-        parts.append(f"## {title.rstrip('.')}\n")
-        if (folder / "pictures" / f"{script.stem}.png").exists():
-            name = html.escape(f"{title.rstrip('.')}: before and after")
-            parts.append(f'<img src="{GALLERY}/pictures/{script.stem}.png" alt="{name}">\n')
-        parts.append(rest + "\n")
-        if "Look at" in lines:
-            look = lines["Look at"][0]
-            parts.append(f"**What to look at.** {look[0].upper()}{look[1:]}\n")
-        if "Shell" in lines:
-            commands = "\n".join(lines["Shell"])
-            parts.append(f"On the shell:\n\n```sh\n{commands}\n```\n")
-        if "State" in lines:
-            state = state_of(title, lines["State"][0])
-            parts.append(f"In ParaView, a file to open with *File > Load State*:\n\n```python\n{state}```\n")
-        cost = facts[script.stem]
-        parts.append(f"In Python, `{GALLERY}/{script.name}`, {cost['seconds']} s and {cost['memory']} MiB:\n")
-        parts.append(f"```python\n{code}\n```\n")
-        program = folder / "cxx" / f"{script.stem}.cxx"
-        if program.exists():
-            body = program.read_text(encoding="utf-8").split("\n", 1)[1].strip()
-            parts.append(f"In C++, `{GALLERY}/cxx/{program.name}`, with the CMake file beside it:\n")
-            parts.append(f"```cpp\n{body}\n```\n")
-    return "\n".join(parts)
+def raw(body: str) -> str:
+    """A block of HTML that Sphinx takes as it is."""
+    return f"`````{{raw}} html\n{body.strip()}\n`````\n\n" if body.strip() else ""
 
 
 def dead_links(output: Path):
     """Links of every page that lead to no file or no anchor of the site."""
-    texts = {page: page.read_text(encoding="utf-8", errors="replace") for page in output.rglob("*.html")}
+    pages = [page for page in output.rglob("*.html") if "_static" not in page.parts]
+    texts = {page: page.read_text(encoding="utf-8", errors="replace") for page in pages}
     anchors = {page: set(ANCHOR.findall(text)) for page, text in texts.items()}
     for page, text in texts.items():
         for link in REFERENCE.findall(text):
             target, _, anchor = unquote(html.unescape(link)).partition("#")
             path = (page.parent / target.split("?")[0]).resolve() if target else page
-            if OUTSIDE.match(link) or target.startswith("../../"):  # from the help to the sources
+            if OUTSIDE.match(link):
                 continue
             if not path.exists():
                 yield f"{page.relative_to(output)}: {link} leads nowhere"
@@ -210,18 +171,23 @@ def dead_links(output: Path):
                 yield f"{page.relative_to(output)}: {link} has no such anchor"
 
 
-def main(source: Path, work: Path, output: Path, version: str) -> int:
-    Site(source, work).add_all()
+def main(source: Path, work: Path, output: Path, version: str, build: Path) -> int:
+    Site(source, work, read_proxies(find_files(build))).add_all()
     shutil.rmtree(output, ignore_errors=True)
     environment = dict(os.environ, TAUTLINE_VERSION=version)
     command = [sys.executable, "-m", "sphinx", "-q", "-W", "--keep-going", "-b", "html", str(work), str(output)]
     if subprocess.run(command, env=environment).returncode:
         return 1
     wrong = list(dead_links(output))
-    pages = len(list(output.rglob("*.html")))
+    pages = len(list(output.glob("*.html")))
     print("\n".join([*wrong, f"{pages} pages, {len(wrong)} dead links: {output / 'index.html'}"]))
     return 1 if wrong else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main(*(Path(argument).resolve() for argument in sys.argv[1:4]), sys.argv[4]))
+    tree, made, site, number, binary = sys.argv[1:6]
+    sys.path.append(str(Path(tree).resolve() / HELP))
+    from make_pages import with_tables  # noqa: E402
+    from property_table import find_files, read_proxies  # noqa: E402
+
+    sys.exit(main(Path(tree).resolve(), Path(made).resolve(), Path(site).resolve(), number, Path(binary).resolve()))

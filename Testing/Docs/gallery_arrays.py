@@ -11,7 +11,7 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkCommonDataModel import VTK_POLYHEDRON
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "Plugin" / "Site"))
-from make_site import parts_of, state_of  # noqa: E402, F401, the snippets as the page has them
+from gallery_pages import parts_of, state_of  # noqa: E402, F401, the snippets as the page has them
 
 DATE = re.compile(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d\S*")  # in a report
 TIMES = re.compile("seconds|rank|result")  # columns of a table that differ from run to run
