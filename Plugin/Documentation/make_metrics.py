@@ -43,12 +43,12 @@ def text(value: str) -> str:
     return html.escape(value, quote=False).replace("-inf", "-∞").replace(" inf", " ∞").replace("|", "\\|")
 
 
-def by_dimension(metric: dict, name: str) -> str:
+def by_dimension(metric: dict, name: str, between: str = "<br>") -> str:
     """ "1 to 3" if the same in 2D and 3D, else each with its dimension."""
     values = {d: metric[f"{name} {d}"] for d in ("2D", "3D") if d[0] in metric["dimensions"]}
     if len(set(values.values())) == 1:
         return text(values.popitem()[1])
-    return "<br>".join(f"{d}: {text(value)}" for d, value in values.items())
+    return between.join(f"{d}: {text(value)}" for d, value in values.items())
 
 
 def table(head: list, rows: list) -> str:
@@ -70,18 +70,16 @@ def section(metric: dict, formula: str) -> str:
     name = metric["name"]
     also = f", also {text(metric['aliases'].replace(',', ', '))}" if metric["aliases"] else ""
     unit = f", in {text(metric['unit'])}" if metric["unit"] else ""
-    facts = {
-        "Cells": f"{metric['cell types']} ({metric['dimensions']})",
-        "Full range": by_dimension(metric, "full") + unit,
-        "Acceptable": by_dimension(metric, "acceptable"),
-        "Ideal": by_dimension(metric, "ideal"),
-        "Better": metric["direction"].removesuffix(" is better"),
-        "Inverted": metric["inverted"],
-        "Barrier": metric["barrier"],
-        "Differentiable": metric["differentiable"],
-        "Scale-invariant": metric["scale invariant"],
-        "Rotation-invariant": metric["rotation invariant"],
-    }
+    ranges = {"full range": "full", "acceptable": "acceptable", "ideal": "ideal"}
+    yes_or_no = ("barrier", "differentiable", "scale invariant", "rotation invariant")
+    facts = [
+        f"Cells: {text(metric['cell types'])}",
+        "; ".join(f"{label}: {by_dimension(metric, key, ', ')}" for label, key in ranges.items()) + unit,
+        metric["direction"],
+        f"Inverted elements: {metric['inverted']}",
+        "; ".join(f"{key.replace(' ', '-')}: {metric[key]}" for key in yes_or_no),
+    ]
+    listed = "\n".join(f"- {fact[0].upper()}{fact[1:]}" for fact in facts)
     return f"""<a name="{name}"></a>
 
 ### {text(metric["label"])}
@@ -97,7 +95,8 @@ $$
 
 ![field of {name}](metric_{name}.png)
 
-{table(list(facts), [list(facts.values())])}"""
+{listed}
+"""
 
 
 def page(metrics: list) -> str:

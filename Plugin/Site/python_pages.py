@@ -18,6 +18,7 @@ def signature_of(name: str, value) -> str:
         signature = str(inspect.signature(value))
     except ValueError:  # a class made of C
         return name
+    signature = re.sub(r"(: |-> )'([^']*)'", r"\1\2", signature)  # annotations are texts
     if len(signature) <= WIDTH:
         return name + signature
     return name + re.sub(r"(^\(|, (?=\w+: |\*))", lambda match: f"{match[0].strip()}\n    ", signature)
