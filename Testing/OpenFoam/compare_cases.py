@@ -74,27 +74,29 @@ UNMADE = {
 #: The head of the page.
 HEAD = """# Comparison with checkMesh
 
-*Element Quality* and checkMesh of OpenFOAM measure the same meshes, those of OpenFOAM's tutorials and small ones with
-faults of all kinds (`synthetic`). `Testing/OpenFoam/make_cases.py` makes each mesh as the scripts of its tutorial do,
-and lets checkMesh measure it (`-constant -allGeometry -allTopology -writeAllFields`, 17 digits);
-`Testing/OpenFoam/compare_cases.py` reads and measures it with Tautline, compares, and has written this page.
+*Element Quality* and OpenFOAM's checkMesh measure the same meshes: OpenFOAM's tutorials and small meshes with faults of
+all kinds (`synthetic`). `Testing/OpenFoam/make_cases.py` makes each mesh as the scripts of its tutorial do, and runs
+checkMesh on it (`-constant -allGeometry -allTopology -writeAllFields`, 17 digits). `Testing/OpenFoam/compare_cases.py`
+reads and measures the mesh with Tautline, compares, and writes this page. To repair a mesh that fails, see [Failed 1
+mesh checks](openfoam-mesh.md).
 
 Programs: {versions}. The largest mesh has {largest} cells.
 
 A mesh agrees if the number of failed checks is the same, and if all cells have the values that checkMesh has written,
-up to {limit:g}. This limit grows with what rounding leaves: with the distance from the origin if that is more than
-{far:g} widths of the smallest cell ({rate:g} for each width), and, of the skewness, with the slenderness of cells
-beyond {slender}. Differences of volumes and aspect ratios are relative; those of angles are of their cosines.
+up to {limit:g}. This limit grows with the rounding: with the distance from the origin where that is more than {far:g}
+widths of the smallest cell ({rate:g} for each width), and, for the skewness, with the slenderness of cells beyond
+{slender}. Differences of volumes and aspect ratios are relative; differences of angles are differences of their
+cosines.
 
-Meshes in pieces are read by one process. With the addresses that decomposePar has written, they are the mesh before
+Decomposed meshes are read by one process. With the addresses that decomposePar has written, they are the mesh before
 the decomposition, and are compared with its fields and with the number of failed checks of checkMesh on as many
 processes. Joined along processor patches, without these addresses, they are compared with the fields that the processes
 have written.
 """
 TABLE_HEAD = """
-By the path of the tutorial, and the region. Under *read*, `pieces` are put together with addresses, `joined` ones along
-processor patches. Then the number of cells, of failed checks, of those that checkMesh finds, and the largest difference
-of each field.
+The name is the path of the tutorial, and the region. Under *read*, `pieces` are read with the addresses of
+decomposePar, `joined` ones along processor patches. The columns are the number of cells, of failed checks by Tautline
+and by checkMesh, and the largest difference of each field.
 """
 
 
@@ -109,7 +111,7 @@ class Reading(Enum):
 #: Rows of the summary.
 READINGS = {
     Reading.WHOLE: "in one piece",
-    Reading.ADDRESSED: "in pieces, put together with the addresses of decomposePar",
+    Reading.ADDRESSED: "in pieces, with the addresses of decomposePar",
     Reading.JOINED: "in pieces, joined along processor patches",
 }
 
@@ -396,7 +398,7 @@ def versions(cases: Cases) -> str:
 
 def summary(cases: Cases, comparisons: list[Comparison]) -> list[str]:
     """How many meshes agree, and by how much."""
-    lines = ["## Summary", "", "| meshes | compared | cells | agree | differ | refused |", "|---" * 6 + "|"]
+    lines = ["## Summary", "", "| meshes | compared | cells | agree | differ | rejected |", "|---" * 6 + "|"]
     for reading, label in READINGS.items():
         lines.append(counted((found for found in comparisons if found.reading == reading), label))
     lines += [counted(comparisons, "all"), ""]
@@ -404,8 +406,8 @@ def summary(cases: Cases, comparisons: list[Comparison]) -> list[str]:
     regions = sum(bool(mesh.region) for mesh in whole)
     synthetic = {name for name in cases.tutorials if name.startswith("synthetic/")}
     lines.append(
-        f"Tutorials: {len(cases.tutorials - synthetic)}; {len(cases.same)} of them have the mesh of another one, which "
-        f"is compared once. Synthetic cases: {len(synthetic)}. Regions, which are meshes of their own: {regions}."
+        f"Tutorials: {len(cases.tutorials - synthetic)}; {len(cases.same)} of them have the same mesh as another one, "
+        f"which is compared once. Synthetic cases: {len(synthetic)}. Regions, each a mesh: {regions}."
     )
     kinds = Counter(kind for mesh in whole for kind in patch_types(mesh))
     lines += ["", "Types of patches in the meshes in one piece, and the number of meshes that have them: "
@@ -435,7 +437,7 @@ def disagreements(comparisons: list[Comparison]) -> list[str]:
         if found.agrees:
             continue
         if found.refused:
-            key, text = f"Refused: {found.reason}", found.name
+            key, text = f"Rejected: {found.reason}", found.name
         else:
             key, text = f"Differs: {found.reason or 'not explained'}", found.name
             parts = [f"{name} by {number(found.differences[name])}" for name in found.wrong if name in NAMES]
@@ -450,7 +452,7 @@ def disagreements(comparisons: list[Comparison]) -> list[str]:
     if not groups:
         lines.append("Nothing.")
     ami = sum(found.limits.get(FACE_FIELD) == np.inf for found in comparisons)
-    text = f"Meshes with patches of the AMI kind, whose {FACE_FIELD} is in the table, but does not count: {ami}."
+    text = f"Meshes with patches of the AMI types, whose {FACE_FIELD} is in the table, but does not count: {ami}."
     lines += ["", text]
     return lines
 
@@ -466,7 +468,7 @@ def page(cases: Cases, comparisons: list[Comparison]) -> str:
     for found in comparisons:
         start = f"|{found.name}|{found.reading.value if found.reading != Reading.WHOLE else ''}|"
         if found.refused:
-            lines.append(f"{start}|refused|{found.failed_by_checkmesh}|" + "|" * len(NAMES))
+            lines.append(f"{start}|rejected|{found.failed_by_checkmesh}|" + "|" * len(NAMES))
             continue
         values = "|".join(number(found.differences[name]) for name in NAMES)
         lines.append(f"{start}{found.cells}|{found.failed}|{found.failed_by_checkmesh}|{values}|")
