@@ -12,6 +12,7 @@ from importlib.util import find_spec
 import numpy as np
 import tautline as tl
 from checks import DATA, OUT, points, refused, run_tests, shell, wording
+from tautline import _io
 from tautline._template import _nastran, _value
 
 FOLDER = OUT / "templates"
@@ -464,6 +465,23 @@ def test_shell():
             for word in ("wall", "Meter", "RequiredVertices", "*MATERIAL", "PSHELL", "# inside", "kept"):
                 assert (word in text) == (word in target.read_text()), (command, name, word)
         assert np.allclose(points(tl.read(FOLDER / f"optimize-{name}"))[4], (0.5, 0.5, 0), atol=1e-3), name
+
+
+def test_without_meshio():
+    """A file whose coordinates are replaced needs no meshio; where they cannot be, the error names the reason."""
+    source, target, check = FOLDER / "alone.inp", FOLDER / "alone-moved.inp", _io.check_installed
+    source.write_text(ABAQUS)
+
+    def missing(name: str) -> None:
+        raise tl.Error("meshio is missing")
+
+    _io.check_installed = missing
+    try:
+        tl.write(tl.optimize(source), target)
+        assert len(target.read_text().splitlines()) == len(source.read_text().splitlines())
+        refused(wording("points-are-those-of-parts"), tl.write, tl.untangle(DATA / "beam.inp"), target)
+    finally:
+        _io.check_installed = check
 
 
 def test_losses():

@@ -413,7 +413,10 @@ def write(
         try:
             return _write_like(as_mesh(mesh), name, source)
         except Error as error:
-            check_output(name)  # which fails where there is only a copy
+            try:
+                check_output(name)
+            except Error:  # there is no writer, only a copy
+                raise error from None
             warnings.warn(f"{error}; {name} is written anew", stacklevel=4)
     if form is None:
         _check_options(name, ending, options)
@@ -588,11 +591,11 @@ def check_output(file: str | PathLike[str], source: str = "") -> Format | None:
     if ending == SU2 or ending in NASTRAN_ENDINGS:
         check_target(name)
         return None
-    if ending in MESHIO_FORMATS:
-        check_installed(name)
+    if (ending not in FORMATS or not FORMATS[ending].writer) and can_be_template(source, name):
         check_target(name)
         return None
-    if (ending not in FORMATS or not FORMATS[ending].writer) and can_be_template(source, name):
+    if ending in MESHIO_FORMATS:
+        check_installed(name)
         check_target(name)
         return None
     if ending not in FORMATS or not FORMATS[ending].writer:
