@@ -32,7 +32,7 @@ FORMULA = re.compile(r"<!-- formula: (.*?) -->\n+\$\$\n.*?\n\$\$\n", re.DOTALL)
 LINK = re.compile(r'(href=")(\w+)\.(?:md|html)\b')
 HEADING = re.compile(r"<h([1-6])>(.*?)</h\1>")
 PICTURE = re.compile(r'src="([^"/]+)"')
-IN_TREE = re.compile(r'<a href="(?:\.\./)+([^"]+)">(.*?)</a>')  # files that the help does not have
+IN_TREE = re.compile(r'<a href="(?:\.\./)+([^"]+)">(.*?)</a>', re.DOTALL)  # files that the help does not have
 ENTRY = re.compile(r"^\| (?:\w+) > Tautline > \[.*?\]\((\w+)\.md\) \|.*\| `(\w+)` \| `(\w+)` \|$", re.MULTILINE)
 PAGE = """<!DOCTYPE html>
 <html>

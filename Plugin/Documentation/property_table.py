@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The table of a proxy's properties as HTML, from the XML of ParaView's server manager.
 
-A table has the properties in the order of the XML, with the titles of the panel's groups.
+A table lists the properties in the order of the XML, under the titles of the groups of the panel.
 """
 
 import html
@@ -9,7 +9,7 @@ import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-GROUPS = ("filters", "sources", "writers")  # those that users meet; readers are sources
+GROUPS = ("filters", "sources", "writers")  # visible to users; readers are sources
 METRIC = "Inverse mean ratio"  # the first entry of a list of metrics
 COLUMNS = '<tr><th width="22%">Property</th><th width="16%">Default</th><th width="62%">Description</th></tr>'
 BULLET = re.compile(r"^[*-] ", re.MULTILINE)
@@ -18,7 +18,7 @@ VTK_TYPES = {"vtkCompositeDataSet": None, "vtkSelection": "a selection"}  # None
 
 
 def read_proxies(files: list) -> dict:
-    """The proxies of the XML files by "group.name", without the internal ones but with what these expose."""
+    """The proxies of the XML files by "group.name", without internal ones, with the properties that these expose."""
     groups = [group for file in files for group in ElementTree.parse(file).getroot().iter("ProxyGroup")]
     proxies = {f"{group.get('name')}.{proxy.get('name')}": proxy for group in groups for proxy in group}
     for proxy in proxies.values():
@@ -77,7 +77,7 @@ def is_optional(item) -> bool:
 
 
 def range_of(item) -> str:
-    """What the domains allow, in words."""
+    """The values that the domains allow, in words."""
     for domain in (*item.iterfind("DoubleRangeDomain"), *item.iterfind("IntRangeDomain")):
         low, high = ((domain.get(key) or "").split() for key in ("min", "max"))
         low, high = (values[0] if len(set(values)) == 1 else "" for values in (low, high))
@@ -87,7 +87,7 @@ def range_of(item) -> str:
             return f"At least {low}." if low else f"At most {high}."
     texts = list(entries_of(item).values())
     if METRIC in texts:
-        return 'One or several of the <a href="metrics.html">metrics</a>.' if item.get("repeat_command") else (
+        return 'One or more of the <a href="metrics.html">metrics</a>.' if item.get("repeat_command") else (
             'One of the <a href="metrics.html">metrics</a>.')
     if texts:
         return "Choices: " + "; ".join(html.escape(text) for text in texts) + "."
@@ -100,7 +100,7 @@ def range_of(item) -> str:
 
 
 def condition_of(item, proxy, decorator="GenericDecorator") -> str:
-    """When the panel shows the property because of this kind of hint, in words; empty: always."""
+    """The condition of this kind of hint under which the panel shows the property, in words; empty: always."""
     by_name = {other.get("name"): other for other in proxy if other.get("name")}
 
     def words(node) -> str:
@@ -139,14 +139,14 @@ def row_of(item, proxy) -> tuple:
 
 
 def is_listed(item) -> bool:
-    """Whether users meet the property: results, too, but not times and file names as they were read."""
+    """Is the property visible to users? Results are; times and file names as they were read are not."""
     if not item.tag.endswith("Property") or item.get("is_internal") == "1":
         return False
     return not item.get("information_only") or item.find("Documentation") is not None
 
 
 def table_of(proxy) -> str:
-    """The HTML table of a proxy's properties, by the groups of its panel."""
+    """The HTML table of the properties of a proxy, by the groups of its panel."""
     titles = {part.get("name"): group.get("label") for group in proxy.iter("PropertyGroup") for part in group}
     sections = {}
     for item in filter(is_listed, proxy):
