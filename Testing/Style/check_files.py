@@ -9,9 +9,9 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "python", ".ci")
+DIRECTORIES = ("Filters", "Readers", "ServerManager", "Plugin", "Testing", "python", ".ci", ".github")
 CODE = {".h", ".cxx", ".py", ".cmake", ".in", ".sh"}
-TEXT = CODE | {".xml", ".md", ".qrc", ".svg", ".txt", ".module", ".plugin"}
+TEXT = CODE | {".xml", ".md", ".qrc", ".svg", ".txt", ".module", ".plugin", ".yml", ".yaml", ".cff"}
 LONG_FILE = 1500  # lines, from which on a file is mentioned
 MAX_FUNCTION = 100  # lines of a function of C++ outside the tests, without a table that it returns
 NO_FUNCTION = re.compile(r"(inline )?(namespace|class|struct|union|enum|extern)\b")

@@ -5,6 +5,9 @@ At most MAX_REPEATED of the lines that are not blank may stand in repeated block
 stand twice or more, white space aside. Templates, snippets and generated files are well-formed XML, every snippet is
 included somewhere, and in the generated files each property of a group is one of its proxy. A property whose
 documentation gives the value 0 a meaning of its own ("; 0 is no limit") has the hint that writes it beside the field.
+
+Panels of filters begin with the Summary, and their groups are sections with names of SECTIONS, in this order, that have
+no advanced properties; other groups are those of OPEN_GROUPS. Ungrouped properties stand before the first section.
 """
 
 import re
@@ -17,6 +20,34 @@ BLOCK = 8  # lines
 MAX_REPEATED = 0.01
 ZERO = re.compile(r"(?:^|[;,.]\s)0(?: is|:| =| means| switches)\s")  # a meaning of its own
 ZERO_HINT = "Hints/PropertyWidgetDecorator[@type='tautline_zero']"
+SECTION_HINT = "Hints/PropertyWidgetDecorator[@type='tautline_section']"
+SECTIONS = [
+    "Right-hand side",
+    "Boundary and geometry",
+    "Target",
+    "Finite volumes",
+    "Scalarization",
+    "Coefficients",
+    "Limits of the size",
+    "Arrays",
+    "Interaction layer",
+    "Solution",
+    "Time",
+    "Energy",
+    "Size array",
+    "Stop",
+    "Algorithm",
+    "Output",
+    "Parallel",
+]
+UNSEEN = ("TimeStepsInformationHelper", "Hints/PropertyWidgetDecorator[@type='tautline_script_only']")
+OPEN_GROUPS = {
+    "Objectives",
+    "Histogram",
+    "Point",
+    "Numbers of the Parts that Move",
+    "Values that Move (none: all but 0)",
+}
 INCLUDE = re.compile(r"<\?include (\w+\.xml)")
 Line = tuple[Path, int]
 
@@ -74,12 +105,49 @@ def silent_zeros(path: Path):
                 yield f"{path}: {proxy.get('name')}.{child.get('name')} has a special 0: include Zero.xml"
 
 
+def in_panel(item) -> bool:
+    """Whether the panel may have a row for a property."""
+    port = item.tag == "InputProperty" and item.get("panel_widget") is None
+    unseen = item.get("panel_visibility") == "never" or any(item.find(tag) is not None for tag in UNSEEN)
+    return item.tag.endswith("Property") and not port and not unseen
+
+
+def misplaced(path: Path):
+    """Groups and properties that are not where all panels have them."""
+    for proxy in ElementTree.parse(path).iterfind("ProxyGroup/SourceProxy"):
+        name = proxy.get("name")
+        group_of = {item.get("name"): group for group in proxy.iterfind("PropertyGroup") for item in group}
+        rows = [item for item in proxy if in_panel(item)]
+        if rows and proxy.find("*[@name='Summary']") is not None and rows[0].get("name") != "Summary":
+            yield f"{path}: {name} begins with {rows[0].get('name')}, not with its Summary"
+        last = -1
+        for item in rows:
+            group = group_of.get(item.get("name"))
+            label = None if group is None else group.get("label")
+            if label is None or label in OPEN_GROUPS:
+                if last >= 0:
+                    yield f"{path}: {name}.{item.get('name')} stands below a section"
+                continue
+            hint = group.find(SECTION_HINT)
+            if label not in SECTIONS or hint is None or hint.get("text") != label:
+                yield f"{path}: {name} has a group {label}, which is no section: see SECTIONS and Section.xml"
+                continue
+            if SECTIONS.index(label) < last:
+                yield f"{path}: {name} has the section {label} below {SECTIONS[last]}"
+            last = SECTIONS.index(label)
+            if item.get("panel_visibility") == "advanced":
+                yield f"{path}: {name}.{item.get('name')} is advanced, in a section that is closed anyway"
+
+
+CHECKS = (strangers, silent_zeros, misplaced)
+
+
 def main(directory: Path, generated: list[Path]) -> int:
     files = sorted(path for path in directory.rglob("*") if path.name.endswith((".xml", ".xml.in")))
     blocks, share = repeated(files)
     wrong = [*malformed(files + generated), *unused(files)]
     if not wrong:
-        wrong += [complaint for path in generated for complaint in [*strangers(path), *silent_zeros(path)]]
+        wrong += [complaint for path in generated for check in CHECKS for complaint in check(path)]
     if share > MAX_REPEATED:
         wrong += [" = ".join(f"{path.relative_to(directory)}:{line}" for path, line in block) for block in blocks]
         allowed = f"{MAX_REPEATED:.0%} are allowed"

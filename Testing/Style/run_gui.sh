@@ -43,7 +43,7 @@ grep -q '^GeneralSettings.ShowWelcomeDialog=false$' "$scratch/welcome" ||
   { echo "run gui: the welcome of ParaView is shown" >&2; exit 1; }
 
 # The help of a command does nothing else.
-for command in demo build test sanitize gui doctor env docs package clean; do
+for command in demo build test sanitize gui doctor env tidy docs package clean; do
   rm -rf "$scratch/build"
   told="$("$top/run" "$command" --help)"
   [[ $told == "  $command"* && $told != *$'\n'"  "[a-z]* && ! -e $scratch/build ]] ||
