@@ -160,7 +160,7 @@ Path matrixPath(
     return [=](const Vector& x) -> Vector
     { return middle + amount * shift + part * (stretched * (x - middle)); };
   }
-  const Vector axis = turned.axis();
+  const Vector& axis = turned.axis();
   const Vector along = axis.dot(shift) * axis, across = shift - along;
   const Vector pivot = middle + across / 2 + axis.cross(across) / (2 * std::tan(angle / 2));
   const Matrix part = rotation(amount * angle, axis);

@@ -119,8 +119,8 @@ SymmetricTensor principalDirections(
     [&](const auto& d) { moments += (d / largest) * (d / largest).transpose(); });
   ranks.sum(moments.data(), moments.size());
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments);
-  const Eigen::Vector3d values = solver.eigenvalues(); // ascending
-  const Eigen::Matrix3d axes = solver.eigenvectors();
+  const Eigen::Vector3d& values = solver.eigenvalues(); // ascending
+  const Eigen::Matrix3d& axes = solver.eigenvectors();
 
   // The average of |d . e| over the directions e of a plane is 2 / pi |d|, of space |d| / 2.
   constexpr double coincide = 1e-6;

@@ -144,7 +144,7 @@ bool completePlane(const Matrix& axes, bool planarMesh, Matrix& map)
 bool fitMap(const PathMoments& m, bool planarMesh, Matrix& map)
 {
   const Eigen::SelfAdjointEigenSolver<Matrix> eigen(m.points);
-  const Matrix axes = eigen.eigenvectors();
+  const Matrix& axes = eigen.eigenvectors();
   Matrix inverse = Matrix::Zero();
   int spanned = 0;
   for (int k = 0; k < 3; ++k)

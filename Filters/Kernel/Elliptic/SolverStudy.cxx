@@ -120,7 +120,7 @@ void Study::checkOptions()
     options.preconditioner = combinations[i].preconditioner;
     try
     {
-      LinearSolver(this->systemFor(combinations[i]), options);
+      const LinearSolver tried(this->systemFor(combinations[i]), options);
       this->TakesOptions[i] = true;
     }
     catch (const Error& error)
@@ -236,8 +236,8 @@ SolverStudyRow Study::solve(const SolverCombination& combination, std::size_t in
     const double cpu = processSeconds() - before;
     const double seconds =
       this->System.numbering().maximum(linear.setupSeconds + linear.solveSeconds);
-    const bool stopped =
-      linear.reason == SolveReason::Aborted || linear.reason == SolveReason::TimeLimit;
+    const bool aborted = linear.reason == SolveReason::Aborted;
+    const bool stopped = aborted || linear.reason == SolveReason::TimeLimit;
     if (turn == 0 || (seconds < row.seconds && !stopped))
     {
       row.linear = std::move(linear);
@@ -247,7 +247,7 @@ SolverStudyRow Study::solve(const SolverCombination& combination, std::size_t in
     }
     if (stopped || !converged(row.linear.reason))
     {
-      this->Result.aborted |= linear.reason == SolveReason::Aborted;
+      this->Result.aborted |= aborted;
       break;
     }
   }

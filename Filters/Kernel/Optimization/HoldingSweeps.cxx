@@ -28,7 +28,7 @@ public:
     int failures = 0;
     while (!watch.ends(history, reason))
     {
-      const IterationRecord before = history.back();
+      const IterationRecord& before = history.back(); // until report() adds another one
       this->Problem.store();
       const std::vector<double> points = this->Problem.points();
       const IterationRecord now = this->sweep(before, points);
